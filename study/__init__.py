@@ -1,0 +1,31 @@
+"""Parameter studies of rough coated contacts: labelled grids, results that resume, figures and tables.
+
+`solve` and `load` are the entrance; `python -m study` is the same from a shell. Names are imported when they are
+first used, so that `python -m study --help` and complaints about a study file answer at once.
+"""
+
+from importlib import import_module
+
+_HOME = {
+    "solve": "api",
+    "load": "api",
+    "Study": "api",
+    "open_results": "dataset",
+    "StudyError": "definition",
+    "to_physical": "units",
+    "from_physical": "units",
+    "reduced_modulus": "units",
+}
+__all__ = list(_HOME)
+
+
+def __getattr__(name: str):
+    if name not in _HOME:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    found = getattr(import_module(f".{_HOME[name]}", __name__), name)
+    globals()[name] = found
+    return found
+
+
+def __dir__() -> list[str]:
+    return sorted([*globals(), *__all__])

@@ -1,0 +1,159 @@
+"""A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .grid import Grid, as_array, axis_values, shown, twins
+from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
+
+
+@dataclass
+class Draft:
+    """Collects parameters; `finish` makes the Grid. `known`: the names allowed; `errors`: messages, no file name."""
+
+    known: tuple[str, ...] = PARAMETERS
+    errors: list[str] = field(default_factory=list)
+    sizes: dict[str, int] = field(default_factory=dict)
+    values: dict = field(default_factory=dict)
+    labels: dict = field(default_factory=dict)
+    sections: dict[str, str] = field(default_factory=dict)
+
+    def scalar(self, name: str, raw, section: str) -> None:
+        """One value for all cases."""
+        if not self._accept(name, section):
+            return
+        if isinstance(raw, (list, dict)):
+            self.errors.append(f"{section} {name} has several values: these belong in [axes]".lstrip())
+        else:
+            self.values[name] = (), as_array(VOCABULARY[name], [raw], name, self.errors).reshape(())
+
+    def axis(self, name: str, raw, section: str) -> None:
+        """A dimension called like its parameter."""
+        if not self._accept(name, section):
+            return
+        before = len(self.errors)
+        array = as_array(VOCABULARY[name], axis_values(raw, name, self.errors), name, self.errors)
+        if len(self.errors) == before:
+            self._distinct(name, array.tolist())
+        self.sizes[name] = len(array)
+        self.values[name] = (name,), array
+
+    def cases(self, rows) -> None:
+        """Points that are no product: the dimension `case`. What a row leaves out takes its default, or NaN."""
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            self.errors.append("cases must be [[cases]] tables (a list of dictionaries)")
+            return
+        if not rows:
+            self.errors.append("cases is empty: must have at least one case")
+            return
+        self.sizes["case"] = len(rows)
+        self.labels["case"] = ("case",), np.arange(len(rows), dtype=np.int32)
+        for name in dict.fromkeys(name for row in rows for name in row):
+            if name == "label":
+                self._case_labels([row.get("label", "") for row in rows])
+            elif self._accept(name, "[[cases]]"):
+                default = VOCABULARY[name].default
+                raw = [row.get(name, default) for row in rows]
+                self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
+        points = [repr(sorted((k, v) for k, v in row.items() if k != "label")) for row in rows]
+        self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]
+
+    def array(self, name: str, given) -> None:
+        """A DataArray: values over its own dimensions, which may be shared with other parameters."""
+        if not self._accept(name, ""):
+            return
+        for dim, size in given.sizes.items():
+            self._array_dimension(name, given, str(dim), size)
+        flat = as_array(VOCABULARY[name], given.values.ravel().tolist(), name, self.errors)
+        self.values[name] = tuple(map(str, given.dims)), flat.reshape(given.shape)
+        if given.dims == (name,):
+            self._distinct(name, flat.tolist())
+
+    def finish(self) -> Grid:
+        """Fill in the defaults and check what concerns several parameters."""
+        if self.known == PARAMETERS:
+            self._one_control()
+        for dim in self.sizes:
+            if dim in self.known and dim not in self.values:
+                self.errors.append(f"the dimension {dim} is called like a parameter that is not given")
+        for name in self.known:
+            default = VOCABULARY[name].default
+            if name not in self.sections and default is not None:
+                self.values[name] = (), np.array(default)
+        grid = Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
+        if not self.errors:
+            self.errors += missing_parameters(grid, self.known)
+        return grid
+
+    def _accept(self, name: str, section: str) -> bool:
+        """Whether the name is known and new; otherwise a message."""
+        place = f"{section} " if section else ""
+        if name not in self.known:
+            self.errors.append(f'{place}"{name}" is not a parameter{suggest(name, self.known)}')
+        elif name in self.sections:
+            self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
+        elif section == "[model]" and name in NUMERICS:
+            self.errors.append(f"{place}{name} belongs in [numerics]")
+            self.sections[name] = section
+        else:
+            self.sections[name] = section
+            return True
+        return False
+
+    def _one_control(self) -> None:
+        given = [name for name in CONTROLS if name in self.sections]
+        if len(given) != 1:
+            self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
+
+    def _case_labels(self, labels: list) -> None:
+        if not all(isinstance(label, str) for label in labels):
+            self.errors.append("[[cases]] label: must be text")
+            return
+        self._distinct("label", [label for label in labels if label])
+        self.labels["label"] = ("case",), np.array(labels, dtype=str)
+
+    def _array_dimension(self, name: str, given, dim: str, size: int) -> None:
+        """Register a dimension of a DataArray and its coordinate, which must agree with what is already known."""
+        if dim in VOCABULARY and dim not in self.known:
+            self.errors.append(f'{name}: a dimension cannot be called "{dim}", which is the name of a result')
+        if self.sizes.setdefault(dim, size) != size:
+            self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
+        elif dim in given.coords and dim != name:
+            ours, theirs = given.coords[dim].values, (self.values if dim in self.known else self.labels).get(dim)
+            if theirs is None:
+                if dim not in self.known:
+                    self.labels[dim] = (dim,), ours
+            elif not np.array_equal(theirs[1], ours):
+                self.errors.append(f"{name} has other values of {dim} than another parameter")
+        if size == 0:
+            self.errors.append(f"{name} is empty: must have at least one value")
+
+    def _distinct(self, name: str, values: list) -> None:
+        for i, j in twins(values)[:1]:
+            self.errors.append(
+                f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
+            )
+
+
+def missing_parameters(grid: Grid, known: tuple[str, ...]) -> list[str]:
+    """Messages for parameters that some case needs and does not have."""
+    messages = []
+    for name in known:
+        dims, array = grid.values.get(name, ((), np.array(math.nan)))
+        gaps = np.isnan(array) if array.dtype.kind == "f" else np.zeros(array.shape, dtype=bool)
+        selector, needing = VOCABULARY[name].needed_by
+        reason = ""
+        if name in CONTROLS or known != PARAMETERS:  # needed by every case
+            gaps = gaps & (name in grid.values or name not in CONTROLS)
+        elif selector:
+            chosen_dims, chosen = grid.values[selector]
+            needs = np.isin(chosen, needing)
+            gaps = needs & gaps if dims == chosen_dims else gaps & needs.any()
+            reason = f": {selector} = {' or '.join(shown(word) for word in needing if word in chosen)} needs it"
+        else:
+            continue
+        if gaps.any():
+            messages.append(f"{name} is missing{f' in case {int(np.argmax(gaps))}' if dims else ''}{reason}")
+    return messages

@@ -1,0 +1,132 @@
+"""The grid of cases: parameters along named dimensions, their flat columns (B,), and the way back."""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from .vocabulary import Entry, check
+
+LONGEST_AXIS = 1_000_000
+SHOWN = 3  # messages of one kind for one parameter; the rest is counted
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Labelled cases, the product of the dimensions.
+
+    sizes : dimension -> number of points, in order; values : parameter -> (its dimensions, array over them); labels :
+        the same for coordinates that are no parameters (`case`, `label`, coordinates of a given DataArray). NaN in
+        `values` means "not given for this case because nothing there needs it".
+    """
+
+    sizes: dict[str, int]
+    values: dict[str, tuple[tuple[str, ...], np.ndarray]]
+    labels: dict[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(self.sizes.values())
+
+    @property
+    def size(self) -> int:
+        """Number of cases B, as a Python integer that cannot overflow."""
+        return math.prod(self.sizes.values())
+
+
+def columns(grid: Grid, start: int, stop: int) -> dict[str, np.ndarray]:
+    """Parameters of the cases start <= i < stop, each (stop - start,); what a case does not need (NaN) becomes 1."""
+    places = (
+        dict(zip(grid.sizes, np.unravel_index(np.arange(start, stop), grid.shape), strict=True)) if grid.sizes else {}
+    )
+    found = {}
+    for name, (dims, array) in grid.values.items():
+        column = array[tuple(places[dim] for dim in dims)] if dims else np.full(stop - start, array)
+        if column.dtype.kind == "f":
+            column = np.where(np.isnan(column), 1.0, column)
+        found[name] = column
+    return found
+
+
+def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
+    """(B, ...) -> (*grid.shape, ...), the inverse of `columns`."""
+    return flat.reshape(grid.shape + flat.shape[1:])
+
+
+def as_array(entry: Entry, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
+    """Check the values of one parameter and make them an array of float, int or text.
+
+    Parameters
+    ----------
+    raw : list of values, or a list with one value
+    key : how messages call the parameter; entry i of several is called key[i]
+    errors : messages are appended here
+    gaps : None stands for "not given" and becomes NaN
+    """
+    found = []
+    for i, value in enumerate(raw):
+        text = "" if value is None and gaps else check(entry, value)
+        if text:
+            found.append(f"{key}{f'[{i}]' if len(raw) > 1 else ''} = {shown(value)}: {text}")
+    errors += found[:SHOWN] + ([f"{key}: and {len(found) - SHOWN} more such values"] if len(found) > SHOWN else [])
+    if found:
+        return np.empty(len(raw))
+    if entry.choices:
+        return np.array(raw, dtype=str)
+    if entry.whole:
+        return np.array([int(value) for value in raw], dtype=np.int64)
+    return np.array([math.nan if value is None else float(value) for value in raw])
+
+
+def axis_values(raw, key: str, errors: list[str]) -> list:
+    """Expand an axis: a list, or a table {start, stop, num, spacing = "linear" | "log"}. Wrong input: messages, []."""
+    if isinstance(raw, dict):
+        return _range_values(raw, key, errors)
+    if not isinstance(raw, list):
+        errors.append(
+            f"{key} = {shown(raw)}: must be a list or {{start, stop, num, spacing}}; a single value belongs in [model]"
+        )
+    elif not raw:
+        errors.append(f"{key} is empty: must have at least one value")
+    elif len(raw) > LONGEST_AXIS:
+        errors.append(f"{key} is too long: at most {LONGEST_AXIS} values are allowed")
+    else:
+        return raw
+    return []
+
+
+def _range_values(raw: dict, key: str, errors: list[str]) -> list:
+    before = len(errors)
+    for name in raw:
+        if name not in ("start", "stop", "num", "spacing"):
+            errors.append(f'{key}: "{name}" is not allowed; a range is {{start, stop, num, spacing}}')
+    spacing = raw.get("spacing", "linear")
+    if spacing not in ("linear", "log"):
+        errors.append(f'{key}: spacing = {shown(spacing)}: must be one of "linear", "log"')
+    for end in ("start", "stop"):
+        value = raw.get(end)
+        if type(value) not in (int, float) or not math.isfinite(value) or (spacing == "log" and value <= 0):
+            errors.append(
+                f"{key}: {end} = {shown(value)}: must be a finite number{', > 0 for spacing log' * (spacing == 'log')}"
+            )
+    num = raw.get("num")
+    if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
+        errors.append(f"{key}: num = {shown(num)}: must be a whole number in [2, {LONGEST_AXIS}]")
+    if len(errors) > before:
+        return []
+    make = np.geomspace if spacing == "log" else np.linspace
+    return make(raw["start"], raw["stop"], num).tolist()
+
+
+def twins(values: list) -> list[tuple[int, int]]:
+    """Pairs of places that hold the same value: a coordinate with twins cannot be selected from."""
+    first, pairs = {}, []
+    for i, value in enumerate(values):
+        j = first.setdefault(value, i)
+        if j != i:
+            pairs.append((j, i))
+    return pairs
+
+
+def shown(value) -> str:
+    return "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)

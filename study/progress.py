@@ -1,0 +1,59 @@
+"""Progress of a run: one line that is rewritten on a terminal, a plain line now and then elsewhere."""
+
+import time
+from dataclasses import dataclass, field
+from typing import TextIO
+
+EVERY = 10.0  # seconds between plain lines
+BLINK = 0.1  # seconds between rewritten lines
+
+
+@dataclass
+class Progress:
+    """Counts cases; `done` begins with those found on disk, the rate counts only what is computed now."""
+
+    name: str
+    total: int
+    stream: TextIO
+    done: int = 0
+    failed: int = 0
+    computed: int = 0
+    begun: float = field(default_factory=time.monotonic)
+    written: float = 0.0
+
+    def update(self, cases: int, failed: int) -> None:
+        """Add a finished block."""
+        self.done += cases
+        self.computed += cases
+        self.failed += failed
+        now = time.monotonic()
+        if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
+            self.written = now
+            self._write(now)
+
+    def close(self) -> None:
+        """End the rewritten line."""
+        if self.stream.isatty() and self.written:
+            self.stream.write("\n")
+
+    def _write(self, now: float) -> None:
+        line = describe(self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
+        self.stream.write(f"\r\x1b[K{line}" if self.stream.isatty() else f"{line}\n")
+        self.stream.flush()
+
+
+def describe(name: str, done: int, total: int, failed: int, computed: int, seconds: float) -> str:
+    """The line: "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left"."""
+    rate = computed / seconds if seconds > 0 else 0.0
+    left = f", {duration((total - done) / rate)} left" if rate and done < total else ""
+    return f"{name}: {done} of {total} cases, {failed} failed, {rate:.3g}/s{left}"
+
+
+def duration(seconds: float) -> str:
+    """Seconds as "8 s", "3 min 20 s" or "2 h 5 min"."""
+    whole = round(seconds)
+    if whole < 60:
+        return f"{whole} s"
+    if whole < 3600:
+        return f"{whole // 60} min {whole % 60} s"
+    return f"{whole // 3600} h {whole % 3600 // 60} min"

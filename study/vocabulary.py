@@ -1,0 +1,168 @@
+"""The only table of names: what every parameter and result is called, measured in, allowed to be and printed as."""
+
+import difflib
+import math
+import numbers
+from dataclasses import dataclass
+
+NOT_RUN = 127
+"""Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
+
+LENGTH, MICRON, PRESSURE = ("m", 1.0), ("um", 1e-6), ("MPa", 1e6)
+FORCE, STIFFNESS, DENSITY = ("N", 1.0), ("N m-1", 1.0), ("mm-2", 1e6)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One name.
+
+    `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity, printed in `unit`
+    (name, size in SI). `interval` is the allowed range in mathematical notation, `also` lists single values allowed
+    outside it. `default` None means that the parameter has no default; it is then required wherever the parameter
+    called `needed_by[0]` has one of the values `needed_by[1]`.
+    """
+
+    name: str
+    symbol: str
+    long_name: str
+    role: str
+    powers: tuple[int, int] = (0, 0)
+    unit: tuple[str, float] = ("1", 1.0)
+    equation: str = ""
+    interval: str = ""
+    also: tuple = ()
+    choices: tuple[str, ...] = ()
+    default: object = None
+    whole: bool = False
+    needed_by: tuple[str, tuple[str, ...]] = ("", ())
+
+    @property
+    def scale(self) -> str:
+        """The scale in words, such as "E2* R^2"; empty for a pure number."""
+        parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]
+        return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
+
+
+POSITIVE = "(0, inf)"
+THIN = ("base", ("thin_layer",))
+ROUGH = ("micro", ("disc_cell", "power_law"))
+POWER = ("micro", ("power_law",))
+
+# fmt: off
+_ENTRIES = (
+    Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)", POSITIVE),
+    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)", POSITIVE),
+    Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)", POSITIVE),
+    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON, "", POSITIVE, needed_by=THIN),
+    Entry("n", "E1*/E2*", "ratio of the reduced moduli of layer and half-space", "material", interval=POSITIVE,
+          needed_by=THIN),
+    Entry("nu1", "ν1", "Poisson ratio of the layer", "material", interval="(-1, 0.5]", default=0.3),
+    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material", interval="(-1, 0.5]", default=0.3),
+    Entry("bonding", "", "interface of layer and half-space", "material", choices=("frictionless", "bonded"),
+          default="frictionless"),
+    Entry("base", "", "elastic base", "material", choices=("half_space", "thin_layer"), default="thin_layer"),
+    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY, "", POSITIVE,
+          needed_by=ROUGH),
+    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON, "", POSITIVE, needed_by=ROUGH),
+    Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)",
+          choices=("smooth", "disc_cell", "power_law"), default="disc_cell"),
+    Entry("B", "B E1*^β/Ra", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness", interval=POSITIVE,
+          needed_by=POWER),
+    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness", interval="(0, 1]", needed_by=POWER),
+    Entry("scheme", "", "scheme of solution", "numerics", choices=("newton", "picard"), default="newton"),
+    Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)",
+          interval="[0, inf)", default=1.0),
+    Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]", default=1e-6),
+    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics", interval="[4, 256]", also=(0,), default=0,
+          whole=True),
+    Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics",
+          interval="[1, 100000]", also=(0,), default=0, whole=True),
+    Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), PRESSURE, "(3)"),
+    Entry("p_max", "pmax", "largest real pressure, in the middle of the central spot", "result", (1, 0), PRESSURE,
+          "(13)"),
+    Entry("Ar_An", "Ar/An", "real over nominal contact area", "result", equation="(12)"),
+    Entry("A0", "A[p(0)]", "additional displacement of the rough layer in the centre", "result", (0, 1), MICRON, "(6)"),
+    Entry("dP_dD", "dP/dD", "contact stiffness", "result", (1, 1), STIFFNESS),
+    Entry("lam0", "λ(0)", "relative contact area in the centre", "result", equation="(11)"),
+    Entry("p", "p(r)", "nominal contact pressure", "profile", (1, 0), PRESSURE, "(3)"),
+    Entry("lam", "λ(r)", "relative contact area", "profile", equation="(11)"),
+    Entry("status", "", "how the solution of the case ended", "flag"),
+    Entry("error", "", "estimated relative error of the results", "result"),
+    Entry("residual", "", "relative residual of the discrete equation", "result"),
+    Entry("iterations", "", "number of iterations", "count"),
+    Entry("nodes_used", "", "number of nodes used", "count"),
+    Entry("validity", "", "assumptions of the model that the case violates; 0: none", "flag"),
+    Entry("An", "An", "nominal contact area", "derived", (0, 2), ("mm2", 1e-6)),
+    Entry("An_ratio", "An/(π a0²)", "nominal contact area over a reference area", "derived"),
+    Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0), PRESSURE),
+    Entry("spots", "N̄ An", "number of contact spots", "derived"),
+    Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), MICRON, "(7)"),
+    Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
+    Entry("case", "", "number of the case", "coordinate"),
+    Entry("label", "", "label of the case", "coordinate"),
+    Entry("fit.p_min", "", "smallest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
+    Entry("fit.p_max", "", "largest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=0.025),
+    Entry("fit.step", "", "pressure step of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
+    Entry("fit.mesh", "", "mesh of the fit", "fit", choices=("uniform", "graded"), default="uniform"),
+    Entry("A_exact", "A[p]", "additional displacement, exact", "law", (0, 1), MICRON, "(6)"),
+    Entry("A_fit", "B p^β", "additional displacement, fitted power law", "law", (0, 1), MICRON),
+    Entry("max_error", "", "largest relative error of the fit over the interval `check`", "law"),
+)
+# fmt: on
+VOCABULARY = {entry.name: entry for entry in _ENTRIES}
+
+
+def names(*roles: str) -> tuple[str, ...]:
+    """Names that have one of the roles, in the order of the table."""
+    return tuple(entry.name for entry in _ENTRIES if entry.role in roles)
+
+
+CONTROLS = names("control")
+NUMERICS = names("numerics")
+PARAMETERS = names("control", "material", "roughness", "numerics")
+MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
+
+
+def attributes(name: str) -> dict:
+    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation."""
+    entry = VOCABULARY[name]
+    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    if not entry.choices and entry.role != "flag" and name != "label":
+        found["units"] = "1"
+    return {key: text for key, text in found.items() if text}
+
+
+def allowed(entry: Entry) -> str:
+    """What the values of an entry must be, as the end of a message: "must be > 0"."""
+    if entry.choices:
+        return "must be one of " + ", ".join(f'"{choice}"' for choice in entry.choices)
+    low, high = entry.interval[1:-1].split(", ")
+    if high == "inf":
+        return f"must be {'>' if entry.interval[0] == '(' else '>='} {low}"
+    either = "".join(f"{value} or " for value in entry.also)
+    return f"must be {either}in {entry.interval}"
+
+
+def check(entry: Entry, value) -> str:
+    """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
+    if entry.choices:
+        return "" if isinstance(value, str) and value in entry.choices else allowed(entry)
+    if isinstance(value, bool) or not isinstance(value, numbers.Real) or type(value).__name__ == "bool":
+        return f"must be a number, {allowed(entry).removeprefix('must be ')}"
+    if not math.isfinite(value):
+        return f"must be finite, {allowed(entry).removeprefix('must be ')}"
+    if entry.whole and value != int(value):
+        return "must be a whole number"
+    low, high = (float(end) for end in entry.interval[1:-1].split(", "))
+    above = value > low or (value == low and entry.interval[0] == "[")
+    below = value < high or (value == high and entry.interval[-1] == "]")
+    return "" if value in entry.also or (above and below) else allowed(entry)
+
+
+def suggest(word: str, known) -> str:
+    """ "; did you mean "Nbar"?" when a known word is near, otherwise the list of what is known."""
+    lower = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(str(word).lower(), lower, n=1, cutoff=0.6)
+    if near:
+        return f'; did you mean "{lower[near[0]]}"?'
+    return "; known: " + ", ".join(known)

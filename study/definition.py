@@ -167,7 +167,6 @@ def fit_arguments(given: dict, errors: list[str]) -> dict:
     """Arguments of the least-squares fit from the table [fit], defaults filled in, pressures in E1*."""
     known = [name.removeprefix("fit.") for name in VOCABULARY if name.startswith("fit.")]
     fit = {key: given.get(key, VOCABULARY[f"fit.{key}"].default) for key in known}
-    before = len(errors)
     errors += [
         f'[fit] "{key}" is not known{suggest(key, (*known, "check"))}' for key in given if key not in (*known, "check")
     ]
@@ -184,9 +183,18 @@ def fit_arguments(given: dict, errors: list[str]) -> dict:
         or limits[0] >= limits[1]
     ):
         errors.append(f"[fit] check = {limits}: must be [low, high] with 0 < low < high")
-    if len(errors) == before and not 1 <= (fit["p_max"] - fit["p_min"]) / fit["step"] <= 1e6:
-        errors.append("[fit] p_max must be at least one step, and at most a million steps, above p_min")
     return fit
+
+
+def law_points(fit: dict, errors: list[str]) -> np.ndarray:
+    """Pressures p of a micro-law study in E1*: from p_min to p_max in steps as near to `step` as fits."""
+    if errors:
+        return np.array([])
+    steps = (fit["p_max"] - fit["p_min"]) / fit["step"]
+    if not 1 <= steps <= 1e6:
+        errors.append("[fit] p_max must be at least one step, and at most a million steps, above p_min")
+        return np.array([])
+    return np.linspace(fit["p_min"], fit["p_max"], 1 + round(steps))
 
 
 def _table(tables: dict, key: str, draft: Draft) -> dict:

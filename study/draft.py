@@ -19,6 +19,7 @@ class Draft:
     values: dict = field(default_factory=dict)
     labels: dict = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
+    claims: list = field(default_factory=list)
 
     def scalar(self, name: str, raw, section: str) -> None:
         """One value for all cases."""
@@ -64,8 +65,12 @@ class Draft:
         """A DataArray: values over its own dimensions, which may be shared with other parameters."""
         if not self._accept(name, ""):
             return
-        for dim, size in given.sizes.items():
-            self._array_dimension(name, given, str(dim), size)
+        for dim, size in zip(map(str, given.dims), given.shape, strict=True):
+            self.sizes.setdefault(dim, size)
+            coordinate = given.coords[dim].values if dim in given.coords and dim != name else None
+            if dim not in self.known and coordinate is not None:
+                self.labels.setdefault(dim, ((dim,), coordinate))
+            self.claims.append((name, dim, size, coordinate))
         flat = as_array(VOCABULARY[name], given.values.ravel().tolist(), name, self.errors)
         self.values[name] = tuple(map(str, given.dims)), flat.reshape(given.shape)
         if given.dims == (name,):
@@ -75,9 +80,7 @@ class Draft:
         """Fill in the defaults and check what concerns several parameters."""
         if self.known == PARAMETERS:
             self._one_control()
-        for dim in self.sizes:
-            if dim in self.known and dim not in self.values:
-                self.errors.append(f"the dimension {dim} is called like a parameter that is not given")
+        self._dimensions()
         for name in self.known:
             default = VOCABULARY[name].default
             if name not in self.sections and default is not None:
@@ -114,21 +117,23 @@ class Draft:
         self._distinct("label", [label for label in labels if label])
         self.labels["label"] = ("case",), np.array(labels, dtype=str)
 
-    def _array_dimension(self, name: str, given, dim: str, size: int) -> None:
-        """Register a dimension of a DataArray and its coordinate, which must agree with what is already known."""
-        if dim in VOCABULARY and dim not in self.known:
-            self.errors.append(f'{name}: a dimension cannot be called "{dim}", which is the name of a result')
-        if self.sizes.setdefault(dim, size) != size:
-            self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
-        elif dim in given.coords and dim != name:
-            ours, theirs = given.coords[dim].values, (self.values if dim in self.known else self.labels).get(dim)
-            if theirs is None:
-                if dim not in self.known:
-                    self.labels[dim] = (dim,), ours
-            elif not np.array_equal(theirs[1], ours):
+    def _dimensions(self) -> None:
+        """Dimensions of DataArrays: names that are free, sizes and coordinates that agree with the other parameters."""
+        for dim in self.sizes:
+            if dim in self.known and self.values.get(dim, ((dim,),))[0] != (dim,):
+                self.errors.append(f"{dim} is a dimension and a parameter over other dimensions")
+            elif dim in self.known and dim not in self.sections:
+                self.errors.append(f"the dimension {dim} is called like a parameter that is not given")
+            elif dim in VOCABULARY and dim not in self.known and dim != "case":
+                self.errors.append(f'a dimension cannot be called "{dim}", which is the name of a result')
+        for name, dim, size, coordinate in self.claims:
+            owner = (self.values if dim in self.known else self.labels).get(dim)
+            if size == 0:
+                self.errors.append(f"{name} is empty: must have at least one value")
+            elif size != self.sizes[dim]:
+                self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
+            elif coordinate is not None and owner is not None and not np.array_equal(owner[1], coordinate):
                 self.errors.append(f"{name} has other values of {dim} than another parameter")
-        if size == 0:
-            self.errors.append(f"{name} is empty: must have at least one value")
 
     def _distinct(self, name: str, values: list) -> None:
         for i, j in twins(values)[:1]:

@@ -5,7 +5,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from .vocabulary import Entry, check
+from .vocabulary import Entry, check, finite
 
 LONGEST_AXIS = 1_000_000
 SHOWN = 3  # messages of one kind for one parameter; the rest is counted
@@ -105,7 +105,7 @@ def _range_values(raw: dict, key: str, errors: list[str]) -> list:
         errors.append(f'{key}: spacing = {shown(spacing)}: must be one of "linear", "log"')
     for end in ("start", "stop"):
         value = raw.get(end)
-        if type(value) not in (int, float) or not math.isfinite(value) or (spacing == "log" and value <= 0):
+        if not finite(value) or (spacing == "log" and value <= 0):
             errors.append(
                 f"{key}: {end} = {shown(value)}: must be a finite number{', > 0 for spacing log' * (spacing == 'log')}"
             )
@@ -129,4 +129,6 @@ def twins(values: list) -> list[tuple[int, int]]:
 
 
 def shown(value) -> str:
-    return "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
+    """A value as a message quotes it: not longer than a line."""
+    text = "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
+    return text if len(text) <= 60 else text[:57] + "..."

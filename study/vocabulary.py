@@ -147,16 +147,22 @@ def check(entry: Entry, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
     if entry.choices:
         return "" if isinstance(value, str) and value in entry.choices else allowed(entry)
-    if isinstance(value, bool) or not isinstance(value, numbers.Real) or type(value).__name__ == "bool":
-        return f"must be a number, {allowed(entry).removeprefix('must be ')}"
-    if not math.isfinite(value):
-        return f"must be finite, {allowed(entry).removeprefix('must be ')}"
+    if not finite(value):
+        return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
     if entry.whole and value != int(value):
         return "must be a whole number"
     low, high = (float(end) for end in entry.interval[1:-1].split(", "))
     above = value > low or (value == low and entry.interval[0] == "[")
     below = value < high or (value == high and entry.interval[-1] == "]")
     return "" if value in entry.also or (above and below) else allowed(entry)
+
+
+def finite(value) -> bool:
+    """Whether a value is a real number that a float can hold; True and False are none."""
+    try:
+        return isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(float(value))
+    except OverflowError:
+        return False
 
 
 def suggest(word: str, known) -> str:

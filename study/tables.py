@@ -1,0 +1,169 @@
+"""Tables of the paper from finished datasets, as aligned text, CSV (full precision) and LaTeX (booktabs)."""
+
+import csv
+import io
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from . import paper
+from .derived import nominal_area_ratio
+from .recipes import open_studies, pick
+
+
+@dataclass(frozen=True)
+class Column:
+    """One column: heading in text and in LaTeX, and the format of its numbers."""
+
+    text: str
+    latex: str
+    form: str = "s"
+
+
+@dataclass(frozen=True)
+class Table:
+    """`rows` takes the datasets of the `studies`, in this order, and gives one tuple per row, a value per column."""
+
+    studies: tuple[str, ...]
+    caption: str
+    columns: tuple[Column, ...]
+    rows: Callable
+
+
+def largest_error(case: xr.Dataset, B: float, beta: float) -> float:
+    """Largest |B p^β / A[p] - 1| over the paper's interval; B in R/E1*^β, `case` one case of a micro-law study."""
+    law = case.sel(
+        p=slice(*(end * factor for end, factor in zip(paper.ERROR_INTERVAL, (1 - 1e-9, 1 + 1e-9), strict=True)))
+    )
+    return float(np.abs(B * law["p"] ** beta / law["A_exact"] - 1).max())
+
+
+def table1(laws: xr.Dataset) -> list[tuple]:
+    """Table 1: B E1*^β and β printed and refitted, with the largest errors of both."""
+    rows = []
+    for Ra, Nbar, B, beta in paper.TABLE1:
+        case = pick(laws, Ra=Ra, Nbar=Nbar)
+        ours = float(case["B"]) * Ra, float(case["beta"]), float(case["max_error"])
+        rows.append((Ra, Nbar, Nbar * Ra**2, B, beta, largest_error(case, B, beta), *ours))
+    return rows
+
+
+def paper_numbers(reference: xr.Dataset, main: xr.Dataset, laws: xr.Dataset) -> list[tuple]:
+    """Every number that the paper prints beside ours and the relative difference."""
+    rough, homogeneous = (pick(main, label=f"rough, {base}") for base in ("layered", "homogeneous"))
+    first = pick(laws, Ra=paper.TABLE1[0][0], Nbar=paper.TABLE1[0][1])
+    ours = {"P": reference["P"]}
+    ours |= {name: rough[name] for name in ("p0", "Ar_An", "p_max", "D", "A0")}
+    ours |= {"An_ratio": nominal_area_ratio(homogeneous, reference["a"])}
+    ours |= {f"{name} homogeneous": homogeneous[name] for name in ("Ar_An", "p_max")}
+    ours |= {f"D smooth {base}": pick(main, label=f"smooth, {base}")["D"] for base in ("layered", "homogeneous")}
+    ours |= {"B": first["B"], "beta": first["beta"]}
+    for Ra, Nbar, B, beta in paper.TABLE1[:3]:
+        ours[f"error {Nbar * Ra**2:g}"] = largest_error(pick(laws, Ra=Ra, Nbar=Nbar), B, beta)
+    return [
+        (quantity, f"${symbol}$", printed, float(ours[key]), float(ours[key]) / printed - 1)
+        for key, (quantity, symbol, printed) in paper.NUMBERS.items()
+    ]
+
+
+TABLES = {
+    "table1": Table(
+        ("table1",),
+        "Power law fitted to the additional displacement of a rough layer: the paper's constants and ours.",
+        (
+            Column("Ra/R", "$R_a/R$", "g"),
+            Column("N R^2", r"$\bar N R^2$", "d"),
+            Column("N Ra^2", r"$\bar N R_a^2$", "g"),
+            Column("B paper", r"$B E_1^{*\beta}/R$ (paper)", ".1e"),
+            Column("beta paper", r"$\beta$ (paper)", ".2f"),
+            Column("error", "error", ".1%"),
+            Column("B", r"$B E_1^{*\beta}/R$", ".3e"),
+            Column("beta", r"$\beta$", ".4f"),
+            Column("error", "error", ".1%"),
+        ),
+        table1,
+    ),
+    "paper_numbers": Table(
+        ("reference_load", "main_case", "table1"),
+        "Numbers printed in the paper and the converged ones of the same model.",
+        (
+            Column("quantity", "quantity"),
+            Column("symbol", "symbol"),
+            Column("paper", "paper", ".4g"),
+            Column("roughcoat", "roughcoat", ".5e"),
+            Column("difference", "difference", "+.2%"),
+        ),
+        paper_numbers,
+    ),
+}
+
+
+def tabulate(name: str, results="results", tables="tables") -> list[Path]:
+    """Write a table as tables/NAME.txt, .csv and .tex; returns the three paths.
+
+    Raises
+    ------
+    StudyError : there is no such table, or a study it needs has no results
+    """
+    table, datasets = open_studies(name, TABLES, results)
+    rows = table.rows(*datasets)
+    folder = Path(tables)
+    folder.mkdir(parents=True, exist_ok=True)
+    written = []
+    for suffix, render in (("txt", as_text), ("csv", as_csv), ("tex", as_latex)):
+        written.append(folder / f"{name}.{suffix}")
+        written[-1].write_text(render(table, rows), encoding="utf-8")
+    return written
+
+
+def as_text(table: Table, rows: list[tuple]) -> str:
+    """Columns aligned: text to the left, numbers to the right."""
+    cells = [[column.text for column in table.columns], *formatted(table, rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    marks = ["<" if column.form == "s" else ">" for column in table.columns]
+    lines = ["  ".join(f"{c:{m}{w}}" for c, m, w in zip(row, marks, widths, strict=True)).rstrip() for row in cells]
+    return "\n".join([table.caption, "", lines[0], "-" * max(map(len, lines)), *lines[1:]]) + "\n"
+
+
+def as_csv(table: Table, rows: list[tuple]) -> str:
+    """All digits; a heading that occurs twice gets the number of its column."""
+    headings = [column.text for column in table.columns]
+    headings = [f"{name} {i}" if headings.count(name) > 1 else name for i, name in enumerate(headings, 1)]
+    return csv_text(headings, rows)
+
+
+def as_latex(table: Table, rows: list[tuple]) -> str:
+    """A table environment; needs the package booktabs."""
+    form = "".join("l" if column.form == "s" else "r" for column in table.columns)
+    lines = [" & ".join(latex(cell) for cell in row) + r" \\" for row in formatted(table, rows)]
+    head = " & ".join(column.latex for column in table.columns) + r" \\"
+    body = [
+        r"\begin{table}",
+        r"\centering",
+        rf"\caption{{{table.caption}}}",
+        rf"\begin{{tabular}}{{{form}}}",
+        r"\toprule",
+    ]
+    return "\n".join([*body, head, r"\midrule", *lines, r"\bottomrule", r"\end{tabular}", r"\end{table}"]) + "\n"
+
+
+def formatted(table: Table, rows: list[tuple]) -> list[list[str]]:
+    return [[f"{cell:{column.form}}" for cell, column in zip(row, table.columns, strict=True)] for row in rows]
+
+
+def latex(cell: str) -> str:
+    """A formatted cell for LaTeX: powers of ten written out, percent signs escaped."""
+    mantissa, mark, exponent = cell.partition("e")
+    if mark and exponent.lstrip("+-").isdecimal():
+        return rf"${mantissa}\times 10^{{{int(exponent)}}}$"
+    return cell.replace("%", r"\%")
+
+
+def csv_text(headings, rows) -> str:
+    """CSV with one line of headings."""
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows([headings, *rows])
+    return stream.getvalue()

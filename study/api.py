@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
 from .blocks import Blocks, compute, finished
@@ -97,7 +96,7 @@ def _add(draft: Draft, name: str, given) -> None:
     if isinstance(given, xr.DataArray):
         draft.array(name, given)
         return
-    if isinstance(given, (np.ndarray, np.generic)):
+    if hasattr(given, "tolist"):  # numpy and pandas
         given = given.tolist()
     if isinstance(given, (list, tuple, range)):
         draft.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless

@@ -13,13 +13,12 @@ from solver import NUMERICS_VERSION
 
 from .draft import Draft
 from .grid import Grid, shown
-from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, suggest
+from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
 
 BLOCK = 2000
 POINTS = 33
-MOST_VALUES = (
-    500_000_000  # numbers in one results file, 4 GB: a larger grid is a slip of the pen or wants to be several studies
-)
+MOST_VALUES = 500_000_000  # numbers in one results file, 4 GB: a larger grid is a slip or wants to be several studies
+FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
 PER_CASE = 16  # numbers per case besides the profiles, roughly
 SECTIONS = {
     "contact": ("title", "kind", "model", "axes", "cases", "numerics", "output"),
@@ -39,9 +38,12 @@ class StudyError(ValueError):
 class Definition:
     """What a study computes.
 
-    kind : "contact" or "micro_law"; text : the study file, goes into the dataset; x : (m,) points r/a of the
-        profiles; fit : arguments of `solver.fit_power_law` (micro_law only); block : cases computed and stored at a
-        time; digest : sha256 of all that determines the numbers.
+    kind : "contact" or "micro_law"
+    text : the study file as it was read; goes into the dataset
+    x : (m,) points r/a of the profiles; for a micro law its pressures p/E1*
+    fit : arguments of `solver.fit_power_law` (micro_law only)
+    block : number of cases computed and stored at a time
+    digest : sha256 of all that determines the numbers
     """
 
     name: str
@@ -67,7 +69,7 @@ def read(path) -> Definition:
         tables = tomllib.loads(text)
     except OSError as error:
         raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:  # wrong TOML, wrong UTF-8, numbers or nesting without end
         raise StudyError([f"{where}: is not valid TOML: {error}"]) from None
     return from_tables(tables, path.stem, text, where)
 
@@ -75,45 +77,37 @@ def read(path) -> Definition:
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
     kind = tables.get("kind", "contact")
-    if kind not in SECTIONS:
+    if not isinstance(kind, str) or kind not in SECTIONS:
         raise StudyError([f'{where}: kind = {shown(kind)}: must be one of "contact", "micro_law"'])
     draft = Draft(known=PARAMETERS if kind == "contact" else MICRO_LAW_PARAMETERS)
-    for key in tables:
-        if key not in SECTIONS[kind]:
-            draft.errors.append(f'"{key}" is not a section{suggest(key, SECTIONS[kind])}')
-    numerics = dict(_table(tables, "numerics", draft))
-    block = numerics.pop("block", BLOCK)
-    if type(block) is not int or not 1 <= block <= 1_000_000:
-        draft.errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    for key, value in _table(tables, "model", draft).items():
+    draft.errors += [
+        f'"{key}" is not a section{suggest(key, SECTIONS[kind])}' for key in tables if key not in SECTIONS[kind]
+    ]
+    numerics = _table(tables, "numerics", (*NUMERICS, "block"), draft)
+    for key, value in _table(tables, "model", None, draft).items():
         draft.scalar(key, value, "[model]")
-    for key, value in numerics.items():
-        if key in NUMERICS:
-            draft.scalar(key, value, "[numerics]")
-        else:
-            draft.errors.append(f'[numerics] "{key}" is not known{suggest(key, (*NUMERICS, "block"))}')
+    for key in NUMERICS:
+        if key in numerics:
+            draft.scalar(key, numerics[key], "[numerics]")
     if "cases" in tables:
         draft.cases(tables["cases"])
-    for key, value in _table(tables, "axes", draft).items():
+    for key, value in _table(tables, "axes", None, draft).items():
         draft.axis(key, value, "[axes]")
-    output = _table(tables, "output", draft)
-    for key in output:
-        if key not in ("x", "profiles"):
-            draft.errors.append(f'[output] "{key}" is not known{suggest(key, ("x", "profiles"))}')
-    fit = fit_arguments(_table(tables, "fit", draft), draft.errors) if kind == "micro_law" else {}
-    title = tables.get("title", "")
-    if not isinstance(title, str):
-        draft.errors.append(f"title = {shown(title)}: must be text")
-    x, profiles = output.get("x", POINTS), output.get("profiles", True)
-    return complete(
-        draft, where, name=name, kind=kind, title=title, text=text, x=x, profiles=profiles, fit=fit, block=block
-    )
+    output = _table(tables, "output", ("x", "profiles"), draft)
+    fit = fit_arguments(_table(tables, "fit", (*FIT, "check"), draft), draft.errors) if kind == "micro_law" else {}
+    whole = {"name": name, "kind": kind, "title": tables.get("title", ""), "text": text, "fit": fit}
+    whole |= {"x": output.get("x", POINTS), "profiles": output.get("profiles", True)}
+    return complete(draft, where, block=numerics.get("block", BLOCK), **whole)
 
 
 def complete(draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, block) -> Definition:
     """Finish a draft: the checks of the whole, and the digest. Raises StudyError with every message collected."""
     grid = draft.finish()
-    x = profile_points(x, draft.errors)
+    x = profile_points(x, draft.errors) if kind == "contact" else law_points(fit, draft.errors)
+    if not isinstance(title, str):
+        draft.errors.append(f"title = {shown(title)}: must be text")
+    if type(block) is not int or not 1 <= block <= 1_000_000:
+        draft.errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     if not isinstance(profiles, bool):
         draft.errors.append(f"profiles = {shown(profiles)}: must be true or false")
     count = grid.size * (PER_CASE + 2 * len(x) * bool(profiles))
@@ -146,43 +140,30 @@ def digest_of(kind: str, grid: Grid, x: np.ndarray, profiles: bool, fit: dict) -
 
 def profile_points(x, errors: list[str]) -> np.ndarray:
     """Points r/a from their number or their list: increasing from 0 to 1."""
-    if type(x) is int and 2 <= x <= 10_000:
-        return np.linspace(0.0, 1.0, x)
-    points = x.tolist() if isinstance(x, np.ndarray) else x
-    if not isinstance(points, (list, tuple)) or not all(type(point) in (int, float) for point in points):
+    points = x.tolist() if isinstance(x, (np.ndarray, np.generic)) else x
+    if type(points) is int and 2 <= points <= 10_000:
+        return np.linspace(0.0, 1.0, points)
+    if not isinstance(points, (list, tuple)) or not all(map(finite, points)):
         errors.append(f"x = {shown(x)}: must be a whole number in [2, 10000] or a list of numbers from 0 to 1")
-    elif (
-        len(points) < 2
-        or points[0] != 0
-        or points[-1] != 1
-        or not all(a < b for a, b in zip(points, points[1:], strict=False))
-    ):
-        errors.append("x: a list must increase from 0 to 1, both included")
-    else:
-        return np.array(points, dtype=float)
-    return np.linspace(0.0, 1.0, 2)
+        return np.array([])
+    found = np.array(points, dtype=float)
+    if len(found) < 2 or found[0] != 0 or found[-1] != 1 or (np.diff(found) <= 0).any():
+        errors.append(f"x = {shown(points)}: a list must increase from 0 to 1, both included")
+    return found
 
 
 def fit_arguments(given: dict, errors: list[str]) -> dict:
     """Arguments of the least-squares fit from the table [fit], defaults filled in, pressures in E1*."""
-    known = [name.removeprefix("fit.") for name in VOCABULARY if name.startswith("fit.")]
-    fit = {key: given.get(key, VOCABULARY[f"fit.{key}"].default) for key in known}
-    errors += [
-        f'[fit] "{key}" is not known{suggest(key, (*known, "check"))}' for key in given if key not in (*known, "check")
-    ]
+    fit = {key: given.get(key, VOCABULARY[f"fit.{key}"].default) for key in FIT}
     for key, value in fit.items():
         text = check(VOCABULARY[f"fit.{key}"], value)
         if text:
             errors.append(f"[fit] {key} = {shown(value)}: {text}")
     fit["check"] = given.get("check", [0.0025, 0.025])
     limits = fit["check"]
-    if (
-        not isinstance(limits, list)
-        or len(limits) != 2
-        or any(check(VOCABULARY["fit.p_min"], end) for end in limits)
-        or limits[0] >= limits[1]
-    ):
-        errors.append(f"[fit] check = {limits}: must be [low, high] with 0 < low < high")
+    pair = isinstance(limits, list) and len(limits) == 2 and all(map(finite, limits))
+    if not pair or not 0 < limits[0] < limits[1]:
+        errors.append(f"[fit] check = {shown(limits)}: must be [low, high] with 0 < low < high")
     return fit
 
 
@@ -197,9 +178,13 @@ def law_points(fit: dict, errors: list[str]) -> np.ndarray:
     return np.linspace(fit["p_min"], fit["p_max"], 1 + round(steps))
 
 
-def _table(tables: dict, key: str, draft: Draft) -> dict:
-    found = tables.get(key, {})
-    if isinstance(found, dict):
-        return found
-    draft.errors.append(f"{key} = {shown(found)}: must be a table [{key}]")
-    return {}
+def _table(tables: dict, section: str, known: tuple[str, ...] | None, draft: Draft) -> dict:
+    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller looks)."""
+    found = tables.get(section, {})
+    if not isinstance(found, dict):
+        draft.errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
+        return {}
+    for key in found:
+        if known and key not in known:
+            draft.errors.append(f'[{section}] "{key}" is not known{suggest(key, known)}')
+    return found

@@ -12,9 +12,7 @@ from .grid import columns
 
 def compute(definition: Definition, command: str) -> xr.Dataset:
     """A_exact, A_fit over (..., p) and B, beta, max_error over the cases. Pressures in E1*, A in R, B in Ra/E1*^β."""
-    grid, fit = definition.grid, definition.fit
-    points = 1 + round((fit["p_max"] - fit["p_min"]) / fit["step"])
-    p = np.linspace(fit["p_min"], fit["p_max"], points)
+    grid, fit, p = definition.grid, definition.fit, definition.x
     given = columns(grid, 0, grid.size)
     Nbar, Ra = given["Nbar"], given["Ra"]
     fits = [fit_power_law(ratio, **(fit | {"check": tuple(fit["check"])})) for ratio in Nbar * Ra**2]

@@ -19,7 +19,7 @@ class Progress:
     failed: int = 0
     computed: int = 0
     begun: float = field(default_factory=time.monotonic)
-    written: float = 0.0
+    written: float = field(default_factory=time.monotonic)
 
     def update(self, cases: int, failed: int) -> None:
         """Add a finished block."""
@@ -33,7 +33,7 @@ class Progress:
 
     def close(self) -> None:
         """End the rewritten line."""
-        if self.stream.isatty() and self.written:
+        if self.stream.isatty() and self.computed:
             self.stream.write("\n")
 
     def _write(self, now: float) -> None:

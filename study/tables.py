@@ -1,7 +1,5 @@
 """Tables of the paper from finished datasets, as aligned text, CSV (full precision) and LaTeX (booktabs)."""
 
-import csv
-import io
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -11,7 +9,7 @@ import xarray as xr
 
 from . import paper
 from .derived import nominal_area_ratio
-from .recipes import open_studies, pick
+from .outputs import csv_text, open_studies, pick, write_text
 
 
 @dataclass(frozen=True)
@@ -64,8 +62,8 @@ def paper_numbers(reference: xr.Dataset, main: xr.Dataset, laws: xr.Dataset) -> 
     for Ra, Nbar, B, beta in paper.TABLE1[:3]:
         ours[f"error {Nbar * Ra**2:g}"] = largest_error(pick(laws, Ra=Ra, Nbar=Nbar), B, beta)
     return [
-        (quantity, f"${symbol}$", printed, float(ours[key]), float(ours[key]) / printed - 1)
-        for key, (quantity, symbol, printed) in paper.NUMBERS.items()
+        (quantity, printed, float(ours[key]), float(ours[key]) / printed - 1)
+        for key, (quantity, printed) in paper.NUMBERS.items()
     ]
 
 
@@ -91,7 +89,6 @@ TABLES = {
         "Numbers printed in the paper and the converged ones of the same model.",
         (
             Column("quantity", "quantity"),
-            Column("symbol", "symbol"),
             Column("paper", "paper", ".4g"),
             Column("roughcoat", "roughcoat", ".5e"),
             Column("difference", "difference", "+.2%"),
@@ -110,13 +107,8 @@ def tabulate(name: str, results="results", tables="tables") -> list[Path]:
     """
     table, datasets = open_studies(name, TABLES, results)
     rows = table.rows(*datasets)
-    folder = Path(tables)
-    folder.mkdir(parents=True, exist_ok=True)
-    written = []
-    for suffix, render in (("txt", as_text), ("csv", as_csv), ("tex", as_latex)):
-        written.append(folder / f"{name}.{suffix}")
-        written[-1].write_text(render(table, rows), encoding="utf-8")
-    return written
+    texts = {"txt": as_text(table, rows), "csv": as_csv(table, rows), "tex": as_latex(table, rows)}
+    return [write_text(Path(tables) / f"{name}.{suffix}", text) for suffix, text in texts.items()]
 
 
 def as_text(table: Table, rows: list[tuple]) -> str:
@@ -160,10 +152,3 @@ def latex(cell: str) -> str:
     if mark and exponent.lstrip("+-").isdecimal():
         return rf"${mantissa}\times 10^{{{int(exponent)}}}$"
     return cell.replace("%", r"\%")
-
-
-def csv_text(headings, rows) -> str:
-    """CSV with one line of headings."""
-    stream = io.StringIO()
-    csv.writer(stream, lineterminator="\n").writerows([headings, *rows])
-    return stream.getvalue()

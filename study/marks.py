@@ -1,0 +1,60 @@
+"""Marks on axes that several figures share: names of curves, the axis of loads, shading of broken assumptions."""
+
+import numpy as np
+import xarray as xr
+
+from .derived import FEW_SPOTS, SPOT_OVER_LAYER
+
+ASSUMPTION_TEXT = {
+    "layer_not_thin": r"$h \geq a$",
+    "few_spots": rf"$\bar N A_n < {FEW_SPOTS:g}$",
+    "spot_not_small_against_h": rf"$b > {SPOT_OVER_LAYER:g}\,h$",
+    "n_not_below_one": r"$n \geq 1$",
+}
+GREYS = ("0.75", "0.87", "0.65", "0.93")
+
+
+def name_curve(axes, line, text: str, at: float, gap: float = 5.0) -> None:
+    """Write the name of a curve `gap` points above it, at the abscissa `at`."""
+    x, y = line.get_data()
+    axes.annotate(
+        text,
+        (at, np.interp(at, x, y)),
+        (0, gap),
+        textcoords="offset points",
+        ha="center",
+        va="bottom",
+        color=line.get_color(),
+    )
+
+
+def load_axis(axes, largest: float, P0: float) -> None:
+    """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5, with the load P0 of the main case marked."""
+    axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
+    axes.axvline(P0 * 1e5, color="0.4", linestyle=(0, (1, 2)), linewidth=0.8, zorder=0)
+    axes.annotate("$P_0$", (P0 * 1e5, 0), (3, 3), xycoords=("data", "axes fraction"), textcoords="offset points")
+
+
+def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
+    """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
+
+    validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
+    """
+    flags = next(iter(validity.values())).attrs
+    meanings = flags["flag_meanings"].split()
+    for mask, meaning, grey in zip(np.atleast_1d(flags["flag_masks"]), meanings, GREYS, strict=True):
+        broken = {name: (array.values & mask) != 0 for name, array in validity.items()}
+        curves = [name for name, where in broken.items() if where.any()]
+        if not curves:
+            continue
+        label = f"{ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
+        for start, stop in bands(P, np.any([broken[name] for name in curves], axis=0)):
+            axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
+            label = "_"  # one entry in the legend
+
+
+def bands(P: np.ndarray, where: np.ndarray) -> list[tuple[float, float]]:
+    """Intervals of P that the points `where` stand for, bounded half-way to the next point; the first begins at 0."""
+    edges = np.concatenate([[0.0], (P[1:] + P[:-1]) / 2, P[-1:]])
+    steps = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]])))
+    return [(edges[i], edges[j]) for i, j in zip(steps[::2], steps[1::2], strict=True)]

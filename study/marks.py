@@ -11,19 +11,20 @@ ASSUMPTION_TEXT = {
     "spot_not_small_against_h": rf"$b > {SPOT_OVER_LAYER:g}\,h$",
     "n_not_below_one": r"$n \geq 1$",
 }
-GREYS = ("0.75", "0.87", "0.65", "0.93")
+GREYS = ("0.87", "0.74", "0.8", "0.93")
 
 
-def name_curve(axes, line, text: str, at: float, gap: float = 5.0) -> None:
-    """Write the name of a curve `gap` points above it, at the abscissa `at`."""
+def name_curve(axes, line, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
+    """Write the name of a curve at the abscissa `at`, "above" or "below" it, `align`ed there (left, center, right)."""
     x, y = line.get_data()
+    gap, anchor = (3, "bottom") if side == "above" else (-3, "top")
     axes.annotate(
         text,
         (at, np.interp(at, x, y)),
         (0, gap),
         textcoords="offset points",
-        ha="center",
-        va="bottom",
+        ha=align,
+        va=anchor,
         color=line.get_color(),
     )
 
@@ -32,7 +33,9 @@ def load_axis(axes, largest: float, P0: float) -> None:
     """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5, with the load P0 of the main case marked."""
     axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
     axes.axvline(P0 * 1e5, color="0.4", linestyle=(0, (1, 2)), linewidth=0.8, zorder=0)
-    axes.annotate("$P_0$", (P0 * 1e5, 0), (3, 3), xycoords=("data", "axes fraction"), textcoords="offset points")
+    axes.annotate(
+        "$P_0$", (P0 * 1e5, 1), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points", ha="center"
+    )
 
 
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
@@ -51,6 +54,12 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
         for start, stop in bands(P, np.any([broken[name] for name in curves], axis=0)):
             axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend
+
+
+def violated(validity: xr.DataArray) -> list[str]:
+    """Texts of the assumptions that one case breaks."""
+    masks, meanings = np.atleast_1d(validity.attrs["flag_masks"]), validity.attrs["flag_meanings"].split()
+    return [ASSUMPTION_TEXT[word] for mask, word in zip(masks, meanings, strict=True) if int(validity) & mask]
 
 
 def bands(P: np.ndarray, where: np.ndarray) -> list[tuple[float, float]]:

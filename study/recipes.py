@@ -27,7 +27,7 @@ Columns = dict[str, np.ndarray]
 
 @dataclass(frozen=True)
 class Recipe:
-    """`draw(axes, *datasets)` takes the datasets of the `studies`, and an array of axes if there are several `panels`."""
+    """`draw(axes, *datasets)` takes the datasets of the `studies`; several `panels` make axes an array."""
 
     studies: tuple[str, ...]
     draw: Callable[..., Columns]

@@ -1,0 +1,76 @@
+# Everything the project does, by name: `make help`. A finished result is computed again only when what determines its
+# numbers has changed: make calls `study run`, which compares digests.
+
+PYTHON ?= python3
+STUDIES := table1 reference_load main_case load_sweep spot_density parameter_map
+FIGURES := fig01 fig02 fig03 fig04 fig05 fig06 fig07 fig08 fig09 fig10
+TABLES := table1 paper_numbers
+
+VENV := .venv
+READY := $(VENV)/.ready
+RUN := $(VENV)/bin/python -m study
+SOURCES := $(wildcard solver/*.py study/*.py)
+
+.DEFAULT_GOAL := help
+.PHONY: help setup figures table1 paper_numbers map test bench lint clean
+.SECONDARY:
+.DELETE_ON_ERROR:
+.PRECIOUS: results/%.nc
+
+help: ## this list
+	@awk -F ':.*## ' '/^[a-z0-9_]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
+
+setup: $(READY) ## install the pinned packages and roughcoat into .venv
+
+figures: $(FIGURES:%=figures/%.pdf) ## figures 1 to 10 of the paper: figures/*.pdf, .png, .csv
+
+table1: tables/table1.txt ## Table 1 of the paper, printed and refitted: tables/table1.txt, .csv, .tex
+	@cat $<
+
+paper_numbers: tables/paper_numbers.txt ## every number the paper prints beside ours
+	@cat $<
+
+map: results/parameter_map.nc ## 25,000 cases for exploration: results/parameter_map.nc
+
+test: $(READY) ## all tests
+	$(VENV)/bin/python -m pytest -q
+
+bench: $(READY) ## speed of the solver: bench.json
+	$(VENV)/bin/python tests/benchmark.py bench.json
+
+lint: $(READY) ## ruff
+	$(VENV)/bin/ruff check .
+
+clean: ## remove figures, tables and caches; results and .venv stay
+	rm -f $(foreach name,$(FIGURES),$(addprefix figures/$(name).,pdf png csv))
+	rm -f $(foreach name,$(TABLES),$(addprefix tables/$(name).,txt csv tex)) bench.json
+	rm -rf .pytest_cache .ruff_cache .hypothesis
+	find solver study tests -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages.
+$(READY): requirements.lock pyproject.toml
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
+	  { echo "roughcoat needs Python 3.11 or newer; name one: make setup PYTHON=python3.12"; exit 1; }
+	$(PYTHON) -m venv $(VENV)
+	$(VENV)/bin/python -m pip install --quiet --only-binary :all: --requirement requirements.lock
+	$(VENV)/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch $@
+
+# `run` computes nothing when the digest of the results is still right; touch then tells make so. The studies of this
+# repository may replace their own results of an older version (--force); with a study of your own the change is
+# reported, and replacing is your decision.
+results/%.nc: studies/%.toml $(SOURCES) | $(READY)
+	$(RUN) run $(if $(filter $*,$(STUDIES)),--force) $<
+	@touch $@
+
+figures/fig01.pdf figures/fig02.pdf figures/fig03.pdf figures/fig07.pdf: results/main_case.nc
+figures/fig04.pdf figures/fig05.pdf figures/fig06.pdf figures/fig08.pdf: results/load_sweep.nc results/main_case.nc
+figures/fig09.pdf: results/table1.nc
+figures/fig10.pdf: results/spot_density.nc
+figures/%.pdf: study/roughcoat.mplstyle | $(READY)
+	$(RUN) plot $*
+
+tables/table1.txt: results/table1.nc
+tables/paper_numbers.txt: results/reference_load.nc results/main_case.nc results/table1.nc
+tables/%.txt: $(SOURCES) | $(READY)
+	$(RUN) table $*

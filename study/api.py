@@ -9,7 +9,7 @@ from .blocks import Blocks, compute, finished
 from .dataset import command_line, digest_in, labelled, open_results
 from .definition import BLOCK, POINTS, Definition, StudyError, complete, read
 from .draft import Draft
-from .grid import LONGEST_AXIS, shown
+from .grid import LONGEST_AXIS
 from .run import Report, partial_dataset, results_path, run
 
 
@@ -100,7 +100,5 @@ def _add(draft: Draft, name: str, given) -> None:
         given = given.tolist()
     if isinstance(given, (list, tuple, range)):
         draft.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless
-    elif hasattr(given, "__len__") and not isinstance(given, str):
-        draft.errors.append(f"{name} = {shown(given)}: must be a number, text, a 1-D sequence or a DataArray")
     else:
         draft.scalar(name, given, "")

@@ -25,8 +25,8 @@ class Draft:
         """One value for all cases."""
         if not self._accept(name, section):
             return
-        if isinstance(raw, (list, dict)):
-            self.errors.append(f"{section} {name} has several values: these belong in [axes]".lstrip())
+        if section and isinstance(raw, (list, dict)):
+            self.errors.append(f"{section} {name} has several values: these belong in [axes]")
         else:
             self.values[name] = (), as_array(VOCABULARY[name], [raw], name, self.errors).reshape(())
 
@@ -58,7 +58,7 @@ class Draft:
                 default = VOCABULARY[name].default
                 raw = [row.get(name, default) for row in rows]
                 self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
-        points = [repr(sorted((k, v) for k, v in row.items() if k != "label")) for row in rows]
+        points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
         self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]
 
     def array(self, name: str, given) -> None:
@@ -99,7 +99,6 @@ class Draft:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
         elif section == "[model]" and name in NUMERICS:
             self.errors.append(f"{place}{name} belongs in [numerics]")
-            self.sections[name] = section
         else:
             self.sections[name] = section
             return True

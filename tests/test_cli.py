@@ -1,0 +1,188 @@
+"""The command line: exit codes, messages, and that nothing heavy is imported before it is needed."""
+
+import io
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import study
+from study import run as running
+from study.__main__ import main
+from study.progress import Progress, describe, duration
+
+GOOD = """
+title = "a line"
+[model]
+micro = "smooth"
+base = "half_space"
+[axes]
+P = [1e-6, 2e-6, 3e-6]
+[numerics]
+block = 1
+"""
+
+
+@pytest.fixture(autouse=True)
+def studies(tmp_path, monkeypatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "studies"
+    folder.mkdir()
+    (folder / "good.toml").write_text(GOOD, encoding="utf-8")
+    return folder
+
+
+def test_check(capsys):
+    assert main(["check", "studies/good.toml"]) == 0
+    assert capsys.readouterr().out.startswith("studies/good.toml: 3 cases (P 3), digest ")
+    assert not Path("results").exists()
+
+
+def test_bad_file_does_not_keep_the_good_one_from_its_turn(studies, capsys):
+    (studies / "bad.toml").write_text(GOOD.replace("micro", "mirco").replace("2e-6", "-1"), encoding="utf-8")
+    assert main(["run", "studies/bad.toml", "studies/good.toml"]) == 2
+    printed = capsys.readouterr()
+    assert 'studies/bad.toml: [model] "mirco" is not a parameter; did you mean "micro"?\n' in printed.err
+    assert "studies/bad.toml: P[1] = -1: must be > 0\n" in printed.err
+    assert "results/good.nc: 3 cases, 3 computed now\n" in printed.out
+    assert not Path("results/bad.nc").exists()
+
+
+def test_run_twice_and_by_name(capsys):
+    assert main(["run", "good"]) == 0
+    assert main(["run", "good", "--workers", "2"]) == 0
+    assert capsys.readouterr().out.endswith("results/good.nc is up to date (3 cases), nothing to do\n")
+    found = study.open_results("results/good.nc")
+    assert found.attrs["study"] == GOOD
+    assert found.attrs["title"] == "a line"
+
+
+def test_list_and_status(capsys, studies):
+    assert main(["list"]) == 0
+    assert capsys.readouterr().out.split() == ["good", "3", "cases", "new", "a", "line"]
+    main(["run", "good", "--results", "elsewhere"])
+    capsys.readouterr()
+    assert main(["status", "good", "--results", "elsewhere"]) == 0
+    assert capsys.readouterr().out.split() == ["good", "3", "cases", "done", "a", "line", "converged:", "3"]
+    (studies / "bad.toml").write_text("[", encoding="utf-8")
+    assert main(["list"]) == 2
+    assert main(["list", "nowhere"]) == 0
+    assert "no study files in nowhere" in capsys.readouterr().out
+
+
+def test_results_of_another_definition(studies, capsys):
+    main(["run", "good"])
+    (studies / "good.toml").write_text(GOOD.replace("2e-6", "2.5e-6"), encoding="utf-8")
+    assert main(["run", "good"]) == 2
+    assert "--force replaces them, --results DIR writes elsewhere" in capsys.readouterr().err
+    assert main(["run", "good", "--results", "other"]) == 0
+    assert main(["run", "good", "--force"]) == 0
+    assert study.open_results("results/good.nc").P.values[1] == 2.5e-6
+
+
+def test_failed_block(monkeypatch, capsys):
+    real = running.compute
+
+    def compute(definition, start, stop):
+        if start == 1:
+            raise MemoryError("too large")
+        return real(definition, start, stop)
+
+    monkeypatch.setattr(running, "compute", compute)
+    assert main(["run", "good"]) == 1
+    assert "good: block 1 failed: cases 1 to 1: MemoryError: too large" in capsys.readouterr().err
+    assert main(["status", "good"]) == 0
+    assert "partial (2 of 3 blocks)" in capsys.readouterr().out
+
+
+def test_full_disk(monkeypatch, capsys):
+    def store(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(running, "store", store)
+    assert main(["run", "good"]) == 1
+    assert "good: [Errno 28] No space left on device" in capsys.readouterr().err
+
+
+def test_interrupt(monkeypatch, capsys):
+    def store(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(running, "store", store)
+    assert main(["run", "good", "--workers", "1"]) == 130
+    assert "finished blocks are kept" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments", [[], ["rnu"], ["run"], ["run", "good", "--workers", "0"], ["run", "good", "--workers", "two"]]
+)
+def test_wrong_calls(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    assert "usage: python -m study" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"), [(["--help"], 0), (["check", "studies/none.toml"], 2), (["check", "good"], 0)]
+)
+def test_answers_without_heavy_imports(arguments, code):
+    """--help and complaints about a file need neither xarray nor matplotlib."""
+    script = (
+        "import sys, study.__main__ as m\n"
+        "try: code = m.main(sys.argv[1:])\n"
+        "except SystemExit as e: code = e.code\n"
+        "heavy = {'xarray', 'dask', 'netCDF4', 'matplotlib', 'pandas'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+        "assert ('numpy' in sys.modules) == (sys.argv[1] == 'check')\n"
+        "sys.exit(code)"
+    )
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+    done = subprocess.run([sys.executable, "-c", script, *arguments], env=environment, capture_output=True, text=True)
+    assert done.returncode == code, done.stderr
+
+
+class Terminal(io.StringIO):
+    def isatty(self) -> bool:
+        return True
+
+
+def test_progress_on_a_terminal_is_one_line():
+    screen = Terminal()
+    progress = Progress("fig04", 10, screen, done=4)
+    progress.written -= 1
+    progress.update(3, failed=1)
+    progress.update(3, failed=0)
+    progress.close()
+    lines = screen.getvalue().split("\r\x1b[K")
+    assert lines[1].startswith("fig04: 7 of 10 cases, 1 failed, ")
+    assert lines[1].endswith(" left")
+    assert lines[2].startswith("fig04: 10 of 10 cases, 1 failed, ")
+    assert lines[2].endswith("/s\n")
+
+
+def test_progress_elsewhere_is_plain_and_rare():
+    log = io.StringIO()
+    progress = Progress("fig04", 100, log)
+    for _ in range(100):
+        progress.update(1, failed=0)
+    progress.close()
+    assert log.getvalue().count("\n") == 1
+    assert "\r" not in log.getvalue()
+
+
+def test_rate_and_time_left_count_only_what_is_computed_now():
+    assert (
+        describe("s", done=600, total=1000, failed=3, computed=100, seconds=10)
+        == "s: 600 of 1000 cases, 3 failed, 10/s, 40 s left"
+    )
+    assert describe("s", done=500, total=1000, failed=0, computed=0, seconds=0) == "s: 500 of 1000 cases, 0 failed, 0/s"
+    assert [duration(seconds) for seconds in (0.4, 59.4, 59.6, 3599.4, 7500)] == [
+        "0 s",
+        "59 s",
+        "1 min 0 s",
+        "59 min 59 s",
+        "2 h 5 min",
+    ]

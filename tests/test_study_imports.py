@@ -1,0 +1,77 @@
+"""The import contract: solver knows numpy and scipy only, study imports one way, importing does nothing heavy."""
+
+import ast
+import graphlib
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+SOLVER = sorted((ROOT / "solver").glob("*.py"))
+STUDY = sorted((ROOT / "study").glob("*.py"))
+
+
+def imported(path: Path) -> set[str]:
+    """Absolute dotted names that a file imports anywhere, relative ones resolved against its package."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            assert node.level <= 1, f"{path.name} leaves its package"
+            module = ".".join(filter(None, (path.parent.name if node.level else "", node.module)))
+            # `from . import x` and `from package import module` name modules in their alias list
+            names = {f"{module}.{alias.name}" for alias in node.names}
+            modules = {name for name in names if (ROOT / (name.replace(".", "/") + ".py")).exists()}
+            found |= modules if modules and not node.module else {module} | modules
+    return found
+
+
+def tops(path: Path) -> set[str]:
+    return {name.split(".")[0] for name in imported(path)}
+
+
+@pytest.mark.parametrize("path", SOLVER, ids=lambda path: path.name)
+def test_solver_imports_numpy_and_scipy_only(path):
+    assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "solver"}
+
+
+@pytest.mark.parametrize("path", STUDY, ids=lambda path: path.name)
+def test_study_imports_what_is_declared(path):
+    allowed = {"numpy", "scipy", "xarray", "dask", "matplotlib", "solver", "study"}
+    assert tops(path) - set(sys.stdlib_module_names) <= allowed
+
+
+@pytest.mark.parametrize("paths", [SOLVER, STUDY], ids=["solver", "study"])
+def test_no_cycles(paths):
+    package = paths[0].parent.name
+    graph = {}
+    for path in paths:
+        if path.stem != "__init__":
+            inside = {name.split(".")[1] for name in imported(path) if name.startswith(f"{package}.")}
+            graph[path.stem] = inside - {"__init__"}
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError
+
+
+def test_only_blocks_and_dataset_and_tables_know_the_solver():
+    """The seam between solver and study stays narrow."""
+    users = {path.stem for path in STUDY if any(name.split(".")[0] == "solver" for name in imported(path))}
+    assert {"grid", "vocabulary", "draft", "run", "api", "units", "derived", "progress"}.isdisjoint(users)
+
+
+@pytest.mark.parametrize("module", ["study", "study.vocabulary", "study.grid", "study.draft", "study.definition"])
+def test_light_modules_stay_light(module):
+    script = f"import sys, {module}; assert not {{'xarray', 'dask', 'netCDF4', 'matplotlib'}} & set(sys.modules)"
+    path = [entry or str(ROOT) for entry in sys.path]
+    subprocess.run([sys.executable, "-c", f"import sys; sys.path[:] = {path!r}; {script}"], check=True)
+
+
+def test_public_names():
+    import study
+
+    assert {"solve", "load", "open_results", "Study", "StudyError", "to_physical", "from_physical"} <= set(dir(study))
+    assert all(callable(getattr(study, name)) for name in study.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'sovle'"):
+        study.sovle  # noqa: B018

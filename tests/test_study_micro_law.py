@@ -1,0 +1,59 @@
+"""Studies of the micro law alone (Table 1 of the paper)."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+from solver import fit_power_law, micro
+
+TEXT = """
+kind = "micro_law"
+[[cases]]
+Ra = 0.004
+Nbar = 250000
+label = "first"
+[[cases]]
+Ra = 0.002
+Nbar = 250000
+[fit]
+step = 1e-3
+mesh = "graded"
+"""
+
+
+@pytest.fixture(scope="module")
+def opened(tmp_path_factory) -> study.Study:
+    folder = tmp_path_factory.mktemp("laws")
+    (folder / "table1.toml").write_text(TEXT, encoding="utf-8")
+    found = study.load(folder / "table1.toml", folder / "results")
+    assert found.run().cases == 2
+    return found
+
+
+def test_exact_law_and_fit(opened):
+    found = opened.open()
+    assert found.A_exact.dims == found.A_fit.dims == ("case", "p")
+    assert found.label.values.tolist() == ["first", ""]
+    p = found.p.values
+    for i, Ra in enumerate((0.004, 0.002)):
+        fit = fit_power_law(250000 * Ra**2, step=1e-3, mesh="graded")
+        np.testing.assert_allclose(found.A_exact[i], micro.displacement(p, 1.0, 250000, Ra), rtol=1e-14, atol=0)
+        np.testing.assert_allclose(found.A_fit[i], fit.B * Ra * p**fit.beta, rtol=1e-14, atol=0)
+        assert (found.B[i], found.beta[i], found.max_error[i]) == (fit.B, fit.beta, fit.max_error)
+    np.testing.assert_allclose(found.A_fit, found.A_exact, rtol=0.25, atol=0)
+
+
+def test_it_is_a_results_file_like_the_others(opened):
+    assert opened.run().computed == 0
+    assert opened.status()["state"] == "done"
+    with xr.open_dataset(opened.results / "table1.nc") as found:
+        assert found.attrs["study"] == TEXT
+        assert found.p.attrs["scale"] == "E1*"
+        with pytest.raises(ValueError, match="pressures of a micro-law study are in E1"):
+            study.to_physical(found, R=1e-2, E2_star=1e11)
+
+
+def test_there_are_no_partial_results_of_a_law(opened, tmp_path):
+    with pytest.raises(study.StudyError, match="does not exist; run the study first"):
+        study.load(opened.results.parent / "table1.toml", tmp_path).open(partial=True)

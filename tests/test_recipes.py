@@ -1,0 +1,145 @@
+"""Every study runs, every figure draws from it, and the numbers beside a figure are those of the datasets."""
+
+import csv
+
+import numpy as np
+import pytest
+import xarray as xr
+from conftest import STUDIES
+from scipy.integrate import simpson
+
+from study import StudyError, open_results
+from study.derived import ASSUMPTIONS
+from study.marks import bands, shade_violations, violated
+from study.outputs import pick
+from study.recipes import CURVES, RECIPES, draw
+from study.schemes import spot_displacement, sunk
+
+
+@pytest.fixture(scope="module")
+def figures(results, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("figures")
+    for name in RECIPES:
+        draw(name, results, folder)
+    return folder
+
+
+def numbers(figures, name: str) -> dict[str, np.ndarray]:
+    with open(figures / f"{name}.csv", encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return dict(zip(head, np.array(rows, dtype=float).T, strict=True))
+
+
+@pytest.mark.parametrize("file", STUDIES, ids=lambda file: file.stem)
+def test_every_study_runs_and_converges(results, file):
+    found = open_results(results / f"{file.stem}.nc")
+    if "status" in found:
+        assert (found["status"] == 0).all()
+        assert float(found["error"].max()) <= float(found["rtol"])
+    else:
+        assert np.isfinite(found["max_error"]).all()
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_every_figure_is_written(figures, name):
+    from matplotlib.image import imread
+
+    image = imread(figures / f"{name}.png")
+    assert image.shape[1] == pytest.approx(300 * RECIPES[name].size[0], abs=1)
+    assert 0.01 < np.mean(image[..., :3].min(axis=2) < 0.9) < 0.9, "nearly blank, or nearly black"
+    pdf = (figures / f"{name}.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF") and b"/Type3" not in pdf and b"CreationDate" not in pdf
+    columns = numbers(figures, name)
+    assert len(columns) >= 3
+    assert all(np.isfinite(column).all() for column in columns.values())
+
+
+def test_the_same_results_give_the_same_bytes(figures, results, tmp_path):
+    for path in draw("fig04", results, tmp_path):
+        assert path.read_bytes() == (figures / path.name).read_bytes(), path.name
+
+
+def test_profiles_of_figures_3_7_and_10_carry_the_load(figures, results):
+    main = open_results(results / "main_case.nc")
+    a0, P0 = float(pick(main, label=CURVES["1"])["a"]), float(main["P"])
+    for name in ("fig03", "fig07", "fig10"):
+        columns = list(numbers(figures, name).values())
+        for r, p in zip(columns[::2], columns[1::2], strict=True):
+            load = 2 * np.pi * a0**2 * simpson(p * r, x=r)
+            assert load == pytest.approx(P0, rel=2e-3), name  # Hertz has a vertical tangent at its edge
+    assert numbers(figures, "fig03")["r/a0 (1)"][-1] == pytest.approx(1, rel=1e-12)
+
+
+def test_a_layer_spreads_the_contact_and_lowers_the_pressure(figures):
+    found = numbers(figures, "fig03")
+    assert found["r/a0 (1)"][-1] > found["r/a0 (2)"][-1]
+    assert found["p/E2* (1)"][0] < found["p/E2* (2)"][0]
+
+
+def test_figures_against_load_show_the_dataset(figures, results):
+    sweep = open_results(results / "load_sweep.nc")
+    for name, quantity, curves in (("fig04", "Ar_An", 2), ("fig05", "p_max", 2), ("fig06", "D", 2), ("fig08", "D", 4)):
+        found = numbers(figures, name)
+        for curve in list(CURVES)[:curves]:
+            expected = pick(sweep, label=CURVES[curve])[quantity]
+            np.testing.assert_array_equal(found[f"{quantity} ({curve})"], expected)
+            assert (np.diff(expected) > 0).all()
+
+
+def test_figure_9_fits_the_exact_law(figures):
+    found = numbers(figures, "fig09")
+    for name, values in found.items():
+        if name.endswith("exact"):
+            where = found["p/E1*"] >= 0.0025
+            np.testing.assert_allclose(found[name.replace("exact", "fit")][where], values[where], rtol=0.05)
+
+
+def test_bands_begin_at_zero_and_end_halfway():
+    P = np.array([1.0, 2.0, 4.0, 6.0])
+    assert bands(P, np.array([True, False, False, True])) == [(0.0, 1.5), (5.0, 6.0)]
+    assert bands(P, np.zeros(4, dtype=bool)) == []
+
+
+def test_shading_names_the_assumption_and_its_curves():
+    from matplotlib.figure import Figure
+
+    axes = Figure().subplots()
+    attributes = {"flag_masks": np.array([1, 2, 4, 8]), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+    first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
+    assert axes.get_legend_handles_labels()[1] == [r"$h \geq a$ (1)", r"$\bar N A_n < 100$ (1)"]
+    assert violated(first[1]) == [r"$h \geq a$"]
+
+
+def test_scheme_of_the_contact_draws_the_solution(results):
+    """Inside the contact the drawn surface must be D - f(r) - A[p(r)]: Eq. (3) closes."""
+    case = pick(open_results(results / "main_case.nc"), label=CURVES["1"])
+    a, D, h, n, B, Ra = (float(case[name]) for name in ("a", "D", "h", "n", "B", "Ra"))
+    r, p = case["x"].values[::20] * a, case["p"].values[::20]
+    A = B * Ra * (p / n) ** float(case["beta"])
+    np.testing.assert_allclose(sunk(case, r) + h / n * p, D - r**2 / 2 - A, rtol=5e-3)
+
+
+def test_scheme_of_the_spot_follows_the_asperity_and_carries_its_share(results):
+    """Eq. (7) says that the spot carries the pressure of its cell: far away nothing of it is felt."""
+    case = pick(open_results(results / "main_case.nc"), label=CURVES["1"])
+    Ra, p = float(case["Ra"]), float(case["p0"] / case["n"])
+    cell = (np.pi * float(case["Nbar"])) ** -0.5
+    b = cell * float(case["lam"][0]) ** 0.5
+    A = b**2 / Ra - 2 * p * np.sqrt(cell**2 - b**2)
+    r = np.linspace(0, 0.99 * b, 7)
+    np.testing.assert_allclose(spot_displacement(r, A, b, cell, Ra, p), A - r**2 / (2 * Ra), rtol=1e-3)
+    assert abs(spot_displacement(np.array([10 * cell]), A, b, cell, Ra, p)[0]) < 2e-3 * A
+
+
+def test_messages_of_plot(results, tmp_path):
+    with pytest.raises(StudyError, match='"fig3" is not known; did you mean "fig03"?'):
+        draw("fig3", results, tmp_path)
+    with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run studies/main_case.toml"):
+        draw("fig03", tmp_path, tmp_path)
+
+
+def test_pick_wants_exactly_one_case(results):
+    laws = open_results(results / "table1.nc")
+    with pytest.raises(StudyError, match="table1: 3 cases have Ra = 0.004: needs one"):
+        pick(laws, Ra=0.004)

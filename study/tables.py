@@ -77,7 +77,7 @@ TABLES = {
             Column("N Ra^2", r"$\bar N R_a^2$", "g"),
             Column("B paper", r"$B E_1^{*\beta}/R$ (paper)", ".1e"),
             Column("beta paper", r"$\beta$ (paper)", ".2f"),
-            Column("error", "error", ".1%"),
+            Column("error paper", "error (paper)", ".1%"),
             Column("B", r"$B E_1^{*\beta}/R$", ".3e"),
             Column("beta", r"$\beta$", ".4f"),
             Column("error", "error", ".1%"),
@@ -121,10 +121,8 @@ def as_text(table: Table, rows: list[tuple]) -> str:
 
 
 def as_csv(table: Table, rows: list[tuple]) -> str:
-    """All digits; a heading that occurs twice gets the number of its column."""
-    headings = [column.text for column in table.columns]
-    headings = [f"{name} {i}" if headings.count(name) > 1 else name for i, name in enumerate(headings, 1)]
-    return csv_text(headings, rows)
+    """All digits."""
+    return csv_text([column.text for column in table.columns], rows)
 
 
 def as_latex(table: Table, rows: list[tuple]) -> str:

@@ -98,7 +98,7 @@ def test_formats_of_cells():
     assert latex("nominal pressure") == "nominal pressure"
     table = TABLES["table1"]
     row = (0.004, 250_000, 4.0, 4e-4, 0.5, 0.077, 3.677e-4, 0.4908, 0.046)
-    assert as_csv(table, [row]).splitlines()[0].split(",")[5::3] == ["error 6", "error 9"]
+    assert as_csv(table, [row]).splitlines()[1] == "0.004,250000,4.0,0.0004,0.5,0.077,0.0003677,0.4908,0.046"
     assert "7.7%" in as_text(table, [row]) and r"7.7\%" in as_latex(table, [row])
 
 

@@ -30,9 +30,9 @@ def name_curve(axes, line, text: str, at: float, *, side: str = "above", align: 
 
 
 def load_axis(axes, largest: float, P0: float) -> None:
-    """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5, with the load P0 of the main case marked."""
+    """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5, with the load P0 of the main case marked above the legend."""
     axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
-    axes.axvline(P0 * 1e5, color="0.4", linestyle=(0, (1, 2)), linewidth=0.8, zorder=0)
+    axes.axvline(P0 * 1e5, ymin=0.4, color="0.4", linestyle=(0, (1, 2)), linewidth=0.8, zorder=0)
     axes.annotate(
         "$P_0$", (P0 * 1e5, 1), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points", ha="center"
     )
@@ -50,7 +50,7 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
         curves = [name for name, where in broken.items() if where.any()]
         if not curves:
             continue
-        label = f"{ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
+        label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
         for start, stop in bands(P, np.any([broken[name] for name in curves], axis=0)):
             axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend

@@ -84,7 +84,7 @@ def against_load(axes, data: tuple, quantity: str, sides: dict[str, str], label:
     load_axis(axes, P[-1], float(main["P"]))
     axes.set(ylabel=label, ylim=(0, 1.08 * max(float(case[quantity].max()) for case in cases.values()) / scale))
     shade_violations(axes, P, {name: case["validity"] for name, case in cases.items()})
-    axes.legend(loc="lower right", frameon=True, framealpha=1, edgecolor="none")
+    axes.legend(loc="lower right")
     return columns
 
 
@@ -119,7 +119,7 @@ def fig09(panels, laws: xr.Dataset) -> Columns:
             name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
             (line,) = axes.plot(p, case["A_fit"] * 1e4, "-", color=colour)
             axes.plot(p, case["A_exact"] * 1e4, **EXACT)
-            name_curve(axes, line, name, 0.8 * p[-1], align="right")
+            name_curve(axes, line, name, 0.95 * p[-1], align="right")
             columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": case[f"A_{kind}"].values for kind in ("exact", "fit")}
         axes.plot([], [], label="exact, Eqs (6), (7)", **EXACT)
         axes.plot([], [], "-", color="0.5", label=r"fitted, $B p^{\beta}$")

@@ -107,7 +107,7 @@ def test_shading_names_the_assumption_and_its_curves():
     attributes = {"flag_masks": np.array([1, 2, 4, 8]), "flag_meanings": " ".join(ASSUMPTIONS.values())}
     first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
     shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
-    assert axes.get_legend_handles_labels()[1] == [r"$h \geq a$ (1)", r"$\bar N A_n < 100$ (1)"]
+    assert axes.get_legend_handles_labels()[1] == [r"not valid: $h \geq a$ (1)", r"not valid: $\bar N A_n < 100$ (1)"]
     assert violated(first[1]) == [r"$h \geq a$"]
 
 

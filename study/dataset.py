@@ -8,8 +8,12 @@ import json
 import os
 import platform
 import shlex
+import signal
 import subprocess
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -154,6 +158,22 @@ def _version(package: str) -> str:
         return "unknown"
 
 
+@contextmanager
+def interrupts_wait() -> Iterator[None]:
+    """Hold SIGINT back until the block is left: an exception inside xarray's locks leaves one locked, and hangs."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    pending = []
+    previous = signal.signal(signal.SIGINT, lambda *_: pending.append(True))
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, previous or signal.SIG_DFL)
+        if pending:
+            signal.raise_signal(signal.SIGINT)
+
+
 def write(dataset: xr.Dataset, path: Path) -> None:
     """Write netCDF so that `path` either is complete or does not exist: a temporary name beside it, then a rename."""
     encoding = {
@@ -166,8 +186,9 @@ def write(dataset: xr.Dataset, path: Path) -> None:
             encoding[name] = encoding.get(name, {}) | {"zlib": True, "complevel": 1, "shuffle": True}
     temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
-        dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
-        with open(temporary, "rb") as file:
+        with interrupts_wait():
+            dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
+        with open(temporary, "rb+") as file:
             os.fsync(file.fileno())  # a rename may reach the disk before the data do
         os.replace(temporary, path)
     finally:
@@ -176,14 +197,14 @@ def write(dataset: xr.Dataset, path: Path) -> None:
 
 def open_results(path) -> xr.Dataset:
     """A results file, read into memory and closed. Raises OSError when it does not exist or is no netCDF file."""
-    with xr.open_dataset(path, engine="netcdf4") as dataset:
+    with interrupts_wait(), xr.open_dataset(path, engine="netcdf4") as dataset:
         return dataset.load()
 
 
 def digest_in(path: Path) -> str:
     """Digest of the study that a results file belongs to; "" for a file that is none of ours."""
     try:
-        with xr.open_dataset(path, engine="netcdf4") as dataset:
+        with interrupts_wait(), xr.open_dataset(path, engine="netcdf4") as dataset:
             return str(dataset.attrs.get("study_digest", ""))
     except (OSError, ValueError):
         return ""

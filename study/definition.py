@@ -89,7 +89,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     for key in NUMERICS:
         if key in numerics:
             draft.scalar(key, numerics[key], "[numerics]")
-    if "cases" in tables:
+    if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
         draft.cases(tables["cases"])
     for key, value in _table(tables, "axes", None, draft).items():
         draft.axis(key, value, "[axes]")

@@ -56,7 +56,7 @@ class Draft:
                 self._case_labels([row.get("label", "") for row in rows])
             elif self._accept(name, "[[cases]]"):
                 default = VOCABULARY[name].default
-                raw = [row.get(name, default) for row in rows]
+                raw = [default if row.get(name) is None else row[name] for row in rows]
                 self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
         points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
         self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]

@@ -74,25 +74,29 @@ def run(
     if definition.kind == "micro_law":
         write(micro_law.compute(definition, command), path)
         return Report(path, definition.grid.size, definition.grid.size, {}, {})
-    present = set(finished(blocks))
-    todo = [i for i in range(blocks.count) if i not in present]
-    done = sum(stop - start for start, stop in (bounds(blocks, i) for i in present))
-    progress = Progress(definition.name, definition.grid.size, stream, done) if stream else None
+    present = finished(blocks)
+    todo = sorted(set(range(blocks.count)) - set(present))
+    progress = Progress(definition.name, definition.grid.size, stream, cases_in(blocks, present)) if stream else None
     try:
         failures = compute_blocks(blocks, todo, workers or available_workers(), progress)
     finally:
         if progress:
             progress.close()
     arrays, absent = join(blocks)
-    failures |= {i: "the block on disk cannot be read; it will be computed again" for i in absent if i not in failures}
-    computed = sum(stop - start for start, stop in (bounds(blocks, i) for i in todo if i not in failures))
-    values, numbers = np.unique(arrays["status"], return_counts=True)
+    failures |= {i: "the block on disk cannot be read; run again to compute it" for i in absent if i not in failures}
     if not failures:
         write(labelled(definition, arrays, command), path)
         discard(blocks)
+    values, numbers = np.unique(arrays["status"], return_counts=True)
+    counts = dict(zip(values.tolist(), numbers.tolist(), strict=True))
     return Report(
-        path, definition.grid.size, computed, failures, dict(zip(values.tolist(), numbers.tolist(), strict=True))
+        path, definition.grid.size, cases_in(blocks, [i for i in todo if i not in failures]), failures, counts
     )
+
+
+def cases_in(blocks: Blocks, chosen: list[int]) -> int:
+    """Number of cases in some blocks."""
+    return sum(stop - start for start, stop in (bounds(blocks, i) for i in chosen))
 
 
 def prepare(definition: Definition, path: Path, force: bool) -> bool:

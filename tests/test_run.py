@@ -191,7 +191,7 @@ def test_damaged_block_is_computed_again(file, computed):
         blocks.store(parts, i, blocks.compute(opened.definition, *blocks.bounds(parts, i)))
     block_path(parts, 3).write_bytes(block_path(parts, 3).read_bytes()[:100])
     report = opened.run()
-    assert report.failures == {3: "the block on disk cannot be read; it will be computed again"}
+    assert report.failures == {3: "the block on disk cannot be read; run again to compute it"}
     assert computed == []
     assert opened.run().failures == {}
     assert computed == [15]
@@ -247,13 +247,22 @@ def test_blocks_of_a_killed_run_are_removed_when_the_results_are_there(file):
     assert leftovers(opened.results) == []
 
 
+# a test run in the background of a shell ignores SIGINT, and so would its children
+LISTENING = """
+import signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
+from study.__main__ import main
+sys.exit(main(sys.argv[1:]))
+"""
+
+
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_interrupt_from_the_keyboard(file):
     load(file, **{"num = 23": "num = 600"})
     command = [
         sys.executable,
-        "-m",
-        "study",
+        "-c",
+        LISTENING,
         "run",
         str(file),
         "--results",

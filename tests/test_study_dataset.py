@@ -1,6 +1,8 @@
 """What a results file says about itself, and the quantities derived from it."""
 
 import json
+import signal
+import subprocess
 
 import numpy as np
 import pytest
@@ -69,7 +71,7 @@ def test_flags_follow_cf(reread):
         array = reread[name]
         values = array.attrs["flag_values" if name == "status" else "flag_masks"]
         assert values.dtype == array.dtype
-        assert len(array.flag_meanings.split()) == len(values) == len(set(values.tolist()))
+        assert len(set(array.flag_meanings.split())) == len(values) == len(set(values.tolist()))
     assert (
         dict(zip(reread.status.flag_values.tolist(), reread.status.flag_meanings.split(), strict=True))[NOT_RUN]
         == "not_run"
@@ -91,9 +93,26 @@ def test_provenance(reread):
     assert all(isinstance(text, str) for text in found.values())
 
 
+def test_an_interrupt_waits_until_netcdf_is_done():
+    """An exception inside xarray's locks would leave one locked, and the next access would hang."""
+    reached = []
+    with pytest.raises(KeyboardInterrupt), dataset.interrupts_wait():
+        signal.raise_signal(signal.SIGINT)
+        reached.append("end of the block")
+    assert reached
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
 def test_commit_is_unknown_outside_a_checkout(monkeypatch, tmp_path):
+    """Also when the environment lies inside somebody else's repository."""
+    subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    who = ["-c", "user.name=n", "-c", "user.email=e"]
+    subprocess.run(["git", "-C", tmp_path, *who, "commit", "-q", "--allow-empty", "-m", "x"], check=True)
     monkeypatch.setattr(dataset, "__file__", str(tmp_path / "site-packages" / "study" / "dataset.py"))
     assert dataset.git_commit() == "unknown"
+    monkeypatch.setattr(dataset, "__file__", str(tmp_path / "study" / "dataset.py"))
+    assert len(dataset.git_commit()) == 40
 
 
 @pytest.mark.parametrize(
@@ -152,10 +171,10 @@ def test_validity(variables, expected):
 
 
 def test_validity_has_the_dimensions_of_status():
-    found = study.solve(P=1e-5, h=[0.1, 0.001], n=0.5, Nbar=[250000, 1e4], Ra=0.004, bonding=["frictionless", "bonded"])
-    assert found.validity.dims == found.status.dims == ("h", "Nbar", "bonding")
-    assert ((found.validity & 1).values == np.reshape([1, 0], (2, 1, 1))).all()
-    assert ((found.validity & 2).values == np.reshape([0, 2], (1, 2, 1))).all()
+    found = study.solve(P=1e-5, Nbar=[250000, 1e4], h=[0.1, 0.001], n=0.5, Ra=0.004, bonding=["frictionless", "bonded"])
+    assert found.validity.dims == found.status.dims == ("Nbar", "h", "bonding")
+    assert ((found.validity & 1).values == np.reshape([1, 0], (1, 2, 1))).all()
+    assert ((found.validity & 2).values == np.reshape([0, 2], (2, 1, 1))).all()
 
 
 def test_derived_quantities(reread):

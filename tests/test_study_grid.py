@@ -147,8 +147,16 @@ def test_solve_collects_all_messages():
     assert len(caught.value.messages) == 6
 
 
+def test_what_a_case_does_not_need_reaches_the_solver_as_a_number():
+    grid = Grid({"case": 2}, {"h": (("case",), np.array([np.nan, 0.01]))})
+    assert columns(grid, 0, 2)["h"].tolist() == [1.0, 0.01]
+
+
 def test_cases_in_python_with_an_axis():
-    cases = [{"P": 1e-5, "label": "u", **SMOOTH}, {"P": 2e-5, "micro": "smooth", "h": 0.01, "n": 0.5}]
+    cases = [
+        {"P": 1e-5, "label": "u", **SMOOTH},
+        {"P": 2e-5, "micro": "smooth", "h": 0.01, "n": 0.5, "bonding": None, "Ra": None},
+    ]
     found = study.solve(cases=cases, nodes=[16, 24])
     assert found.a.dims == ("case", "nodes")
     assert found.label.values.tolist() == ["u", ""]

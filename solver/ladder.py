@@ -1,0 +1,48 @@
+"""The ladder of meshes: each case starts on the mesh its tolerance is likely to need and climbs until its estimated error meets it."""
+import numpy as np
+
+LADDER = (8, 12, 16, 24, 32, 48, 64, 96, 128)
+#: First mesh for rtol at least this.
+_START = ((1e-3, 8), (5e-5, 12), (3e-7, 16), (1e-9, 24))
+#: Cases solved together: their matrices stay in the cache.
+STACK = 512
+
+
+def start_nodes(rtol):
+    """Number of nodes (B,) on which to begin for `rtol` (B,)."""
+    return np.select([rtol >= limit for limit, _ in _START], [n for _, n in _START], 32)
+
+
+def next_rung(n):
+    """The next finer mesh: of the ladder; beyond its end, half as many nodes again."""
+    return next((m for m in LADDER if m > n), n + n // 2)
+
+
+def climb(rtol, nodes, solve_on):
+    """Let every case climb to the mesh that meets its tolerance.
+
+    Parameters
+    ----------
+    rtol : (B,) float
+    nodes : (B,) int
+        A fixed mesh, or 0: chosen by rtol.
+    solve_on : callable
+        ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their estimated
+        errors (NaN: no use going on).
+
+    Returns
+    -------
+    (B,) bool
+        The cases whose error still exceeds rtol on the last mesh.
+    """
+    rung = np.where(nodes > 0, nodes, start_nodes(rtol))
+    unmet = np.zeros(len(rtol), dtype=bool)
+    while (rung > 0).any():
+        n = int(rung[rung > 0].min())
+        batch = np.flatnonzero(rung == n)
+        for index in np.array_split(batch, -(-len(batch) // STACK)):
+            missed = solve_on(index, n) > rtol[index]
+            last = (nodes[index] > 0) | (n >= LADDER[-1])
+            unmet[index] = missed & last
+            rung[index] = np.where(missed & ~last, next_rung(n), 0)
+    return unmet

@@ -1,0 +1,41 @@
+"""One Newton step on (q at the nodes, ln a), with the control as one more equation."""
+import numpy as np
+
+from .equation import State, control_gradient, jacobian
+
+#: Relative size of the residual at which the iteration has closed, and the largest number of steps.
+TOLERANCE = 1e-12
+LIMIT = 60
+
+
+def tangents(ev, mesh, *more):
+    """Solve the Jacobian for dq/dη along the solution branch and for further right-hand sides `more` (B, n): (B, n, 1 + len(more))."""
+    matrix, dF_deta = jacobian(ev, mesh)
+    return solve_stack(matrix, np.stack([-dF_deta, *more], axis=-1))
+
+
+def advance(cases, state, ev, mesh):
+    """The :class:`State` after one step from `state`, where the equation is `ev`.
+
+    The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from the first
+    guess of :mod:`equation` it converges without a line search.
+    """
+    solution = tangents(ev, mesh, -ev.F)
+    dq_deta, dq = solution[..., 0], solution[..., 1]
+    by_q, by_eta = control_gradient(cases.control, ev, mesh)
+    d_eta = -(ev.G + (by_q * dq).sum(axis=1)) / (by_eta + (by_q * dq_deta).sum(axis=1))
+    dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
+    d_eta = np.clip(d_eta, -1.0, 1.0)
+    y = np.clip(state.y + dy, 0.2 * state.y, 5.0 * state.y)
+    return State(y, state.eta + d_eta)
+
+
+def solve_stack(matrix, rhs):
+    """Stacked linear solve that a singular or non-finite member cannot spoil: its own solution is NaN. (B, n, n), (B, n, k)."""
+    try:
+        return np.linalg.solve(matrix, rhs)
+    except np.linalg.LinAlgError:
+        if len(matrix) == 1:
+            return np.full_like(rhs, np.nan)
+        half = len(matrix) // 2
+        return np.concatenate([solve_stack(matrix[:half], rhs[:half]), solve_stack(matrix[half:], rhs[half:])])

@@ -1,0 +1,119 @@
+"""Rough cases: the batched Newton iteration, on the mesh that meets the tolerance.
+
+The error of the solution on a mesh is estimated by one Newton step on the next finer mesh: a step from so close is nearly as good as the
+solution there. A case that does not meet its tolerance goes on from there.
+"""
+import numpy as np
+
+from . import newton
+from .equation import State, control_gradient, evaluate, first_guess
+from .ladder import climb, next_rung
+from .mesh import mesh
+from .outputs import interpolate, profiles, quantities
+from .status import Status
+
+_JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
+
+
+def solve_newton(cases, spot_scale, law, rtol, nodes, limit, x):
+    """Solve a batch of rough cases of one law: dict of output arrays in units R = E2* = 1 (see :class:`~solver.problem.Solution`).
+
+    spot_scale (B,): p* of the exact law; rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a mesh (0: the
+    scheme's own); x (m,) radii of the profiles.
+    """
+    size = len(rtol)
+    out = {name: np.full(size, np.nan) for name in (*_JUDGED, "A0", "dP_dD", "residual", "error")}
+    out |= {"status": np.full(size, Status.DIVERGED, dtype=np.int8), "iterations": np.zeros(size, int), "nodes": np.zeros(size, int)}
+    out |= {"p": np.full((size, len(x)), np.nan), "lam": np.full((size, len(x)), np.nan)}
+    starts = {}
+
+    def solve_on(index, n):
+        part = cases.take(index)
+        start = _stack_start([starts.pop(i, None) for i in index], part, law, mesh(n))
+        with np.errstate(all="ignore"):  # a case that goes wrong is a NaN and a status
+            finer = _rung(part, spot_scale[index], law, n, limit, start, x, out, index)
+        missed = out["error"][index] > rtol[index]
+        starts.update({index[i]: State(finer.y[i], finer.eta[i]) for i in np.flatnonzero(missed)})
+        return np.where(out["status"][index] == Status.CONVERGED, out["error"][index], np.nan)
+
+    unmet = climb(rtol, nodes, solve_on)
+    out["status"][unmet] = Status.TOLERANCE_NOT_MET
+    return out
+
+
+def _stack_start(starts, cases, law, grid):
+    guess = first_guess(cases, law, grid)
+    for i, start in enumerate(starts):
+        if start is not None:
+            guess.y[i], guess.eta[i] = start
+    return guess
+
+
+def _rung(cases, spot_scale, law, n, limit, start, x, out, index):
+    """Solve on n nodes, write everything to `out` at `index`; returns the state on the next finer mesh."""
+    grid = mesh(n)
+    state, closed, count = iterate(cases, start, law, grid, limit or newton.LIMIT)
+    values, finer = finish(cases, spot_scale, law, grid, state, x)
+    for name, value in values.items():
+        out[name][index] = value
+    finite = np.isfinite(values["error"])
+    out["status"][index] = np.where(finite, np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT), Status.DIVERGED)
+    out["iterations"][index] += count
+    return finer
+
+
+def finish(cases, spot_scale, law, grid, state, x):
+    """All output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
+    ev = evaluate(cases, state, law, grid)
+    values = quantities(cases, spot_scale, state, ev, grid)
+    finer, better = refine(cases, spot_scale, state, ev, law, grid.n)
+    error = np.max([np.abs(values[name] / better[name] - 1) for name in _JUDGED], axis=0)
+    finite = np.isfinite(ev.residual) & np.isfinite(error)
+    values["p"], values["lam"] = profiles(cases, spot_scale, ev, grid.n, law, x)
+    values |= {"dP_dD": stiffness(cases, state, ev, values, grid), "residual": ev.residual}
+    values["error"] = np.maximum(error, 4 * grid.n * np.finfo(float).eps)
+    values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
+    return values | {"nodes": np.full(len(finite), grid.n)}, finer
+
+
+def iterate(cases, state, law, grid, limit):
+    """Newton steps until the residual is below its tolerance; finished cases leave the batch.
+
+    Returns the state, closed (B,) bool and the number of steps (B,).
+    """
+    size = len(state.eta)
+    y, eta = state.y.copy(), state.eta.copy()
+    closed, count = np.zeros(size, bool), np.zeros(size, int)
+    active = np.arange(size)
+    for step in range(limit + 1):
+        ev = evaluate(cases, state, law, grid)
+        y[active], eta[active], count[active] = state.y, state.eta, step
+        done = ev.residual < newton.TOLERANCE
+        closed[active[done]] = True
+        keep = np.flatnonzero(~done & np.isfinite(ev.residual))
+        if step == limit or not len(keep):
+            break
+        if len(keep) < len(active):
+            active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
+        state = newton.advance(cases, state, ev, grid)
+    return State(y, eta), closed, count
+
+
+def refine(cases, spot_scale, state, ev, law, n):
+    """One Newton step on the next finer mesh: the state there and its quantities (dict)."""
+    m = next_rung(n)
+    fine = mesh(m)
+    start = State(interpolate(cases, ev, law, n, fine.s, steps=3), state.eta)
+    better = newton.advance(cases, start, evaluate(cases, start, law, fine), fine)
+    return better, quantities(cases, spot_scale, better, evaluate(cases, better, law, fine), fine)
+
+
+def stiffness(cases, state, ev, values, grid):
+    """Contact stiffness dP/dD (B,) in E2* R, along the solution branch, from the Jacobian."""
+    dq = newton.tangents(ev, grid)[..., 0]
+
+    def slope(control):
+        by_q, by_eta = control_gradient(control, ev, grid)
+        return (by_q * dq).sum(axis=1) + by_eta
+
+    return values["P"] * slope("P") / (values["D"] * slope("D"))

@@ -1,0 +1,138 @@
+"""``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
+import numpy as np
+
+from . import picard, rough, smooth
+from .base import local_compliance
+from .equation import Cases
+from .ladder import start_nodes
+from .mesh import mesh
+from .micro import LAWS, scales
+from .problem import Problem, Solution
+from .status import Status
+
+#: Power of R and of E2* in the unit of each quantity.
+_UNITS = {"a": (1, 0), "P": (2, 1), "D": (1, 0), "p0": (0, 1), "p_max": (0, 1), "A0": (1, 0), "dP_dD": (1, 1), "p": (0, 1)}
+
+
+def solve(problem, x=(0.0, 1.0)):
+    """Solve a batch of cases.
+
+    Parameters
+    ----------
+    problem : Problem
+        B cases of any mixture of bases, micro laws, bondings and schemes.
+    x : (m,) float, [0, 1]
+        Radii r/a at which the profiles p and λ are wanted.
+
+    Returns
+    -------
+    Solution
+        One row a case, in the order of the problem and in its units. A case that cannot be solved is a status and NaN.
+
+    Raises
+    ------
+    ValueError
+        If x is not one-dimensional or leaves [0, 1].
+
+    Notes
+    -----
+    Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases iterate.
+
+    Examples
+    --------
+    >>> case = Problem.of(a=0.04, h=0.02, n=0.5, Nbar=250000, Ra=0.004, micro="power_law", B=0.1, beta=0.5)
+    >>> print(f"{solve(case).P[0]:.5e}")
+    2.70408e-05
+    """
+    x = np.asarray(x, dtype=float)
+    if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
+        raise ValueError("x must be one-dimensional and within [0, 1]")
+    solution = Solution.empty(len(problem), len(x))
+    invalid = problem.invalid()
+    solution.status[invalid] = Status.INVALID_INPUT
+    with np.errstate(all="ignore"):
+        scaled, C = _dimensionless(problem)
+    refused = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
+    solution.status[refused] = Status.THIN_LAYER_NOT_APPLICABLE
+    for index, solver in _routes(problem, ~(invalid | refused)):
+        solution.put(index, solver(scaled.take(index), C[index], x))
+    _restore(solution, problem)
+    return solution
+
+
+def _dimensionless(problem):
+    """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
+    R, E2 = problem.R, problem.E2
+    # divided one by one: R² or R⁻² may overflow where the quotient does not
+    value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
+    layered = problem.base != "half_space"
+    fields = dict(vars(problem), value=value, h=problem.h / R, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R)
+    fields["n"] = np.where(layered, problem.n, 1.0)
+    C = np.where(layered, local_compliance(fields["h"], fields["n"], problem.nu1, problem.nu2, problem.bonding == "bonded"), 0.0)
+    return Problem(**fields), C
+
+
+def _routes(problem, solvable):
+    """(index, solver) for each kind of case present."""
+    is_smooth, on_layer, by_picard = problem.micro == "smooth", problem.base == "thin_layer", problem.scheme == "picard"
+    yield from _route(solvable & is_smooth & ~on_layer, _smooth_half_space)
+    yield from _route(solvable & is_smooth & on_layer, _smooth_layer)
+    for name in LAWS:
+        of_law = solvable & (problem.micro == name)
+        for limit in np.unique(problem.max_iterations[of_law]):
+            chosen = of_law & (problem.max_iterations == limit)
+            yield from _route(chosen & ~by_picard, _newton)
+            for nodes in np.unique(_picard_nodes(problem)[chosen & by_picard]):
+                yield from _route(chosen & by_picard & (_picard_nodes(problem) == nodes), _picard)
+
+
+def _route(mask, solver):
+    if mask.any():
+        yield np.flatnonzero(mask), solver
+
+
+def _smooth_half_space(part, C, x):
+    return smooth.half_space(part.control, part.value, x)
+
+
+def _smooth_layer(part, C, x):
+    return smooth.thin_layer(part.control, part.value, C, part.rtol, part.nodes, x)
+
+
+def _rough(part, C):
+    """:class:`~solver.equation.Cases` of rough cases of one law, p* of the exact law, and the law."""
+    micro = str(part.micro[0])
+    p_star, A_star = scales(part.n, part.Nbar, part.Ra)
+    if micro == "disc_cell":
+        return Cases(part.control, part.value, p_star, A_star, C, np.full(len(part), 2 / 3)), p_star, LAWS[micro]
+    # A = B Ra (p/E1*)^β: q = p/E1*, g = q^β
+    return Cases(part.control, part.value, part.n * 1.0, part.B * part.Ra, C, part.beta * 1.0), p_star, LAWS[micro]
+
+
+def _newton(part, C, x):
+    cases, spot_scale, law = _rough(part, C)
+    return rough.solve_newton(cases, spot_scale, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
+
+
+def _picard_nodes(problem):
+    return np.where(problem.nodes > 0, problem.nodes, start_nodes(problem.rtol))
+
+
+def _picard(part, C, x):
+    """Successive approximations on one mesh; their error is not estimated beyond the distance to one Newton step on a finer mesh."""
+    cases, spot_scale, law = _rough(part, C)
+    n = int(_picard_nodes(part)[0])
+    grid = mesh(n)
+    with np.errstate(all="ignore"):
+        state, status, count = picard.solve(cases, law, grid, part.k, int(part.max_iterations[0]))
+        values, _ = rough.finish(cases, spot_scale, law, grid, state, x)
+    return values | {"status": status.astype(np.int8), "iterations": count}
+
+
+def _restore(solution, problem):
+    """Back to the units of the problem; the controlled quantity exactly as given."""
+    for name, (of_R, of_E2) in _UNITS.items():
+        array = getattr(solution, name)
+        factor = problem.R**of_R * problem.E2**of_E2
+        array *= factor.reshape(-1, *[1] * (array.ndim - 1))
+    getattr(solution, problem.control)[:] = problem.value

@@ -1,0 +1,30 @@
+"""How the solution of a case ended."""
+from enum import IntEnum
+
+
+class Status(IntEnum):
+    """Status of one case; `meaning` says it in a sentence. Everything but CONVERGED is a flagged value, never an exception."""
+
+    CONVERGED = 0
+    ITERATION_LIMIT = 1
+    LIMIT_CYCLE = 2
+    DIVERGED = 3
+    THIN_LAYER_NOT_APPLICABLE = 4
+    TOLERANCE_NOT_MET = 5
+    INVALID_INPUT = 6
+
+    @property
+    def meaning(self):
+        """One sentence for a person."""
+        return _MEANINGS[self]
+
+
+_MEANINGS = {
+    Status.CONVERGED: "the iteration closed and the estimated error is within rtol",
+    Status.ITERATION_LIMIT: "the iteration did not close within its limit; the last numbers are kept",
+    Status.LIMIT_CYCLE: "successive approximations cycle near the edge while the load has settled; the last numbers are kept",
+    Status.DIVERGED: "the iteration diverged; no numbers",
+    Status.THIN_LAYER_NOT_APPLICABLE: "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers",
+    Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
+    Status.INVALID_INPUT: "a parameter is not finite or outside its bounds; no numbers",
+}

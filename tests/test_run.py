@@ -6,6 +6,7 @@ import subprocess
 import sys
 import threading
 import time
+import weakref
 from pathlib import Path
 
 import numpy as np
@@ -228,6 +229,25 @@ def test_netcdf_is_touched_by_the_main_thread_only(file, monkeypatch):
         monkeypatch.setattr(owner, name, recorded(getattr(owner, name), threads))
     load(file).run(workers=3)
     assert threads == {threading.main_thread()}
+
+
+def test_memory_is_bounded(file, monkeypatch):
+    """A stored block is forgotten: of 60 never more than a few are alive."""
+    alive, most, real = weakref.WeakSet(), [], running.compute
+
+    class Arrays(dict):
+        __hash__ = object.__hash__
+
+    def compute(definition, start, stop):
+        found = Arrays(real(definition, start, stop))
+        alive.add(found)
+        most.append(len(alive))
+        return found
+
+    monkeypatch.setattr(running, "compute", compute)
+    load(file, **{"num = 23": "num = 300"}).run(workers=2)
+    assert len(most) == 60
+    assert max(most) <= 8
 
 
 def recorded(function, threads: set):

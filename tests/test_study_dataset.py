@@ -104,9 +104,23 @@ def test_an_interrupt_waits_until_netcdf_is_done():
         signal.raise_signal(signal.SIGINT)
 
 
+def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
+    real = xr.Dataset.to_netcdf
+
+    def to_netcdf(self, *arguments, **options):
+        signal.raise_signal(signal.SIGINT)
+        return real(self, *arguments, **options)
+
+    monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
+    with pytest.raises(KeyboardInterrupt):
+        dataset.write(reread, tmp_path / "file.nc")
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_commit_is_unknown_outside_a_checkout(monkeypatch, tmp_path):
     """Also when the environment lies inside somebody else's repository."""
     subprocess.run(["git", "init", "-q", tmp_path], check=True)
+    (tmp_path / "site-packages").mkdir()
     who = ["-c", "user.name=n", "-c", "user.email=e"]
     subprocess.run(["git", "-C", tmp_path, *who, "commit", "-q", "--allow-empty", "-m", "x"], check=True)
     monkeypatch.setattr(dataset, "__file__", str(tmp_path / "site-packages" / "study" / "dataset.py"))

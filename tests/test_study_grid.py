@@ -161,6 +161,7 @@ def test_cases_in_python_with_an_axis():
     assert found.a.dims == ("case", "nodes")
     assert found.label.values.tolist() == ["u", ""]
     assert found.base.values.tolist() == ["half_space", "thin_layer"]
+    assert found.bonding.values.tolist() == ["frictionless", "frictionless"]
     np.testing.assert_array_equal(found.h, [np.nan, 0.01])
 
 
@@ -174,7 +175,8 @@ def test_the_answer_does_not_depend_on_the_blocks(cuts):
     parts = [compute(whole, start, stop) for start, stop in zip(edges, edges[1:], strict=False)]
     for name, expected in compute(whole, 0, 12).items():
         joined = np.concatenate([part[name] for part in parts])
-        np.testing.assert_allclose(joined, expected, rtol=1e-10, atol=1e-15, err_msg=name)
+        # error and residual are differences of nearly equal numbers: the last digits of those are in them
+        np.testing.assert_allclose(joined, expected, rtol=1e-10, atol=1e-13, err_msg=name)
 
 
 def chunked_definition():

@@ -1,4 +1,6 @@
-"""Batched solver of the two-scale model of a rough punch on a coated body (Goryacheva & Yakovenko 2024): numpy and scipy only."""
+"""Batched solver of the two-scale model of a rough punch on a coated body (Goryacheva & Yakovenko 2024): numpy and
+scipy only."""
+
 from . import closed_forms, micro
 from .fit import Fit, fit_power_law
 from .problem import Problem, Solution
@@ -8,4 +10,14 @@ from .status import Status
 #: Changes whenever the numbers may change: part of the digest of every study.
 NUMERICS_VERSION = "1"
 
-__all__ = ["NUMERICS_VERSION", "Fit", "Problem", "Solution", "Status", "closed_forms", "fit_power_law", "micro", "solve"]
+__all__ = [
+    "NUMERICS_VERSION",
+    "Fit",
+    "Problem",
+    "Solution",
+    "Status",
+    "closed_forms",
+    "fit_power_law",
+    "micro",
+    "solve",
+]

@@ -1,8 +1,9 @@
 """The elastic base: the coefficients of the layered half-space.
 
-Surface displacement under an axisymmetric pressure: u = (2/E1*) ∫ L(kh) p̂ J0 dk. The thin-layer model takes L(u) ≈ A1 + A2 u,
-Eq. (2), so that u = (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*, Eq. (3).
+Surface displacement under an axisymmetric pressure: u = (2/E1*) ∫ L(kh) p̂ J0 dk. The thin-layer model takes L(u) ≈
+A1 + A2 u, Eq. (2), so that u = (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*, Eq. (3).
 """
+
 import numpy as np
 
 BONDINGS = ("frictionless", "bonded")
@@ -23,13 +24,14 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
     Returns
     -------
     A1, A2 : (B,) float
-        A1 = n; A2 = 1/2 without friction. A2 <= 0 (bonded: nu1 = 1/2, or alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the
-        thin-layer equation does not apply.
+        A1 = n; A2 = 1/2 without friction. A2 <= 0 (bonded: nu1 = 1/2, or alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means
+        that the thin-layer equation does not apply.
 
     Notes
     -----
     With alpha = G1/G2 = n (1 - nu1)/(1 - nu2):
-    A2 = (1 + alpha (1 - 2 nu2)) (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 it is the paper's Eq. (2).
+    A2 = (1 + alpha (1 - 2 nu2)) (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 it is the paper's
+    Eq. (2).
 
     Examples
     --------
@@ -44,6 +46,7 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
 
 
 def local_compliance(h, n, nu1, nu2, bonded):
-    """C = 2 A2 h/E1* of Eq. (3), in R/E2*; <= 0 where the thin-layer equation does not apply. Shapes as above, h in R."""
+    """C = 2 A2 h/E1* of Eq. (3), in R/E2*; <= 0 where the thin-layer equation does not apply. Shapes as above, h in
+    R."""
     _, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
     return 2 * A2 * h / n

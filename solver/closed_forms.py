@@ -2,8 +2,10 @@
 
 References
 ----------
-Johnson, Contact Mechanics (1985), ch. 4 (Hertz) and 5.8 (elastic layers); Popov, Heß & Willert, Handbook of Contact Mechanics (2019).
+Johnson, Contact Mechanics (1985), ch. 4 (Hertz) and 5.8 (elastic layers); Popov, Heß & Willert, Handbook of Contact
+Mechanics (2019).
 """
+
 from typing import NamedTuple
 
 import numpy as np
@@ -89,7 +91,8 @@ def thin_layer_on_rigid_base(P=None, a=None, D=None, h=1.0, nu1=0.3, bonded=Fals
     Returns
     -------
     Layer
-        p = (a² - r²)/(2 R C), C = 2 A2 h/E with A2 of Eq. (2) at n = 0; P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C).
+        p = (a² - r²)/(2 R C), C = 2 A2 h/E with A2 of Eq. (2) at n = 0; P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2
+        R C).
 
     Raises
     ------

@@ -6,6 +6,7 @@ With p = p* q(y), A = A* g(y) and s = sqrt(1 - x²), Eq. (4) divided by a²/2 is
 
 at the nodes of the mesh; the control (load, radius or depth) is one more equation for η = ln a.
 """
+
 from typing import NamedTuple
 
 import numpy as np
@@ -17,7 +18,8 @@ CONTROLS = ("P", "a", "D")
 
 
 class Cases(NamedTuple):
-    """A batch of B rough cases in units R = 1, E2* = 1; arrays (B,). `control` is one of CONTROLS for the whole batch."""
+    """A batch of B rough cases in units R = 1, E2* = 1; arrays (B,). `control` is one of CONTROLS for the whole
+    batch."""
 
     control: str
     value: np.ndarray
@@ -43,7 +45,8 @@ class State(NamedTuple):
 
 
 class Evaluation(NamedTuple):
-    """The equation at a state: groups X, Y, Z (B, 1), the law, H-differences Kq (B, n), residuals F (B, n) and G (B,)."""
+    """The equation at a state: groups X, Y, Z (B, 1), the law, H-differences Kq (B, n), residuals F (B, n) and G
+    (B,)."""
 
     X: np.ndarray
     Y: np.ndarray
@@ -60,13 +63,19 @@ class Evaluation(NamedTuple):
 
     def take(self, index):
         """The sub-batch at `index`."""
-        return Evaluation(*(v[index] for v in self[:3]), Curve(*(v[index] for v in self.curve)), *(v[index] for v in self[4:]))
+        return Evaluation(
+            *(v[index] for v in self[:3]), Curve(*(v[index] for v in self.curve)), *(v[index] for v in self[4:])
+        )
 
 
 def groups(cases, eta):
     """X, Y, Z (B, 1) at η = ln a (B,)."""
     a = np.exp(eta)
-    return ((8 / np.pi) * cases.p_star / a)[:, None], (2 * cases.C * cases.p_star / a**2)[:, None], (2 * cases.A_star / a**2)[:, None]
+    return (
+        ((8 / np.pi) * cases.p_star / a)[:, None],
+        (2 * cases.C * cases.p_star / a**2)[:, None],
+        (2 * cases.A_star / a**2)[:, None],
+    )
 
 
 def evaluate(cases, state, law, mesh):
@@ -114,7 +123,8 @@ def first_guess(cases, law, mesh):
 
 
 def guess_pressure(cases, law, X, Y, Z, s):
-    """q (B, m) at s (m,) > 0 for groups (B, 1): each of the three terms of the equation is exact where it matters alone."""
+    """q (B, m) at s (m,) > 0 for groups (B, 1): each of the three terms of the equation is exact where it matters
+    alone."""
     gamma, beta = law.power(cases.exponent)
     s2 = s**2
     alone = (s2 / (Z * gamma[:, None])) ** (1 / beta[:, None])
@@ -135,5 +145,7 @@ def one_term_radii(cases, gamma, beta):
     e = 1 / beta
     hertz = np.cbrt(0.75 * cases.value)
     springs = (4 * cases.C * cases.value / np.pi) ** 0.25
-    spots = (cases.value / (2 * np.pi * cases.p_star) * (2 * cases.A_star * gamma) ** e * (2 * e + 2)) ** (1 / (2 + 2 * e))
+    spots = (cases.value / (2 * np.pi * cases.p_star) * (2 * cases.A_star * gamma) ** e * (2 * e + 2)) ** (
+        1 / (2 + 2 * e)
+    )
     return hertz, springs, spots

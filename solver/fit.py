@@ -1,4 +1,5 @@
 """The least-squares fit A[p] ≈ B p^β of Section 4.1 of the paper."""
+
 from typing import NamedTuple
 
 import numpy as np

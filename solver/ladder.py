@@ -1,4 +1,6 @@
-"""The ladder of meshes: each case starts on the mesh its tolerance is likely to need and climbs until its estimated error meets it."""
+"""The ladder of meshes: each case starts on the mesh its tolerance is likely to need and climbs until its estimated
+error meets it."""
+
 import numpy as np
 
 LADDER = (8, 12, 16, 24, 32, 48, 64, 96, 128)
@@ -27,8 +29,8 @@ def climb(rtol, nodes, solve_on):
     nodes : (B,) int
         A fixed mesh, or 0: chosen by rtol.
     solve_on : callable
-        ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their estimated
-        errors (NaN: no use going on).
+        ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their
+        estimated errors (NaN: no use going on).
 
     Returns
     -------

@@ -1,9 +1,11 @@
 """The nodes on the contact radius and the half-space operator on them, built once per node count and cached.
 
-The variable is s = sqrt(1 - x²), x = r/a. In it the pressure is smooth at the centre (it is a function of x²) and at the
-edge (an expansion in sqrt(1 - x)), Hertz's pressure is the polynomial s, the right-hand side of Eq. (4) is s², and
-x dx = -s ds. The nodes are Gauss-Radau with the centre s = 1 among them, so that p(0) is an unknown and not an interpolate.
+The variable is s = sqrt(1 - x²), x = r/a. In it the pressure is smooth at the centre (it is a function of x²) and at
+the edge (an expansion in sqrt(1 - x)), Hertz's pressure is the polynomial s, the right-hand side of Eq. (4) is s², and
+x dx = -s ds. The nodes are Gauss-Radau with the centre s = 1 among them, so that p(0) is an unknown and not an
+interpolate.
 """
+
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -27,8 +29,8 @@ class Mesh:
     w : (n,) float
         Weights of ∫₀¹ q x dx; exact for polynomials in s of degree n - 1, and to degree 2n - 3 at these nodes.
     K : (n, n) float
-        Half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(k)/(x + x') x' dx' of Eq. (3), K(k) the complete
-        elliptic integral of the first kind. For q = s it is (π²/16) s².
+        Half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(k)/(x + x') x' dx' of Eq. (3), K(k) the
+        complete elliptic integral of the first kind. For q = s it is (π²/16) s².
     edge : (n,) float
         H[q](1): the displacement at the edge of the contact, which gives D without an interpolation.
     """
@@ -76,9 +78,9 @@ def half_space_rows(nodes, s_out):
 
     Notes
     -----
-    K(k)/(x + x') = K(x_</x_>)/x_> (Landen), so the integrand has the one singularity log|s - s'|: the integral is split there,
-    each side has dyadic panels towards it. The complementary parameter 1 - k² is formed from the distance to the singularity, so
-    nothing is lost near it. Accurate to about 1e-15 of the largest entry.
+    K(k)/(x + x') = K(x_</x_>)/x_> (Landen), so the integrand has the one singularity log|s - s'|: the integral is
+    split there, each side has dyadic panels towards it. The complementary parameter 1 - k² is formed from the
+    distance to the singularity, so nothing is lost near it. Accurate to about 1e-15 of the largest entry.
     """
     distance, weight = log_rule(16 + len(nodes) // 2)
     rows = np.empty((len(s_out), len(nodes)))

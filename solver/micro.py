@@ -1,17 +1,21 @@
 """Micro laws: the additional displacement A[p] of identical spherical asperities, and what happens on one contact spot.
 
-The implicit law of the paper, Eqs (6) and (7), becomes explicit in the angle theta = arccos(b/B̄): with p = p* q, A = A* g,
+The implicit law of the paper, Eqs (6) and (7), becomes explicit in the angle theta = arccos(b/B̄): with p = p* q, A
+= A* g,
 
     p* = 2 E1* B̄/(3 Ra),  A* = B̄²/Ra,  B̄ = 1/sqrt(pi Nbar),
     q = cos³θ/(θ + sinθ cosθ),  g = cos²θ - (4/3) q sinθ,  λ = cos²θ,
 
-so one curve g(q) serves every Nbar, Ra and E1*. The code uses y = cot θ = b/sqrt(B̄² - b²) in (0, ∞), from which cos, sin and θ all
-follow without cancellation, from isolated spots (y → 0: q ~ (2/π) y³, g ~ y²) to full contact (y → ∞: q ~ y/2, g → 1/3).
+so one curve g(q) serves every Nbar, Ra and E1*. The code uses y = cot θ = b/sqrt(B̄² - b²) in (0, ∞), from which
+cos, sin and θ all follow without cancellation, from isolated spots (y → 0: q ~ (2/π) y³, g ~ y²) to full contact (y
+→ ∞: q ~ y/2, g → 1/3).
 
-A :class:`Law` is what the solver needs of a micro law: p and A as functions of one unknown y in which both are smooth and
-increasing and A ~ y² at the edge of the contact.
+A :class:`Law` is what the solver needs of a micro law: p and A as functions of one unknown y in which both are
+smooth and increasing and A ~ y² at the edge of the contact.
 """
-from typing import Callable, NamedTuple
+
+from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -40,7 +44,8 @@ class Law(NamedTuple):
     power: Callable
 
 
-# ---- the exact law of the paper, Eqs (6), (7), (11), (13) ---------------------------------------------------------------
+# ---- the exact law of the paper, Eqs (6), (7), (11), (13)
+# ---------------------------------------------------------------
 
 
 def angle(y):
@@ -71,7 +76,8 @@ def _theta_minus_sc(theta, sc):
 
 
 def spot_from_pressure(q):
-    """y = cot θ with q(y) = q: the inverse of Eq. (7), to a few units of rounding for any q > 0; q = 0 gives 0, NaN stays NaN."""
+    """y = cot θ with q(y) = q: the inverse of Eq. (7), to a few units of rounding for any q > 0; q = 0 gives 0, NaN
+    stays NaN."""
     q = np.asarray(q, dtype=float)
     positive = q > 0
     target = np.where(positive, q, 1.0)
@@ -83,7 +89,8 @@ def spot_from_pressure(q):
 
 
 def _log_ratio(r):
-    """ln r/(r - 1), 1 at r = 1: turns the difference of two values into that of their logarithms, over the first one."""
+    """ln r/(r - 1), 1 at r = 1: turns the difference of two values into that of their logarithms, over the first
+    one."""
     d = r - 1
     small = np.abs(d) < 1e-5
     safe = np.where(small, 1.0, d)
@@ -118,7 +125,8 @@ disc_cell = Law(
 )
 
 
-# ---- the fit A = B p^β of the paper, Section 4.1 ------------------------------------------------------------------------
+# ---- the fit A = B p^β of the paper, Section 4.1
+# ------------------------------------------------------------------------
 
 
 def _power_curve(y, exponent):
@@ -139,7 +147,8 @@ LAWS = {"disc_cell": disc_cell, "power_law": power_law}
 MICROS = ("smooth", "disc_cell", "power_law")
 
 
-# ---- physical quantities at a given pressure ----------------------------------------------------------------------------
+# ---- physical quantities at a given pressure
+# ----------------------------------------------------------------------------
 
 
 def cell_radius(Nbar):

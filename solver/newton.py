@@ -1,4 +1,5 @@
 """One Newton step on (q at the nodes, ln a), with the control as one more equation."""
+
 import numpy as np
 
 from .equation import State, control_gradient, jacobian
@@ -9,7 +10,8 @@ LIMIT = 60
 
 
 def tangents(ev, mesh, *more):
-    """Solve the Jacobian for dq/dη along the solution branch and for further right-hand sides `more` (B, n): (B, n, 1 + len(more))."""
+    """Solve the Jacobian for dq/dη along the solution branch and for further right-hand sides `more` (B, n): (B, n,
+    1 + len(more))."""
     matrix, dF_deta = jacobian(ev, mesh)
     return solve_stack(matrix, np.stack([-dF_deta, *more], axis=-1))
 
@@ -17,8 +19,8 @@ def tangents(ev, mesh, *more):
 def advance(cases, state, ev, mesh):
     """The :class:`State` after one step from `state`, where the equation is `ev`.
 
-    The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from the first
-    guess of :mod:`equation` it converges without a line search.
+    The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from
+    the first guess of :mod:`equation` it converges without a line search.
     """
     solution = tangents(ev, mesh, -ev.F)
     dq_deta, dq = solution[..., 0], solution[..., 1]
@@ -31,7 +33,8 @@ def advance(cases, state, ev, mesh):
 
 
 def solve_stack(matrix, rhs):
-    """Stacked linear solve that a singular or non-finite member cannot spoil: its own solution is NaN. (B, n, n), (B, n, k)."""
+    """Stacked linear solve that a singular or non-finite member cannot spoil: its own solution is NaN. (B, n, n),
+    (B, n, k)."""
     try:
         return np.linalg.solve(matrix, rhs)
     except np.linalg.LinAlgError:

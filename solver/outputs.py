@@ -1,4 +1,5 @@
 """From the solved unknowns to the quantities of the paper: Eqs (5), (11)-(14) and the profiles."""
+
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -13,7 +14,8 @@ from .quadrature import lagrange
 def quantities(cases, spot_scale, state, ev, mesh):
     """a, P, D, p0, A0, p_max, Ar_An as a dict of (B,) arrays in units R = E2* = 1.
 
-    spot_scale : (B,) float, p* of the exact law; D from Eq. (3) at r = a, where p = 0, which equals Eq. (14) and needs p at no point.
+    spot_scale : (B,) float, p* of the exact law; D from Eq. (3) at r = a, where p = 0, which equals Eq. (14) and
+    needs p at no point.
     """
     q, a = ev.curve.q, np.exp(state.eta)
     y = _spot(cases, spot_scale, q, state.y)
@@ -46,7 +48,8 @@ def _spot(cases, spot_scale, q, y):
 
 
 class Between(NamedTuple):
-    """What it takes to interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n), and κ (m,)."""
+    """What it takes to interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n), and κ
+    (m,)."""
 
     s: np.ndarray
     L: np.ndarray
@@ -64,9 +67,10 @@ def _between(n, s_bytes):
 def interpolate(cases, ev, law, n, s, steps=4):
     """The unknown y (B, m) at points s (m,) > 0 between the n nodes.
 
-    The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the interpolating polynomial
-    and κ about what the half-space makes of an oscillation between the nodes; where the asperities or the layer yield most, near the
-    edge, this is far more accurate than q_L, and where they yield nothing it is q_L. `steps` of Newton from a two-term guess.
+    The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
+    interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
+    asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
+    nothing it is q_L. `steps` of Newton from a two-term guess.
     """
     rows = _between(n, np.ascontiguousarray(s, dtype=float).tobytes())
     gamma, beta = law.power(cases.exponent)

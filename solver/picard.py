@@ -1,10 +1,12 @@
 """The paper's successive approximations, Eqs (8) and (10), and the load or depth by a search on the contact radius.
 
-On a layer (C > 0), Eq. (8): p̂ = ((a² - r²)/(2R) - half-space part - A[p])/C, without a layer, Eq. (10): p̂ is the pressure whose A is
-what the half-space part leaves; either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 + k), from p = 0, until successive
-pressures differ by less than TOLERANCE of the largest one. The slope of A ~ p^β, β < 1, is infinite at the edge, and where
-A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure there never settles, the load does to 3 to 4 digits.
+On a layer (C > 0), Eq. (8): p̂ = ((a² - r²)/(2R) - half-space part - A[p])/C, without a layer, Eq. (10): p̂ is the
+pressure whose A is what the half-space part leaves; either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 +
+k), from p = 0, until successive pressures differ by less than TOLERANCE of the largest one. The slope of A ~ p^β, β
+< 1, is infinite at the edge, and where A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure
+there never settles, the load does to 3 to 4 digits.
 """
+
 from typing import NamedTuple
 
 import numpy as np
@@ -30,7 +32,8 @@ class Fixed(NamedTuple):
 
 
 def solve(cases, law, mesh, k, limit):
-    """State, status (B,) and total number of approximations (B,) of :class:`~solver.equation.Cases` by the paper's scheme.
+    """State, status (B,) and total number of approximations (B,) of :class:`~solver.equation.Cases` by the paper's
+    scheme.
 
     k : (B,) float, >= 0; limit : int, approximations at one radius (0: LIMIT).
     """

@@ -1,4 +1,5 @@
 """What is asked and what is answered: arrays over a batch of cases."""
+
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -18,8 +19,8 @@ _WHOLE = ("nodes", "max_iterations")
 class Problem:
     """A batch of B cases; every field but `control` an array (B,). Build it with :meth:`of`.
 
-    `value` is the controlled quantity (`control`: "P", "a" or "D"). Lengths in the unit of `R`, moduli and pressures in the
-    unit of `E2` (E2*), loads in E2 R²; with R = E2 = 1 these are the units of the paper.
+    `value` is the controlled quantity (`control`: "P", "a" or "D"). Lengths in the unit of `R`, moduli and pressures
+    in the unit of `E2` (E2*), loads in E2 R²; with R = E2 = 1 these are the units of the paper.
     """
 
     control: str
@@ -49,20 +50,47 @@ class Problem:
            max_iterations=0, R=1.0, E2=1.0):  # fmt: skip
         """Broadcast scalars and (B,) arrays to a batch.
 
-        Exactly one of P, a, D is given. `nodes` = 0 chooses the mesh by `rtol`; `max_iterations` = 0 is the scheme's own limit.
+        Exactly one of P, a, D is given. `nodes` = 0 chooses the mesh by `rtol`; `max_iterations` = 0 is the scheme's
+        own limit.
 
         Raises
         ------
         ValueError
-            Not exactly one control; shapes that do not broadcast to (B,); a text argument outside its choices. A number out of
-            bounds is not an error: that case gets ``Status.INVALID_INPUT``.
+            Not exactly one control; shapes that do not broadcast to (B,); a text argument outside its choices. A
+            number out of bounds is not an error: that case gets ``Status.INVALID_INPUT``.
         """
         given = {name: v for name, v in zip(CONTROLS, (P, a, D), strict=True) if v is not None}
         if len(given) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()
-        values = dict(value=value, h=h, n=n, nu1=nu1, nu2=nu2, bonding=bonding, Nbar=Nbar, Ra=Ra, base=base, micro=micro, B=B,
-                      beta=beta, scheme=scheme, k=k, rtol=rtol, nodes=nodes, max_iterations=max_iterations, R=R, E2=E2)  # fmt: skip
+        values = {
+            f.name: v
+            for f, v in zip(
+                fields(cls)[1:],
+                (
+                    value,
+                    h,
+                    n,
+                    nu1,
+                    nu2,
+                    bonding,
+                    Nbar,
+                    Ra,
+                    base,
+                    micro,
+                    B,
+                    beta,
+                    scheme,
+                    k,
+                    rtol,
+                    nodes,
+                    max_iterations,
+                    R,
+                    E2,
+                ),
+                strict=True,
+            )
+        }
         arrays = [_array(name, v) for name, v in values.items()]
         shape = np.broadcast_shapes((1,), *(v.shape for v in arrays))
         if len(shape) != 1:
@@ -107,10 +135,11 @@ def _array(name, value):
 class Solution:
     """The answers, arrays (B,) and, for the profiles over the m radii asked for, (B, m).
 
-    a, D in R; P in E2 R²; p0 = p(0), p_max (13), p in E2; A0 = A[p(0)] in R; Ar_An (12) and lam = λ(r/a) (11) without unit;
-    dP_dD in E2 R. `status` is a :class:`~solver.status.Status`; `residual` the largest residual of the equation relative to its right-hand
-    side; `error` the estimated relative error, the largest over a, P, D, p0, p_max, Ar_An; `iterations`; `nodes` used (0: closed form).
-    A case without numbers holds NaN everywhere but in the controlled quantity.
+    a, D in R; P in E2 R²; p0 = p(0), p_max (13), p in E2; A0 = A[p(0)] in R; Ar_An (12) and lam = λ(r/a) (11)
+    without unit; dP_dD in E2 R. `status` is a :class:`~solver.status.Status`; `residual` the largest residual of the
+    equation relative to its right-hand side; `error` the estimated relative error, the largest over a, P, D, p0,
+    p_max, Ar_An; `iterations`; `nodes` used (0: closed form). A case without numbers holds NaN everywhere but in the
+    controlled quantity.
     """
 
     a: np.ndarray

@@ -4,6 +4,7 @@ References
 ----------
 Berrut & Trefethen, SIAM Review 46 (2004) 501 (barycentric interpolation).
 """
+
 from functools import lru_cache
 
 import numpy as np
@@ -22,13 +23,15 @@ def gauss_legendre(n):
 
 @lru_cache(maxsize=64)
 def radau_nodes(n):
-    """Gauss-Radau nodes (n,) on [0, 1], ascending, the last one exactly 1 (weight function 1, exact to degree 2n - 2)."""
+    """Gauss-Radau nodes (n,) on [0, 1], ascending, the last one exactly 1 (weight function 1, exact to degree 2n -
+    2)."""
     inner, _ = roots_jacobi(n - 1, 1.0, 0.0)
     return _frozen(np.append((inner + 1) / 2, 1.0))
 
 
 def barycentric_weights(nodes):
-    """Barycentric weights (n,) of `nodes` (n,), scaled by the capacity of [0, 1] so that they neither over- nor underflow."""
+    """Barycentric weights (n,) of `nodes` (n,), scaled by the capacity of [0, 1] so that they neither over- nor
+    underflow."""
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
     scale = np.log(np.abs(difference) * 4.0)

@@ -1,8 +1,9 @@
 """Rough cases: the batched Newton iteration, on the mesh that meets the tolerance.
 
-The error of the solution on a mesh is estimated by one Newton step on the next finer mesh: a step from so close is nearly as good as the
-solution there. A case that does not meet its tolerance goes on from there.
+The error of the solution on a mesh is estimated by one Newton step on the next finer mesh: a step from so close is
+nearly as good as the solution there. A case that does not meet its tolerance goes on from there.
 """
+
 import numpy as np
 
 from . import newton
@@ -16,14 +17,19 @@ _JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
 
 def solve_newton(cases, spot_scale, law, rtol, nodes, limit, x):
-    """Solve a batch of rough cases of one law: dict of output arrays in units R = E2* = 1 (see :class:`~solver.problem.Solution`).
+    """Solve a batch of rough cases of one law: dict of output arrays in units R = E2* = 1 (see
+    :class:`~solver.problem.Solution`).
 
-    spot_scale (B,): p* of the exact law; rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a mesh (0: the
-    scheme's own); x (m,) radii of the profiles.
+    spot_scale (B,): p* of the exact law; rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a
+    mesh (0: the scheme's own); x (m,) radii of the profiles.
     """
     size = len(rtol)
     out = {name: np.full(size, np.nan) for name in (*_JUDGED, "A0", "dP_dD", "residual", "error")}
-    out |= {"status": np.full(size, Status.DIVERGED, dtype=np.int8), "iterations": np.zeros(size, int), "nodes": np.zeros(size, int)}
+    out |= {
+        "status": np.full(size, Status.DIVERGED, dtype=np.int8),
+        "iterations": np.zeros(size, int),
+        "nodes": np.zeros(size, int),
+    }
     out |= {"p": np.full((size, len(x)), np.nan), "lam": np.full((size, len(x)), np.nan)}
     starts = {}
 
@@ -63,7 +69,8 @@ def _rung(cases, spot_scale, law, n, limit, start, x, out, index):
 
 
 def finish(cases, spot_scale, law, grid, state, x):
-    """All output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
+    """All output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer
+    mesh."""
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, spot_scale, state, ev, grid)
     finer, better = refine(cases, spot_scale, state, ev, law, grid.n)

@@ -3,6 +3,7 @@
 On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once per mesh, K = V diag(κ) V⁻¹, so that
 q = V (c/(X κ + Y)) for every case, and the load is a sum of n fractions in a. (κ is real and positive, cond V below 20 up to 200 nodes.)
 """
+
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -35,15 +36,17 @@ def modes(n):
     grid = mesh(n)
     kappa, V = np.linalg.eig(grid.K)
     c = np.linalg.solve(V, grid.s**2)
-    return Modes(kappa.real, c.real, V.real, (grid.w @ V).real * c.real, (grid.edge @ V).real * c.real, V[-1].real * c.real)
+    return Modes(
+        kappa.real, c.real, V.real, (grid.w @ V).real * c.real, (grid.edge @ V).real * c.real, V[-1].real * c.real
+    )
 
 
 def half_space(control, value, x):
     """Hertz: dict of output arrays in units R = E2* = 1; value (B,), x (m,)."""
     H = hertz(**{control: value})
     zero = np.zeros_like(H.a)
-    out = {"a": H.a, "P": H.P, "D": H.D, "p0": H.p0, "p_max": H.p0, "A0": zero, "dP_dD": 2 * H.a, "residual": zero}
-    return out | _smooth_extras(hertz_pressure(x, H.p0[:, None]), zero) | {"error": zero + 4 * np.finfo(float).eps, control: value}
+    out = H._asdict() | {"p_max": H.p0, "dP_dD": 2 * H.a, "residual": zero, "error": zero + 4 * np.finfo(float).eps}
+    return out | _smooth_extras(hertz_pressure(x, H.p0[:, None]), zero) | {control: value}
 
 
 def thin_layer(control, value, C, rtol, nodes, x):
@@ -57,23 +60,26 @@ def thin_layer(control, value, C, rtol, nodes, x):
         return part["error"]
 
     unmet = climb(rtol, nodes, solve_on)
-    status = np.where(np.isfinite(out["error"]), np.where(unmet, Status.TOLERANCE_NOT_MET, Status.CONVERGED), Status.DIVERGED)
+    status = np.where(unmet, Status.TOLERANCE_NOT_MET, Status.CONVERGED)
+    status[~np.isfinite(out["error"])] = Status.DIVERGED
     return out | _smooth_extras(out["p"], out["p0"] * 0) | {"status": status.astype(np.int8), control: value}
 
 
 def _on_mesh(control, value, C, n, x):
     """Solve on n nodes; the error is the difference to the next finer mesh."""
     with np.errstate(all="ignore"):
-        a, steps = _radius(control, value, C, modes(n))
-        values, better = _values(a, C, modes(n)), _values(_radius(control, value, C, modes(next_rung(n)))[0], C, modes(next_rung(n)))
+        modal, finer = modes(n), modes(next_rung(n))
+        a, steps = _radius(control, value, C, modal)
+        values, better = _values(a, C, modal), _values(_radius(control, value, C, finer)[0], C, finer)
         error = np.max([np.abs(values[name] / better[name] - 1) for name in ("a", "P", "D", "p0")], axis=0)
-        q = (modes(n).c / _denominator(a, C, modes(n))) @ modes(n).V.T
+        q = (modal.c / _denominator(a, C, modal)) @ modal.V.T
         grid = mesh(n)
-        residual = np.abs((8 / np.pi / a)[:, None] * (q @ grid.K.T) + (2 * C / a**2)[:, None] * q - grid.s**2).max(axis=1)
+        F = (8 / np.pi / a)[:, None] * (q @ grid.K.T) + (2 * C / a**2)[:, None] * q - grid.s**2
     p = np.maximum(q @ lagrange(grid.s, np.sqrt((1 - x) * (1 + x))).T, 0.0)
     p[:, x == 1.0] = 0.0
-    extra = {"error": np.maximum(error, 4 * n * np.finfo(float).eps), "residual": residual, "p": p, "nodes": np.full(len(a), n)}
-    return values | extra | {"iterations": steps}
+    error = np.maximum(error, 4 * n * np.finfo(float).eps)
+    residual = np.abs(F).max(axis=1)
+    return values | {"error": error, "residual": residual, "p": p, "nodes": np.full(len(a), n), "iterations": steps}
 
 
 def _denominator(a, C, modal):
@@ -82,7 +88,7 @@ def _denominator(a, C, modal):
 
 
 def _sums(a, C, modal):
-    """P/(2 pi a²), the edge displacement 2 D/a² - 1, p(0), and the logarithmic derivatives dP/dη/P and dD/dη/D by η = ln a."""
+    """P/(2 pi a²), 2 D/a² - 1, p(0), and the logarithmic derivatives of P and D by η = ln a."""
     X, Y = 8 / np.pi / a, 2 * C / a**2
     share = 1 / _denominator(a, C, modal)
     rate = share**2 * (X[:, None] * modal.kappa + 2 * Y[:, None])  # d share/dη
@@ -101,8 +107,10 @@ def _radius(control, value, C, modal):
     """a (B,) for the given load or depth by Newton on logarithms, and the number of steps."""
     if control == "a":
         return value, np.zeros(len(value), int)
-    hertz_a, springs = (np.cbrt(0.75 * value), (4 * C * value / np.pi) ** 0.25) if control == "P" else (np.sqrt(value),) * 2
-    eta = np.log((hertz_a**4 + springs**4) ** 0.25)
+    if control == "P":
+        eta = 0.25 * np.log(np.cbrt(0.75 * value) ** 4 + 4 * C * value / np.pi)
+    else:
+        eta = 0.5 * np.log(1.5 * value)
     for step in range(_STEPS):
         a = np.exp(eta)
         load, edge, _, by_P, by_D = _sums(a, C, modal)

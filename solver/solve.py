@@ -1,4 +1,7 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
+
+from dataclasses import replace
+
 import numpy as np
 
 from . import picard, rough, smooth
@@ -11,7 +14,16 @@ from .problem import Problem, Solution
 from .status import Status
 
 #: Power of R and of E2* in the unit of each quantity.
-_UNITS = {"a": (1, 0), "P": (2, 1), "D": (1, 0), "p0": (0, 1), "p_max": (0, 1), "A0": (1, 0), "dP_dD": (1, 1), "p": (0, 1)}
+_UNITS = {
+    "a": (1, 0),
+    "D": (1, 0),
+    "A0": (1, 0),
+    "p0": (0, 1),
+    "p_max": (0, 1),
+    "p": (0, 1),
+    "P": (2, 1),
+    "dP_dD": (1, 1),
+}
 
 
 def solve(problem, x=(0.0, 1.0)):
@@ -66,10 +78,9 @@ def _dimensionless(problem):
     # divided one by one: R² or R⁻² may overflow where the quotient does not
     value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
     layered = problem.base != "half_space"
-    fields = dict(vars(problem), value=value, h=problem.h / R, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R)
-    fields["n"] = np.where(layered, problem.n, 1.0)
-    C = np.where(layered, local_compliance(fields["h"], fields["n"], problem.nu1, problem.nu2, problem.bonding == "bonded"), 0.0)
-    return Problem(**fields), C
+    h, n = problem.h / R, np.where(layered, problem.n, 1.0)
+    C = np.where(layered, local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded"), 0.0)
+    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R), C
 
 
 def _routes(problem, solvable):
@@ -119,7 +130,7 @@ def _picard_nodes(problem):
 
 
 def _picard(part, C, x):
-    """Successive approximations on one mesh; their error is not estimated beyond the distance to one Newton step on a finer mesh."""
+    """Successive approximations on one mesh; their error is the distance to one Newton step on the next finer mesh."""
     cases, spot_scale, law = _rough(part, C)
     n = int(_picard_nodes(part)[0])
     grid = mesh(n)

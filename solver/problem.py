@@ -14,6 +14,28 @@ SCHEMES = ("newton", "picard")
 _TEXT = {"bonding": BONDINGS, "base": BASES, "micro": MICROS, "scheme": SCHEMES}
 _WHOLE = ("nodes", "max_iterations")
 
+#: Value of each parameter that is not given, in the order of the fields of :class:`Problem`.
+DEFAULTS = {
+    "h": 1.0,
+    "n": 1.0,
+    "nu1": 0.3,
+    "nu2": 0.3,
+    "bonding": "frictionless",
+    "Nbar": 1.0,
+    "Ra": 1.0,
+    "base": "thin_layer",
+    "micro": "disc_cell",
+    "B": 1.0,
+    "beta": 0.5,
+    "scheme": "newton",
+    "k": 1.0,
+    "rtol": 1e-6,
+    "nodes": 0,
+    "max_iterations": 0,
+    "R": 1.0,
+    "E2": 1.0,
+}
+
 
 @dataclass(frozen=True)
 class Problem:
@@ -45,16 +67,16 @@ class Problem:
     E2: np.ndarray
 
     @classmethod
-    def of(cls, *, P=None, a=None, D=None, h=1.0, n=1.0, nu1=0.3, nu2=0.3, bonding="frictionless", Nbar=1.0, Ra=1.0,
-           base="thin_layer", micro="disc_cell", B=1.0, beta=0.5, scheme="newton", k=1.0, rtol=1e-6, nodes=0,
-           max_iterations=0, R=1.0, E2=1.0):  # fmt: skip
+    def of(cls, *, P=None, a=None, D=None, **parameters):
         """Broadcast scalars and (B,) arrays to a batch.
 
-        Exactly one of P, a, D is given. `nodes` = 0 chooses the mesh by `rtol`; `max_iterations` = 0 is the scheme's
+        Exactly one of P, a, D is given; the others as in DEFAULTS. `nodes` = 0 chooses the mesh by `rtol`; `max_iterations` = 0 is the scheme's
         own limit.
 
         Raises
         ------
+        TypeError
+            A parameter that does not exist.
         ValueError
             Not exactly one control; shapes that do not broadcast to (B,); a text argument outside its choices. A
             number out of bounds is not an error: that case gets ``Status.INVALID_INPUT``.
@@ -63,34 +85,10 @@ class Problem:
         if len(given) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()
-        values = {
-            f.name: v
-            for f, v in zip(
-                fields(cls)[1:],
-                (
-                    value,
-                    h,
-                    n,
-                    nu1,
-                    nu2,
-                    bonding,
-                    Nbar,
-                    Ra,
-                    base,
-                    micro,
-                    B,
-                    beta,
-                    scheme,
-                    k,
-                    rtol,
-                    nodes,
-                    max_iterations,
-                    R,
-                    E2,
-                ),
-                strict=True,
-            )
-        }
+        unknown = sorted(set(parameters) - set(DEFAULTS))
+        if unknown:
+            raise TypeError(f"unknown parameter {unknown[0]}")
+        values = {"value": value} | DEFAULTS | parameters
         arrays = [_array(name, v) for name, v in values.items()]
         shape = np.broadcast_shapes((1,), *(v.shape for v in arrays))
         if len(shape) != 1:

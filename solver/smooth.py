@@ -1,7 +1,8 @@
 """Smooth cases: Hertz's closed form, and one linear solve on a thin layer.
 
-On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once per mesh, K = V diag(κ) V⁻¹, so that
-q = V (c/(X κ + Y)) for every case, and the load is a sum of n fractions in a. (κ is real and positive, cond V below 20 up to 200 nodes.)
+On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once per mesh,
+K = V diag(κ) V⁻¹, so that q = V (c/(X κ + Y)) for every case, and the load is a sum of n fractions in a.
+(κ is real and positive, the condition of V below 20 up to 200 nodes.)
 """
 
 from functools import lru_cache
@@ -20,7 +21,7 @@ _STEPS = 30
 
 
 class Modes(NamedTuple):
-    """Spectral form of a mesh: κ (n,), coefficients c (n,) of s², V (n, n), and the rows of load, edge and centre in modes."""
+    """Spectral form of a mesh: κ (n,), coefficients c (n,) of s², V (n, n); load, edge and centre by modes."""
 
     kappa: np.ndarray
     c: np.ndarray
@@ -79,7 +80,13 @@ def _on_mesh(control, value, C, n, x):
     p[:, x == 1.0] = 0.0
     error = np.maximum(error, 4 * n * np.finfo(float).eps)
     residual = np.abs(F).max(axis=1)
-    return values | {"error": error, "residual": residual, "p": p, "nodes": np.full(len(a), n), "iterations": steps}
+    return values | {
+        "error": error,
+        "residual": residual,
+        "p": p,
+        "nodes": np.full(len(a), n),
+        "iterations": np.full(len(a), steps),
+    }
 
 
 def _denominator(a, C, modal):
@@ -104,14 +111,14 @@ def _values(a, C, modal):
 
 
 def _radius(control, value, C, modal):
-    """a (B,) for the given load or depth by Newton on logarithms, and the number of steps."""
+    """a (B,) for the given load or depth by Newton on logarithms, and the number of steps of the batch."""
     if control == "a":
-        return value, np.zeros(len(value), int)
+        return value, 0
     if control == "P":
         eta = 0.25 * np.log(np.cbrt(0.75 * value) ** 4 + 4 * C * value / np.pi)
     else:
         eta = 0.5 * np.log(1.5 * value)
-    for step in range(_STEPS):
+    for steps in range(1, _STEPS + 1):
         a = np.exp(eta)
         load, edge, _, by_P, by_D = _sums(a, C, modal)
         if control == "P":
@@ -121,7 +128,7 @@ def _radius(control, value, C, modal):
         eta = eta - change
         if not np.nanmax(np.abs(change), initial=0) > 1e-14:
             break
-    return np.exp(eta), np.full(len(value), step + 1)
+    return np.exp(eta), steps
 
 
 def _smooth_extras(p, zero):

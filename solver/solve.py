@@ -10,7 +10,7 @@ from .equation import Cases
 from .ladder import start_nodes
 from .mesh import mesh
 from .micro import LAWS, scales
-from .problem import Problem, Solution
+from .problem import Solution
 from .status import Status
 
 #: Power of R and of E2* in the unit of each quantity.

@@ -70,8 +70,8 @@ class Problem:
     def of(cls, *, P=None, a=None, D=None, **parameters):
         """Broadcast scalars and (B,) arrays to a batch.
 
-        Exactly one of P, a, D is given; the others as in DEFAULTS. `nodes` = 0 chooses the mesh by `rtol`; `max_iterations` = 0 is the scheme's
-        own limit.
+        Exactly one of P, a, D is given; the other parameters as in DEFAULTS. `nodes` = 0 chooses the mesh by `rtol`;
+        `max_iterations` = 0 is the scheme's own limit.
 
         Raises
         ------

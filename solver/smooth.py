@@ -118,7 +118,9 @@ def _radius(control, value, C, modal):
         eta = 0.25 * np.log(np.cbrt(0.75 * value) ** 4 + 4 * C * value / np.pi)
     else:
         eta = 0.5 * np.log(1.5 * value)
-    for steps in range(1, _STEPS + 1):
+    steps = 0
+    while steps < _STEPS:
+        steps += 1
         a = np.exp(eta)
         load, edge, _, by_P, by_D = _sums(a, C, modal)
         if control == "P":

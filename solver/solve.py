@@ -52,6 +52,7 @@ def solve(problem, x=(0.0, 1.0)):
 
     Examples
     --------
+    >>> from solver import Problem
     >>> case = Problem.of(a=0.04, h=0.02, n=0.5, Nbar=250000, Ra=0.004, micro="power_law", B=0.1, beta=0.5)
     >>> print(f"{solve(case).P[0]:.5e}")
     2.70408e-05

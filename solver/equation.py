@@ -2,15 +2,19 @@
 
 With p = p* q(y), A = A* g(y) and s = sqrt(1 - x²), Eq. (4) divided by a²/2 is
 
-    X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(pi a),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
+    X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(pi a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh; the control (load, radius or depth) is one more equation for η = ln a.
+at the nodes of the mesh; the control (load, radius or depth) is one more equation for η = ln a. K is the half-space
+operator and E = E2* on a half-space and, with the springs C, on a thin layer; on the exact layered base E = E1*, C =
+0, and K depends on h/a (:mod:`.layered`).
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
+from .kernel import layered_kernel
+from .layered import Layer, layer_displacement, layer_rows, layer_weights
 from .mesh import HERTZ
 from .micro import Curve
 
@@ -18,19 +22,26 @@ CONTROLS = ("P", "a", "D")
 
 
 class Cases(NamedTuple):
-    """A batch of B rough cases in units R = 1, E2* = 1; arrays (B,). `control` is one of CONTROLS for the whole
-    batch."""
+    """A batch of B cases of one base and micro law in units R = 1, E2* = 1; arrays (B,).
+
+    `control` is one of CONTROLS for the whole batch; `layer` is None but on the exact layered base. `spot_scale` is
+    p* of the exact law, whatever law is solved; 0 for a smooth punch.
+    """
 
     control: str
+    layer: Layer | None
     value: np.ndarray
     p_star: np.ndarray
     A_star: np.ndarray
+    spot_scale: np.ndarray
+    E: np.ndarray
     C: np.ndarray
     exponent: np.ndarray
 
     def take(self, index):
         """The sub-batch at `index`."""
-        return Cases(self.control, *(field[index] for field in self[1:]))
+        layer = None if self.layer is None else self.layer.take(index)
+        return Cases(self.control, layer, *(field[index] for field in self[2:]))
 
 
 class State(NamedTuple):
@@ -44,15 +55,31 @@ class State(NamedTuple):
         return State(self.y[index], self.eta[index])
 
 
+class Operator(NamedTuple):
+    """The base at a state: K (B or 1, n, n) and edge row (B or 1, n), their products with q, and the derivatives of
+    those by η."""
+
+    K: np.ndarray
+    edge: np.ndarray
+    Kq: np.ndarray
+    edge_q: np.ndarray
+    d_Kq: np.ndarray
+    d_edge_q: np.ndarray
+    weights: list | None
+
+    def take(self, index):
+        """The sub-batch at `index`, without the weights of the layer."""
+        return Operator(*(v if len(v) == 1 else v[index] for v in self[:-1]), None)
+
+
 class Evaluation(NamedTuple):
-    """The equation at a state: groups X, Y, Z (B, 1), the law, H-differences Kq (B, n), residuals F (B, n) and G
-    (B,)."""
+    """The equation at a state: groups X, Y, Z (B, 1), the law, the base, residuals F (B, n) and G (B,)."""
 
     X: np.ndarray
     Y: np.ndarray
     Z: np.ndarray
     curve: Curve
-    Kq: np.ndarray
+    base: Operator
     F: np.ndarray
     G: np.ndarray
 
@@ -63,37 +90,56 @@ class Evaluation(NamedTuple):
 
     def take(self, index):
         """The sub-batch at `index`."""
-        return Evaluation(
-            *(v[index] for v in self[:3]), Curve(*(v[index] for v in self.curve)), *(v[index] for v in self[4:])
-        )
+        X, Y, Z, curve, base, F, G = self
+        curve, base = Curve(*(v[index] for v in curve)), base.take(index)
+        return Evaluation(X[index], Y[index], Z[index], curve, base, F[index], G[index])
 
 
 def groups(cases, eta):
     """X, Y, Z (B, 1) at η = ln a (B,)."""
     a = np.exp(eta)
-    return (
-        ((8 / np.pi) * cases.p_star / a)[:, None],
-        (2 * cases.C * cases.p_star / a**2)[:, None],
-        (2 * cases.A_star / a**2)[:, None],
-    )
+    X = (8 / np.pi) * cases.p_star / (a * cases.E)
+    return X[:, None], (2 * cases.C * cases.p_star / a**2)[:, None], (2 * cases.A_star / a**2)[:, None]
 
 
-def evaluate(cases, state, law, mesh):
-    """:class:`Evaluation` of `cases` at `state`."""
+def operate(cases, eta, q, mesh, weights=None):
+    """:class:`Operator` of the base of `cases` at η = ln a (B,) and q (B, n); `weights` of the layer if known at
+    this η."""
+    if cases.layer is None:
+        none = np.zeros((1, mesh.n))
+        return Operator(mesh.K[None], mesh.edge[None], q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], None)
+    weights = weights or layer_weights(cases.layer, np.exp(eta))
+    rows = layer_rows(weights, q, mesh)
+    K, edge = mesh.K + (np.pi / 2) * rows.rows, mesh.edge + (np.pi / 2) * rows.edge
+    Kq, edge_q = np.matmul(K, q[..., None])[..., 0], (edge * q).sum(axis=1)
+    return Operator(K, edge, Kq, edge_q, (np.pi / 2) * rows.d_rows_q, (np.pi / 2) * rows.d_edge_q, weights)
+
+
+def displacement_between(ev, H, x):
+    """K[q] (B, m) at radii x (m,) between the nodes, from the half-space rows H (m, n) there."""
+    q = ev.curve.q
+    half_space = q @ H.T
+    if ev.base.weights is None:
+        return half_space
+    return half_space + (np.pi / 2) * layer_displacement(ev.base.weights, q, q.shape[1], x)
+
+
+def evaluate(cases, state, law, mesh, weights=None):
+    """:class:`Evaluation` of `cases` at `state`; `weights` as in :func:`operate`."""
     X, Y, Z = groups(cases, state.eta)
     curve = law.evaluate(state.y, cases.exponent)
-    Kq = curve.q @ mesh.K.T
-    F = X * Kq + Y * curve.q + Z * curve.g - mesh.s**2
-    return Evaluation(X, Y, Z, curve, Kq, F, control_residual(cases, state.eta, X, curve.q, mesh))
+    base = operate(cases, state.eta, curve.q, mesh, weights)
+    F = X * base.Kq + Y * curve.q + Z * curve.g - mesh.s**2
+    return Evaluation(X, Y, Z, curve, base, F, control_residual(cases, state.eta, X, curve.q, base.edge_q, mesh))
 
 
-def control_residual(cases, eta, X, q, mesh):
+def control_residual(cases, eta, X, q, edge_q, mesh):
     """Logarithm of (controlled quantity/given value), (B,): Eq. (5) for the load, Eq. (3) at r = a for the depth."""
     if cases.control == "a":
         return eta - np.log(cases.value)
     if cases.control == "P":
         return np.log(2 * np.pi * cases.p_star * (q @ mesh.w) / cases.value) + 2 * eta
-    return np.log((1 + X[:, 0] * (q @ mesh.edge)) / (2 * cases.value)) + 2 * eta
+    return np.log((1 + X[:, 0] * edge_q) / (2 * cases.value)) + 2 * eta
 
 
 def control_gradient(control, ev, mesh):
@@ -103,22 +149,23 @@ def control_gradient(control, ev, mesh):
         return mesh.w / (q @ mesh.w)[:, None], np.full(len(q), 2.0)
     if control == "a":
         return np.zeros_like(q), np.ones(len(q))
-    edge = X * (q @ mesh.edge)
-    return ev.X * mesh.edge / (1 + edge)[:, None], 2 - edge / (1 + edge)
+    edge = X * ev.base.edge_q
+    return ev.X * ev.base.edge / (1 + edge)[:, None], 2 + (X * ev.base.d_edge_q - edge) / (1 + edge)
 
 
 def jacobian(ev, mesh):
     """dF/dq (B, n, n) at fixed η, and dF/dη (B, n) at fixed q. In q, not y: the operator is linear in it."""
-    matrix = ev.X[:, :, None] * mesh.K
+    matrix = ev.X[:, :, None] * ev.base.K
     diagonal = np.arange(mesh.n)
     matrix[:, diagonal, diagonal] += ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
-    return matrix, -(ev.X * ev.Kq + 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g))
+    return matrix, ev.X * (ev.base.d_Kq - ev.base.Kq) - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g)
 
 
 def first_guess(cases, law, mesh):
     """State from the three one-term solutions (half-space, springs, asperities alone) added as compliances."""
     a = _guess_radius(cases, *law.power(cases.exponent))
-    q = guess_pressure(cases, law, *groups(cases, np.log(a)), mesh.s)
+    X, Y, Z = groups(cases, np.log(a))
+    q = guess_pressure(cases, law, X * _softness(cases, a)[:, None], Y, Z, mesh.s)
     return State(law.guess(q, cases.exponent), np.log(a))
 
 
@@ -127,8 +174,16 @@ def guess_pressure(cases, law, X, Y, Z, s):
     alone."""
     gamma, beta = law.power(cases.exponent)
     s2 = s**2
-    alone = (s2 / (Z * gamma[:, None])) ** (1 / beta[:, None])
-    return 1 / ((X * HERTZ * s + Y) / s2 + 1 / alone)
+    alone = (Z * gamma[:, None] / s2) ** (1 / beta[:, None])  # 0 for a smooth punch
+    return 1 / ((X * HERTZ * s + Y) / s2 + alone)
+
+
+def _softness(cases, a):
+    """Compliance of the base over that of a half-space of E, about L at the wave number 1.5/a."""
+    if cases.layer is None:
+        return np.ones_like(a)
+    h, *material = cases.layer
+    return layered_kernel(1.5 * h / a, *material).L
 
 
 def _guess_radius(cases, gamma, beta):
@@ -137,13 +192,18 @@ def _guess_radius(cases, gamma, beta):
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
         return np.sqrt(1.5 * cases.value)
     hertz, springs, spots = one_term_radii(cases, gamma, beta)
-    return (hertz**4 + springs**4 + spots**4) ** 0.25
+    if cases.layer is None:
+        return (hertz**4 + springs**4 + spots**4) ** 0.25
+    a = (hertz**4 + spots**4) ** 0.25
+    for _ in range(6):  # the modulus the contact feels depends on its radius
+        a = ((hertz * np.cbrt(_softness(cases, a))) ** 4 + spots**4) ** 0.25
+    return a
 
 
 def one_term_radii(cases, gamma, beta):
     """Radii (B,) under the load of a half-space, of springs of compliance C, and of asperities of A ~ p^β alone."""
     e = 1 / beta
-    hertz = np.cbrt(0.75 * cases.value)
+    hertz = np.cbrt(0.75 * cases.value / cases.E)
     springs = (4 * cases.C * cases.value / np.pi) ** 0.25
     spots = (cases.value / (2 * np.pi * cases.p_star) * (2 * cases.A_star * gamma) ** e * (2 * e + 2)) ** (
         1 / (2 + 2 * e)

@@ -1,7 +1,7 @@
 """The exact kernel L(u), u = kh, of an elastic layer on an elastic half-space, frictionless or bonded.
 
-Surface displacement u(r) = (2/E1*) ∫ L(kh) p̂(k) J0(kr) dk. L(0) = n, L(∞) = 1. What the solver uses is L - 1, which decays
-like e^(-2u); both, and u dL/du, are formed without cancellation from u = 0 to infinity.
+Surface displacement u(r) = (2/E1*) ∫ L(kh) p̂(k) J0(kr) dk. L(0) = n, L(∞) = 1. What the solver uses is L - 1, which
+decays like e^(-2u); both, and u dL/du, are formed without cancellation from u = 0 to infinity.
 """
 
 from typing import NamedTuple
@@ -66,8 +66,8 @@ def frictionless_kernel(u, n):
 def bonded_kernel(u, n, nu1, nu2):
     """L = [1 + 4b'ue - a'b'e²]/[1 - (a' + b' + 4b'u²)e + a'b'e²], e = exp(-2u); arguments as in :func:`layered_kernel`.
 
-    With alpha = G1/G2 and g = 3 - 4 nu: a' = (alpha g2 - g1)/(1 + alpha g2), b' = (alpha - 1)/(alpha + g1). 1 - a', 1 - b', 1 + a' and
-    1 - a'b' are taken in product form, sinh x - x by its series.
+    With alpha = G1/G2 and g = 3 - 4 nu: a' = (alpha g2 - g1)/(1 + alpha g2), b' = (alpha - 1)/(alpha + g1). 1 - a',
+    1 - b', 1 + a' and 1 - a'b' are taken in product form, sinh x - x by its series.
     """
     alpha, g1, g2 = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2
     da, db = 1 + alpha * g2, alpha + g1
@@ -101,7 +101,12 @@ def _gap(u, e, rest):
     """(1 - e)² - 4u²e = 4e (sinh² u - u²) and its derivative."""
     v = np.minimum(u, 0.6)
     z = 4 * v * v  # cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2
-    series = z * z / 24 * (1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182 * (1 + z / 240 * (1 + z / 306)))))))
+    series = (
+        z
+        * z
+        / 24
+        * (1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182 * (1 + z / 240 * (1 + z / 306)))))))
+    )
     gap = np.where(u < 0.6, 2 * e * series, rest * rest - 4 * u * u * e)
     return gap, 4 * _sinh_excess(u, e) - 2 * gap
 
@@ -110,5 +115,11 @@ def _sinh_excess(u, e):
     """e (sinh 2u - 2u)."""
     v = np.minimum(u, 0.6)
     z = 4 * v * v
-    series = 2 * v * z / 6 * (1 + z / 20 * (1 + z / 42 * (1 + z / 72 * (1 + z / 110 * (1 + z / 156 * (1 + z / 210 * (1 + z / 272)))))))
+    series = (
+        2
+        * v
+        * z
+        / 6
+        * (1 + z / 20 * (1 + z / 42 * (1 + z / 72 * (1 + z / 110 * (1 + z / 156 * (1 + z / 210 * (1 + z / 272)))))))
+    )
     return np.where(u < 0.6, e * series, (1 - e * e) / 2 - 2 * u * e)

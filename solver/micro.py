@@ -34,7 +34,8 @@ class Law(NamedTuple):
 
     evaluate(y, exponent) -> :class:`Curve`;  guess(q, exponent) -> y with q(y) = q within 30 %;
     from_pressure(q, exponent) -> y with q(y) = q;  from_displacement(g, exponent) -> y with g(y) = g;
-    power(exponent) -> (gamma, beta) with g ~ gamma q^beta for small q.
+    power(exponent) -> (gamma, beta) with g ~ gamma q^beta for small q;  limit(new, old) -> y, what a step may do;
+    spot(y, q) -> y = cot θ of the exact law, q = p over p* of the exact law.
     """
 
     evaluate: Callable
@@ -42,6 +43,13 @@ class Law(NamedTuple):
     from_pressure: Callable
     from_displacement: Callable
     power: Callable
+    limit: Callable
+    spot: Callable
+
+
+def _within_factor(new, old):
+    """y stays positive and changes by no more than a factor of five in a step."""
+    return np.clip(new, 0.2 * old, 5.0 * old)
 
 
 # ---- the exact law of the paper, Eqs (6), (7), (11), (13)
@@ -122,6 +130,8 @@ disc_cell = Law(
     from_pressure=lambda q, exponent: spot_from_pressure(q),
     from_displacement=lambda g, exponent: spot_from_displacement(g),
     power=lambda exponent: ((np.pi / 2) ** (2 / 3) * np.ones_like(exponent), 2 / 3 * np.ones_like(exponent)),
+    limit=_within_factor,
+    spot=lambda y, q: y,
 )
 
 
@@ -141,10 +151,25 @@ power_law = Law(
     from_pressure=lambda q, exponent: q ** (exponent[:, None] / 2),
     from_displacement=lambda g, exponent: np.sqrt(np.maximum(g, 0.0)),
     power=lambda exponent: (np.ones_like(exponent), exponent),
+    limit=_within_factor,
+    spot=lambda y, q: spot_from_pressure(q),
 )
 
-LAWS = {"disc_cell": disc_cell, "power_law": power_law}
-MICROS = ("smooth", "disc_cell", "power_law")
+
+# ---- no roughness: A = 0, the equation is linear in y = q --------------------------------------------------------------
+
+smooth = Law(
+    evaluate=lambda y, exponent: Curve(y, np.zeros_like(y), np.ones_like(y), np.zeros_like(y)),
+    guess=lambda q, exponent: q,
+    from_pressure=lambda q, exponent: q,
+    from_displacement=lambda g, exponent: np.full_like(g, np.nan),
+    power=lambda exponent: (np.ones_like(exponent), np.ones_like(exponent)),
+    limit=lambda new, old: new,
+    spot=lambda y, q: np.full_like(y, np.inf),
+)
+
+LAWS = {"smooth": smooth, "disc_cell": disc_cell, "power_law": power_law}
+MICROS = tuple(LAWS)
 
 
 # ---- physical quantities at a given pressure

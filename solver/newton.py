@@ -16,7 +16,7 @@ def tangents(ev, mesh, *more):
     return solve_stack(matrix, np.stack([-dF_deta, *more], axis=-1))
 
 
-def advance(cases, state, ev, mesh):
+def advance(cases, state, ev, mesh, law):
     """The :class:`State` after one step from `state`, where the equation is `ev`.
 
     The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from
@@ -28,7 +28,7 @@ def advance(cases, state, ev, mesh):
     d_eta = -(ev.G + (by_q * dq).sum(axis=1)) / (by_eta + (by_q * dq_deta).sum(axis=1))
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     d_eta = np.clip(d_eta, -1.0, 1.0)
-    y = np.clip(state.y + dy, 0.2 * state.y, 5.0 * state.y)
+    y = law.limit(state.y + dy, state.y)
     return State(y, state.eta + d_eta)
 
 

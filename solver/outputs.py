@@ -5,46 +5,40 @@ from typing import NamedTuple
 
 import numpy as np
 
+from .equation import displacement_between
 from .mesh import half_space_rows
 from .mesh import mesh as mesh_of
-from .micro import spot_from_pressure
 from .quadrature import lagrange
 
 
-def quantities(cases, spot_scale, state, ev, mesh):
+def quantities(cases, state, curve, X, edge_q, law, mesh):
     """a, P, D, p0, A0, p_max, Ar_An as a dict of (B,) arrays in units R = E2* = 1.
 
-    spot_scale : (B,) float, p* of the exact law; D from Eq. (3) at r = a, where p = 0, which equals Eq. (14) and
-    needs p at no point.
+    curve: the law at `state`; X, edge_q (B,): the group and the displacement of the edge there. D is taken from Eq.
+    (3) at r = a, where p = 0; it equals Eq. (14) and needs p at no point.
     """
-    q, a = ev.curve.q, np.exp(state.eta)
-    y = _spot(cases, spot_scale, q, state.y)
+    q, a = curve.q, np.exp(state.eta)
+    y = law.spot(state.y, (cases.p_star / cases.spot_scale)[:, None] * q)
     p0 = cases.p_star * q[:, -1]
     return {
         "a": a,
         "P": 2 * np.pi * a**2 * cases.p_star * (q @ mesh.w),  # (5)
-        "D": a**2 / 2 * (1 + ev.X[:, 0] * (q @ mesh.edge)),  # (14)
+        "D": a**2 / 2 * (1 + X * edge_q),  # (14)
         "p0": p0,
-        "A0": cases.A_star * ev.curve.g[:, -1],
-        "p_max": spot_pressure(y[:, -1], p0, spot_scale),
+        "A0": cases.A_star * curve.g[:, -1],
+        "p_max": spot_pressure(y[:, -1], p0, cases.spot_scale),
         "Ar_An": 2 * (spot_area(y) @ mesh.w),  # (12)
     }
 
 
 def spot_area(y):
-    """λ = (b/B̄)² (11) of y = cot θ."""
-    return y * y / (1 + y * y)
+    """λ = (b/B̄)² (11) of y = cot θ, 0 to inf."""
+    return 1 / (1 + y**-2.0)
 
 
 def spot_pressure(y, p, spot_scale):
     """Largest real pressure (13) at nominal pressure p and y = cot θ."""
-    return 3 / np.pi * spot_scale * y / np.sqrt(1 + y * y) + 2 / np.pi * p * np.arctan(y)
-
-
-def _spot(cases, spot_scale, q, y):
-    """y = cot θ of the exact law at pressures p* q: the unknown itself where the law is the exact one."""
-    exact = spot_scale == cases.p_star
-    return y if exact.all() else spot_from_pressure((cases.p_star / spot_scale)[:, None] * q)
+    return 3 / np.pi * spot_scale / np.sqrt(1 + y**-2.0) + 2 / np.pi * p * np.arctan(y)
 
 
 class Between(NamedTuple):
@@ -75,19 +69,21 @@ def interpolate(cases, ev, law, n, s, steps=4):
     rows = _between(n, np.ascontiguousarray(s, dtype=float).tobytes())
     gamma, beta = law.power(cases.exponent)
     stiff = ev.X * rows.kappa
-    right = rows.s**2 - ev.X * (ev.curve.q @ rows.H.T) + stiff * (ev.curve.q @ rows.L.T)
+    x = np.sqrt((1 - rows.s) * (1 + rows.s))
+    Kq = displacement_between(ev, rows.H, x)
+    right = rows.s**2 - ev.X * Kq + stiff * (ev.curve.q @ rows.L.T)
     right = np.maximum(right, 1e-9 * rows.s**2)
     linear = stiff + ev.Y
-    alone = (right / (ev.Z * gamma[:, None])) ** (1 / beta[:, None])
-    y = law.guess(1 / (linear / right + 1 / alone), cases.exponent)
+    inverse = (ev.Z * gamma[:, None] / right) ** (1 / beta[:, None])  # 0 for a smooth punch
+    y = law.guess(1 / (linear / right + inverse), cases.exponent)
     for _ in range(steps):
         curve = law.evaluate(y, cases.exponent)
         f = linear * curve.q + ev.Z * curve.g - right
-        y = np.clip(y - f / (linear * curve.dq + ev.Z * curve.dg), 0.2 * y, 5 * y)
+        y = law.limit(y - f / (linear * curve.dq + ev.Z * curve.dg), y)
     return y
 
 
-def profiles(cases, spot_scale, ev, n, law, x):
+def profiles(cases, ev, n, law, x):
     """p (B, m) in E2* and λ (B, m) at the radii x (m,) from the solution on n nodes; both 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner = s > 0
@@ -95,5 +91,5 @@ def profiles(cases, spot_scale, ev, n, law, x):
     q = law.evaluate(y, cases.exponent).q
     p, lam = np.zeros((len(q), len(s))), np.zeros((len(q), len(s)))
     p[:, inner] = cases.p_star[:, None] * q
-    lam[:, inner] = spot_area(_spot(cases, spot_scale, q, y))
+    lam[:, inner] = spot_area(law.spot(y, (cases.p_star / cases.spot_scale)[:, None] * q))
     return p, lam

@@ -112,7 +112,7 @@ def _search(cases, law, mesh, k, limit):
 def _control_at(cases, eta, law, mesh, k, limit):
     fixed = approximate(cases, eta, law, mesh, k, limit)
     with np.errstate(invalid="ignore", divide="ignore"):
-        return control_residual(cases, eta, groups(cases, eta)[0], fixed.q, mesh), fixed
+        return control_residual(cases, eta, groups(cases, eta)[0], fixed.q, fixed.q @ mesh.edge, mesh), fixed
 
 
 def _bracket(cases, law):

@@ -8,7 +8,7 @@ from .base import BONDINGS
 from .equation import CONTROLS
 from .micro import MICROS
 
-BASES = ("half_space", "thin_layer")
+BASES = ("half_space", "thin_layer", "layered")
 SCHEMES = ("newton", "picard")
 
 _TEXT = {"bonding": BONDINGS, "base": BASES, "micro": MICROS, "scheme": SCHEMES}

@@ -7,7 +7,7 @@ nearly as good as the solution there. A case that does not meet its tolerance go
 import numpy as np
 
 from . import newton
-from .equation import State, control_gradient, evaluate, first_guess
+from .equation import State, control_gradient, evaluate, first_guess, groups
 from .ladder import climb, next_rung
 from .mesh import mesh
 from .outputs import interpolate, profiles, quantities
@@ -16,11 +16,11 @@ from .status import Status
 _JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
 
-def solve_newton(cases, spot_scale, law, rtol, nodes, limit, x):
+def solve_newton(cases, law, rtol, nodes, limit, x):
     """Solve a batch of rough cases of one law: dict of output arrays in units R = E2* = 1 (see
     :class:`~solver.problem.Solution`).
 
-    spot_scale (B,): p* of the exact law; rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a
+    rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a
     mesh (0: the scheme's own); x (m,) radii of the profiles.
     """
     size = len(rtol)
@@ -37,7 +37,7 @@ def solve_newton(cases, spot_scale, law, rtol, nodes, limit, x):
         part = cases.take(index)
         start = _stack_start([starts.pop(i, None) for i in index], part, law, mesh(n))
         with np.errstate(all="ignore"):  # a case that goes wrong is a NaN and a status
-            finer = _rung(part, spot_scale[index], law, n, limit, start, x, out, index)
+            finer = _rung(part, law, n, limit, start, x, out, index)
         missed = out["error"][index] > rtol[index]
         starts.update({index[i]: State(finer.y[i], finer.eta[i]) for i in np.flatnonzero(missed)})
         return np.where(out["status"][index] == Status.CONVERGED, out["error"][index], np.nan)
@@ -55,11 +55,11 @@ def _stack_start(starts, cases, law, grid):
     return guess
 
 
-def _rung(cases, spot_scale, law, n, limit, start, x, out, index):
+def _rung(cases, law, n, limit, start, x, out, index):
     """Solve on n nodes, write everything to `out` at `index`; returns the state on the next finer mesh."""
     grid = mesh(n)
     state, closed, count = iterate(cases, start, law, grid, limit or newton.LIMIT)
-    values, finer = finish(cases, spot_scale, law, grid, state, x)
+    values, finer = finish(cases, law, grid, state, x)
     for name, value in values.items():
         out[name][index] = value
     finite = np.isfinite(values["error"])
@@ -68,15 +68,15 @@ def _rung(cases, spot_scale, law, n, limit, start, x, out, index):
     return finer
 
 
-def finish(cases, spot_scale, law, grid, state, x):
+def finish(cases, law, grid, state, x):
     """All output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer
     mesh."""
     ev = evaluate(cases, state, law, grid)
-    values = quantities(cases, spot_scale, state, ev, grid)
-    finer, better = refine(cases, spot_scale, state, ev, law, grid.n)
+    values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
+    finer, better = refine(cases, state, ev, law, grid.n)
     error = np.max([np.abs(values[name] / better[name] - 1) for name in _JUDGED], axis=0)
     finite = np.isfinite(ev.residual) & np.isfinite(error)
-    values["p"], values["lam"] = profiles(cases, spot_scale, ev, grid.n, law, x)
+    values["p"], values["lam"] = profiles(cases, ev, grid.n, law, x)
     values |= {"dP_dD": stiffness(cases, state, ev, values, grid), "residual": ev.residual}
     values["error"] = np.maximum(error, 4 * grid.n * np.finfo(float).eps)
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
@@ -102,17 +102,22 @@ def iterate(cases, state, law, grid, limit):
             break
         if len(keep) < len(active):
             active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
-        state = newton.advance(cases, state, ev, grid)
+        state = newton.advance(cases, state, ev, grid, law)
     return State(y, eta), closed, count
 
 
-def refine(cases, spot_scale, state, ev, law, n):
+def refine(cases, state, ev, law, n):
     """One Newton step on the next finer mesh: the state there and its quantities (dict)."""
     m = next_rung(n)
     fine = mesh(m)
     start = State(interpolate(cases, ev, law, n, fine.s, steps=3), state.eta)
-    better = newton.advance(cases, start, evaluate(cases, start, law, fine), fine)
-    return better, quantities(cases, spot_scale, better, evaluate(cases, better, law, fine), fine)
+    at_start = evaluate(cases, start, law, fine, ev.base.weights)
+    better = newton.advance(cases, start, at_start, fine, law)
+    curve, base = law.evaluate(better.y, cases.exponent), at_start.base
+    # to first order, as the step itself: the operator is not formed anew
+    edge_q = (base.edge * curve.q).sum(axis=1) + base.d_edge_q * (better.eta - start.eta)
+    X, _, _ = groups(cases, better.eta)
+    return better, quantities(cases, better, curve, X[:, 0], edge_q, law, fine)
 
 
 def stiffness(cases, state, ev, values, grid):

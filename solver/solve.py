@@ -1,6 +1,7 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
 
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from . import picard, rough, smooth
 from .base import local_compliance
 from .equation import Cases
 from .ladder import start_nodes
+from .layered import Layer
 from .mesh import mesh
 from .micro import LAWS, scales
 from .problem import Solution
@@ -80,17 +82,19 @@ def _dimensionless(problem):
     value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
     layered = problem.base != "half_space"
     h, n = problem.h / R, np.where(layered, problem.n, 1.0)
-    C = np.where(layered, local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded"), 0.0)
+    springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
+    C = np.where(problem.base == "thin_layer", springs, 0.0)
     return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R), C
 
 
 def _routes(problem, solvable):
     """(index, solver) for each kind of case present."""
-    is_smooth, on_layer, by_picard = problem.micro == "smooth", problem.base == "thin_layer", problem.scheme == "picard"
-    yield from _route(solvable & is_smooth & ~on_layer, _smooth_half_space)
-    yield from _route(solvable & is_smooth & on_layer, _smooth_layer)
-    for name in LAWS:
-        of_law = solvable & (problem.micro == name)
+    is_smooth, by_picard = problem.micro == "smooth", (problem.scheme == "picard") & (problem.micro != "smooth")
+    yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
+    yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
+    layered = problem.base == "layered"
+    for name, on_layered in product(LAWS, (False, True)):
+        of_law = solvable & (problem.micro == name) & (layered == on_layered) & (on_layered | ~is_smooth)
         for limit in np.unique(problem.max_iterations[of_law]):
             chosen = of_law & (problem.max_iterations == limit)
             yield from _route(chosen & ~by_picard, _newton)
@@ -111,19 +115,25 @@ def _smooth_layer(part, C, x):
     return smooth.thin_layer(part.control, part.value, C, part.rtol, part.nodes, x)
 
 
-def _rough(part, C):
-    """:class:`~solver.equation.Cases` of rough cases of one law, p* of the exact law, and the law."""
+def _cases(part, C):
+    """:class:`~solver.equation.Cases` of one law on one base, and the law."""
     micro = str(part.micro[0])
-    p_star, A_star = scales(part.n, part.Nbar, part.Ra)
-    if micro == "disc_cell":
-        return Cases(part.control, part.value, p_star, A_star, C, np.full(len(part), 2 / 3)), p_star, LAWS[micro]
-    # A = B Ra (p/E1*)^β: q = p/E1*, g = q^β
-    return Cases(part.control, part.value, part.n * 1.0, part.B * part.Ra, C, part.beta * 1.0), p_star, LAWS[micro]
+    spot_scale, spot_depth = scales(part.n, part.Nbar, part.Ra)
+    none, one = np.zeros(len(part)), np.ones(len(part))
+    p_star, A_star, spot_scale, exponent = {
+        "disc_cell": (spot_scale, spot_depth, spot_scale, 2 / 3 * one),
+        "power_law": (part.n * one, part.B * part.Ra, spot_scale, part.beta * one),  # A = B Ra (p/E1*)^β: g = q^β
+        "smooth": (part.n * one, none, none, one),
+    }[micro]
+    layered = part.base[0] == "layered"
+    layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
+    E = part.n if layered else one
+    return Cases(part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent), LAWS[micro]
 
 
 def _newton(part, C, x):
-    cases, spot_scale, law = _rough(part, C)
-    return rough.solve_newton(cases, spot_scale, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
+    cases, law = _cases(part, C)
+    return rough.solve_newton(cases, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
 def _picard_nodes(problem):
@@ -132,12 +142,12 @@ def _picard_nodes(problem):
 
 def _picard(part, C, x):
     """Successive approximations on one mesh; their error is the distance to one Newton step on the next finer mesh."""
-    cases, spot_scale, law = _rough(part, C)
+    cases, law = _cases(part, C)
     n = int(_picard_nodes(part)[0])
     grid = mesh(n)
     with np.errstate(all="ignore"):
         state, status, count = picard.solve(cases, law, grid, part.k, int(part.max_iterations[0]))
-        values, _ = rough.finish(cases, spot_scale, law, grid, state, x)
+        values, _ = rough.finish(cases, law, grid, state, x)
     return values | {"status": status.astype(np.int8), "iterations": count}
 
 

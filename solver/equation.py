@@ -163,7 +163,7 @@ def jacobian(ev, mesh):
 
 def first_guess(cases, law, mesh):
     """State from the three one-term solutions (half-space, springs, asperities alone) added as compliances."""
-    a = _guess_radius(cases, *law.power(cases.exponent))
+    a = guess_radius(cases, law)
     X, Y, Z = groups(cases, np.log(a))
     q = guess_pressure(cases, law, X * _softness(cases, a)[:, None], Y, Z, mesh.s)
     return State(law.guess(q, cases.exponent), np.log(a))
@@ -186,12 +186,13 @@ def _softness(cases, a):
     return layered_kernel(1.5 * h / a, *material).L
 
 
-def _guess_radius(cases, gamma, beta):
+def guess_radius(cases, law):
+    """Contact radius (B,) of the first guess."""
     if cases.control == "a":
         return cases.value
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
         return np.sqrt(1.5 * cases.value)
-    hertz, springs, spots = one_term_radii(cases, gamma, beta)
+    hertz, springs, spots = one_term_radii(cases, *law.power(cases.exponent))
     if cases.layer is None:
         return (hertz**4 + springs**4 + spots**4) ** 0.25
     a = (hertz**4 + spots**4) ** 0.25

@@ -1,12 +1,15 @@
 """The exact kernel L(u), u = kh, of an elastic layer on an elastic half-space, frictionless or bonded.
 
 Surface displacement u(r) = (2/E1*) ∫ L(kh) p̂(k) J0(kr) dk. L(0) = n, L(∞) = 1. What the solver uses is L - 1, which
-decays like e^(-2u); both, and u dL/du, are formed without cancellation from u = 0 to infinity.
+decays like e^(-2u), and u dL/du; all are formed without cancellation from u = 0 to infinity.
 """
 
 from typing import NamedTuple
 
 import numpy as np
+
+#: Below this u, differences of hyperbolic functions and their first terms are taken from series.
+_SERIES = 0.8
 
 
 class Kernel(NamedTuple):
@@ -34,62 +37,108 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     Returns
     -------
     Kernel
-        L and L - 1 to a relative 1e-13 (L - 1 relative to its largest term where it changes sign), u dL/du to 1e-12.
+        L and L - 1 to a relative 1e-13 (L - 1 relative to its largest term where it changes sign), u dL/du to 1e-13 of
+        the larger of |L - 1| and itself.
+
+    Examples
+    --------
+    >>> print(f"{float(layered_kernel(0.01, 0.5, 0.3, 0.3, False).L):.6f}")
+    0.505000
     """
     u, n, nu1, nu2, bonded = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
+    L1, uL = decaying_part(u, n, nu1, nu2, bonded)
+    L = np.where(bonded, _bonded_whole(u, n, nu1, nu2), _frictionless_whole(u, n))
+    return Kernel(L, L1, uL)
+
+
+def decaying_part(u, n, nu1, nu2, bonded):
+    """L - 1 and u dL/du; arguments as in :func:`layered_kernel`, the materials broadcast against u."""
+    bonded = np.asarray(bonded)
     if bonded.all():
-        return bonded_kernel(u, n, nu1, nu2)
+        return _bonded(u, n, nu1, nu2)
     if not bonded.any():
-        return frictionless_kernel(u, n)
-    both = bonded_kernel(u, n, nu1, nu2), frictionless_kernel(u, n)
-    return Kernel(*(np.where(bonded, b, f) for b, f in zip(*both, strict=True)))
+        return _frictionless(u, n)
+    both = zip(_bonded(u, n, nu1, nu2), _frictionless(u, n), strict=True)
+    return tuple(np.where(bonded, b, f) for b, f in both)
 
 
-def frictionless_kernel(u, n):
-    """L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u; arguments as in :func:`layered_kernel`."""
-    e, rest, rest2 = np.exp(-2 * u), -np.expm1(-2 * u), -np.expm1(-4 * u)  # e, 1 - e, 1 - e²
-    wedge = rest2 + 4 * u * e  # 4e (sc + u)
-    gap, d_gap = _gap(u, e, rest)
-    below = wedge + n * gap
-    L = (rest * rest + n * wedge) / below
-    bracket = (n - 1) * (rest / 2 + u) + n * u * u
-    above1 = 4 * e * bracket  # L - 1 = above1/below
-    d_above1 = -2 * above1 + 4 * e * ((n - 1) * (e + 1) + 2 * n * u)
-    d_below = 4 * e * (e + 1 - 2 * u) + n * d_gap
-    L1 = above1 / below
-    small = u == 0
-    below = np.where(small, 1.0, below)
-    L, L1 = np.where(small, n, L), np.where(small, n - 1, L1)
-    return Kernel(L, L1, np.where(small, 0.0, u * (d_above1 - L1 * d_below) / below))
+def _frictionless_parts(u, n):
+    """Terms, times 4e, of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u, e = exp(-2u)."""
+    e, rest = np.exp(-2 * u), -np.expm1(-2 * u)
+    wedge = rest * (1 + e) + 4 * u * e  # 4e (sc + u)
+    limit = _SERIES if np.any(n > 2) else 0.01  # beside the wedge, a small n times the gap needs no series
+    gap = _gap(u, e, rest, limit)  # 4e (s² - u²)
+    return e, rest, wedge, gap, np.where(u == 0, 1.0, wedge + n * gap), limit
 
 
-def bonded_kernel(u, n, nu1, nu2):
-    """L = [1 + 4b'ue - a'b'e²]/[1 - (a' + b' + 4b'u²)e + a'b'e²], e = exp(-2u); arguments as in :func:`layered_kernel`.
+def _frictionless_whole(u, n):
+    _, rest, wedge, _, below, _ = _frictionless_parts(u, n)
+    return np.where(u == 0, n, (rest * rest + n * wedge) / below)
 
-    With alpha = G1/G2 and g = 3 - 4 nu: a' = (alpha g2 - g1)/(1 + alpha g2), b' = (alpha - 1)/(alpha + g1). 1 - a',
-    1 - b', 1 + a' and 1 - a'b' are taken in product form, sinh x - x by its series.
-    """
+
+def _frictionless(u, n):
+    e, rest, _, gap, below, limit = _frictionless_parts(u, n)
+    above = 4 * e * ((n - 1) * (rest / 2 + u) + n * u * u)  # L - 1 = above/below
+    d_above = 4 * e * ((n - 1) * (e + 1) + 2 * n * u) - 2 * above
+    d_below = 4 * e * (e + 1 - 2 * u) + n * _gap_slope(u, e, gap, limit)
+    L1 = np.where(u == 0, n - 1, above / below)
+    return L1, u * (d_above - L1 * d_below) / below
+
+
+class _Bond(NamedTuple):
+    """Constants of the bonded kernel: with alpha = G1/G2 and g = 3 - 4 nu, a = (alpha g2 - g1)/(1 + alpha g2),
+    b = (alpha - 1)/(alpha + g1), and 1 - a, 1 - b, 1 + a, 1 - ab in product form."""
+
+    a: np.ndarray
+    b: np.ndarray
+    one_a: np.ndarray
+    one_b: np.ndarray
+    plus_a: np.ndarray
+    one_ab: np.ndarray
+
+
+def _bond(n, nu1, nu2):
     alpha, g1, g2 = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2
     da, db = 1 + alpha * g2, alpha + g1
-    a, b = (alpha * g2 - g1) / da, (alpha - 1) / db
-    one_a, one_b = (1 + g1) / da, (1 + g1) / db
-    plus_a = (2 * alpha * g2 - 2 * (1 - 2 * nu1)) / da
-    one_ab = alpha * (1 + g1) * (1 + g2) / (da * db)
-    e, rest = np.exp(-2 * u), -np.expm1(-2 * u)
-    gap, d_gap = _gap(u, e, rest)
-    above = one_ab + 2 * a * b * _sinh_excess(u, e) + 4 * u * b * plus_a * e
-    stiff = one_a * one_b + one_a * b * (rest - 4 * u * u * e) + a * one_b * rest + a * b * gap
+    return _Bond(
+        a=(alpha * g2 - g1) / da,
+        b=(alpha - 1) / db,
+        one_a=(1 + g1) / da,
+        one_b=(1 + g1) / db,
+        plus_a=(2 * alpha * g2 - 2 * (1 - 2 * nu1)) / da,
+        one_ab=alpha * (1 + g1) * (1 + g2) / (da * db),
+    )
+
+
+def _bonded_below(u, e, rest, bond):
+    """Denominator 1 - (a + b + 4bu²)e + ab e² of L and its derivative."""
+    a, b, one_a, one_b, _, _ = bond
     soft = _one_minus(a, one_a, e, rest) * (1 - b * e) - 4 * b * u * u * e
-    hard = b > 0  # then 1 - b e nearly vanishes at small u
-    below = np.where(hard, stiff, soft)
-    bracket = 4 * b * u * (1 + u) + a * one_b + b * one_a + 2 * a * b * rest
-    above1 = e * bracket
-    d_above1 = -2 * above1 + e * (4 * b * (1 + 2 * u) + 4 * a * b * e)
-    d_stiff = 2 * e * (one_a * b * (1 - 4 * u + 4 * u * u) + a * one_b) + a * b * d_gap
     d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)
-    d_below = np.where(hard, d_stiff, d_soft)
-    L1 = above1 / below
-    return Kernel(above / below, L1, u * (d_above1 - L1 * d_below) / below)
+    hard = b > 0  # then 1 - b e nearly vanishes at small u: written in 1 - a, 1 - b and s² - u²
+    if not np.any(hard):
+        return soft, d_soft
+    gap = _gap(u, e, rest)
+    stiff = one_a * one_b + one_a * b * (rest - 4 * u * u * e) + a * one_b * rest + a * b * gap
+    d_stiff = 2 * e * (one_a * b * (1 - 4 * u + 4 * u * u) + a * one_b) + a * b * _gap_slope(u, e, gap)
+    return np.where(hard, stiff, soft), np.where(hard, d_stiff, d_soft)
+
+
+def _bonded_whole(u, n, nu1, nu2):
+    bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
+    excess = _sinh_excess(u, e)
+    above = bond.one_ab + 2 * bond.a * bond.b * excess + 4 * u * bond.b * bond.plus_a * e  # 1 + 4bue - ab e²
+    return above / _bonded_below(u, e, rest, bond)[0]
+
+
+def _bonded(u, n, nu1, nu2):
+    bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
+    a, b = bond.a, bond.b
+    below, d_below = _bonded_below(u, e, rest, bond)
+    above = e * (4 * b * u * (1 + u) + (a * bond.one_b + b * bond.one_a) + 2 * a * b * rest)  # L - 1 = above/below
+    d_above = e * (4 * b * (1 + 2 * u) + 4 * a * b * e) - 2 * above
+    L1 = above / below
+    return L1, u * (d_above - L1 * d_below) / below
 
 
 def _one_minus(a, one_a, e, rest):
@@ -97,29 +146,40 @@ def _one_minus(a, one_a, e, rest):
     return np.where(a > 0, one_a + a * rest, 1 - a * e)
 
 
-def _gap(u, e, rest):
-    """(1 - e)² - 4u²e = 4e (sinh² u - u²) and its derivative."""
-    v = np.minimum(u, 0.6)
-    z = 4 * v * v  # cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2
-    series = (
-        z
-        * z
-        / 24
-        * (1 + z / 30 * (1 + z / 56 * (1 + z / 90 * (1 + z / 132 * (1 + z / 182 * (1 + z / 240 * (1 + z / 306)))))))
-    )
-    gap = np.where(u < 0.6, 2 * e * series, rest * rest - 4 * u * u * e)
-    return gap, 4 * _sinh_excess(u, e) - 2 * gap
+def _gap(u, e, rest, limit=_SERIES):
+    """(1 - e)² - 4u²e = 4e (sinh² u - u²)."""
+    gap = rest * rest - 4 * u * u * e
+    small = u < limit
+    v, z = _small(u, small)
+    # cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2
+    series = z * z / 24 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
+    gap[small] = 2 * np.exp(-2 * v) * series
+    return gap
 
 
-def _sinh_excess(u, e):
+def _gap_slope(u, e, gap, limit=_SERIES):
+    """Derivative of :func:`_gap` by u."""
+    return 4 * _sinh_excess(u, e, limit) - 2 * gap
+
+
+def _sinh_excess(u, e, limit=_SERIES):
     """e (sinh 2u - 2u)."""
-    v = np.minimum(u, 0.6)
-    z = 4 * v * v
-    series = (
-        2
-        * v
-        * z
-        / 6
-        * (1 + z / 20 * (1 + z / 42 * (1 + z / 72 * (1 + z / 110 * (1 + z / 156 * (1 + z / 210 * (1 + z / 272)))))))
-    )
-    return np.where(u < 0.6, e * series, (1 - e * e) / 2 - 2 * u * e)
+    excess = (1 - e * e) / 2 - 2 * u * e
+    small = u < limit
+    v, z = _small(u, small)
+    series = _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))
+    excess[small] = np.exp(-2 * v) * v * z / 3 * series
+    return excess
+
+
+def _nested(z, divisors):
+    """1 + z/d1 (1 + z/d2 (1 + ...))."""
+    total = 1.0
+    for d in reversed(divisors):
+        total = 1 + z / d * total
+    return total
+
+
+def _small(u, small):
+    v = u[small]
+    return v, 4 * v * v

@@ -20,7 +20,7 @@ def next_rung(n):
     return next((m for m in LADDER if m > n), n + n // 2)
 
 
-def climb(rtol, nodes, solve_on):
+def climb(rtol, nodes, solve_on, order=None):
     """Let every case climb to the mesh that meets its tolerance.
 
     Parameters
@@ -31,6 +31,8 @@ def climb(rtol, nodes, solve_on):
     solve_on : callable
         ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their
         estimated errors (NaN: no use going on).
+    order : (B,) int, optional
+        Permutation of the cases; neighbours in it are solved together.
 
     Returns
     -------
@@ -39,9 +41,10 @@ def climb(rtol, nodes, solve_on):
     """
     rung = np.where(nodes > 0, nodes, start_nodes(rtol))
     unmet = np.zeros(len(rtol), dtype=bool)
+    order = np.arange(len(rtol)) if order is None else order
     while (rung > 0).any():
         n = int(rung[rung > 0].min())
-        batch = np.flatnonzero(rung == n)
+        batch = order[rung[order] == n]
         for index in np.array_split(batch, -(-len(batch) // STACK)):
             missed = solve_on(index, n) > rtol[index]
             last = (nodes[index] > 0) | (n >= LADDER[-1])

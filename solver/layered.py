@@ -17,16 +17,16 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import j0
 
-from .kernel import layered_kernel
+from .kernel import decaying_part
 from .mesh import mesh as mesh_of
 from .quadrature import gauss_legendre, lagrange
 
-#: e^(-2u) u² is below rounding beyond this u.
-_CUT = 17.0
 #: Octaves of h/a with tables, 2^-11 = 4.9e-4 to 2^40; their cost grows like a/h.
 OCTAVES = (-11, 40)
 #: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
 _KEEP = 4e6
+#: Widest panel in k: wider ones would need Gauss rules that are slow to make.
+_WIDEST = 200.0
 #: Numbers in one block of kernel values.
 _BLOCK = 8192
 
@@ -80,14 +80,18 @@ class LayerRows(NamedTuple):
 def quadrature(octave, depth):
     """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
     scale = 2.0**-octave
-    ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, 8.0, _CUT]
+    # L - 1 ~ u² e^(-2u), and J0 φ ~ 1/k² for k > 1: their product is below rounding beyond
+    cut = min(17.0, 15.0 + 0.7 * octave)
+    ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
     for low, high in zip(ends[:-1], ends[1:], strict=True):
-        width = (high - low) * scale
+        pieces = int(np.ceil((high - low) * scale / _WIDEST))
+        width = (high - low) * scale / pieces
         least = 12 if high < 0.5 else 18
         t, w = gauss_legendre(max(least, int(width / 2 + 3 * np.cbrt(width)) + 11))
-        k.append(low * scale + width * t)
-        weight.append(width * w)
+        for piece in range(pieces):
+            k.append(low * scale + (piece + t) * width)
+            weight.append(width * w)
     return np.concatenate(k), np.concatenate(weight)
 
 
@@ -108,9 +112,13 @@ def _transform(nodes, k):
     """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
     phi = np.empty((len(k), len(nodes)))
     for part in np.array_split(np.arange(len(k)), -(-len(k) // 500)):
-        top = k[part].max()
-        s, w = gauss_legendre(int(top / 2 + 3 * np.cbrt(top)) + 16 + len(nodes) // 2)
-        phi[part] = j0(k[part, None] * np.sqrt((1 - s) * (1 + s))) @ ((w * s)[:, None] * lagrange(nodes, s))
+        # x = cos φ, s = sin φ: the phase k cos φ advances by at most 20 a panel
+        panels = int(k[part].max() * (np.pi / 2) / 20) + 1
+        t, w = gauss_legendre(24 + len(nodes) // (2 * panels))
+        angle = (np.pi / 2) * ((np.arange(panels)[:, None] + t) / panels).ravel()
+        sin, cos = np.sin(angle), np.cos(angle)
+        weight = (np.pi / 2) * np.tile(w / panels, panels) * sin * cos
+        phi[part] = j0(k[part, None] * cos) @ (weight[:, None] * lagrange(nodes, sin))
     return phi
 
 
@@ -137,9 +145,9 @@ def _weights(layer, a, octave, depth, index):
     rows = max(1, _BLOCK // len(k))
     for low in range(0, len(index), rows):  # a block at a time: the temporaries of the kernel stay in the cache
         part = slice(low, low + rows)
-        kernel = layered_kernel(k * eta[part, None], *(field[part, None] for field in material))
-        np.multiply(weight, kernel.L1, out=W[part])
-        np.multiply(-weight, kernel.uL, out=dW[part])
+        L1, uL = decaying_part(k * eta[part, None], *(field[part, None] for field in material))
+        np.multiply(weight, L1, out=W[part])
+        np.multiply(-weight, uL, out=dW[part])
     return Weights(index, octave, depth, W, dW)
 
 

@@ -156,7 +156,8 @@ power_law = Law(
 )
 
 
-# ---- no roughness: A = 0, the equation is linear in y = q --------------------------------------------------------------
+# ---- no roughness: A = 0, the equation is linear in y = q
+# --------------------------------------------------------------
 
 smooth = Law(
     evaluate=lambda y, exponent: Curve(y, np.zeros_like(y), np.ones_like(y), np.zeros_like(y)),

@@ -26,8 +26,8 @@ def advance(cases, state, ev, mesh, law):
     dq_deta, dq = solution[..., 0], solution[..., 1]
     by_q, by_eta = control_gradient(cases.control, ev, mesh)
     d_eta = -(ev.G + (by_q * dq).sum(axis=1)) / (by_eta + (by_q * dq_deta).sum(axis=1))
-    dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     d_eta = np.clip(d_eta, -1.0, 1.0)
+    dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = law.limit(state.y + dy, state.y)
     return State(y, state.eta + d_eta)
 

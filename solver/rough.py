@@ -7,8 +7,9 @@ nearly as good as the solution there. A case that does not meet its tolerance go
 import numpy as np
 
 from . import newton
-from .equation import State, control_gradient, evaluate, first_guess, groups
+from .equation import State, control_gradient, evaluate, first_guess, groups, guess_radius
 from .ladder import climb, next_rung
+from .layered import OCTAVES, octave_of
 from .mesh import mesh
 from .outputs import interpolate, profiles, quantities
 from .status import Status
@@ -42,9 +43,28 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         starts.update({index[i]: State(finer.y[i], finer.eta[i]) for i in np.flatnonzero(missed)})
         return np.where(out["status"][index] == Status.CONVERGED, out["error"][index], np.nan)
 
-    unmet = climb(rtol, nodes, solve_on)
+    unmet = climb(rtol, nodes, solve_on, _neighbours(cases, law))
     out["status"][unmet] = Status.TOLERANCE_NOT_MET
+    if cases.layer is not None:
+        _refuse(out, cases.layer.h < out["a"] * 2.0 ** OCTAVES[0], Status.LAYER_TOO_THIN)
     return out
+
+
+def _refuse(out, mask, status):
+    """Take the numbers of the cases of `mask` away."""
+    for values in out.values():
+        if values.dtype == float:
+            values[mask] = np.nan
+    out["status"][mask] = status
+
+
+def _neighbours(cases, law):
+    """Order (B,) in which layered cases of one octave of h/a stand together: fewer, larger matrix products."""
+    if cases.layer is None:
+        return None
+    with np.errstate(all="ignore"):
+        octave, depth = octave_of(cases.layer, guess_radius(cases, law))
+    return np.lexsort((octave, depth))
 
 
 def _stack_start(starts, cases, law, grid):

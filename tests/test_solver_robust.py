@@ -1,0 +1,252 @@
+"""Every case of the ranges converges; batches, bad inputs, extremes; the estimated error is honest.
+
+Warnings are errors here, as in all tests of the project.
+"""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+from solver_cases import BASES, EXTREMES, JUDGED, KINDS, LOAD, MAIN, ROUGH_KINDS, difference, one, random_cases
+
+from solver import Problem, Status, solve
+
+kinds = pytest.mark.parametrize(("base", "law"), KINDS, ids=["-".join(kind) for kind in KINDS])
+rough_kinds = pytest.mark.parametrize(("base", "law"), ROUGH_KINDS, ids=["-".join(kind) for kind in ROUGH_KINDS])
+NUMBERS = (*JUDGED, "A0", "dP_dD", "residual", "error", "p", "lam")
+
+
+@kinds
+def test_twenty_thousand_random_cases(base, law):
+    """P 1e-7…1e-3, Ra 5e-4…1e-2, Nbar Ra² 0.1…10, n 0.05…0.95, h 1e-3…0.1, both bondings."""
+    s = solve(Problem.of(**random_cases(20_000, 11), base=base, micro=law))
+    assert_array_equal(s.status, Status.CONVERGED)
+    assert np.all(s.error <= 1e-6)
+    assert s.iterations.max() <= 15
+    if law != "smooth":
+        assert s.residual.max() <= 1e-12
+        assert np.all((s.Ar_An > 0) & (s.Ar_An < 1))
+
+
+def mixed(size, seed):
+    """Cases of every base, law and tolerance in one batch, some of them invalid or outside the model."""
+    rng = np.random.default_rng(seed)
+    case = random_cases(size, seed) | {"nu1": np.where(rng.random(size) < 0.1, 0.5, 0.3)}
+    for name, choices in {
+        "base": BASES,
+        "micro": ("disc_cell", "power_law", "smooth"),
+        "rtol": (1e-3, 1e-6, 1e-9),
+        "nodes": (0, 0, 20),
+        "max_iterations": (0, 0, 50),
+    }.items():
+        case[name] = rng.choice(choices, size)
+    case["P"][rng.random(size) < 0.05] = np.nan
+    case["h"][rng.random(size) < 0.05] = -1.0
+    return case
+
+
+def test_mixed_batches_are_single_cases():
+    """Each case of a batch has the numbers it has alone, and in any other order and company."""
+    size, x = 120, np.array([0.0, 0.5, 1.0])
+    case = mixed(size, 4)
+    together = solve(Problem.of(**case), x)
+    assert set(together.status) >= {Status.CONVERGED, Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE}
+    order = np.random.default_rng(0).permutation(size)
+    shuffled = solve(Problem.of(**{name: v[order] for name, v in case.items()}), x)
+    for i in range(size):
+        alone = solve(Problem.of(**{name: v[i] for name, v in case.items()}), x)
+        for other, j in ((together, i), (shuffled, int(np.flatnonzero(order == i)[0]))):
+            assert other.status[j] == alone.status[0]
+            assert other.nodes[j] == alone.nodes[0]
+            for name in ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "p", "lam"):
+                value, expected = getattr(other, name)[j], getattr(alone, name)[0]
+                assert_allclose(value, expected, rtol=1e-13, atol=0, err_msg=f"{name} of case {i}")
+
+
+def test_empty_batch():
+    s = solve(Problem.of(P=np.zeros(0), **MAIN))
+    assert s.a.shape == (0,)
+    assert s.p.shape == (0, 2)
+
+
+def test_arguments_are_not_edited():
+    case = mixed(30, 9)
+    before = {name: v.copy() for name, v in case.items()}
+    solve(Problem.of(**case))
+    for name, v in case.items():
+        assert_array_equal(v, before[name])
+
+
+USED_BY = {
+    "P": lambda base, law: True,
+    "R": lambda base, law: True,
+    "E2": lambda base, law: True,
+    "rtol": lambda base, law: True,
+    "h": lambda base, law: base == "thin_layer",
+    "n": lambda base, law: base == "thin_layer",
+    "nu1": lambda base, law: base == "thin_layer",
+    "nu2": lambda base, law: base == "thin_layer",
+    "Nbar": lambda base, law: law != "smooth",
+    "Ra": lambda base, law: law != "smooth",
+    "B": lambda base, law: law == "power_law",
+    "beta": lambda base, law: law == "power_law",
+}
+POISON = [np.nan, np.inf, -np.inf, -1.0, 0.0]
+ALLOWED = {("nu1", 0.0), ("nu2", 0.0)}
+
+
+@kinds
+def test_poison_is_flagged_and_harmless(base, law):
+    """A bad number among good ones: INVALID_INPUT and NaN; the neighbours have the same bits as without it."""
+    good = MAIN | {"P": LOAD, "R": 1.0, "E2": 1.0, "rtol": 1e-6, "nu1": 0.3, "nu2": 0.3, "base": base, "micro": law}
+    clean = solve(Problem.of(**(good | {"P": np.full(3, LOAD)})))
+    for name, used in USED_BY.items():
+        for bad in POISON:
+            if (name, bad) in ALLOWED:
+                continue
+            values = np.array([good[name], bad, good[name]])
+            s = solve(Problem.of(**(good | {name: values})))
+            expected = Status.INVALID_INPUT if used(base, law) else Status.CONVERGED
+            assert s.status.tolist() == [0, expected, 0], (name, bad)
+            for number in NUMBERS:
+                found = getattr(s, number)
+                assert_allclose(found[[0, 2]], getattr(clean, number)[[0, 2]], rtol=1e-12, atol=1e-14)
+                if used(base, law) and number != "P":
+                    assert np.all(np.isnan(found[1])), (name, bad, number)
+
+
+@pytest.mark.parametrize(
+    ("name", "values"),
+    [
+        ("nu1", [-1.0, 0.51]),
+        ("nu2", [-1.0, 0.6]),
+        ("beta", [1.01]),
+        ("rtol", [1.0]),
+        ("k", [-0.1, np.nan]),
+        ("nodes", [3, 257, -1]),
+        ("max_iterations", [-1]),
+    ],
+)
+def test_bounds(name, values):
+    s = solve(Problem.of(P=LOAD, **(MAIN | {"micro": "power_law", name: values})))
+    assert_array_equal(s.status, Status.INVALID_INPUT)
+
+
+@pytest.mark.parametrize("law", ["disc_cell", "smooth"])
+def test_where_the_thin_layer_does_not_apply(law):
+    """C <= 0: bonded with ν1 = 1/2, n >= 1, or too compliant a base; never solved as if C were 0."""
+    n = np.array([0.5, 1.0, 2.0, 0.24, 0.5, 0.5])
+    nu1 = np.array([0.5, 0.3, 0.3, 0.45, 0.45, 0.3])
+    nu2 = np.array([0.3, 0.3, 0.3, 0.3, 0.3, 0.3])
+    s = one(P=LOAD, n=n, nu1=nu1, nu2=nu2, bonding="bonded", micro=law)
+    # ν1 = 0.45, ν2 = 0.3 needs alpha = n 0.55/0.7 < 0.25
+    assert s.status.tolist() == [4, 4, 4, 0, 4, 0]
+    for name in NUMBERS:
+        found = getattr(s, name)[s.status == 4]
+        assert np.all(found == LOAD) if name == "P" else np.all(np.isnan(found))
+    free = one(P=LOAD, n=n, nu1=nu1, nu2=nu2, bonding="frictionless", micro=law)
+    assert_array_equal(free.status, Status.CONVERGED)
+    assert np.all(np.diff(free.a[:3]) < 0)  # a harder coating, a smaller contact
+    assert_allclose(free.a[4], free.a[0], rtol=1e-14, atol=0)  # without friction ν plays no part
+
+
+@kinds
+@pytest.mark.parametrize("control", ["P", "a", "D"])
+def test_extremes_answer_without_warning(base, law, control):
+    """Twelve decades of everything: finite numbers for each case; those called converged are within their tolerance."""
+    case = random_cases(600, 3, EXTREMES) | {"bonding": "frictionless", "rtol": 1e-4}
+    P = case.pop("P")
+    value = {"P": P, "a": np.cbrt(P), "D": np.cbrt(P) ** 2}[control]
+    s = solve(Problem.of(**case, **{control: value}, base=base, micro=law))
+    assert set(s.status) <= {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
+    assert (s.status == Status.CONVERGED).mean() > (0.9 if law == "disc_cell" else 0.99)
+    for name in NUMBERS:
+        assert np.all(np.isfinite(getattr(s, name))), name
+    assert np.all(s.error[s.status == Status.CONVERGED] <= 1e-4)
+    fine = solve(Problem.of(**(case | {"rtol": 1e-9}), **{control: value}, base=base, micro=law))
+    ok = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
+    assert ok.mean() > 0.8
+    assert np.quantile(difference(s, fine)[ok], 0.99) <= 1e-4
+
+
+ITERATED = [kind for kind in KINDS if kind != ("half_space", "smooth")]
+
+
+@pytest.mark.parametrize(("base", "law"), ITERATED, ids=["-".join(kind) for kind in ITERATED])
+@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
+def test_error_is_honest(base, law, rtol):
+    """Against 64 nodes: estimate >= truth/3 in 99 %, truth within rtol in 99 % and within twice rtol in 99.9 %."""
+    case = random_cases(2000, 21) | {"bonding": "frictionless", "base": base, "micro": law}
+    s = solve(Problem.of(**case, rtol=rtol))
+    reference = solve(Problem.of(**case, rtol=0.5, nodes=64))
+    truth = difference(s, reference)
+    assert (s.error >= truth / 3).mean() >= 0.99
+    assert (truth <= 2 * rtol).mean() >= 0.999
+    assert (truth <= rtol).mean() >= 0.99
+
+
+@pytest.mark.xfail(strict=True, reason="the estimate has no margin: 1 % exceed rtol, by up to 1.5")
+def test_converged_is_within_rtol_in_999_of_1000():
+    """Power laws of any B and β on a half-space, where 1e-9 takes anything from 24 to 64 nodes."""
+    rng = np.random.default_rng(8)
+    case = random_cases(2000, 21) | {"B": np.exp(rng.uniform(-7, 2.3, 2000)), "beta": rng.uniform(0.4, 1, 2000)}
+    case |= {"base": "half_space", "micro": "power_law"}
+    truth = difference(solve(Problem.of(**case, rtol=1e-9)), solve(Problem.of(**case, rtol=0.5, nodes=96)))
+    assert (truth <= 2e-9).mean() >= 0.999
+    assert (truth <= 1e-9).mean() >= 0.999
+
+
+@pytest.mark.xfail(strict=True, reason="rows between the nodes are left by too few steps where the asperities saturate")
+def test_the_estimate_follows_the_error_where_asperities_saturate():
+    """λ(0) = 0.78 and 1: 32 nodes are right to 1e-12 and 1e-4; the estimate must see it, and a tolerance be met."""
+    case = {"P": 9.15142e-4, "Ra": 6.480e-3, "Nbar": 0.3781 / 6.48e-3**2, "n": 0.1074, "h": 1.093e-3}
+    assert solve(Problem.of(**case, nodes=32, rtol=1e-9)).error[0] < 1e-11
+    case = {"P": 4.687e-2, "Ra": 1.334e-2, "Nbar": 0.1254 / 1.334e-2**2, "n": 5.914e-5, "h": 3.326e-7}
+    assert solve(Problem.of(**case, rtol=1e-2)).status[0] == Status.CONVERGED
+
+
+def test_a_low_limit_is_reported():
+    s = one(P=LOAD, max_iterations=1, rtol=1e-9)
+    assert s.status[0] == Status.ITERATION_LIMIT
+    assert s.iterations[0] == 1
+    assert np.isfinite(s.a[0])
+    assert s.residual[0] > 1e-12
+
+
+@pytest.mark.xfail(strict=True, reason="first guess and return to units are outside errstate", raises=RuntimeWarning)
+def test_absurd_numbers_are_a_status():
+    """Beyond what floating point can carry through the formulas: a flag or numbers, but no warning and no exception."""
+    good = MAIN | {"P": LOAD, "R": 1.0, "E2": 1.0}
+    for name in good:
+        for value in (1e-300, 1e300):
+            for law in ("disc_cell", "power_law", "smooth"):
+                s = solve(Problem.of(**(good | {name: np.array([good[name], value]), "micro": law})))
+                assert s.status[0] == Status.CONVERGED, (name, value)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({}, "exactly one of P, a, D"),
+        ({"P": 1.0, "a": 1.0}, "got P, a"),
+        ({"P": 1.0, "base": "rubber"}, 'base = "rubber": must be one of half_space'),
+        ({"P": 1.0, "bonding": ["bonded", "glued"]}, 'bonding = "glued"'),
+        ({"P": 1.0, "scheme": "secant"}, 'scheme = "secant"'),
+        ({"P": 1.0, "micro": "gw"}, 'micro = "gw"'),
+        ({"P": np.ones((2, 2))}, r"shape \(2, 2\)"),
+        ({"P": [1.0, 2.0], "h": [1.0, 2.0, 3.0]}, "broadcast"),
+    ],
+)
+def test_wrong_calls(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        Problem.of(**arguments)
+
+
+@pytest.mark.parametrize("x", [0.5, [[0.0]], [-0.1], [1.1], [np.nan]])
+def test_wrong_radii(x):
+    with pytest.raises(ValueError, match="x must be one-dimensional"):
+        solve(Problem.of(P=LOAD, **MAIN), x)
+
+
+def test_every_status_has_its_sentence():
+    assert all(status.meaning for status in Status)
+    assert len({status.meaning for status in Status}) == len(Status)

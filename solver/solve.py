@@ -28,6 +28,7 @@ _UNITS = {
 }
 
 
+@np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
 def solve(problem, x=(0.0, 1.0)):
     """Solve a batch of cases.
 

@@ -153,7 +153,7 @@ def test_where_the_thin_layer_does_not_apply(law):
 @pytest.mark.parametrize("control", ["P", "a", "D"])
 def test_extremes_answer_without_warning(base, law, control):
     """Twelve decades of everything: finite numbers for each case; those called converged are within their tolerance."""
-    case = random_cases(600, 3, EXTREMES) | {"bonding": "frictionless", "rtol": 1e-4}
+    case = random_cases(250, 3, EXTREMES) | {"bonding": "frictionless", "rtol": 1e-4}
     P = case.pop("P")
     value = {"P": P, "a": np.cbrt(P), "D": np.cbrt(P) ** 2}[control]
     s = solve(Problem.of(**case, **{control: value}, base=base, micro=law))
@@ -162,7 +162,7 @@ def test_extremes_answer_without_warning(base, law, control):
     for name in NUMBERS:
         assert np.all(np.isfinite(getattr(s, name))), name
     assert np.all(s.error[s.status == Status.CONVERGED] <= 1e-4)
-    fine = solve(Problem.of(**(case | {"rtol": 1e-9}), **{control: value}, base=base, micro=law))
+    fine = solve(Problem.of(**(case | {"rtol": 1e-6}), **{control: value}, base=base, micro=law))
     ok = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
     assert ok.mean() > 0.8
     assert np.quantile(difference(s, fine)[ok], 0.99) <= 1e-4
@@ -188,9 +188,9 @@ def test_error_is_honest(base, law, rtol):
 def test_converged_is_within_rtol_in_999_of_1000():
     """Power laws of any B and β on a half-space, where 1e-9 takes anything from 24 to 64 nodes."""
     rng = np.random.default_rng(8)
-    case = random_cases(2000, 21) | {"B": np.exp(rng.uniform(-7, 2.3, 2000)), "beta": rng.uniform(0.4, 1, 2000)}
+    case = random_cases(800, 21) | {"B": np.exp(rng.uniform(-7, 2.3, 800)), "beta": rng.uniform(0.4, 1, 800)}
     case |= {"base": "half_space", "micro": "power_law"}
-    truth = difference(solve(Problem.of(**case, rtol=1e-9)), solve(Problem.of(**case, rtol=0.5, nodes=96)))
+    truth = difference(solve(Problem.of(**case, rtol=1e-9)), solve(Problem.of(**case, rtol=0.5, nodes=64)))
     assert (truth <= 2e-9).mean() >= 0.999
     assert (truth <= 1e-9).mean() >= 0.999
 
@@ -212,7 +212,6 @@ def test_a_low_limit_is_reported():
     assert s.residual[0] > 1e-12
 
 
-@pytest.mark.xfail(strict=True, reason="first guess and return to units are outside errstate", raises=RuntimeWarning)
 def test_absurd_numbers_are_a_status():
     """Beyond what floating point can carry through the formulas: a flag or numbers, but no warning and no exception."""
     good = MAIN | {"P": LOAD, "R": 1.0, "E2": 1.0}

@@ -169,6 +169,18 @@ def first_guess(cases, law, mesh):
     return State(law.guess(q, cases.exponent), np.log(a))
 
 
+def smooth_start(cases, law, mesh):
+    """State at given radii (control a) from the smooth contact there and the asperities alone, added as compliances."""
+    X, Y, Z = groups(cases, np.log(cases.value))
+    gamma, beta = law.power(cases.exponent)
+    s2 = mesh.s**2
+    K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).K
+    matrix = X[:, :, None] * K + Y[:, :, None] * np.eye(mesh.n)
+    smooth = np.maximum(np.linalg.solve(matrix, np.broadcast_to(s2, (len(X), mesh.n))[..., None])[..., 0], 0.0)
+    alone = (Z * gamma[:, None] / s2) ** (1 / beta[:, None])
+    return State(law.guess(1 / (1 / smooth + alone), cases.exponent), np.log(cases.value))
+
+
 def guess_pressure(cases, law, X, Y, Z, s):
     """q (B, m) at s (m,) > 0 for groups (B, 1): each of the three terms of the equation is exact where it matters
     alone."""

@@ -124,7 +124,7 @@ def _transform(nodes, k):
 
 def octave_of(layer, a):
     """Octave of h/a and depth of the quadrature for the stiffness of the layer, (B,) int each."""
-    octave = np.clip(np.floor(np.log2(layer.h / a)), *OCTAVES).astype(int)
+    octave = np.clip(np.floor(np.nan_to_num(np.log2(layer.h / a))), *OCTAVES).astype(int)
     wanted = np.ceil(np.log2(np.maximum(3.5 * np.cbrt(layer.n), 1.0)))  # 0.5 2^-depth <= 0.15 n^(-1/3)
     return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
 

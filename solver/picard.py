@@ -11,13 +11,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .equation import State, control_residual, groups, one_term_radii
+from .bracket import false_position
+from .equation import State, control_residual, groups, one_term_radii, operate
 from .status import Status
 
 TOLERANCE = 1e-6
-#: Successive approximations at one radius, and radii tried for a given load or depth.
+#: Successive approximations at one radius.
 LIMIT = 400
-_RADII = 60
 #: The load has settled when one more approximation changes it by less than this.
 _SETTLED = 1e-2
 
@@ -61,10 +61,11 @@ def approximate(cases, eta, law, mesh, k, limit):
     change, load_change = np.full(size, np.inf), np.full(size, np.inf)
     count = np.zeros(size, dtype=int)
     active = np.arange(size)
-    XYZ = groups(cases, eta)
+    XYZ, K = groups(cases, eta), operate(cases, eta, q, mesh).K
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for _ in range(limit):
-            new = _next(q[active], cases.take(active), [v[active] for v in XYZ], law, mesh, k[active])
+            here = K if len(K) == 1 else K[active]
+            new = _next(q[active], cases.take(active), [v[active] for v in XYZ], law, mesh, here, k[active])
             change[active] = np.abs(new - q[active]).max(axis=1) / np.maximum(new.max(axis=1), np.finfo(float).tiny)
             load_change[active] = np.abs((q[active] @ mesh.w) / (new @ mesh.w) - 1)
             q[active] = new
@@ -75,9 +76,9 @@ def approximate(cases, eta, law, mesh, k, limit):
     return Fixed(q, change, load_change, count)
 
 
-def _next(q, cases, XYZ, law, mesh, k):
+def _next(q, cases, XYZ, law, mesh, K, k):
     X, Y, Z = XYZ
-    left = mesh.s**2 - X * (q @ mesh.K.T)
+    left = mesh.s**2 - X * np.matmul(K, q[..., None])[..., 0]
     y = law.from_pressure(q, cases.exponent)
     by_layer = np.maximum((left - Z * law.evaluate(y, cases.exponent).g) / Y, 0.0)
     y_spots = law.from_displacement(np.maximum(left / Z, 0.0), cases.exponent)
@@ -87,36 +88,24 @@ def _next(q, cases, XYZ, law, mesh, k):
 
 
 def _search(cases, law, mesh, k, limit):
-    """ln a by false position (Illinois) on the logarithm of the load or depth, each radius from the zero start."""
-    low, high = _bracket(cases, law)
-    evaluate = lambda eta: _control_at(cases, eta, law, mesh, k, limit)  # noqa: E731
-    g_low, _ = evaluate(low)
-    g_high, fixed = evaluate(high)
-    count = fixed.count.copy()
-    eta = high
-    for _ in range(_RADII):
+    """ln a for the load or depth by false position, each radius from the zero start; count of all approximations
+    (B,)."""
+    count = np.zeros(len(cases.value), dtype=int)
+
+    def evaluate(eta):
+        fixed = approximate(cases, eta, law, mesh, k, limit)
+        count[:] += fixed.count
+        X = groups(cases, eta)[0]
+        edge_q = operate(cases, eta, fixed.q, mesh).edge_q
         with np.errstate(invalid="ignore", divide="ignore"):
-            eta = low - g_low * (high - low) / (g_high - g_low)
-        eta = np.where((eta > low) & (eta < high), eta, 0.5 * (low + high))
-        g, fixed = evaluate(eta)
-        count += fixed.count
-        below = g < 0
-        g_high = np.where(below, 0.5 * g_high, g)
-        g_low = np.where(below, g, 0.5 * g_low)
-        low, high = np.where(below, eta, low), np.where(below, high, eta)
-        if np.all((np.abs(g) < TOLERANCE) | (high - low < 1e-9) | np.isnan(g)):
-            break
-    return eta, fixed, count
+            return control_residual(cases, eta, X, fixed.q, edge_q, mesh)
 
-
-def _control_at(cases, eta, law, mesh, k, limit):
-    fixed = approximate(cases, eta, law, mesh, k, limit)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        return control_residual(cases, eta, groups(cases, eta)[0], fixed.q, fixed.q @ mesh.edge, mesh), fixed
+    eta = false_position(evaluate, *_bracket(cases, law), TOLERANCE)
+    return eta, approximate(cases, eta, law, mesh, k, limit), count
 
 
 def _bracket(cases, law):
-    """Radii that enclose the answer: a layer and roughness only ever widen Hertz's contact at one load."""
+    """First bracket of ln a: a compliant layer and roughness only widen Hertz's contact at one load."""
     if cases.control == "D":
         return 0.5 * np.log(cases.value), 0.5 * np.log(2 * cases.value)
     hertz, springs, spots = one_term_radii(cases, *law.power(cases.exponent))

@@ -7,7 +7,18 @@ nearly as good as the solution there. A case that does not meet its tolerance go
 import numpy as np
 
 from . import newton
-from .equation import State, control_gradient, evaluate, first_guess, groups, guess_radius
+from .bracket import false_position
+from .equation import (
+    State,
+    control_gradient,
+    control_residual,
+    evaluate,
+    first_guess,
+    groups,
+    guess_radius,
+    operate,
+    smooth_start,
+)
 from .ladder import climb, next_rung
 from .layered import OCTAVES, octave_of
 from .mesh import mesh
@@ -39,9 +50,10 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         start = _stack_start([starts.pop(i, None) for i in index], part, law, mesh(n))
         with np.errstate(all="ignore"):  # a case that goes wrong is a NaN and a status
             finer = _rung(part, law, n, limit, start, x, out, index)
-        missed = out["error"][index] > rtol[index]
+        closed = out["status"][index] == Status.CONVERGED
+        missed = closed & (out["error"][index] > rtol[index])
         starts.update({index[i]: State(finer.y[i], finer.eta[i]) for i in np.flatnonzero(missed)})
-        return np.where(out["status"][index] == Status.CONVERGED, out["error"][index], np.nan)
+        return np.where(closed, out["error"][index], np.nan)
 
     unmet = climb(rtol, nodes, solve_on, _neighbours(cases, law))
     out["status"][unmet] = Status.TOLERANCE_NOT_MET
@@ -79,6 +91,8 @@ def _rung(cases, law, n, limit, start, x, out, index):
     """Solve on n nodes, write everything to `out` at `index`; returns the state on the next finer mesh."""
     grid = mesh(n)
     state, closed, count = iterate(cases, start, law, grid, limit or newton.LIMIT)
+    if not (closed.all() or limit):
+        _rescue(cases, law, grid, state, closed, count)
     values, finer = finish(cases, law, grid, state, x)
     for name, value in values.items():
         out[name][index] = value
@@ -124,6 +138,33 @@ def iterate(cases, state, law, grid, limit):
             active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
         state = newton.advance(cases, state, ev, grid, law)
     return State(y, eta), closed, count
+
+
+def _rescue(cases, law, grid, state, closed, count):
+    """Second attempt at cases that did not close, in place: search the radius, start each from the smooth contact.
+
+    The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
+    """
+    failed = np.flatnonzero(~closed)
+    part = cases.take(failed)
+    last = {}
+
+    def evaluate_at(eta):
+        fixed = part._replace(control="a", value=np.exp(eta))
+        last["state"], last["closed"], steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid, newton.LIMIT)
+        count[failed] += steps
+        q = law.evaluate(last["state"].y, part.exponent).q
+        edge_q = operate(part, eta, q, grid).edge_q
+        return control_residual(part, eta, groups(part, eta)[0], q, edge_q, grid)
+
+    eta = np.log(guess_radius(part, law))
+    if cases.control == "a":
+        evaluate_at(eta)
+    else:
+        evaluate_at(false_position(evaluate_at, eta - 0.5, eta + 0.5, 1e-9))
+        last["state"], last["closed"], steps = iterate(part, last["state"], law, grid, newton.LIMIT)
+        count[failed] += steps
+    state.y[failed], state.eta[failed], closed[failed] = *last["state"], last["closed"]
 
 
 def refine(cases, state, ev, law, n):

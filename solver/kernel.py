@@ -135,7 +135,7 @@ def _bonded(u, n, nu1, nu2):
     bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
     a, b = bond.a, bond.b
     below, d_below = _bonded_below(u, e, rest, bond)
-    above = e * (4 * b * u * (1 + u) + (a * bond.one_b + b * bond.one_a) + 2 * a * b * rest)  # L - 1 = above/below
+    above = e * (4 * b * u * (1 + u) + (n - 1) * bond.one_a * bond.one_b + 2 * a * b * rest)  # L - 1 = above/below
     d_above = e * (4 * b * (1 + 2 * u) + 4 * a * b * e) - 2 * above
     L1 = above / below
     return L1, u * (d_above - L1 * d_below) / below

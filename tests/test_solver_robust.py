@@ -165,7 +165,7 @@ def test_extremes_answer_without_warning(base, law, control):
     fine = solve(Problem.of(**(case | {"rtol": 1e-6}), **{control: value}, base=base, micro=law))
     ok = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
     assert ok.mean() > 0.8
-    assert np.quantile(difference(s, fine)[ok], 0.99) <= 1e-4
+    assert np.quantile(difference(s, fine)[ok], 0.99) <= 2e-4
 
 
 ITERATED = [kind for kind in KINDS if kind != ("half_space", "smooth")]

@@ -1,52 +1,55 @@
-"""Roots of many monotone scalar functions at once, by bracketing."""
+"""Roots of many increasing scalar functions at once, by bracketing."""
 
 import numpy as np
 
 
-def false_position(evaluate, low, high, tolerance, limit=80):
-    """Root of an increasing function of each of B cases by false position (Illinois), from brackets that are widened
-    as needed.
+def false_position(evaluate, start, tolerance, steps=80):
+    """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`.
 
     Parameters
     ----------
     evaluate : callable
-        ``evaluate(x) -> g`` for x (B,); NaN where there is no value: that case is given up.
-    low, high : (B,) float
-        First brackets; moved outwards, doubling, while they do not enclose the root (60 times at most).
-    tolerance : float
-        A case is done when abs(g) or its bracket is below this.
+        ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,); NaN where there is no value: that case is
+        given up.
+    start : (B,) float
+        Where to begin; the bracket is ± 0.1, its ends moved outwards, doubling, until they enclose the root.
+    tolerance : (B,) float
+        A case is done when abs(g) or its bracket is below this; it is then left alone, whatever the others need.
 
     Returns
     -------
-    (B,) float
-        The last x of each case.
+    x, g : (B,) float
+        The last x of each case, and the function there.
     """
-    low, g_low = _outwards(evaluate, low, high, -1)
-    high, g_high = _outwards(evaluate, high, low, +1)
-    x = high
-    for _ in range(limit):
-        with np.errstate(invalid="ignore", divide="ignore"):
-            x = low - g_low * (high - low) / (g_high - g_low)
-        x = np.where((x > low) & (x < high), x, 0.5 * (low + high))
-        g = evaluate(x)
-        below = g < 0
-        g_high = np.where(below, 0.5 * g_high, g)
-        g_low = np.where(below, g, 0.5 * g_low)
-        low, high = np.where(below, x, low), np.where(below, high, x)
-        if np.all((np.abs(g) < tolerance) | (high - low < tolerance) | np.isnan(g)):
+    low, g_low = _outwards(evaluate, start, -1)
+    high, g_high = _outwards(evaluate, start, +1)
+    x, g = high.copy(), g_high.copy()
+    active = np.flatnonzero(np.isfinite(g_low + g_high))
+    for _ in range(steps):
+        lo, hi, gl, gh = low[active], high[active], g_low[active], g_high[active]
+        guess = lo - gl * (hi - lo) / (gh - gl)
+        x[active] = np.where((guess > lo) & (guess < hi), guess, 0.5 * (lo + hi))
+        g[active] = value = evaluate(x[active], active)
+        below = value < 0
+        g_high[active], g_low[active] = np.where(below, 0.5 * gh, value), np.where(below, value, 0.5 * gl)
+        low[active], high[active] = np.where(below, x[active], lo), np.where(below, hi, x[active])
+        near = tolerance[active]
+        done = (np.abs(value) < near) | (high[active] - low[active] < near) | np.isnan(value)
+        active = active[~done]
+        if not len(active):
             break
-    return x
+    return x, g
 
 
-def _outwards(evaluate, end, other, sign):
-    """Move `end` away from `other` until the function has the sign there."""
-    step = np.maximum(np.abs(end - other), 0.1)
-    g = evaluate(end)
+def _outwards(evaluate, start, sign):
+    """An end of the bracket on the side `sign` of the start, and the function there."""
+    end, step = start + 0.1 * sign, np.full(len(start), 0.1)
+    g = evaluate(end, np.arange(len(start)))
     for _ in range(60):
-        short = sign * g < 0
-        if not short.any():
+        short = np.flatnonzero(sign * g < 0)
+        if not len(short):
             break
-        end = np.where(short, end + sign * step, end)
-        step = 2 * step
-        g = np.where(short, evaluate(end), g)
+        step[short] *= 2
+        end[short] += sign * step[short]
+        g[short] = evaluate(end[short], short)
     return end, g

@@ -15,6 +15,7 @@ import numpy as np
 
 from .kernel import layered_kernel
 from .layered import Layer, layer_displacement, layer_rows, layer_weights
+from .linalg import solve_stack
 from .mesh import HERTZ
 from .micro import Curve
 
@@ -176,7 +177,7 @@ def smooth_start(cases, law, mesh):
     s2 = mesh.s**2
     K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).K
     matrix = X[:, :, None] * K + Y[:, :, None] * np.eye(mesh.n)
-    smooth = np.maximum(np.linalg.solve(matrix, np.broadcast_to(s2, (len(X), mesh.n))[..., None])[..., 0], 0.0)
+    smooth = np.maximum(solve_stack(matrix, np.tile(s2[:, None], (len(X), 1, 1)))[..., 0], 0.0)
     alone = (Z * gamma[:, None] / s2) ** (1 / beta[:, None])
     return State(law.guess(1 / (1 / smooth + alone), cases.exponent), np.log(cases.value))
 
@@ -204,7 +205,7 @@ def guess_radius(cases, law):
         return cases.value
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
         return np.sqrt(1.5 * cases.value)
-    hertz, springs, spots = one_term_radii(cases, *law.power(cases.exponent))
+    hertz, springs, spots = _one_term_radii(cases, *law.power(cases.exponent))
     if cases.layer is None:
         return (hertz**4 + springs**4 + spots**4) ** 0.25
     a = (hertz**4 + spots**4) ** 0.25
@@ -213,7 +214,7 @@ def guess_radius(cases, law):
     return a
 
 
-def one_term_radii(cases, gamma, beta):
+def _one_term_radii(cases, gamma, beta):
     """Radii (B,) under the load of a half-space, of springs of compliance C, and of asperities of A ~ p^β alone."""
     e = 1 / beta
     hertz = np.cbrt(0.75 * cases.value / cases.E)

@@ -46,9 +46,11 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     0.505000
     """
     u, n, nu1, nu2, bonded = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
+    shape = u.shape
+    u, n, nu1, nu2, bonded = (np.atleast_1d(v) for v in (u, n, nu1, nu2, bonded))
     L1, uL = decaying_part(u, n, nu1, nu2, bonded)
     L = np.where(bonded, _bonded_whole(u, n, nu1, nu2), _frictionless_whole(u, n))
-    return Kernel(L, L1, uL)
+    return Kernel(*(v.reshape(shape) for v in (L, L1, uL)))
 
 
 def decaying_part(u, n, nu1, nu2, bonded):

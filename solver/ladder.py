@@ -6,6 +6,8 @@ import numpy as np
 LADDER = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 #: First mesh for rtol at least this.
 _START = ((1e-3, 8), (5e-5, 12), (3e-7, 16), (1e-9, 24))
+#: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
+MARGIN = 2.0
 #: Cases solved together: their matrices stay in the cache.
 STACK = 512
 

@@ -3,6 +3,7 @@
 import numpy as np
 
 from .equation import State, control_gradient, jacobian
+from .linalg import solve_stack
 
 #: Relative size of the residual at which the iteration has closed, and the largest number of steps.
 TOLERANCE = 1e-12
@@ -30,15 +31,3 @@ def advance(cases, state, ev, mesh, law):
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = law.limit(state.y + dy, state.y)
     return State(y, state.eta + d_eta)
-
-
-def solve_stack(matrix, rhs):
-    """Stacked linear solve that a singular or non-finite member cannot spoil: its own solution is NaN. (B, n, n),
-    (B, n, k)."""
-    try:
-        return np.linalg.solve(matrix, rhs)
-    except np.linalg.LinAlgError:
-        if len(matrix) == 1:
-            return np.full_like(rhs, np.nan)
-        half = len(matrix) // 2
-        return np.concatenate([solve_stack(matrix[:half], rhs[:half]), solve_stack(matrix[half:], rhs[half:])])

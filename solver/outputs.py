@@ -41,6 +41,10 @@ def spot_pressure(y, p, spot_scale):
     return 3 / np.pi * spot_scale / np.sqrt(1 + y**-2.0) + 2 / np.pi * p * np.arctan(y)
 
 
+#: Newton steps between the nodes; a few do but near full contact.
+_STEPS = 40
+
+
 class Between(NamedTuple):
     """What it takes to interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n), and κ
     (m,)."""
@@ -58,13 +62,14 @@ def _between(n, s_bytes):
     return Between(s, lagrange(nodes, s), H, np.pi / (2 * n) * s * np.sqrt(s / (1 + s)))
 
 
-def interpolate(cases, ev, law, n, s, steps=4):
+def interpolate(cases, ev, law, n, s, tolerance=1e-11):
     """The unknown y (B, m) at points s (m,) > 0 between the n nodes.
 
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
     interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
     asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
-    nothing it is q_L. `steps` of Newton from a two-term guess.
+    nothing it is q_L. Newton from a two-term
+    guess until the steps are below the relative `tolerance`.
     """
     rows = _between(n, np.ascontiguousarray(s, dtype=float).tobytes())
     gamma, beta = law.power(cases.exponent)
@@ -76,10 +81,12 @@ def interpolate(cases, ev, law, n, s, steps=4):
     linear = stiff + ev.Y
     inverse = (ev.Z * gamma[:, None] / right) ** (1 / beta[:, None])  # 0 for a smooth punch
     y = law.guess(1 / (linear / right + inverse), cases.exponent)
-    for _ in range(steps):
+    for _ in range(_STEPS):
         curve = law.evaluate(y, cases.exponent)
         f = linear * curve.q + ev.Z * curve.g - right
-        y = law.limit(y - f / (linear * curve.dq + ev.Z * curve.dg), y)
+        old, y = y, law.limit(y - f / (linear * curve.dq + ev.Z * curve.dg), y)
+        if not np.any(np.abs(y - old) > tolerance * y):
+            break
     return y
 
 

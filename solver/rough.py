@@ -19,7 +19,7 @@ from .equation import (
     operate,
     smooth_start,
 )
-from .ladder import climb, next_rung
+from .ladder import MARGIN, climb, next_rung
 from .layered import OCTAVES, octave_of
 from .mesh import mesh
 from .outputs import interpolate, profiles, quantities
@@ -112,7 +112,7 @@ def finish(cases, law, grid, state, x):
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     values["p"], values["lam"] = profiles(cases, ev, grid.n, law, x)
     values |= {"dP_dD": stiffness(cases, state, ev, values, grid), "residual": ev.residual}
-    values["error"] = np.maximum(error, 4 * grid.n * np.finfo(float).eps)
+    values["error"] = np.maximum(MARGIN * error, 4 * grid.n * np.finfo(float).eps)
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
     return values | {"nodes": np.full(len(finite), grid.n)}, finer
 
@@ -147,31 +147,33 @@ def _rescue(cases, law, grid, state, closed, count):
     """
     failed = np.flatnonzero(~closed)
     part = cases.take(failed)
-    last = {}
 
-    def evaluate_at(eta):
-        fixed = part._replace(control="a", value=np.exp(eta))
-        last["state"], last["closed"], steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid, newton.LIMIT)
-        count[failed] += steps
-        q = law.evaluate(last["state"].y, part.exponent).q
-        edge_q = operate(part, eta, q, grid).edge_q
-        return control_residual(part, eta, groups(part, eta)[0], q, edge_q, grid)
+    def at_radius(eta, index):
+        fixed = part.take(index)._replace(control="a", value=np.exp(eta))
+        found, done, steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid, newton.LIMIT)
+        count[failed[index]] += steps
+        return found, done
+
+    def control_at(eta, index):
+        q, here = law.evaluate(at_radius(eta, index)[0].y, part.exponent[index]).q, part.take(index)
+        edge_q = operate(here, eta, q, grid).edge_q
+        return control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid)
 
     eta = np.log(guess_radius(part, law))
-    if cases.control == "a":
-        evaluate_at(eta)
-    else:
-        evaluate_at(false_position(evaluate_at, eta - 0.5, eta + 0.5, 1e-9))
-        last["state"], last["closed"], steps = iterate(part, last["state"], law, grid, newton.LIMIT)
+    if cases.control != "a":
+        eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
+    found, done = at_radius(eta, np.arange(len(failed)))
+    if cases.control != "a":
+        found, done, steps = iterate(part, found, law, grid, newton.LIMIT)
         count[failed] += steps
-    state.y[failed], state.eta[failed], closed[failed] = *last["state"], last["closed"]
+    state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done
 
 
 def refine(cases, state, ev, law, n):
     """One Newton step on the next finer mesh: the state there and its quantities (dict)."""
     m = next_rung(n)
     fine = mesh(m)
-    start = State(interpolate(cases, ev, law, n, fine.s, steps=3), state.eta)
+    start = State(interpolate(cases, ev, law, n, fine.s, 1e-4), state.eta)
     at_start = evaluate(cases, start, law, fine, ev.base.weights)
     better = newton.advance(cases, start, at_start, fine, law)
     curve, base = law.evaluate(better.y, cases.exponent), at_start.base

@@ -147,8 +147,9 @@ def _picard(part, C, x):
     n = int(_picard_nodes(part)[0])
     grid = mesh(n)
     with np.errstate(all="ignore"):
-        state, status, count = picard.solve(cases, law, grid, part.k, int(part.max_iterations[0]))
+        state, status, count = picard.solve(cases, law, grid, part.k, part.rtol, int(part.max_iterations[0]))
         values, _ = rough.finish(cases, law, grid, state, x)
+    status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
     return values | {"status": status.astype(np.int8), "iterations": count}
 
 

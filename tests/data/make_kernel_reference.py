@@ -11,7 +11,6 @@ from pathlib import Path
 
 import mpmath as mp
 
-mp.mp.dps = 300
 COLUMNS = ("bonded", "n", "nu1", "nu2", "u", "L", "L1", "uL")
 
 RATIOS = (1e-8, 1e-3, 0.5, 1.0, 2.0, 1e3, 1e8)
@@ -46,8 +45,9 @@ def row(is_bonded, n, nu1, nu2, u):
 def main():
     """Write the table beside this file."""
     pairs = [(nu, nu) for nu in POISSON] + list(UNEQUAL)
-    rows = [row(False, n, 0.3, 0.3, u) for n, u in product(RATIOS, WAVES)]
-    rows += [row(True, n, *pair, u) for pair, n, u in product(pairs, RATIOS, WAVES)]
+    with mp.workdps(300):
+        rows = [row(False, n, 0.3, 0.3, u) for n, u in product(RATIOS, WAVES)]
+        rows += [row(True, n, *pair, u) for pair, n, u in product(pairs, RATIOS, WAVES)]
     text = "\n".join([",".join(COLUMNS), *rows, ""])
     (Path(__file__).parent / "kernel_reference.csv").write_text(text, encoding="utf-8")
 

@@ -193,3 +193,12 @@ def test_no_jump_along_u(bonded):
     third = np.diff(L, 3, axis=0)
     smooth = np.abs(third[1:-1]) <= 3 * np.maximum(np.abs(third[:-2]), np.abs(third[2:])) + 5e-14
     assert smooth.all()
+
+
+@BONDS
+def test_scalars(bonded):
+    """Numbers in, numbers out."""
+    for u in (0.0, 0.01, 3.0):
+        for alone, row in zip(layered_kernel(u, 0.5, 0.3, 0.2, bonded), layered_kernel([u], 0.5, 0.3, 0.2, bonded), strict=True):
+            assert np.shape(alone) == ()
+            assert alone == row[0]

@@ -2,6 +2,7 @@
 
 import numpy as np
 import xarray as xr
+from matplotlib.patheffects import withStroke
 
 from .derived import FEW_SPOTS, SPOT_OVER_LAYER
 
@@ -26,6 +27,7 @@ def name_curve(axes, line, text: str, at: float, *, side: str = "above", align: 
         ha=align,
         va=anchor,
         color=line.get_color(),
+        path_effects=[withStroke(linewidth=2, foreground="white")],
     )
 
 

@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from . import paper
-from .derived import nominal_area_ratio
+from .derived import from_layered, nominal_area_ratio
 from .outputs import csv_text, open_studies, pick, write_text
+from .vocabulary import VOCABULARY
 
 
 @dataclass(frozen=True)
@@ -67,6 +68,41 @@ def paper_numbers(reference: xr.Dataset, main: xr.Dataset, laws: xr.Dataset) -> 
     ]
 
 
+def validity(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
+    """Largest h/a up to which the thin-layer model errs by less than 1 % and 10 %, whatever n from 0.01 to 0.95."""
+    rows = []
+    for micro in ("smooth", "disc_cell"):
+        for name in ("P", "a", "p0", "D", "Ar_An", "p_max"):
+            if micro == "smooth" and name in ("Ar_An", "p_max"):
+                continue
+            found = (given_radius if name == "P" else given_load).sel(micro=micro)
+            limits = [
+                round(largest_thickness(found.isel(case=i), name, level), 3)
+                for i in range(len(MATERIALS))
+                for level in (0.01, 0.1)
+            ]
+            punch, given = "smooth" if micro == "smooth" else "rough", "a" if name == "P" else "P"
+            rows.append((punch, VOCABULARY[name].symbol, given, *limits))
+    return rows
+
+
+def largest_thickness(case: xr.Dataset, name: str, level: float) -> float:
+    """Smallest h/a, over all n, at which |error| of a quantity exceeds `level`; the error is linear in ln(h/a) between
+    the points of the grid."""
+    error = from_layered(case, name).transpose("n", "h")
+    a = case["a"].sel(base="layered", drop=True) if "base" in case["a"].dims else case["a"]
+    h_a = (case["h"] / a).broadcast_like(error).transpose("n", "h")
+    crossings = [np.inf]
+    for x, e in zip(np.log(h_a.values), error.values, strict=True):
+        i = int(np.argmax(np.abs(e) > level))
+        if abs(e[i]) > level:
+            limit = np.copysign(level, e[i])
+            crossings.append(x[i - 1] + (limit - e[i - 1]) * (x[i] - x[i - 1]) / (e[i] - e[i - 1]) if i else x[0])
+    return float(np.exp(min(crossings)))
+
+
+MATERIALS = ("frictionless", "nu=0", "nu=0.3", "nu=0.45")
+"""The first cases of the validity studies: without friction, and bonded with equal Poisson ratios."""
 TABLES = {
     "table1": Table(
         ("table1",),
@@ -94,6 +130,18 @@ TABLES = {
             Column("difference", "difference", "+.2%"),
         ),
         paper_numbers,
+    ),
+    "validity": Table(
+        ("validity", "validity_load"),
+        "Largest h/a (0.01 or more) up to which the thin-layer model errs by less than 1% and 10%, n from 0.01 to 0.95;"
+        " nu: bonded.",
+        (
+            Column("punch", "punch"),
+            Column("error in", "error in"),
+            Column("given", "given"),
+            *(Column(f"{name} {level}%", rf"{name}, {level}\%", ".3g") for name in MATERIALS for level in (1, 10)),
+        ),
+        validity,
     ),
 }
 

@@ -44,7 +44,7 @@ class Entry:
 
 
 POSITIVE = "(0, inf)"
-THIN = ("base", ("thin_layer",))
+LAYERED = ("base", ("thin_layer", "layered"))
 ROUGH = ("micro", ("disc_cell", "power_law"))
 POWER = ("micro", ("power_law",))
 
@@ -53,14 +53,14 @@ _ENTRIES = (
     Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)", POSITIVE),
     Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)", POSITIVE),
     Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)", POSITIVE),
-    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON, "", POSITIVE, needed_by=THIN),
+    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON, "", POSITIVE, needed_by=LAYERED),
     Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material", interval=POSITIVE,
-          needed_by=THIN),
+          needed_by=LAYERED),
     Entry("nu1", "ν1", "Poisson ratio of the layer", "material", interval="(-1, 0.5]", default=0.3),
     Entry("nu2", "ν2", "Poisson ratio of the half-space", "material", interval="(-1, 0.5]", default=0.3),
     Entry("bonding", "", "interface of layer and half-space", "material", choices=("frictionless", "bonded"),
           default="frictionless"),
-    Entry("base", "", "elastic base", "material", choices=("half_space", "thin_layer"), default="thin_layer"),
+    Entry("base", "", "elastic base", "material", choices=("half_space", "thin_layer", "layered"), default="layered"),
     Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY, "", POSITIVE,
           needed_by=ROUGH),
     Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON, "", POSITIVE, needed_by=ROUGH),
@@ -97,6 +97,8 @@ _ENTRIES = (
     Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0), PRESSURE),
     Entry("spots", "N̄ An", "number of contact spots", "derived"),
     Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), MICRON, "(7)"),
+    Entry("p_peak", "", "largest real pressure in the contact, wherever it is", "derived", (1, 0), PRESSURE, "(13)"),
+    Entry("E_eff", "Eeff", "effective reduced modulus (dP/dD)/(2a)", "derived", (1, 0), PRESSURE),
     Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
     Entry("case", "", "number of the case", "coordinate"),
     Entry("label", "", "label of the case", "coordinate"),

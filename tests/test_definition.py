@@ -105,7 +105,7 @@ BAD = [
     ("n = 0.5", "n = -0.5", "n = -0.5: must be > 0"),
     ("n = 0.5", "n = 0.5\nnu1 = 0.51", "nu1 = 0.51: must be in (-1, 0.5]"),
     ("n = 0.5", "n = 0.5\nnu2 = -1", "nu2 = -1: must be in (-1, 0.5]"),
-    ("n = 0.5", "", 'n is missing: base = "thin_layer" needs it'),
+    ("n = 0.5", "", 'n is missing: base = "layered" needs it'),
     ("Ra = 0.004", "", 'Ra is missing: micro = "disc_cell" needs it'),
     ("Ra = 0.004", "Ra = 0.004\nmicro = 'power_law'\nB = 0.1", 'beta is missing: micro = "power_law" needs it'),
     ("Ra = 0.004", "Ra = 0.004\nbeta = 1.5", "beta = 1.5: must be in (0, 1]"),
@@ -204,13 +204,13 @@ def test_cases_and_their_gaps(tmp_path):
     """
     grid = read(tmp_path, text).grid
     assert grid.sizes == {"case": 2, "nodes": 2}
-    assert grid.values["base"][1].tolist() == ["thin_layer", "half_space"]
+    assert grid.values["base"][1].tolist() == ["layered", "half_space"]
     assert grid.values["nu1"][1].tolist() == [0.3, 0.4]
     np.testing.assert_array_equal(grid.values["h"][1], [0.02, np.nan])
     assert grid.labels["label"][1].tolist() == ["layer", ""]
-    assert messages(tmp_path, text.replace("h = 0.02", "")) == ['h is missing: base = "thin_layer" needs it']
+    assert messages(tmp_path, text.replace("h = 0.02", "")) == ['h is missing: base = "layered" needs it']
     swapped = text.replace("h = 0.02", "").replace("nu1", "h = 0.02\n    nu1")
-    assert messages(tmp_path, swapped) == ['h is missing in case 0: base = "thin_layer" needs it']
+    assert messages(tmp_path, swapped) == ['h is missing in case 0: base = "layered" needs it']
     assert messages(tmp_path, text.replace("P = 2e-5", "")) == ["P is missing in case 1"]
     assert messages(tmp_path, text.replace('"layer"', "3")) == ["[[cases]] label: must be text"]
     twins = (
@@ -223,8 +223,9 @@ def test_cases_and_their_gaps(tmp_path):
 
 
 def test_a_parameter_that_a_base_needs_somewhere_on_an_axis(tmp_path):
-    text = "[axes]\nP = [1]\nbase = ['half_space', 'thin_layer']\n[model]\nmicro = 'smooth'\nh = 1"
-    assert messages(tmp_path, text) == ['n is missing: base = "thin_layer" needs it']
+    for base in ("thin_layer", "layered"):
+        text = f"[axes]\nP = [1]\nbase = ['half_space', '{base}']\n[model]\nmicro = 'smooth'\nh = 1"
+        assert messages(tmp_path, text) == [f'n is missing: base = "{base}" needs it']
 
 
 def test_size_is_checked_before_anything_is_allocated(tmp_path):

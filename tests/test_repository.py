@@ -20,7 +20,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
-TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "map", "test", "bench", "lint", "clean")
+TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "test", "bench", "lint", "clean")
 
 
 def blocks(language: str) -> list[str]:
@@ -33,7 +33,8 @@ def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
 
 
 def variable(name: str) -> set[str]:
-    return set(re.search(rf"^{name} := (.*)$", MAKEFILE, flags=re.MULTILINE)[1].split())
+    text = re.search(rf"^{name} := (.*)$", MAKEFILE, flags=re.MULTILINE)[1]
+    return set(re.sub(r"\$\((\w+)\)", lambda found: " ".join(variable(found[1])), text).split())
 
 
 def test_make_help_lists_every_target():
@@ -46,6 +47,7 @@ def test_makefile_knows_every_study_figure_and_table():
     assert variable("STUDIES") == {file.stem for file in STUDIES}
     assert variable("FIGURES") == set(RECIPES)
     assert variable("TABLES") == set(TABLES)
+    assert variable("DRAWN") == {study for recipe in RECIPES.values() for study in recipe.studies}
 
 
 @pytest.mark.parametrize("name", [*RECIPES, *TABLES])
@@ -110,9 +112,8 @@ def test_old_python_is_refused_with_a_reason(sandbox):
 
 
 def test_commands_of_the_readme_exist():
-    mentioned = set(
-        re.findall(r"\bmake ([a-z0-9_]+)\b", "\n".join(re.findall(r"`[^`]+`|```sh.*?```", README, re.DOTALL)))
-    )
+    text = re.sub(r"```(?!sh).*?```", "", README, flags=re.DOTALL)
+    mentioned = set(re.findall(r"\bmake ([a-z0-9_]+)\b", "\n".join(re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL))))
     assert mentioned and mentioned <= set(TARGETS)
     commands = [line for block in blocks("sh") for line in block.splitlines() if "-m study" in line]
     assert len(commands) >= 3
@@ -147,6 +148,17 @@ def test_the_readme_is_right_about_softness_and_thickness(results):
     assert (chosen.min("n") / chosen.max("n") < 0.3).all()
     fall = 1 - chosen.isel(h=-1) / chosen.isel(h=0)
     assert (fall.sel(bonding="bonded") < fall.sel(bonding="frictionless")).all()
+
+
+def test_the_readme_is_right_about_the_main_case(results):
+    from study import open_results
+    from study.outputs import pick
+
+    main = open_results(results / "main_case.nc")
+    exact, thin = (pick(main, label=f"rough, {base}") for base in ("exact layer", "layered"))
+    for name, error in (("a", 0.092), ("p0", -0.045), ("D", 0.025)):
+        assert float(thin[name] / exact[name]) - 1 == pytest.approx(error, abs=6e-4)
+    assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in README
 
 
 def test_the_lock_pins_everything_and_names_no_machine():

@@ -170,6 +170,8 @@ def made(**variables) -> xr.Dataset:
         ({"n": 1.0}, 8),
         ({"n": 1.0, "h": 0.03, "Nbar": 1.0}, 1 | 2 | 4 | 8),
         ({"n": 0.999}, 0),
+        ({"base": "layered", "n": 1.0, "h": 0.03}, 0),
+        ({"base": "layered", "Nbar": 1.0}, 2 | 4),
         ({"base": "half_space", "h": 0.001, "n": 2.0}, 0),
         ({"base": "half_space", "h": None, "n": None}, 0),
         ({"micro": "smooth", "Nbar": 1.0}, 0),
@@ -185,7 +187,8 @@ def test_validity(variables, expected):
 
 
 def test_validity_has_the_dimensions_of_status():
-    found = study.solve(P=1e-5, Nbar=[250000, 1e4], h=[0.1, 0.001], n=0.5, Ra=0.004, bonding=["frictionless", "bonded"])
+    given = {"P": 1e-5, "Nbar": [250000, 1e4], "h": [0.1, 0.001], "n": 0.5, "Ra": 0.004, "base": "thin_layer"}
+    found = study.solve(**given, bonding=["frictionless", "bonded"])
     assert found.validity.dims == found.status.dims == ("Nbar", "h", "bonding")
     assert ((found.validity & 1).values == np.reshape([1, 0], (1, 2, 1))).all()
     assert ((found.validity & 2).values == np.reshape([0, 2], (2, 1, 1))).all()
@@ -207,6 +210,15 @@ def test_derived_quantities(reread):
 def test_derived_quantities_refuse_physical_units(reread):
     with pytest.raises(ValueError, match="derive first, then convert"):
         derived.mean_pressure(study.to_physical(reread, R=0.01, E2_star=1e11))
+
+
+def test_the_exact_layer_is_the_default_and_has_no_assumption_of_thinness():
+    given = {"P": 1e-5, "Nbar": 250000, "Ra": 0.004, "bonding": "bonded", "nu1": 0.5}
+    found = study.solve(**given, h=[0.01, 1.0], n=[0.5, 100.0], x=3)
+    assert found.base.item() == "layered"
+    assert (found.status == 0).all() and ((found.validity & 9) == 0).all()
+    thin = study.solve(**given, h=0.01, n=0.5, base="thin_layer")
+    assert thin.status.item() == 4, "the thin-layer equation does not apply to bonded rubber"
 
 
 def test_vocabulary_names_every_parameter_of_the_solver():

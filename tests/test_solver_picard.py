@@ -76,7 +76,10 @@ def test_limit():
 
 @pytest.mark.parametrize("base", ["thin_layer", "half_space"])
 def test_company_changes_nothing(base):
-    """A case has the same numbers and the same count of approximations in any batch, where they converge (a cycle amplifies rounding)."""
+    """A case that converges has the same numbers and the same count of approximations in any batch.
+
+    (A cycle amplifies rounding.)
+    """
     alone = picard(P=LOAD, k=10.0, base=base)
     together = picard(P=[LOAD, 1e-6, 3e-4], k=10.0, base=base)
     assert_allclose(together.a[0], alone.a[0], rtol=1e-12, atol=0)
@@ -105,3 +108,10 @@ def test_its_error_is_honest_even_where_its_status_is_not():
         known = np.isfinite(s.error)
         assert known.sum() > 15
         assert np.all(s.error[known] >= truth[known] / 3)
+
+
+def test_a_coarse_mesh_is_not_within_rtol():
+    """The successive approximations settle on 8 nodes as on any mesh; the answer is that of 8 nodes."""
+    s = picard(a=0.04, k=10.0, nodes=8, rtol=1e-8)
+    assert s.status[0] == Status.TOLERANCE_NOT_MET
+    assert s.error[0] > 1e-8

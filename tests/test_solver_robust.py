@@ -158,14 +158,14 @@ def test_extremes_answer_without_warning(base, law, control):
     value = {"P": P, "a": np.cbrt(P), "D": np.cbrt(P) ** 2}[control]
     s = solve(Problem.of(**case, **{control: value}, base=base, micro=law))
     assert set(s.status) <= {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
-    assert (s.status == Status.CONVERGED).mean() > (0.9 if law == "disc_cell" else 0.99)
+    assert (s.status == Status.CONVERGED).mean() > (0.95 if law == "disc_cell" else 0.99)
     for name in NUMBERS:
         assert np.all(np.isfinite(getattr(s, name))), name
     assert np.all(s.error[s.status == Status.CONVERGED] <= 1e-4)
     fine = solve(Problem.of(**(case | {"rtol": 1e-6}), **{control: value}, base=base, micro=law))
     ok = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
     assert ok.mean() > 0.8
-    assert np.quantile(difference(s, fine)[ok], 0.99) <= 2e-4
+    assert np.quantile(difference(s, fine)[ok], 0.99) <= 1e-4
 
 
 ITERATED = [kind for kind in KINDS if kind != ("half_space", "smooth")]
@@ -174,14 +174,13 @@ ITERATED = [kind for kind in KINDS if kind != ("half_space", "smooth")]
 @pytest.mark.parametrize(("base", "law"), ITERATED, ids=["-".join(kind) for kind in ITERATED])
 @pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
 def test_error_is_honest(base, law, rtol):
-    """Against 64 nodes: estimate >= truth/3 in 99 %, truth within rtol in 99 % and within twice rtol in 99.9 %."""
+    """Against 64 nodes: the estimate is at least a third of the truth in 99 %, the truth within rtol in 99.9 %."""
     case = random_cases(2000, 21) | {"bonding": "frictionless", "base": base, "micro": law}
     s = solve(Problem.of(**case, rtol=rtol))
     reference = solve(Problem.of(**case, rtol=0.5, nodes=64))
     truth = difference(s, reference)
     assert (s.error >= truth / 3).mean() >= 0.99
-    assert (truth <= 2 * rtol).mean() >= 0.999
-    assert (truth <= rtol).mean() >= 0.99
+    assert (truth <= rtol).mean() >= 0.999
 
 
 def test_converged_is_within_rtol_in_999_of_1000():
@@ -190,7 +189,6 @@ def test_converged_is_within_rtol_in_999_of_1000():
     case = random_cases(800, 21) | {"B": np.exp(rng.uniform(-7, 2.3, 800)), "beta": rng.uniform(0.4, 1, 800)}
     case |= {"base": "half_space", "micro": "power_law"}
     truth = difference(solve(Problem.of(**case, rtol=1e-9)), solve(Problem.of(**case, rtol=0.5, nodes=64)))
-    assert (truth <= 2e-9).mean() >= 0.999
     assert (truth <= 1e-9).mean() >= 0.999
 
 

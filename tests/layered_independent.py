@@ -2,17 +2,21 @@
 
 Smooth: the Fredholm equation of the second kind of the dual integral equations. With p̂(k) = ∫ p J0(kr) r dr and
 p(r) = -∫_r^a φ'(t)/sqrt(t² - r²) dt, φ(a) = 0 (no pressure at the edge), p̂(k) = ∫₀^a φ(t) cos(kt) dt. The displacement
-(2/E1*) ∫ L p̂ J0(kr) dk = D - r²/(2R), under the operator d/dt ∫₀^t · r dr/sqrt(t² - r²), which makes cos(kt) of J0(kr), becomes
+(2/E1*) ∫ L p̂ J0(kr) dk = D - r²/(2R), under the operator d/dt ∫₀^t · r dr/sqrt(t² - r²), which makes cos(kt) of
+J0(kr), becomes
 
     φ(t) + (1/π) ∫₀^a N(t, τ) φ(τ) dτ = (E1*/π)(D - t²/R),   N = ∫₀^∞ (L(kh) - 1)(cos k(t - τ) + cos k(t + τ)) dk,
 
-because ∫₀^∞ cos(kt) cos(kτ) dk is half of π δ(t - τ). In units of a, f = π R φ/(E1* a²) = d f₁ - f₂ with the right-hand sides
-1 and t²; f(1) = 0 gives d = D R/a² = f₂(1)/f₁(1), and P R/(E1* a³) = 2 ∫ f, (dP/dD)/(E1* a) = 2 ∫ f₁ (the flat punch of that
-radius, as p(a) = 0), p(0) R/(E1* a) = -(1/π) ∫ f'/t dt. The last one needs f' by the equation: ∫₀¹ sin(kt)/t dt = Si(k).
+because ∫₀^∞ cos(kt) cos(kτ) dk is half of π δ(t - τ). In units of a, f = π R φ/(E1* a²) = d f₁ - f₂ with the
+right-hand sides 1 and t²; f(1) = 0 gives d = D R/a² = f₂(1)/f₁(1), and P R/(E1* a³) = 2 ∫ f, (dP/dD)/(E1* a) = 2 ∫ f₁
+(the flat punch of that radius, as p(a) = 0), p(0) R/(E1* a) = -(1/π) ∫ f'/t dt. The last one needs f' by the equation:
+∫₀¹ sin(kt)/t dt = Si(k).
 
-Rough: collocation of D - r²/(2R) - A[p] = u at Gauss-Legendre nodes in s = sqrt(1 - r²/a²), p a polynomial in s. By the same φ,
+Rough: collocation of D - r²/(2R) - A[p] = u at Gauss-Legendre nodes in s = sqrt(1 - r²/a²), p a polynomial in s. By the
+same φ,
 
-    φ(t) = (2/π) ∫_t^a r p dr/sqrt(r² - t²),   u(r) = (2/E1*) [∫₀^{π/2} φ(r sin θ) dθ + ∫₀^∞ (L(kh) - 1) p̂(k) J0(kr) dk],
+    φ(t) = (2/π) ∫_t^a r p dr/sqrt(r² - t²),
+    u(r) = (2/E1*) [∫₀^{π/2} φ(r sin θ) dθ + ∫₀^∞ (L(kh) - 1) p̂(k) J0(kr) dk],
 
 which is the half-space by two smooth integrals without an elliptic one, and the layer by cosine transforms of φ.
 """
@@ -34,7 +38,7 @@ def legendre(count, low=0.0, high=1.0):
 
 
 def printed_kernel(u, n, nu1, nu2, bonded):
-    """L(u) - 1 from the closed forms as printed; beyond n = 100, where they cancel, from the kernel that test_kernel.py tests."""
+    """L(u) - 1 from the closed forms as printed; beyond n = 100, where they cancel, from the (tested) kernel."""
     if n > 100:
         return layered_kernel(u, n, nu1, nu2, bonded).L1
     if not bonded:
@@ -47,10 +51,13 @@ def printed_kernel(u, n, nu1, nu2, bonded):
 
 
 def wave_rule(eta, n, reach=2.0):
-    """k and weights of ∫₀^∞ (L(kη) - 1)(…) dk: panels in u = kη that double from below 1/n, each with nodes for cos(k · reach)."""
+    """k and weights of ∫₀^∞ (L(kη) - 1)(…) dk: panels that double from below kη = 1/n, nodes for cos(k reach)."""
     finest = 2.0 ** -np.ceil(7 + np.log2(max(1.0, n)))
     ends = [0.0, *(finest * 2.0 ** np.arange(0, np.log2(2 / finest) + 0.5)), *np.arange(4.0, 23.0, 2.0)]
-    parts = [legendre(24 + int(0.75 * reach * (high - low) / eta), low / eta, high / eta) for low, high in zip(ends, ends[1:])]
+    parts = [
+        legendre(24 + int(0.75 * reach * (high - low) / eta), low / eta, high / eta)
+        for low, high in zip(ends[:-1], ends[1:], strict=True)
+    ]
     return tuple(np.concatenate(v) for v in zip(*parts, strict=True))
 
 
@@ -72,7 +79,7 @@ def fredholm(eta, n, nu1, nu2, bonded, count=None):
 
 
 def polynomial_basis(nodes, s):
-    """Lagrange polynomials of the nodes and of s = 0 (where all vanish) at s: array of the shape of s, with one more axis."""
+    """Lagrange polynomials of the nodes and of s = 0 (where all vanish) at s: of the shape of s and one more axis."""
     t = np.concatenate([[0.0], nodes])
     gaps = 4 * (t[:, None] - t)
     np.fill_diagonal(gaps, 1.0)
@@ -85,7 +92,7 @@ def polynomial_basis(nodes, s):
 
 @cache
 def collocation(count):
-    """Nodes s, weights of ∫ · ds, and of unit basis functions: centre, t with weights, Φ(t), ∫Φ(x sin θ)dθ at x_i and at the edge."""
+    """Nodes s and weights of ∫ · ds, x; of the basis functions: centre, t with weights, Φ(t), ∫ Φ(x sin θ) dθ at x."""
     s, w = legendre(count)
     x = np.sqrt((1 - s) * (1 + s))
     psi, psi_w = legendre(count // 2 + 30, 0, np.pi / 2)
@@ -96,7 +103,9 @@ def collocation(count):
         return sigma[..., None] * np.einsum("...kj,k->...j", values, psi_w * np.cos(psi))
 
     ends = np.pi / 2 * np.concatenate([[0], 1 - 2.0 ** -np.arange(1, 12), [1]])  # towards the edge r sin θ = 1
-    theta, theta_w = (np.concatenate(v) for v in zip(*(legendre(20, *ends[i : i + 2]) for i in range(len(ends) - 1)), strict=True))
+    theta, theta_w = (
+        np.concatenate(v) for v in zip(*(legendre(20, *ends[i : i + 2]) for i in range(len(ends) - 1)), strict=True)
+    )
     H = np.stack([theta_w @ potential(np.sqrt(1 - (r * np.sin(theta)) ** 2)) for r in [*x, 1.0]])
     chi, chi_w = legendre(160, 0, np.pi / 2)
     centre = polynomial_basis(s, np.array([1.0]))[0]

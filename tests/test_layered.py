@@ -63,7 +63,9 @@ def test_fredholm_at_random():
 def test_stiff_coatings():
     """n ≫ 1: the layer is a plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane, at u ~ 1/n."""
     materials = ((0, 0.3, 0.3), (1, 0.3, 0.3), (1, 0.5, 0.0), (1, 0.5, 0.5), (1, -0.9, -0.9))
-    cases = [(eta, n, nu1, nu2, b) for eta in (1.0, 30.0) for n in (30.0, 1e3, 6e3, 1e4, 1e6) for b, nu1, nu2 in materials]
+    cases = [
+        (eta, n, nu1, nu2, b) for eta in (1.0, 30.0) for n in (30.0, 1e3, 6e3, 1e4, 1e6) for b, nu1, nu2 in materials
+    ]
     compare(cases, 1e-9, 1e-8)
     compare([(0.15, n, nu1, nu2, b) for n in (1e2, 2e3) for b, nu1, nu2 in materials], 1e-9, 1e-8)
 
@@ -79,7 +81,9 @@ def test_reference_row():
     s = solve(Problem.of(P=2.70408e-5, base="layered", micro="power_law", rtol=1e-10, **MAIN))
     found = [v[0] for v in (s.a, s.p0, s.D, s.Ar_An, s.p_max)]
     assert s.status[0] == Status.CONVERGED
-    assert_allclose(found, [0.03663608144, 0.01093673418, 1.0183556416e-3, 0.2084340497, 0.0536397585], rtol=1e-9, atol=0)
+    assert_allclose(
+        found, [0.03663608144, 0.01093673418, 1.0183556416e-3, 0.2084340497, 0.0536397585], rtol=1e-9, atol=0
+    )
 
 
 def table1(micro, bonded, **more):
@@ -91,7 +95,7 @@ def table1(micro, bonded, **more):
 @pytest.mark.parametrize("bonded", [False, True], ids=["frictionless", "bonded"])
 @pytest.mark.parametrize("micro", ["disc_cell", "power_law"])
 def test_table1(micro, bonded):
-    """Five rows: at rtol = 1e-9 to 1e-8 of twice the nodes, and of collocation at other nodes, without an elliptic integral."""
+    """Five rows: at rtol = 1e-9 to 1e-8 of twice the nodes, and of collocation at other nodes."""
     s = table1(micro, bonded, rtol=1e-9)
     assert np.all(s.status == Status.CONVERGED)
     finer = table1(micro, bonded, rtol=0.5, nodes=2 * s.nodes)

@@ -1,11 +1,12 @@
-"""The exact layered base where it is known: no layer, thin, thick, on a rigid base; rates and coefficients, not only smallness.
+"""The exact layered base where it is known: no layer, thin, thick, on a rigid base; by rates and coefficients.
 
-The rates follow from the work of the pressure p₀ of the limit on the change of the kernel: at a given load, to first order,
+The rates follow from the work of the pressure p₀ of the limit on the change of the kernel: at a given load, to first
+order,
 
     δD = dU/dP,   U = (2π/E1*) ∫ δL(kh) p̂₀² dk,
 
-for Hertz's pressure U = C π ∫ p₀² r dr = C a⁴/π of springs C = 2 A2 h/E1* and U = (4/3)(A3 h²/n) a³ = (A3 h²/n) P of the next
-term A3 u² of L. Thick layers: L - 1 acts as its moments ∫ (L - 1) du and ∫ (L - 1) u² du.
+for Hertz's pressure U = C π ∫ p₀² r dr = C a⁴/π of springs C = 2 A2 h/E1* and U = (4/3)(A3 h²/n) a³ = (A3 h²/n) P of
+the next term A3 u² of L. Thick layers: L - 1 acts as its moments ∫ (L - 1) du and ∫ (L - 1) u² du.
 """
 
 import numpy as np
@@ -36,7 +37,15 @@ def rates(error):
 @pytest.mark.parametrize("nu", [-0.5, 0.0, 0.3, 0.5])
 def test_no_layer(micro, nu):
     """n = 1, bonded, equal ν: the half-space, to 1e-12, for any thickness."""
-    case = {"n": 1.0, "nu1": nu, "nu2": nu, "bonding": "bonded", "micro": micro, "rtol": 1e-11, "h": np.array([3e-4, 0.02, 5.0])}
+    case = {
+        "n": 1.0,
+        "nu1": nu,
+        "nu2": nu,
+        "bonding": "bonded",
+        "micro": micro,
+        "rtol": 1e-11,
+        "h": np.array([3e-4, 0.02, 5.0]),
+    }
     layered = one(P=LOAD, base="layered", **case)
     assert np.all(layered.status == 0)
     assert difference(layered, one(P=LOAD, base="half_space", **case), ALL).max() < 1e-12
@@ -71,7 +80,10 @@ def test_thin_layer_next_term():
     assert_allclose(2 * found[1] - found[0], A3[0], rtol=0.01, atol=0)
 
 
-@pytest.mark.parametrize(("n", "bonding", "nu1", "nu2"), [(0.3, "frictionless", 0.3, 0.3), (0.3, "bonded", 0.2, 0.4), (4.0, "bonded", 0.3, 0.3)])
+@pytest.mark.parametrize(
+    ("n", "bonding", "nu1", "nu2"),
+    [(0.3, "frictionless", 0.3, 0.3), (0.3, "bonded", 0.2, 0.4), (4.0, "bonded", 0.3, 0.3)],
+)
 def test_substrate_at_first_order(n, bonding, nu1, nu2):
     """h → 0, smooth, at a given load: D/D(substrate) = 1 + 2 A2 h/(π n a)."""
     eta = 2.0 ** -np.arange(5, 9)
@@ -86,7 +98,7 @@ def test_substrate_at_first_order(n, bonding, nu1, nu2):
 
 @ROUGH
 def test_incompressible_film_at_third_order(micro):
-    """ν = 1/2, bonded: L = n + (2/3)(1 - n²)u³, so D, p(0) differ from those of the substrate by h³ (a thin layer has no such case)."""
+    """ν = 1/2, bonded: L = n + (2/3)(1 - n²)u³, so D, p(0) differ from those of the substrate by h³."""
     n, h = 0.5, HERTZ_RADIUS * 2.0 ** -np.arange(4, 8)
     rough = {"micro": micro, "P": LOAD, **FIXED}
     film = one(h=h, n=n, nu1=0.5, nu2=0.5, bonding="bonded", base="layered", **rough)
@@ -114,8 +126,8 @@ def moment(n, nu1, nu2, bonded, power):
 @pytest.mark.parametrize("n", [0.05, 0.5, 4.0])
 @BONDS
 def test_thick_layer_at_its_rate(n, bonding):
-    """Smooth, at a given radius, η = h/a: D = D∞ (1 + 4 Λ₀/(3 π η)) + O(η⁻³), the pressure as on a half-space of E1* but for
-    the factor 1 - 2 Λ₂/(3 π η³) + O(η⁻⁵), dP/dD = 2 E1* a/(1 + 2 Λ₀/(π η)) + O(η⁻³)."""
+    """Smooth, at a given radius, η = h/a: D = D∞ (1 + 4 Λ₀/(3 π η)) + O(η⁻³), the pressure that on a half-space of E1*
+    but for the factor 1 - 2 Λ₂/(3 π η³) + O(η⁻⁵), dP/dD = 2 E1* a/(1 + 2 Λ₀/(π η)) + O(η⁻³)."""
     a, eta, nu1, nu2 = 0.04, 8.0 * 2.0 ** np.arange(4), 0.2, 0.4
     case = {"n": n, "nu1": nu1, "nu2": nu2, "bonding": bonding, "base": "layered", "micro": "smooth", "rtol": 1e-12}
     s = one(a=a, h=eta * a, **case)
@@ -160,9 +172,21 @@ def test_thin_on_a_rigid_base(bonding, nu):
 
 
 def test_thin_rubber_on_a_rigid_base():
-    """n = 1e-8, ν = 1/2, bonded: Reynolds' equation, p = 3 E1* (a² - r²)²/(128 R h³), D = a²/(4 R), at first order in h/a."""
+    """n = 1e-8, ν = 1/2, bonded: Reynolds' equation, p = 3 E1* (a² - r²)²/(128 R h³), D = a²/(4 R); first order."""
     a, n, eta = 0.04, 1e-8, 2.0 ** -np.arange(4, 8)
-    s = one(a=a, h=eta * a, n=n, nu1=0.5, nu2=0.3, bonding="bonded", base="layered", micro="smooth", rtol=0.5, nodes=32, x=[0, 0.5])
+    s = one(
+        a=a,
+        h=eta * a,
+        n=n,
+        nu1=0.5,
+        nu2=0.3,
+        bonding="bonded",
+        base="layered",
+        micro="smooth",
+        rtol=0.5,
+        nodes=32,
+        x=[0, 0.5],
+    )
     P, p0 = np.pi * n * a**3 / (128 * eta**3), 3 * n * a / (128 * eta**3)
     for found in (s.P / P, s.D / (a**2 / 4), s.p0 / p0):
         error = np.abs(found - 1)

@@ -1,8 +1,8 @@
 """Write kernel_reference.csv: L, L - 1, u dL/du of the exact layered base with 25 digits, independent of the solver.
 
-The closed forms of the two interfaces as printed (hyperbolic without friction, exponential when bonded), evaluated naively with
-300 digits, so that no care about cancellation is needed; the derivative is numerical (mpmath.diff). Every input is an exact
-float64. test_kernel.py solves the boundary-value problem behind the formulas for some of the rows.
+The closed forms of the two interfaces as printed (hyperbolic without friction, exponential when bonded), evaluated
+naively with 300 digits, so that no care about cancellation is needed; the derivative is numerical (mpmath.diff). Every
+input is an exact float64. test_kernel.py solves the boundary-value problem behind the formulas for some of the rows.
 Run it from anywhere: ``python tests/data/make_kernel_reference.py``.
 """
 

@@ -5,9 +5,9 @@
 
 k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity; L - 1 decays
 like e^(-2kη), so Λ is a smooth kernel for every η. The quadrature in k is fixed for an octave of η: its panels
-follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and (6/n)^(1/3)/η for stiff layers),
-so that it is accurate to rounding for every h/a and n of the octave, and J0 φ is tabulated once. For a batch, Λ is
-then one matrix product of (L - 1)-values with that table, its derivative by η another one with u dL/du; no
+follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers n^(-1/3)/η and
+1/(nη)), so that it is accurate to rounding for every h/a and n of the octave, and J0 φ is tabulated once. For a
+batch, Λ is then one matrix product of (L - 1)-values with that table, its derivative by η another one with u dL/du; no
 interpolation is made, and the octaves agree to rounding where they meet.
 """
 
@@ -125,7 +125,9 @@ def _transform(nodes, k):
 def octave_of(layer, a):
     """Octave of h/a and depth of the quadrature for the stiffness of the layer, (B,) int each."""
     octave = np.clip(np.floor(np.nan_to_num(np.log2(layer.h / a))), *OCTAVES).astype(int)
-    wanted = np.ceil(np.log2(np.maximum(3.5 * np.cbrt(layer.n), 1.0)))  # 0.5 2^-depth <= 0.15 n^(-1/3)
+    # a stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n
+    ratio = np.maximum(np.where(layer.bonded, layer.n, np.cbrt(layer.n)), 1.0)
+    wanted = np.ceil(np.log2(3.5 * ratio))  # 0.5 2^-depth <= 0.15/ratio
     return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
 
 

@@ -32,7 +32,7 @@ class Curve(NamedTuple):
 class Law(NamedTuple):
     """A micro law on a batch.
 
-    evaluate(y, exponent) -> :class:`Curve`;  guess(q, exponent) -> y with q(y) = q within 30 %;
+    evaluate(y, exponent) -> :class:`Curve`;  guess(q, exponent) -> y with q(y) = q within 40 %;
     from_pressure(q, exponent) -> y with q(y) = q;  from_displacement(g, exponent) -> y with g(y) = g;
     power(exponent) -> (gamma, beta) with g ~ gamma q^beta for small q;  limit(new, old) -> y, what a step may do;
     spot(y, q) -> y = cot θ of the exact law, q = p over p* of the exact law.
@@ -90,7 +90,7 @@ def spot_from_pressure(q):
     positive = q > 0
     target = np.where(positive, q, 1.0)
     y = _spot_guess(target)
-    for _ in range(5):  # Newton on ln q against ln y, whose slope runs from 3 to 1; the guess is within 30 %
+    for _ in range(5):  # Newton on ln q against ln y, whose slope runs from 3 to 1; the guess is within 40 %
         curve = spot_curve(y)
         y = y * np.exp(-(curve.q - target) / (curve.dq * y) * _log_ratio(curve.q / target))
     return np.where(positive, y, np.where(np.isnan(q), np.nan, 0.0))

@@ -26,7 +26,7 @@ _TINY = np.finfo(float).tiny
 
 
 class Fixed(NamedTuple):
-    """At given radii: q (B, n); last |p̂ - p|, change of the load, count, and |p̂ - p| half-way to the limit, all (B,)."""
+    """At given radii: q (B, n); last |p̂ - p|, change of the load, count, |p̂ - p| half-way to the limit, all (B,)."""
 
     q: np.ndarray
     change: np.ndarray

@@ -136,8 +136,8 @@ class Solution:
     a, D in R; P in E2 R²; p0 = p(0), p_max (13), p in E2; A0 = A[p(0)] in R; Ar_An (12) and lam = λ(r/a) (11)
     without unit; dP_dD in E2 R. `status` is a :class:`~solver.status.Status`; `residual` the largest residual of the
     equation relative to its right-hand side; `error` the estimated relative error, the largest over a, P, D, p0,
-    p_max, Ar_An; `iterations`; `nodes` used (0: closed form). A case without numbers holds NaN everywhere but in the
-    controlled quantity.
+    p_max, Ar_An (the profiles between the nodes are not in it); `iterations`; `nodes` used (0: closed form). A case
+    without numbers holds NaN everywhere but in the controlled quantity.
     """
 
     a: np.ndarray

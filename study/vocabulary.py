@@ -78,7 +78,7 @@ _ENTRIES = (
     Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics",
           interval="[1, 100000]", also=(0,), default=0, whole=True),
     Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), PRESSURE, "(3)"),
-    Entry("p_max", "pmax", "real pressure in the middle of the central spot, the largest where p falls from the centre", "result", (1, 0), PRESSURE,
+    Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), PRESSURE,
           "(13)"),
     Entry("Ar_An", "Ar/An", "real over nominal contact area", "result", equation="(12)"),
     Entry("A0", "A[p(0)]", "additional displacement of the rough layer in the centre", "result", (0, 1), MICRON, "(6)"),

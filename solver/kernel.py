@@ -102,9 +102,10 @@ class _Bond(NamedTuple):
 def _bond(n, nu1, nu2):
     alpha, g1, g2 = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2
     da, db = 1 + alpha * g2, alpha + g1
+    excess = ((n - 1) * (1 - nu1) + (nu2 - nu1)) / (1 - nu2)  # alpha - 1
     return _Bond(
-        a=(alpha * g2 - g1) / da,
-        b=(alpha - 1) / db,
+        a=(excess * g2 + 4 * (nu1 - nu2)) / da,
+        b=excess / db,
         one_a=(1 + g1) / da,
         one_b=(1 + g1) / db,
         plus_a=(2 * alpha * g2 - 2 * (1 - 2 * nu1)) / da,

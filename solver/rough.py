@@ -42,6 +42,7 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         "iterations": np.zeros(size, int),
         "nodes": np.zeros(size, int),
     }
+    out["lowest"] = np.zeros(size)  # smallest over largest unknown; below 0 only where the equation is linear
     out |= {"p": np.full((size, len(x)), np.nan), "lam": np.full((size, len(x)), np.nan)}
     starts = {}
 
@@ -57,6 +58,8 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
 
     unmet = climb(rtol, nodes, solve_on, _neighbours(cases, law))
     out["status"][unmet] = Status.TOLERANCE_NOT_MET
+    lowest = out.pop("lowest")
+    _refuse(out, lowest < -np.maximum(10 * out["error"], 1e-9), Status.LIFT_OFF)
     if cases.layer is not None:
         _refuse(out, cases.layer.h < out["a"] * 2.0 ** OCTAVES[0], Status.LAYER_TOO_THIN)
     return out
@@ -96,6 +99,7 @@ def _rung(cases, law, n, limit, start, x, out, index):
     values, finer = finish(cases, law, grid, state, x)
     for name, value in values.items():
         out[name][index] = value
+    out["lowest"][index] = state.y.min(axis=1) / np.abs(state.y).max(axis=1)
     finite = np.isfinite(values["error"])
     out["status"][index] = np.where(finite, np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT), Status.DIVERGED)
     out["iterations"][index] += count

@@ -14,6 +14,7 @@ class Status(IntEnum):
     TOLERANCE_NOT_MET = 5
     INVALID_INPUT = 6
     LAYER_TOO_THIN = 7
+    LIFT_OFF = 8
 
     @property
     def meaning(self):
@@ -28,6 +29,7 @@ _MEANINGS = {
     Status.DIVERGED: "the iteration diverged; no numbers",
     Status.THIN_LAYER_NOT_APPLICABLE: "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers",
     Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
+    Status.LIFT_OFF: "the pressure is tensile inside the contact: the punch would lift off there; no numbers",
     Status.LAYER_TOO_THIN: "h/a is below 2^-11, where the layered operator ends; no numbers",
     Status.INVALID_INPUT: "a parameter is not finite or outside its bounds; no numbers",
 }

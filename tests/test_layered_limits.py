@@ -15,6 +15,7 @@ from layered_independent import printed_kernel, wave_rule
 from numpy.testing import assert_allclose
 from solver_cases import MAIN, difference, one
 
+from solver import Problem, Status, solve
 from solver.base import thin_layer_coefficients
 from solver.kernel import layered_kernel
 
@@ -192,3 +193,12 @@ def test_thin_rubber_on_a_rigid_base():
         error = np.abs(found - 1)
         assert np.all(rates(error) > 0.75)
         assert error[-1] < 0.25
+
+
+def test_lift_off_is_a_status():
+    """A stiff frictionless plate: the smooth solution is tensile in the middle; that of a thicker one is not."""
+    s = solve(Problem.of(a=0.04, h=np.array([0.012, 0.04]), n=1e5, base="layered", micro="smooth", rtol=1e-9))
+    assert list(s.status) == [Status.LIFT_OFF, Status.CONVERGED]
+    assert np.isnan(s.p0[0])
+    assert np.isnan(s.p[0]).all()
+    assert s.p0[1] > 0

@@ -46,10 +46,9 @@ class Layer(NamedTuple):
 
 
 class Table(NamedTuple):
-    """Hankel quadrature of one octave on one mesh: k, weights (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,)."""
+    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²)."""
 
     k: np.ndarray
-    weight: np.ndarray
     J: np.ndarray
     phi: np.ndarray
     J_edge: np.ndarray
@@ -57,8 +56,7 @@ class Table(NamedTuple):
 
 
 class Weights(NamedTuple):
-    """Part of a batch in one octave: its cases `index` (b,), the key of its table, and w (L - 1) and -w u dL/du (b,
-    G)."""
+    """Part of a batch in one octave: its cases `index` (b,), the key of its table, w (L - 1), -w u dL/du (b, G)."""
 
     index: np.ndarray
     octave: int
@@ -98,14 +96,14 @@ def quadrature(octave, depth):
 @lru_cache(maxsize=256)
 def table(n, octave, depth):
     """The :class:`Table` for ``mesh(n)``; cached."""
-    k, weight = quadrature(octave, depth)
+    k, _ = quadrature(octave, depth)
     grid = mesh_of(n)
     J_edge = j0(k)
     J = j0(k[:, None] * grid.x) - J_edge[:, None]
     phi = _transform(grid.s, k)
     keep = J.shape[0] * n * n <= _KEEP
     product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n) if keep else None
-    return Table(k, weight, J, phi, J_edge, product)
+    return Table(k, J, phi, J_edge, product)
 
 
 def _transform(nodes, k):

@@ -46,8 +46,7 @@ _STEPS = 40
 
 
 class Between(NamedTuple):
-    """What it takes to interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n), and κ
-    (m,)."""
+    """To interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n), and κ (m,)."""
 
     s: np.ndarray
     L: np.ndarray
@@ -68,8 +67,7 @@ def interpolate(cases, ev, law, n, s, tolerance=1e-11):
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
     interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
     asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
-    nothing it is q_L. Newton from a two-term
-    guess until the steps are below the relative `tolerance`.
+    nothing it is q_L. Newton from a two-term guess until the steps are below the relative `tolerance`.
     """
     rows = _between(n, np.ascontiguousarray(s, dtype=float).tobytes())
     gamma, beta = law.power(cases.exponent)

@@ -1,4 +1,4 @@
-"""Rough cases: the batched Newton iteration, on the mesh that meets the tolerance.
+"""Rough cases, and smooth ones on the exact layer: the batched Newton iteration, on the mesh that meets the tolerance.
 
 The error of the solution on a mesh is estimated by one Newton step on the next finer mesh: a step from so close is
 nearly as good as the solution there. A case that does not meet its tolerance goes on from there.
@@ -29,11 +29,10 @@ _JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
 
 def solve_newton(cases, law, rtol, nodes, limit, x):
-    """Solve a batch of rough cases of one law: dict of output arrays in units R = E2* = 1 (see
-    :class:`~solver.problem.Solution`).
+    """Solve a batch of one law on one base: dict of output arrays in units R = E2* = 1, named as in Solution.
 
-    rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a
-    mesh (0: the scheme's own); x (m,) radii of the profiles.
+    rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a mesh (0: the scheme's own); x (m,) radii of
+    the profiles.
     """
     size = len(rtol)
     out = {name: np.full(size, np.nan) for name in (*_JUDGED, "A0", "dP_dD", "residual", "error")}
@@ -107,8 +106,7 @@ def _rung(cases, law, n, limit, start, x, out, index):
 
 
 def finish(cases, law, grid, state, x):
-    """All output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer
-    mesh."""
+    """Output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
     finer, better = refine(cases, state, ev, law, grid.n)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
-LENGTH, MICRON, PRESSURE = ("m", 1.0), ("um", 1e-6), ("MPa", 1e6)
+MICRON, PRESSURE = ("um", 1e-6), ("MPa", 1e6)
 FORCE, STIFFNESS, DENSITY = ("N", 1.0), ("N m-1", 1.0), ("mm-2", 1e6)
 
 

@@ -116,13 +116,13 @@ def operate(cases, eta, q, mesh, weights=None):
     return Operator(K, edge, Kq, edge_q, (np.pi / 2) * rows.d_rows_q, (np.pi / 2) * rows.d_edge_q, weights)
 
 
-def displacement_between(ev, H, x):
-    """K[q] (B, m) at radii x (m,) between the nodes, from the half-space rows H (m, n) there."""
+def displacement_between(ev, H, x, mesh):
+    """K[q] (B, m) at radii x (m,) between the nodes of the mesh, from the half-space rows H (m, n) there."""
     q = ev.curve.q
     half_space = q @ H.T
     if ev.base.weights is None:
         return half_space
-    return half_space + (np.pi / 2) * layer_displacement(ev.base.weights, q, q.shape[1], x)
+    return half_space + (np.pi / 2) * layer_displacement(ev.base.weights, q, mesh, x)
 
 
 def evaluate(cases, state, law, mesh, weights=None):

@@ -3,6 +3,8 @@ error meets it."""
 
 import numpy as np
 
+from .mesh import mesh, panel_mesh
+
 LADDER = (8, 12, 16, 24, 32, 48, 64, 96, 128)
 #: First mesh for rtol at least this.
 _START = ((1e-3, 8), (5e-5, 12), (3e-7, 16), (1e-9, 24))
@@ -20,6 +22,13 @@ def start_nodes(rtol):
 def next_rung(n):
     """The next finer mesh: of the ladder; beyond its end, half as many nodes again."""
     return next((m for m in LADDER if m > n), n + n // 2)
+
+
+def finer_mesh(grid):
+    """The next finer :class:`~solver.mesh.Mesh`: of the ladder, or of the same panels with half as many nodes again."""
+    if len(grid.breaks) == 2:
+        return mesh(next_rung(grid.n))
+    return panel_mesh(grid.order + grid.order // 2, grid.breaks)
 
 
 def climb(rtol, nodes, solve_on, order=None):

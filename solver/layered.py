@@ -18,8 +18,7 @@ import numpy as np
 from scipy.special import j0
 
 from .kernel import decaying_part
-from .mesh import mesh as mesh_of
-from .quadrature import gauss_legendre, lagrange
+from .quadrature import gauss_legendre
 
 #: Octaves of h/a with tables, 2^-11 = 4.9e-4 to 2^40; their cost grows like a/h.
 OCTAVES = (-11, 40)
@@ -94,29 +93,32 @@ def quadrature(octave, depth):
 
 
 @lru_cache(maxsize=256)
-def table(n, octave, depth):
-    """The :class:`Table` for ``mesh(n)``; cached."""
+def table(grid, octave, depth):
+    """The :class:`Table` of a mesh; cached."""
     k, _ = quadrature(octave, depth)
-    grid = mesh_of(n)
+    n = grid.n
     J_edge = j0(k)
     J = j0(k[:, None] * grid.x) - J_edge[:, None]
-    phi = _transform(grid.s, k)
+    phi = _transform(grid, k)
     keep = J.shape[0] * n * n <= _KEEP
     product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n) if keep else None
     return Table(k, J, phi, J_edge, product)
 
 
-def _transform(nodes, k):
+def _transform(grid, k):
     """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
-    phi = np.empty((len(k), len(nodes)))
+    phi = np.empty((len(k), grid.n))
+    ends = np.arcsin(grid.breaks)
     for part in np.array_split(np.arange(len(k)), -(-len(k) // 500)):
-        # x = cos φ, s = sin φ: the phase k cos φ advances by at most 20 a panel
-        panels = int(k[part].max() * (np.pi / 2) / 20) + 1
-        t, w = gauss_legendre(24 + len(nodes) // (2 * panels))
-        angle = (np.pi / 2) * ((np.arange(panels)[:, None] + t) / panels).ravel()
+        # x = cos φ, s = sin φ: the phase k cos φ advances by at most 20 a piece
+        pieces = [int(k[part].max() * (high - low) / 20) + 1 for low, high in zip(ends[:-1], ends[1:], strict=True)]
+        starts = np.concatenate([np.linspace(*ends[i : i + 2], m + 1)[:-1] for i, m in enumerate(pieces)])
+        width = np.repeat(np.diff(ends) / pieces, pieces)
+        t, w = gauss_legendre(24 + grid.order // (2 * min(pieces)))
+        angle = (starts[:, None] + width[:, None] * t).ravel()
         sin, cos = np.sin(angle), np.cos(angle)
-        weight = (np.pi / 2) * np.tile(w / panels, panels) * sin * cos
-        phi[part] = j0(k[part, None] * cos) @ (weight[:, None] * lagrange(nodes, sin))
+        weight = (width[:, None] * w).ravel() * sin * cos
+        phi[part] = j0(k[part, None] * cos) @ (weight[:, None] * grid.basis(sin))
     return phi
 
 
@@ -156,7 +158,7 @@ def layer_rows(weights, q, grid):
     size, n = q.shape
     out = LayerRows(np.empty((size, n, n)), np.empty((size, n)), np.empty((size, n)), np.empty(size))
     for index, octave, depth, W, dW in weights:
-        tab = table(n, octave, depth)
+        tab = table(grid, octave, depth)
         if tab.product is not None:
             out.rows[index] = (W @ tab.product).reshape(-1, n, n)
         else:
@@ -168,10 +170,10 @@ def layer_rows(weights, q, grid):
     return out
 
 
-def layer_displacement(weights, q, n, x):
-    """Λ[q](x) - Λ[q](1) (B, m) at radii x (m,) for q (B, n) on ``mesh(n)``."""
+def layer_displacement(weights, q, grid, x):
+    """Λ[q](x) - Λ[q](1) (B, m) at radii x (m,) for q (B, n) on a mesh."""
     out = np.empty((len(q), len(x)))
     for index, octave, depth, W, _ in weights:
-        tab = table(n, octave, depth)
+        tab = table(grid, octave, depth)
         out[index] = (W * (q[index] @ tab.phi.T)) @ (j0(tab.k[:, None] * x) - tab.J_edge[:, None])
     return out

@@ -6,9 +6,6 @@ from typing import NamedTuple
 import numpy as np
 
 from .equation import displacement_between
-from .mesh import half_space_rows
-from .mesh import mesh as mesh_of
-from .quadrature import lagrange
 
 
 def quantities(cases, state, curve, X, edge_q, law, mesh):
@@ -55,25 +52,28 @@ class Between(NamedTuple):
 
 
 @lru_cache(maxsize=128)
-def _between(n, s_bytes):
-    nodes, s = mesh_of(n).s, np.frombuffer(s_bytes)
-    H = half_space_rows(nodes, s) - mesh_of(n).edge
-    return Between(s, lagrange(nodes, s), H, np.pi / (2 * n) * s * np.sqrt(s / (1 + s)))
+def _between(mesh, s_bytes):
+    s, ends = np.frombuffer(s_bytes), np.array(mesh.breaks)
+    home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)
+    # half the distance of the nodes in x = sqrt(1 - s²), where |dx| = s ds/x
+    spread = (s - ends[home]) * np.where(ends[home + 1] < 1, (ends[home + 1] - s) / np.maximum(1 - s, 1e-300), 1.0)
+    kappa = np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
+    return Between(s, mesh.basis(s), mesh.rows(s), kappa)
 
 
-def interpolate(cases, ev, law, n, s, tolerance=1e-11):
-    """The unknown y (B, m) at points s (m,) > 0 between the n nodes.
+def interpolate(cases, ev, law, mesh, s, tolerance=1e-11):
+    """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh.
 
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
     interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
     asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
     nothing it is q_L. Newton from a two-term guess until the steps are below the relative `tolerance`.
     """
-    rows = _between(n, np.ascontiguousarray(s, dtype=float).tobytes())
+    rows = _between(mesh, np.ascontiguousarray(s, dtype=float).tobytes())
     gamma, beta = law.power(cases.exponent)
     stiff = ev.X * rows.kappa
     x = np.sqrt((1 - rows.s) * (1 + rows.s))
-    Kq = displacement_between(ev, rows.H, x)
+    Kq = displacement_between(ev, rows.H, x, mesh)
     right = rows.s**2 - ev.X * Kq + stiff * (ev.curve.q @ rows.L.T)
     right = np.maximum(right, 1e-9 * rows.s**2)
     linear = stiff + ev.Y
@@ -88,11 +88,11 @@ def interpolate(cases, ev, law, n, s, tolerance=1e-11):
     return y
 
 
-def profiles(cases, ev, n, law, x):
-    """p (B, m) in E2* and λ (B, m) at the radii x (m,) from the solution on n nodes; both 0 at the edge."""
+def profiles(cases, ev, mesh, law, x):
+    """p (B, m) in E2* and λ (B, m) at the radii x (m,) from the solution on a mesh; both 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner = s > 0
-    y = interpolate(cases, ev, law, n, s[inner])
+    y = interpolate(cases, ev, law, mesh, s[inner])
     q = law.evaluate(y, cases.exponent).q
     p, lam = np.zeros((len(q), len(s))), np.zeros((len(q), len(s)))
     p[:, inner] = cases.p_star[:, None] * q

@@ -10,8 +10,8 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import roots_jacobi
 
-#: Dyadic panels towards a logarithmic singularity: the last one is 2^-55 long, so what it lacks is below rounding.
-_PANELS = 56
+#: Panels towards a singularity, each a quarter as long; in the last one the variable is a power, which removes it.
+_PANELS, _POWER = 16, 8
 
 
 @lru_cache(maxsize=64)
@@ -55,15 +55,18 @@ def lagrange(nodes, points):
 
 @lru_cache(maxsize=16)
 def log_rule(n):
-    """Rule on [0, 1] for integrands with a logarithmic singularity at 0: distances from it and weights.
+    """Rule on [0, 1] for integrands with a logarithm or a root at 0: distances from it and weights.
 
-    Dyadic panels with an `n`-point Gauss rule each: the relative error of each panel is below (3 + 2 sqrt 2)^(-2n).
+    Each panel is a quarter as long as the one before, with an `n`-point Gauss rule: its relative error is below 3^(-2n).
     """
     nodes, weights = gauss_legendre(n)
-    upper = 2.0 ** -np.arange(_PANELS)
-    lower = np.append(upper[1:], 0.0)
-    length = (upper - lower)[:, None]
-    return _frozen((lower[:, None] + length * nodes).ravel()), _frozen((length * weights).ravel())
+    upper = 4.0 ** -np.arange(_PANELS)
+    low, length = (upper / 4)[:, None], (upper * 3 / 4)[:, None]
+    last, last_weights = gauss_legendre(n + 8)
+    end = upper[-1] / 4
+    distance = np.concatenate([(low + length * nodes).ravel(), end * last**_POWER])
+    weight = np.concatenate([(length * weights).ravel(), end * _POWER * last ** (_POWER - 1) * last_weights])
+    return _frozen(distance), _frozen(weight)
 
 
 def _frozen(array):

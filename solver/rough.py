@@ -19,7 +19,7 @@ from .equation import (
     operate,
     smooth_start,
 )
-from .ladder import MARGIN, climb, next_rung
+from .ladder import MARGIN, climb, finer_mesh
 from .layered import OCTAVES, octave_of
 from .mesh import mesh
 from .outputs import interpolate, profiles, quantities
@@ -109,10 +109,10 @@ def finish(cases, law, grid, state, x):
     """Output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
-    finer, better = refine(cases, state, ev, law, grid.n)
+    finer, better = refine(cases, state, ev, law, grid)
     error = np.max([np.abs(values[name] / better[name] - 1) for name in _JUDGED], axis=0)
     finite = np.isfinite(ev.residual) & np.isfinite(error)
-    values["p"], values["lam"] = profiles(cases, ev, grid.n, law, x)
+    values["p"], values["lam"] = profiles(cases, ev, grid, law, x)
     values |= {"dP_dD": stiffness(cases, state, ev, values, grid), "residual": ev.residual}
     values["error"] = np.maximum(MARGIN * error, 4 * grid.n * np.finfo(float).eps)
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
@@ -171,11 +171,10 @@ def _rescue(cases, law, grid, state, closed, count):
     state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done
 
 
-def refine(cases, state, ev, law, n):
+def refine(cases, state, ev, law, grid):
     """One Newton step on the next finer mesh: the state there and its quantities (dict)."""
-    m = next_rung(n)
-    fine = mesh(m)
-    start = State(interpolate(cases, ev, law, n, fine.s, 1e-4), state.eta)
+    fine = finer_mesh(grid)
+    start = State(interpolate(cases, ev, law, grid, fine.s, 1e-4), state.eta)
     at_start = evaluate(cases, start, law, fine, ev.base.weights)
     better = newton.advance(cases, start, at_start, fine, law)
     curve, base = law.evaluate(better.y, cases.exponent), at_start.base

@@ -13,7 +13,6 @@ import numpy as np
 from .closed_forms import hertz, hertz_pressure
 from .ladder import MARGIN, climb, next_rung
 from .mesh import mesh
-from .quadrature import lagrange
 from .status import Status
 
 #: Newton steps for ln a under a given load or depth: from above, where the logarithm is concave; 8 do.
@@ -76,7 +75,7 @@ def _on_mesh(control, value, C, n, x):
         q = (modal.c / _denominator(a, C, modal)) @ modal.V.T
         grid = mesh(n)
         F = (8 / np.pi / a)[:, None] * (q @ grid.K.T) + (2 * C / a**2)[:, None] * q - grid.s**2
-    p = np.maximum(q @ lagrange(grid.s, np.sqrt((1 - x) * (1 + x))).T, 0.0)
+    p = np.maximum(q @ grid.basis(np.sqrt((1 - x) * (1 + x))).T, 0.0)
     p[:, x == 1.0] = 0.0
     error = np.maximum(MARGIN * error, 4 * n * np.finfo(float).eps)
     residual = np.abs(F).max(axis=1)

@@ -35,15 +35,15 @@ class Fixed(NamedTuple):
     earlier: np.ndarray
 
 
-def solve(cases, law, mesh, k, rtol, limit):
+def solve(cases, law, mesh, k, rtol, limit, search=false_position):
     """State, status (B,) and total number of approximations (B,) of :class:`~solver.equation.Cases` by the paper's
     scheme.
 
-    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
+    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT); search : of :mod:`.bracket`.
     """
     eta, count = np.log(cases.value), np.zeros(len(cases.value), dtype=int)
     if cases.control != "a":
-        eta = _search(cases, law, mesh, k, rtol, limit or LIMIT, count)
+        eta = _search(search, cases, law, mesh, k, rtol, limit or LIMIT, count)
     fixed = approximate(cases, eta, law, mesh, k, rtol, limit or LIMIT)
     missed = np.abs(_control(cases, eta, fixed.q, mesh))
     with np.errstate(invalid="ignore"):
@@ -95,7 +95,7 @@ def _next(q, cases, XYZ, law, mesh, K, k):
     return (target + k[:, None] * q) / (1 + k[:, None])
 
 
-def _search(cases, law, mesh, k, rtol, limit, count):
+def _search(search, cases, law, mesh, k, rtol, limit, count):
     """ln a (B,) for the load or depth, each radius from the zero start; adds the approximations to `count` (B,)."""
 
     def evaluate(eta, index):
@@ -105,7 +105,7 @@ def _search(cases, law, mesh, k, rtol, limit, count):
         return _control(part, eta, fixed.q, mesh)
 
     with np.errstate(all="ignore"):
-        return false_position(evaluate, np.log(guess_radius(cases, law)), 0.1 * rtol)[0]
+        return search(evaluate, np.log(guess_radius(cases, law)), 0.1 * rtol)[0]
 
 
 def _control(cases, eta, q, mesh):

@@ -1,31 +1,16 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
 from . import picard, rough, smooth
-from .base import local_compliance
-from .equation import Cases
+from .cases import as_cases, dimensionless, restore
 from .ladder import start_nodes
-from .layered import Layer
 from .mesh import mesh
-from .micro import LAWS, scales
+from .micro import LAWS
 from .problem import Solution
 from .status import Status
-
-#: Power of R and of E2* in the unit of each quantity.
-_UNITS = {
-    "a": (1, 0),
-    "D": (1, 0),
-    "A0": (1, 0),
-    "p0": (0, 1),
-    "p_max": (0, 1),
-    "p": (0, 1),
-    "P": (2, 1),
-    "dP_dD": (1, 1),
-}
 
 
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
@@ -67,25 +52,13 @@ def solve(problem, x=(0.0, 1.0)):
     invalid = problem.invalid()
     solution.status[invalid] = Status.INVALID_INPUT
     with np.errstate(all="ignore"):
-        scaled, C = _dimensionless(problem)
+        scaled, C = dimensionless(problem)
     refused = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
     solution.status[refused] = Status.THIN_LAYER_NOT_APPLICABLE
     for index, solver in _routes(problem, ~(invalid | refused)):
         solution.put(index, solver(scaled.take(index), C[index], x))
-    _restore(solution, problem)
+    restore(solution, problem)
     return solution
-
-
-def _dimensionless(problem):
-    """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
-    R, E2 = problem.R, problem.E2
-    # divided one by one: R² or R⁻² may overflow where the quotient does not
-    value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
-    layered = problem.base != "half_space"
-    h, n = problem.h / R, np.where(layered, problem.n, 1.0)
-    springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
-    C = np.where(problem.base == "thin_layer", springs, 0.0)
-    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R), C
 
 
 def _routes(problem, solvable):
@@ -116,24 +89,8 @@ def _smooth_layer(part, C, x):
     return smooth.thin_layer(part.control, part.value, C, part.rtol, part.nodes, x)
 
 
-def _cases(part, C):
-    """:class:`~solver.equation.Cases` of one law on one base, and the law."""
-    micro = str(part.micro[0])
-    spot_scale, spot_depth = scales(part.n, part.Nbar, part.Ra)
-    none, one = np.zeros(len(part)), np.ones(len(part))
-    p_star, A_star, spot_scale, exponent = {
-        "disc_cell": (spot_scale, spot_depth, spot_scale, 2 / 3 * one),
-        "power_law": (part.n * one, part.B * part.Ra, spot_scale, part.beta * one),  # A = B Ra (p/E1*)^β: g = q^β
-        "smooth": (part.n * one, none, none, one),
-    }[micro]
-    layered = part.base[0] == "layered"
-    layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
-    E = part.n if layered else one
-    return Cases(part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent), LAWS[micro]
-
-
 def _newton(part, C, x):
-    cases, law = _cases(part, C)
+    cases, law = as_cases(part, C)
     return rough.solve_newton(cases, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
@@ -143,7 +100,7 @@ def _picard_nodes(problem):
 
 def _picard(part, C, x):
     """Successive approximations on one mesh; their error is the distance to one Newton step on the next finer mesh."""
-    cases, law = _cases(part, C)
+    cases, law = as_cases(part, C)
     n = int(_picard_nodes(part)[0])
     grid = mesh(n)
     with np.errstate(all="ignore"):
@@ -151,12 +108,3 @@ def _picard(part, C, x):
         values, _ = rough.finish(cases, law, grid, state, x)
     status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
     return values | {"status": status.astype(np.int8), "iterations": count}
-
-
-def _restore(solution, problem):
-    """Back to the units of the problem; the controlled quantity exactly as given."""
-    for name, (of_R, of_E2) in _UNITS.items():
-        array = getattr(solution, name)
-        factor = problem.R**of_R * problem.E2**of_E2
-        array *= factor.reshape(-1, *[1] * (array.ndim - 1))
-    getattr(solution, problem.control)[:] = problem.value

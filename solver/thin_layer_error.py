@@ -17,10 +17,12 @@ import numpy as np
 
 from .base import thin_layer_coefficients
 from .kernel import layered_kernel
-from .quadrature import gauss_legendre
 
-#: Panels in ln u of the integral κ: what lies below is of the order of the first u, 1e-7; beyond the last, L = 1.
-_PANELS = np.append(np.arange(-16.0, 3.0), np.log(40.0))
+#: Points and step of the trapezoidal rule for κ in ln u, at both ends of which the integrand decays like e^-|ln u|.
+_STEP = 0.5
+_U = np.exp(np.arange(-16.0, 36.0, _STEP))
+#: Number of points up to u = 45; beyond, L = 1 to rounding.
+_NEAR = int(np.sum(_U < 45.0))
 
 
 class ThinLayerError(NamedTuple):
@@ -52,18 +54,15 @@ def edge_shift(n, nu1, nu2, bonded):
     >>> print(f"{edge_shift(0.5, 0.3, 0.3, False):.4f} {edge_shift(0.5, 0.3, 0.3, True):.4f}")
     0.2326 0.1447
     """
-    n, nu1, nu2, bonded = np.broadcast_arrays(np.asarray(n, float), nu1, nu2, bonded)
+    given = np.broadcast_arrays(np.asarray(n, float), nu1, nu2, bonded)
+    # a batch has few materials: each is integrated once
+    materials, places = np.unique([v.ravel() for v in given], axis=1, return_inverse=True)
+    n, nu1, nu2, bonded = materials[..., None]
     A1, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
-    A2 = np.where(A2 > 0, A2, np.nan)
-    t, w = gauss_legendre(20)
-    width = np.diff(_PANELS)[:, None]
-    u = np.exp(_PANELS[:-1, None] + width * t).ravel()
-    weight = (width * w).ravel() / u
-    L = layered_kernel(u, *(v[..., None] for v in (n, nu1, nu2, bonded))).L
-    inner = np.log((A1[..., None] + A2[..., None] * u) / L) @ weight
-    end = np.exp(_PANELS[-1])
-    outer = np.log(A1 + A2 * end) / end + A2 / A1 * np.log1p(A1 / (A2 * end))
-    return (inner + outer) / np.pi
+    L = np.ones((len(n), len(_U)))
+    L[:, :_NEAR] = layered_kernel(_U[:_NEAR], n, nu1, nu2, bonded != 0).L
+    kappa = np.log((A1 + np.where(A2 > 0, A2, np.nan) * _U) / L) @ (_STEP / np.pi / _U)
+    return kappa[places.ravel()].reshape(given[0].shape)
 
 
 def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
@@ -94,11 +93,46 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
     >>> print(f"{error.P:.2f} {error.a:.2f}")
     -0.36 0.13
     """
+    edge, far, m = _terms(h_a, n, nu1, nu2, bonded)
+    P = 1 + edge + far
+    return ThinLayerError(1 / P - 1, P ** (1 / m) - 1)
+
+
+def largest_error(control, h_a, n, nu1, nu2, bonded):
+    """Estimated size of the largest relative error over a, P, D, p(0), p_max, Ar/An of the thin-layer model.
+
+    Parameters
+    ----------
+    control : "P", "a" or "D"
+        What is given.
+    h_a, n, nu1, nu2, bonded
+        As in :func:`thin_layer_error`.
+
+    Returns
+    -------
+    array
+        For errors from 0.001 to 1 of a smooth sphere, 0.24 to 4.6 times the true one, most often 1 to 2 times; more
+        under asperities at small h/a. NaN where the thin-layer equation does not apply.
+
+    Notes
+    -----
+    The two terms of P/P_thin are taken to add: where they cancel, other quantities are as wrong. Only at given a does
+    the edge shift tell on the load in full; at given P or D it tells on a, and, where it is inwards (κ < 0), twice as
+    much on p(0).
+    """
+    edge, far, m = _terms(h_a, n, nu1, nu2, bonded)
+    inwards = np.where(edge < 0, 2, 1)
+    if control == "P":
+        return (1 + np.abs(edge) + far) ** (inwards / m) - 1
+    return 1 - 1 / (1 + np.abs(edge) * (inwards / m if control == "D" else 1) + far)
+
+
+def _terms(h_a, n, nu1, nu2, bonded):
+    """The terms of the edge and of thick layers in P/P_thin - 1, and m."""
     x = np.asarray(h_a, dtype=float)
     kappa = edge_shift(n, nu1, nu2, bonded)
     g = 32 / (3 * np.pi) * thin_layer_coefficients(n, nu1, nu2, bonded)[1]
     z = g * x / n
     m = 3 + z / (1 + z)
     x0 = np.where(bonded, 1.5 + 2.3 * kappa, 1.55 - 1.16 * np.asarray(n, dtype=float))
-    P = 1 + x * (m * kappa * x0 + g * x) / (x0 + x)
-    return ThinLayerError(1 / P - 1, P ** (1 / m) - 1)
+    return x * m * kappa * x0 / (x0 + x), g * x * x / (x0 + x), m

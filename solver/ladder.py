@@ -5,7 +5,7 @@ import numpy as np
 
 from .mesh import mesh, panel_mesh
 
-LADDER = (8, 12, 16, 24, 32, 48, 64, 96, 128)
+LADDER = (8, 12, 16, 24, 32, 48, 64, 96)
 #: First mesh for rtol at least this.
 _START = ((1e-3, 8), (5e-5, 12), (3e-7, 16), (1e-9, 24))
 #: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
@@ -25,10 +25,10 @@ def next_rung(n):
 
 
 def finer_mesh(grid):
-    """The next finer :class:`~solver.mesh.Mesh`: of the ladder, or of the same panels with half as many nodes again."""
+    """The next finer :class:`~solver.mesh.Mesh`: of the ladder, or of the same panels with a third more nodes."""
     if len(grid.breaks) == 2:
         return mesh(next_rung(grid.n))
-    return panel_mesh(grid.order + grid.order // 2, grid.breaks)
+    return panel_mesh(grid.order + grid.order // 3, grid.breaks)
 
 
 def climb(rtol, nodes, solve_on, order=None):

@@ -1,7 +1,8 @@
 """Rough cases, and smooth ones on the exact layer: the batched Newton iteration, on the mesh that meets the tolerance.
 
 The error of the solution on a mesh is estimated by one Newton step on the next finer mesh: a step from so close is
-nearly as good as the solution there. A case that does not meet its tolerance goes on from there.
+nearly as good as the solution there. A case that does not meet its tolerance goes on from there, and what the finest
+mesh does not resolve, on panels of its own.
 """
 
 import numpy as np
@@ -23,6 +24,7 @@ from .ladder import MARGIN, climb, finer_mesh
 from .layered import OCTAVES, octave_of
 from .mesh import mesh
 from .outputs import interpolate, profiles, quantities
+from .panels import solve_on_panels
 from .status import Status
 
 _JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
@@ -56,6 +58,10 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         return np.where(closed, out["error"][index], np.nan)
 
     unmet = climb(rtol, nodes, solve_on, _neighbours(cases, law))
+    open_end = (unmet | (out["status"] != Status.CONVERGED)) & (nodes == 0) & (limit == 0)
+    for i in np.flatnonzero(open_end):
+        with np.errstate(all="ignore"):
+            unmet[i] = _on_panels(cases.take([i]), law, rtol[i], x, out, i)
     out["status"][unmet] = Status.TOLERANCE_NOT_MET
     lowest = out.pop("lowest")
     _refuse(out, lowest < -np.maximum(10 * out["error"], 1e-9), Status.LIFT_OFF)
@@ -105,6 +111,20 @@ def _rung(cases, law, n, limit, start, x, out, index):
     return finer
 
 
+def _on_panels(case, law, rtol, x, out, i):
+    """Solve case `i` on panels of its own and write it to `out` if that is better; returns whether it misses rtol."""
+    grid, state, closed, count = solve_on_panels(case, law, rtol, iterate)
+    values, _ = finish(case, law, grid, state, x)
+    out["iterations"][i] += count[0]
+    if not closed[0] or not values["error"][0] < np.nan_to_num(out["error"][i], nan=np.inf):
+        return out["status"][i] == Status.CONVERGED
+    for name, value in values.items():
+        out[name][i] = value[0]
+    out["lowest"][i] = state.y.min() / np.abs(state.y).max()
+    out["status"][i] = Status.CONVERGED
+    return values["error"][0] > rtol
+
+
 def finish(cases, law, grid, state, x):
     """Output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
     ev = evaluate(cases, state, law, grid)
@@ -119,7 +139,7 @@ def finish(cases, law, grid, state, x):
     return values | {"nodes": np.full(len(finite), grid.n)}, finer
 
 
-def iterate(cases, state, law, grid, limit):
+def iterate(cases, state, law, grid, limit=newton.LIMIT):
     """Newton steps until the residual is below its tolerance; finished cases leave the batch.
 
     Returns the state, closed (B,) bool and the number of steps (B,).

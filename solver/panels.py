@@ -1,0 +1,94 @@
+"""Cases that one polynomial does not resolve: polynomials on panels, chosen for each case by how its solution varies.
+
+Where the asperities saturate, A → B̄²/(3Ra), inside a contact, the pressure has a corner at s² = Z/3, as wide as the
+base is stiff; a stiff or thin base adds an edge layer. Both are found by the coefficients of the pressure and of the
+contact area on each panel, and enclosed by halving.
+"""
+
+import numpy as np
+
+from .equation import State, evaluate, first_guess
+from .ladder import finer_mesh
+from .mesh import panel_mesh
+from .outputs import interpolate, spot_area
+from .quadrature import radau_nodes
+
+#: Panels to begin with, nodes on each, and the narrowest panel as a power of 1/2.
+START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
+ORDER = 12
+DEPTH = 30
+#: Rounds of solving and halving; the second mostly changes nothing.
+_ROUNDS = 6
+#: A panel is resolved when what its last coefficients add to the load and the real area is below this times rtol.
+_SHARE = 0.3
+
+
+def solve_on_panels(case, law, rtol, iterate):
+    """Solve one case (a batch of one) on panels that resolve it.
+
+    iterate(case, state, law, grid) -> state, closed (1,), count (1,).
+
+    Returns
+    -------
+    grid, state, closed, count
+    """
+    breaks, state, total = START, None, 0
+    for _ in range(_ROUNDS):
+        grid = panel_mesh(ORDER, breaks)
+        state, closed, count = iterate(case, state or first_guess(case, law, grid), law, grid)
+        total += count
+        ev = evaluate(case, state, law, grid)
+        if not np.isfinite(ev.residual[0]):
+            break
+        better = resolve(case, ev, state, law, grid, rtol)
+        if better == breaks:
+            break
+        nodes = panel_nodes(better)
+        state, breaks = State(interpolate(case, ev, law, grid, nodes), state.eta), better
+    return grid, state, closed, total
+
+
+def panel_nodes(breaks):
+    """Nodes (n,) of ``panel_mesh(ORDER, breaks)``."""
+    ends = np.array(breaks)
+    return (ends[:-1, None] + np.diff(ends)[:, None] * radau_nodes(ORDER)).ravel()
+
+
+def resolve(case, ev, state, law, grid, rtol):
+    """Ends of panels (tuple) that resolve q and λ of a solution; those of `grid` where it is resolved."""
+    q = ev.curve.q[0]
+    lam = _area(case, state.y, q[None], law)[0]
+    scale = np.array([q @ grid.w, lam @ grid.w]) * _SHARE * rtol
+    inside = {}  # panel -> values of q and λ at its nodes
+    for i, panel in enumerate(zip(grid.breaks[:-1], grid.breaks[1:], strict=True)):
+        part = slice(i * grid.order, (i + 1) * grid.order)
+        inside[panel] = np.stack([q[part], lam[part]])
+    ends, todo = {1.0}, list(inside)
+    while todo:
+        halves = []
+        for low, high in todo:
+            if high - low > 2.0**-DEPTH and np.any(_tail(inside[low, high]) * (high**2 - low**2) > scale):
+                middle = (low + high) / 2
+                halves += [(low, middle), (middle, high)]
+            else:
+                ends.add(low)
+        if halves:
+            nodes = np.concatenate([low + (high - low) * radau_nodes(ORDER) for low, high in halves])
+            y = interpolate(case, ev, law, grid, nodes)
+            q_new = law.evaluate(y, case.exponent).q
+            values = np.stack([q_new[0], _area(case, y, q_new, law)[0]])
+            inside = dict(zip(halves, np.split(values, len(halves), axis=1), strict=True))
+        todo = halves
+    return tuple(sorted(ends))
+
+
+def _area(case, y, q, law):
+    return spot_area(law.spot(y, (case.p_star / case.spot_scale)[:, None] * q))
+
+
+def _tail(values):
+    """Size of the last two Legendre coefficients of values (k, ORDER) at the nodes of a panel: (k,)."""
+    return np.abs(values @ _LAST).sum(axis=1)
+
+
+_LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]

@@ -21,8 +21,8 @@ MOST_VALUES = 500_000_000  # numbers in one results file, 4 GB: a larger grid is
 FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
 PER_CASE = 16  # numbers per case besides the profiles, roughly
 SECTIONS = {
-    "contact": ("title", "kind", "model", "axes", "cases", "numerics", "output"),
-    "micro_law": ("title", "kind", "model", "axes", "cases", "fit"),
+    "contact": ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output"),
+    "micro_law": ("title", "kind", "model", "axes", "cases", "sample", "fit"),
 }
 
 
@@ -91,6 +91,8 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
             draft.scalar(key, numerics[key], "[numerics]")
     if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
         draft.cases(tables["cases"])
+    if "sample" in tables:
+        draft.sample(tables["sample"])
     for key, value in _table(tables, "axes", None, draft).items():
         draft.axis(key, value, "[axes]")
     output = _table(tables, "output", ("x", "profiles"), draft)

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from .grid import Grid, as_array, axis_values, shown, twins
+from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
 
 
@@ -49,8 +50,7 @@ class Draft:
         if not rows:
             self.errors.append("cases is empty: must have at least one case")
             return
-        self.sizes["case"] = len(rows)
-        self.labels["case"] = ("case",), np.arange(len(rows), dtype=np.int32)
+        self._number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
                 self._case_labels([row.get("label", "") for row in rows])
@@ -60,6 +60,17 @@ class Draft:
                 self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
         points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
         self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]
+
+    def sample(self, table) -> None:
+        """Random points, drawn as the table says: the dimension `case`."""
+        given = table if isinstance(table, dict) else {}
+        known = {name: spec for name, spec in given.items() if name in LIMITS or self._accept(name, "[sample]")}
+        if "case" in self.sizes:
+            self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
+            return
+        for name, values in draw(known if given else table, self.errors).items():
+            self._number_cases(len(values))
+            self.values[name] = ("case",), as_array(VOCABULARY[name], values, name, self.errors)
 
     def array(self, name: str, given) -> None:
         """A DataArray: values over its own dimensions, which may be shared with other parameters."""
@@ -108,6 +119,10 @@ class Draft:
         given = [name for name in CONTROLS if name in self.sections]
         if len(given) != 1:
             self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
+
+    def _number_cases(self, count: int) -> None:
+        self.sizes["case"] = count
+        self.labels["case"] = ("case",), np.arange(count, dtype=np.int32)
 
     def _case_labels(self, labels: list) -> None:
         if not all(isinstance(label, str) for label in labels):

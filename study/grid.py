@@ -1,7 +1,9 @@
 """The grid of cases: parameters along named dimensions, their flat columns (B,), and the way back."""
 
 import math
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import product
 
 import numpy as np
 
@@ -35,17 +37,59 @@ class Grid:
 
 
 def columns(grid: Grid, start: int, stop: int) -> dict[str, np.ndarray]:
-    """Parameters of the cases start <= i < stop, each (stop - start,); what a case does not need (NaN) becomes 1."""
-    places = (
-        dict(zip(grid.sizes, np.unravel_index(np.arange(start, stop), grid.shape), strict=True)) if grid.sizes else {}
-    )
+    """Parameters of the cases start <= i < stop, see `columns_at`."""
+    return columns_at(grid, np.arange(start, stop))
+
+
+def columns_at(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
+    """Parameters of the cases at `index` (k,), each (k,); what a case does not need (NaN) becomes 1."""
+    places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}
     found = {}
     for name, (dims, array) in grid.values.items():
-        column = array[tuple(places[dim] for dim in dims)] if dims else np.full(stop - start, array)
+        column = array[tuple(places[dim] for dim in dims)] if dims else np.full(len(index), array)
         if column.dtype.kind == "f":
             column = np.where(np.isnan(column), 1.0, column)
         found[name] = column
     return found
+
+
+def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
+    """The grid within a window, a slice for each dimension."""
+
+    def within(table: dict) -> dict:
+        return {name: (dims, array[tuple(window[dim] for dim in dims)]) for name, (dims, array) in table.items()}
+
+    sizes = {dim: len(range(size)[window[dim]]) for dim, size in grid.sizes.items()}
+    return Grid(sizes, within(grid.values), within(grid.labels))
+
+
+def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
+    """Windows of at most `most` cases that follow each other in the flat order of the cases, each of whole chunks.
+
+    chunk : largest number of cases in a chunk; see `box`
+    """
+    lengths = box(grid.shape, max(chunk, most))
+    lengths = [
+        length if length == size else length - length % within
+        for length, within, size in zip(lengths, box(grid.shape, chunk), grid.shape, strict=True)
+    ]
+    for corner in product(*(range(0, size, length) for size, length in zip(grid.shape, lengths, strict=True))):
+        yield {
+            dim: slice(low, min(low + length, size))
+            for (dim, size), low, length in zip(grid.sizes.items(), corner, lengths, strict=True)
+        }
+
+
+def box(shape: tuple[int, ...], most: int) -> list[int]:
+    """Lengths of a box of at most `most` cases that are consecutive in flat order: 1, ..., 1, length, whole, ..."""
+    lengths, inner = [1] * len(shape), 1
+    for axis in reversed(range(len(shape))):
+        pieces = -(-shape[axis] * inner // most)
+        lengths[axis] = -(-shape[axis] // pieces)
+        if pieces > 1:
+            break
+        inner *= shape[axis]
+    return lengths
 
 
 def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
@@ -97,9 +141,21 @@ def axis_values(raw, key: str, errors: list[str]) -> list:
 
 def _range_values(raw: dict, key: str, errors: list[str]) -> list:
     before = len(errors)
+    check_range(raw, key, errors, ("start", "stop", "num", "spacing"))
+    num = raw.get("num")
+    if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
+        errors.append(f"{key}: num = {shown(num)}: must be a whole number in [2, {LONGEST_AXIS}]")
+    if len(errors) > before:
+        return []
+    make = np.geomspace if raw.get("spacing", "linear") == "log" else np.linspace
+    return make(raw["start"], raw["stop"], num).tolist()
+
+
+def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) -> None:
+    """Messages for the spacing and the ends of a range, and for what it has that is not one of `names`."""
     for name in raw:
-        if name not in ("start", "stop", "num", "spacing"):
-            errors.append(f'{key}: "{name}" is not allowed; a range is {{start, stop, num, spacing}}')
+        if name not in names:
+            errors.append(f'{key}: "{name}" is not allowed; a range is {{{", ".join(names)}}}')
     spacing = raw.get("spacing", "linear")
     if spacing not in ("linear", "log"):
         errors.append(f'{key}: spacing = {shown(spacing)}: must be one of "linear", "log"')
@@ -109,13 +165,6 @@ def _range_values(raw: dict, key: str, errors: list[str]) -> list:
             errors.append(
                 f"{key}: {end} = {shown(value)}: must be a finite number{', > 0 for spacing log' * (spacing == 'log')}"
             )
-    num = raw.get("num")
-    if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
-        errors.append(f"{key}: num = {shown(num)}: must be a whole number in [2, {LONGEST_AXIS}]")
-    if len(errors) > before:
-        return []
-    make = np.geomspace if spacing == "log" else np.linspace
-    return make(raw["start"], raw["stop"], num).tolist()
 
 
 def twins(values: list) -> list[tuple[int, int]]:

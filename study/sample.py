@@ -1,0 +1,102 @@
+"""Random cases: the section [sample] of a study file becomes columns of values, the same on every machine."""
+
+import re
+
+import numpy as np
+
+from .grid import LONGEST_AXIS, check_range, shown
+from .vocabulary import VOCABULARY, check
+
+KEYS = ("start", "stop", "spacing", "over")
+LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
+
+
+def draw(table, errors: list[str]) -> dict[str, list]:
+    """Columns of a random sample: parameter -> list of `size` values, in the order of the table.
+
+    Parameters
+    ----------
+    table : {size, seed, NAME = ..., ...}, known names; each parameter either a list, drawn with equal chances, or a
+        range {start, stop, spacing = "linear" | "log"}, drawn uniformly in the parameter or in its logarithm. A range
+        with over = "Ra^2" is that of the product with Ra^2: what is drawn is divided by that power of another
+        parameter of the sample.
+    errors : messages are appended here; {} is returned then
+
+    Notes
+    -----
+    Each parameter has a stream of its own, so that a further parameter changes no other and a larger `size` continues
+    the sample. The values are rounded to six digits: powers may differ in the last bit between machines, these do not,
+    and any case can be written down.
+    """
+    if not isinstance(table, dict):
+        errors.append(f"sample = {shown(table)}: must be a table [sample]")
+        return {}
+    before = len(errors)
+    for key, (low, high) in LIMITS.items():
+        if type(table.get(key)) is not int or not low <= table[key] <= high:
+            errors.append(f"[sample] {key} = {shown(table.get(key))}: must be a whole number in [{low}, {high}]")
+    drawn = {name: given for name, given in table.items() if name not in LIMITS}
+    if not drawn:
+        errors.append("[sample] has no parameter: must draw at least one")
+    for name in drawn:
+        _check(name, drawn, errors)
+    if len(errors) > before:
+        return {}
+    columns = {}
+    for name in sorted(drawn, key=lambda name: "over" in drawn[name]):  # what others are divided by comes first
+        columns[name] = _column(drawn[name], uniform(table["size"], table["seed"], name), columns)
+    return {name: columns[name] for name in drawn}
+
+
+def uniform(size: int, seed: int, name: str) -> np.ndarray:
+    """(size,) numbers uniform on [0, 1): the upper 53 bits of PCG64 seeded by `seed` and `name`.
+
+    numpy promises these bits for ever, which it does not for the numbers of its Generator.
+    """
+    return (np.random.PCG64([seed, *name.encode()]).random_raw(size) >> np.uint64(11)) * 2.0**-53
+
+
+def _column(given, u: np.ndarray, columns: dict[str, list]) -> list:
+    if isinstance(given, list):
+        return [given[int(i)] for i in u * len(given)]
+    start, stop = float(given["start"]), float(given["stop"])
+    log = given.get("spacing", "linear") == "log"
+    values = _rounded(start ** (1 - u) * stop**u if log else start * (1 - u) + stop * u)
+    values = np.clip(values, start, stop)
+    if "over" in given:
+        other, power = _power(given["over"])
+        values = _rounded(values / np.array(columns[other]) ** power)
+    return values.tolist()
+
+
+def _rounded(values: np.ndarray) -> np.ndarray:
+    return np.array([float(f"{value:.5e}") for value in values])
+
+
+def _power(over) -> tuple[str, int]:
+    """("Ra", 2) of "Ra^2" or ("Ra", 1) of "Ra"; ("", 0) of anything else."""
+    found = re.fullmatch(r"(\w+?)(?:\^([1-9]))?", over) if isinstance(over, str) else None
+    return (found[1], int(found[2] or 1)) if found else ("", 0)
+
+
+def _check(name: str, drawn: dict, errors: list[str]) -> None:
+    """Messages for one parameter of the table."""
+    key, given, entry = f"[sample] {name}", drawn[name], VOCABULARY[name]
+    if isinstance(given, list) and given:
+        return  # its values are checked like any
+    if not isinstance(given, dict) or entry.choices or entry.whole:
+        form = "" if entry.choices or entry.whole else f"{{{', '.join(KEYS)}}} or "
+        errors.append(f"{key} = {shown(given)}: must be {form}a list to choose from")
+        return
+    before = len(errors)
+    check_range(given, key, errors, KEYS)
+    if len(errors) == before and not given["start"] < given["stop"]:
+        errors.append(f"{key}: stop = {shown(given['stop'])}: must be > start")
+    if "over" in given:
+        plain = [n for n, other in drawn.items() if isinstance(other, dict) and "over" not in other]
+        if _power(given["over"])[0] not in plain:
+            allowed = " or ".join(plain) or "none here"
+            errors.append(f"{key}: over = {shown(given['over'])}: must be a power of a range of [sample]: {allowed}")
+    elif len(errors) == before:
+        bad = [(end, check(entry, given[end])) for end in ("start", "stop")]
+        errors += [f"{key}: {end} = {shown(given[end])}: {text}" for end, text in bad if text]

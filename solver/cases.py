@@ -32,7 +32,8 @@ def dimensionless(problem):
     h, n = problem.h / R, np.where(layered, problem.n, 1.0)
     springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
     C = np.where(problem.base == "thin_layer", springs, 0.0)
-    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R), C
+    one = np.ones(len(problem))
+    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
 
 
 def as_cases(part, C):

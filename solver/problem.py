@@ -1,6 +1,7 @@
 """What is asked and what is answered: arrays over a batch of cases."""
 
 from dataclasses import dataclass, fields
+from enum import IntEnum
 
 import numpy as np
 
@@ -8,10 +9,12 @@ from .base import BONDINGS
 from .equation import CONTROLS
 from .micro import MICROS
 
-BASES = ("half_space", "thin_layer", "layered")
+BASES = ("half_space", "thin_layer", "layered", "auto")
 SCHEMES = ("newton", "picard")
+#: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
+MODEL_CHECKS = ("closed_form", "first_order")
 
-_TEXT = {"bonding": BONDINGS, "base": BASES, "micro": MICROS, "scheme": SCHEMES}
+_TEXT = {"bonding": BONDINGS, "base": BASES, "micro": MICROS, "scheme": SCHEMES, "model_check": MODEL_CHECKS}
 _WHOLE = ("nodes", "max_iterations")
 
 #: Value of each parameter that is not given, in the order of the fields of :class:`Problem`.
@@ -24,6 +27,8 @@ DEFAULTS = {
     "Nbar": 1.0,
     "Ra": 1.0,
     "base": "thin_layer",
+    "accuracy": 1e-2,
+    "model_check": "closed_form",
     "micro": "disc_cell",
     "B": 1.0,
     "beta": 0.5,
@@ -35,6 +40,20 @@ DEFAULTS = {
     "R": 1.0,
     "E2": 1.0,
 }
+
+
+class Model(IntEnum):
+    """What a case was solved with; smooth models get their asperities afterwards, from the nominal pressure."""
+
+    NONE = 0
+    HALF_SPACE = 1
+    SMOOTH_HALF_SPACE = 2
+    LAYER_ALONE = 3
+    SMOOTH_LAYER_ALONE = 4
+    THIN_LAYER = 5
+    SMOOTH_THIN_LAYER = 6
+    LAYERED = 7
+    SMOOTH_LAYERED = 8
 
 
 @dataclass(frozen=True)
@@ -55,6 +74,8 @@ class Problem:
     Nbar: np.ndarray
     Ra: np.ndarray
     base: np.ndarray
+    accuracy: np.ndarray
+    model_check: np.ndarray
     micro: np.ndarray
     B: np.ndarray
     beta: np.ndarray
@@ -111,6 +132,7 @@ class Problem:
         bad |= layered & ~((self.nu1 > -1) & (self.nu1 <= 0.5) & (self.nu2 > -1) & (self.nu2 <= 0.5))
         bad |= rough & (_not_positive(self.Nbar) | _not_positive(self.Ra))
         bad |= power & (_not_positive(self.B) | ~((self.beta > 0) & (self.beta <= 1)))
+        bad |= (self.base == "auto") & ~((self.accuracy > 0) & (self.accuracy < 1))
         bad |= ~((self.rtol > 0) & (self.rtol < 1)) | ~((self.k >= 0) & np.isfinite(self.k))
         return bad | ((self.nodes != 0) & ((self.nodes < 4) | (self.nodes > 256))) | (self.max_iterations < 0)
 
@@ -136,8 +158,10 @@ class Solution:
     a, D in R; P in E2 R²; p0 = p(0), p_max (13), p in E2; A0 = A[p(0)] in R; Ar_An (12) and lam = λ(r/a) (11)
     without unit; dP_dD in E2 R. `status` is a :class:`~solver.status.Status`; `residual` the largest residual of the
     equation relative to its right-hand side; `error` the estimated relative error, the largest over a, P, D, p0,
-    p_max, Ar_An (the profiles between the nodes are not in it); `iterations`; `nodes` used (0: closed form). A case
-    without numbers holds NaN everywhere but in the controlled quantity.
+    p_max, Ar_An (the profiles between the nodes are not in it); `iterations`; `nodes` used (0: closed form);
+    `model_error` the same for the model used against the exact layered rough one (0 for that one, and for a half-space
+    asked for by name); `model_used` a :class:`Model`. A case without numbers holds NaN everywhere but in the controlled
+    quantity.
     """
 
     a: np.ndarray
@@ -150,7 +174,9 @@ class Solution:
     dP_dD: np.ndarray
     residual: np.ndarray
     error: np.ndarray
+    model_error: np.ndarray
     status: np.ndarray
+    model_used: np.ndarray
     iterations: np.ndarray
     nodes: np.ndarray
     p: np.ndarray
@@ -160,7 +186,8 @@ class Solution:
     def empty(cls, size, points):
         """`size` cases without numbers, with profiles of `points` radii."""
         values = {f.name: np.full(size, np.nan) for f in fields(cls)}
-        values["status"] = np.zeros(size, dtype=np.int8)
+        for name in ("status", "model_used"):
+            values[name] = np.zeros(size, dtype=np.int8)
         for name in ("iterations", "nodes"):
             values[name] = np.zeros(size, dtype=np.int32)
         for name in ("p", "lam"):

@@ -4,12 +4,13 @@ from itertools import product
 
 import numpy as np
 
-from . import picard, rough, smooth
+from . import auto, picard, rough, smooth
 from .cases import as_cases, dimensionless, restore
 from .ladder import start_nodes
 from .mesh import mesh
 from .micro import LAWS
-from .problem import Solution
+from .model_error import closed_form
+from .problem import Model, Solution
 from .status import Status
 
 
@@ -36,7 +37,8 @@ def solve(problem, x=(0.0, 1.0)):
 
     Notes
     -----
-    Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases iterate.
+    Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases iterate. The
+    base "auto" is the cheapest of :mod:`.auto` that meets `accuracy`.
 
     Examples
     --------
@@ -57,12 +59,17 @@ def solve(problem, x=(0.0, 1.0)):
     solution.status[refused] = Status.THIN_LAYER_NOT_APPLICABLE
     for index, solver in _routes(problem, ~(invalid | refused)):
         solution.put(index, solver(scaled.take(index), C[index], x))
+    _name_models(scaled, solution)
     restore(solution, problem)
     return solution
 
 
 def _routes(problem, solvable):
     """(index, solver) for each kind of case present."""
+    judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
+    yield from _route(solvable & judged, _judged)
+    yield from _route(solvable & (problem.base == "auto"), _auto)
+    solvable = solvable & ~judged & (problem.base != "auto")
     is_smooth, by_picard = problem.micro == "smooth", (problem.scheme == "picard") & (problem.micro != "smooth")
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
@@ -79,6 +86,14 @@ def _routes(problem, solvable):
 def _route(mask, solver):
     if mask.any():
         yield np.flatnonzero(mask), solver
+
+
+def _auto(part, C, x):
+    return vars(auto.cheapest(part, x, solve))
+
+
+def _judged(part, C, x):
+    return vars(auto.judged(part, x, solve))
 
 
 def _smooth_half_space(part, C, x):
@@ -108,3 +123,13 @@ def _picard(part, C, x):
         values, _ = rough.finish(cases, law, grid, state, x)
     status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
     return values | {"status": status.astype(np.int8), "iterations": count}
+
+
+def _name_models(problem, solution):
+    """`model_used` and `model_error` of the cases whose base was asked for by name, in place."""
+    named = problem.base != "auto"
+    solution.model_used[named] = auto.model_of(problem)[named]
+    solved = np.isfinite(solution.p0)
+    solution.model_error[solved & named & (problem.base != "thin_layer")] = 0.0
+    thin = np.flatnonzero(solved & (problem.base == "thin_layer") & (problem.model_check == "closed_form"))
+    solution.model_error[thin] = closed_form(problem.take(thin), solution.a[thin])

@@ -10,7 +10,7 @@ from .ladder import start_nodes
 from .mesh import mesh
 from .micro import LAWS
 from .model_error import closed_form
-from .problem import Model, Solution
+from .problem import Solution
 from .status import Status
 
 

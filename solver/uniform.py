@@ -14,11 +14,11 @@ from scipy.special import ellipkm1
 
 from . import picard
 from .bracket import bisection
+from .cases import as_cases, dimensionless, restore
 from .equation import evaluate
 from .outputs import quantities
 from .problem import Solution
 from .quadrature import gauss_legendre
-from .solve import as_cases, dimensionless, restore
 from .status import Status
 
 #: Approximations at one radius: where they have not arrived by then they cycle.
@@ -83,7 +83,7 @@ def _kernel(x, source):
 
 
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
-def solve_uniform(problem, intervals, k, tolerance):
+def solve_uniform(problem, intervals, k, tolerance, limit=LIMIT):
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 
     Parameters
@@ -97,6 +97,8 @@ def solve_uniform(problem, intervals, k, tolerance):
     tolerance : float
         The approximations stop when |p̂ - p| is below a tenth of it, relative to the largest pressure; the halving of
         ln a when the bracket is.
+    limit : int
+        Approximations at one radius.
 
     Returns
     -------
@@ -126,15 +128,16 @@ def solve_uniform(problem, intervals, k, tolerance):
     solution.status[invalid], solution.status[refused] = Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE
     index = np.flatnonzero(~(invalid | refused))
     if len(index):
-        solution.put(index, _solve(*as_cases(scaled.take(index), C[index]), uniform_mesh(intervals), k, tolerance))
+        cases, law = as_cases(scaled.take(index), C[index])
+        solution.put(index, _solve(cases, law, uniform_mesh(intervals), k, tolerance, limit))
     restore(solution, problem)
     return solution
 
 
-def _solve(cases, law, grid, k, tolerance):
+def _solve(cases, law, grid, k, tolerance, limit):
     """Output arrays (dict) of :class:`~solver.equation.Cases`."""
     one = np.ones(len(cases.value))
-    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, LIMIT, search=bisection)
+    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, limit, search=bisection)
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
     line = np.append(np.ones(grid.n - 1), 0.5) / grid.n

@@ -1,0 +1,197 @@
+"""Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
+
+Time is that of one thread, the shortest of the repeats, over all cases of a set, solved as one batch. The error of a
+case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11; a case without
+an answer, or more than 100 % off, counts as 1.
+"""
+
+import hashlib
+import json
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+
+import numpy as np
+import xarray as xr
+
+from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
+from solver.problem import BASES
+from solver.uniform import solve_uniform
+
+from . import paper_error
+from .dataset import provenance
+from .problem_sets import SETS
+
+JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
+REFERENCE = 1e-11
+ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
+X = np.array([0.0, 1.0])
+PATIENCE = 1.0
+"""Seconds after which a measurement is not repeated."""
+
+PAPERS = ("paper, layer", "paper, half-space")
+PAPERS_BASES = ("thin_layer", "half_space")
+TOLERANCES = tuple(10.0**-i for i in range(2, 11))
+NODES = (8.0, 12.0, 16.0, 24.0, 32.0, 48.0)
+MESHES = (10.0, 20.0, 40.0, 80.0, 160.0)
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
+
+    sets : where it is measured; bases : the cases it takes part in; model : it solves another model than the set's
+    """
+
+    run: Callable[[dict, float], Solution]
+    varied: str
+    settings: tuple[float, ...]
+    sets: tuple[str, ...] = tuple(SETS)
+    bases: tuple[str, ...] = BASES
+    model: bool = False
+
+
+def papers_way(cases: dict, k: float, intervals: float) -> Solution:
+    """The paper's, in batches of one base and law; everything is iterated until the mesh is the largest error."""
+    problem = Problem.of(**cases)
+    solution = Solution.empty(len(problem), 0)
+    for base, micro in {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}:
+        index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
+        part = solve_uniform(problem.take(index), int(intervals), k, 0.3 / intervals**2)
+        solution.put(index, {name: getattr(part, name) for name in (*JUDGED, "status")})
+    return solution
+
+
+def changed(**parameters) -> Callable[[dict, float], Solution]:
+    """`run` of the solver on the cases with other parameters; one that is a function is given the setting."""
+
+    def run(cases: dict, setting: float) -> Solution:
+        new = {name: value(setting) if callable(value) else value for name, value in parameters.items()}
+        return solve(Problem.of(**cases | new), X)
+
+    return run
+
+
+def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution]:
+    """`run` with one model for the other and the other for the one; the setting is rtol."""
+
+    def run(cases: dict, setting: float) -> Solution:
+        values = np.where(cases[name] == one, other, np.where(cases[name] == other, one, cases[name]))
+        return solve(Problem.of(**cases | {name: values, "rtol": setting}), X)
+
+    return run
+
+
+def _picard(k: float) -> Way:
+    options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
+    return Way(changed(**options), "nodes", NODES[:5], PAPERS)
+
+
+WAYS = {
+    **{
+        f"paper k = {k:g}": Way(lambda cases, n, k=k: papers_way(cases, k, n), "intervals", MESHES, PAPERS)
+        for k in (0.0, 1.0, 2.0, 5.0, 20.0)
+    },
+    "paper k = 5, extremes": Way(
+        lambda cases, n: papers_way(cases, 5.0, n), "intervals", MESHES[1:4], ("extremes",), PAPERS_BASES
+    ),
+    "picard k = 2": _picard(2.0),
+    "picard k = 20": _picard(20.0),
+    "newton, nodes": Way(changed(nodes=int, rtol=REFERENCE), "nodes", NODES),
+    "newton, rtol": Way(changed(rtol=float), "rtol", TOLERANCES),
+    "the other law": Way(
+        swapped("micro", "power_law", "disc_cell"), "rtol", (1e-6,), (*PAPERS, "coatings"), model=True
+    ),
+    "the other layer": Way(
+        swapped("base", "thin_layer", "layered"), "rtol", (1e-6,), ("paper, layer", "coatings"), model=True
+    ),
+}
+QUALITIES = ("setting", "time", "median", "most", "worst", "ended")
+
+
+def measure(size: int = 100, repeats: int = 3, seed: int = 1, command: str = "") -> xr.Dataset:
+    """Work and precision over (set, way, step), with `cases` that were measured, and the variables of `paper_error`.
+
+    size : cases of each set; those that the model cannot solve (`status` of the reference) are left out
+    """
+    shape = len(SETS), len(WAYS), max(len(way.settings) for way in WAYS.values())
+    found = {name: np.full(shape, np.nan) for name in QUALITIES}
+    counts = np.zeros(shape[:2], dtype=np.int32)
+    for i, (name, make) in enumerate(SETS.items()):
+        everything = with_reference(make(size, seed))
+        for j, way in enumerate(WAYS.values()):
+            if name not in way.sets:
+                continue
+            cases, reference = taken(*everything, np.flatnonzero(np.isin(everything[0]["base"], way.bases)))
+            counts[i, j] = len(reference.a)
+            for step, setting in enumerate(way.settings):
+                for key, value in measured(way, setting, cases, reference, repeats).items():
+                    found[key][i, j, step] = value
+    return assembled(found, counts, {"size": size, "repeats": repeats, "seed": seed}, command)
+
+
+def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int) -> dict[str, float]:
+    """QUALITIES of one way with one setting."""
+    seconds, solution = timed(lambda: way.run(cases, setting), repeats)
+    error = errors(solution, reference)
+    median, most = np.quantile(error, (0.5, 0.95), method="higher")
+    ended = np.isin(solution.status, ENDED).mean()
+    numbers = (setting, seconds / len(error), median, most, error.max(), ended)
+    return dict(zip(QUALITIES, numbers, strict=True))
+
+
+def with_reference(cases: dict) -> tuple[dict, Solution]:
+    """The cases that the model can solve at all, and their solutions at the finest tolerance."""
+    reference = solve(Problem.of(**cases | {"rtol": REFERENCE}), X)
+    return taken(cases, reference, np.flatnonzero(np.isin(reference.status, ENDED)))
+
+
+def taken(cases: dict, reference: Solution, index: np.ndarray) -> tuple[dict, Solution]:
+    """The cases at `index` and their reference."""
+    part = {name: value[index] if np.ndim(value) else value for name, value in cases.items()}
+    return part, replace(reference, **{name: getattr(reference, name)[index] for name in vars(reference)})
+
+
+def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution]:
+    """Shortest time of an action and what it gave; the first run, which fills the caches, counts only if it is long."""
+    times, solution = [], None
+    for _ in range(1 + repeats):
+        start = time.perf_counter()
+        solution = action()
+        times.append(time.perf_counter() - start)
+        if sum(times) > PATIENCE:
+            break
+    return min(times), solution
+
+
+def errors(solution: Solution, reference: Solution) -> np.ndarray:
+    """(B,) largest relative error of each case over JUDGED; at most, and without an answer, 1."""
+    with np.errstate(all="ignore"):
+        found = [np.abs(getattr(solution, name) / getattr(reference, name) - 1) for name in JUDGED]
+    return np.minimum(np.nan_to_num(np.max(found, axis=0), nan=1.0, posinf=1.0), 1.0)
+
+
+def assembled(found: dict, counts: np.ndarray, settings: dict, command: str) -> xr.Dataset:
+    """The dataset, with the provenance of every other one."""
+    words = {
+        "setting": "what is varied along step, as `varied` says",
+        "time": "time per case on one thread",
+        "median": "error of half the cases",
+        "most": "error of 95 % of the cases",
+        "worst": "largest error",
+        "ended": "share of cases whose iteration closed",
+    }
+    variables = {
+        name: (("set", "way", "step"), array, {"long_name": words[name], "units": "s" if name == "time" else "1"})
+        for name, array in found.items()
+    }
+    variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured", "units": "1"}
+    variables["varied"] = "way", [way.varied for way in WAYS.values()]
+    variables["model"] = "way", np.array([way.model for way in WAYS.values()], dtype=np.int8)
+    text = json.dumps(settings)
+    digest = hashlib.sha256((NUMERICS_VERSION + text).encode()).hexdigest()
+    title = "Work and precision of every way to solve the model"
+    whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest)
+    coordinates = {"set": list(SETS), "way": list(WAYS)}
+    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.iterates())

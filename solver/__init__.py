@@ -3,7 +3,7 @@ scipy only."""
 
 from . import closed_forms, micro
 from .fit import Fit, fit_power_law
-from .problem import Problem, Solution
+from .problem import Model, Problem, Solution
 from .solve import solve
 from .status import Status
 
@@ -13,6 +13,7 @@ NUMERICS_VERSION = "2"
 __all__ = [
     "NUMERICS_VERSION",
     "Fit",
+    "Model",
     "Problem",
     "Solution",
     "Status",

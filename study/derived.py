@@ -13,24 +13,46 @@ FEW_SPOTS = 100.0
 """The model spreads the asperities evenly: with fewer spots than this in the nominal area, N̄πa², they are not many."""
 SPOT_OVER_LAYER = 0.1
 """The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
-ASSUMPTIONS = {1: "layer_not_thin", 2: "few_spots", 4: "spot_not_small_against_h", 8: "n_not_below_one"}
+NOT_THIN = 0.1
+"""Largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %."""
+MERGING = 0.4
+"""Largest λ(0) of spots that do not merge: the disc cell then overestimates A[p] by 10 % against a square lattice of
+asperities and by 11 % against a hexagonal one, λ and p_max err by 3 % (tests/test_micro_lattice.py computes it)."""
+STEEP = 0.2
+"""Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and the sphere is at
+r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
+COMPRESSED = 0.1
+"""Largest compressive strain of the layer; linear elasticity errs by about as much as the strain. It is D/h where the
+layer gives way, and where the body below does, no more than p(0)/E1*."""
+ASSUMPTIONS = {
+    1: "layer_not_thin",
+    2: "few_spots",
+    4: "spot_not_small_against_h",
+    8: "n_not_below_one",
+    16: "spots_merging",
+    32: "strain_not_small",
+}
 
 
 def validity(dataset: xr.Dataset) -> xr.DataArray:
     """Assumptions that each case violates, a sum of masks; 0: all hold.
 
-    1 h >= a on a thin layer; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of either kind; 8 n >= 1 on a
-    thin layer (the paper assumes n < 1). A case without numbers (see `status`) only gets the masks that need none.
-    int32 over the dimensions of `status`.
+    1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
+    8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING; 32 a/R > STEEP, or both D/h
+    and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that need none. int32 over the
+    dimensions of `status`.
     """
-    thin, layered = dataset["base"] == "thin_layer", dataset["base"] != "half_space"
-    rough = dataset["micro"] != "smooth"
-    h = _given(dataset, "h")
+    layered, rough = dataset["base"] != "half_space", dataset["micro"] != "smooth"
+    thin = _used_a_thin_layer(dataset["model_used"])
+    h, n = _given(dataset, "h"), _given(dataset, "n")
+    compressed = (dataset["D"] > COMPRESSED * h) & (dataset["p0"] > COMPRESSED * n)
     violated = {
-        1: thin & (h >= dataset["a"]),
+        1: thin & (dataset["model_error"] > NOT_THIN),
         2: rough & (_spots(dataset) < FEW_SPOTS),
         4: layered & rough & (_spot_radius(dataset) > SPOT_OVER_LAYER * h),
-        8: thin & (_given(dataset, "n") >= 1),
+        8: (dataset["base"] == "thin_layer") & (n >= 1),
+        16: rough & (dataset["lam0"] > MERGING),
+        32: (dataset["a"] > STEEP) | layered & compressed,
     }
     flags = xr.zeros_like(dataset["status"], dtype=np.int32)
     for mask, where in violated.items():
@@ -39,6 +61,11 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     flags.attrs["flag_masks"] = np.array(list(ASSUMPTIONS), dtype=np.int32)
     flags.attrs["flag_meanings"] = " ".join(ASSUMPTIONS.values())
     return flags
+
+
+def _used_a_thin_layer(model_used: xr.DataArray) -> xr.DataArray:
+    words = zip(model_used.attrs["flag_values"], model_used.attrs["flag_meanings"].split(), strict=True)
+    return model_used.isin([value for value, word in words if word.endswith("thin_layer")])
 
 
 def nominal_area(dataset: xr.Dataset) -> xr.DataArray:

@@ -4,15 +4,17 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from .derived import FEW_SPOTS, SPOT_OVER_LAYER
+from .derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
 
 ASSUMPTION_TEXT = {
-    "layer_not_thin": r"$h \geq a$",
+    "layer_not_thin": rf"thin layer wrong by $> {100 * NOT_THIN:g}$ %",
     "few_spots": rf"$\bar N A_n < {FEW_SPOTS:g}$",
     "spot_not_small_against_h": rf"$b > {SPOT_OVER_LAYER:g}\,h$",
     "n_not_below_one": r"$n \geq 1$",
+    "spots_merging": rf"$\lambda(0) > {MERGING:g}$",
+    "strain_not_small": rf"$a > {STEEP:g}\,R$ or strain $> {COMPRESSED:g}$",
 }
-GREYS = ("0.87", "0.74", "0.8", "0.93")
+GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9")
 
 
 def name_curve(axes, line, text: str, at: float, *, side: str = "above", align: str = "center") -> None:

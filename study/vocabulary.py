@@ -44,7 +44,7 @@ class Entry:
 
 
 POSITIVE = "(0, inf)"
-LAYERED = ("base", ("thin_layer", "layered"))
+LAYERED = ("base", ("thin_layer", "layered", "auto"))
 ROUGH = ("micro", ("disc_cell", "power_law"))
 POWER = ("micro", ("power_law",))
 
@@ -60,7 +60,8 @@ _ENTRIES = (
     Entry("nu2", "ν2", "Poisson ratio of the half-space", "material", interval="(-1, 0.5]", default=0.3),
     Entry("bonding", "", "interface of layer and half-space", "material", choices=("frictionless", "bonded"),
           default="frictionless"),
-    Entry("base", "", "elastic base", "material", choices=("half_space", "thin_layer", "layered"), default="layered"),
+    Entry("base", "", "elastic base", "material",
+          choices=("half_space", "thin_layer", "layered", "auto"), default="layered"),
     Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY, "", POSITIVE,
           needed_by=ROUGH),
     Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON, "", POSITIVE, needed_by=ROUGH),
@@ -73,6 +74,9 @@ _ENTRIES = (
     Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)",
           interval="[0, inf)", default=1.0),
     Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]", default=1e-6),
+    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics", interval="(0, 1)", default=1e-2),
+    Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics",
+          choices=("closed_form", "first_order"), default="closed_form"),
     Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics", interval="[4, 256]", also=(0,), default=0,
           whole=True),
     Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics",
@@ -88,6 +92,8 @@ _ENTRIES = (
     Entry("lam", "λ(r)", "relative contact area", "profile", equation="(11)"),
     Entry("status", "", "how the solution of the case ended", "flag"),
     Entry("error", "", "estimated relative error of the results", "result"),
+    Entry("model_error", "", "estimated relative error of the model used, against the exact layered one", "result"),
+    Entry("model_used", "", "model that the case was solved with", "flag"),
     Entry("residual", "", "relative residual of the discrete equation", "result"),
     Entry("iterations", "", "number of iterations", "count"),
     Entry("nodes_used", "", "number of nodes used", "count"),

@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import study
+from solver import Model
 from study import dataset, derived
 from study.vocabulary import NOT_RUN, PARAMETERS, VOCABULARY, attributes
 
@@ -67,9 +68,9 @@ def test_every_variable_has_its_attributes(reread):
 
 
 def test_flags_follow_cf(reread):
-    for name in ("status", "validity"):
+    for name in ("status", "model_used", "validity"):
         array = reread[name]
-        values = array.attrs["flag_values" if name == "status" else "flag_masks"]
+        values = array.attrs["flag_masks" if name == "validity" else "flag_values"]
         assert values.dtype == array.dtype
         assert len(set(array.flag_meanings.split())) == len(values) == len(set(values.tolist()))
     assert (
@@ -151,32 +152,53 @@ def made(**variables) -> xr.Dataset:
         "h": 0.01,
         "n": 0.5,
         "a": 0.02,
+        "D": 3e-4,
+        "p0": 0.01,
         "lam0": 0.2,
+        "model_error": 0.05,
     }
-    given |= {"status": np.int8(0)} | variables
-    return xr.Dataset({name: ((), value) for name, value in given.items() if value is not None})
+    given |= {"status": np.int8(0), "model_used": np.int8(Model.THIN_LAYER)} | variables
+    made = xr.Dataset({name: ((), value) for name, value in given.items() if value is not None})
+    made["model_used"].attrs = dataset.model_attributes()
+    return made
+
+
+EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
 
 
 @pytest.mark.parametrize(
     ("variables", "expected"),
     [
         ({}, 0),
-        ({"h": 0.02}, 1),
-        ({"h": 0.019999}, 0),
+        ({"model_error": 0.101}, 1),
+        ({"model_error": 0.099, "h": 0.02}, 0),
+        ({"model_error": 0.2, "base": "auto"}, 1),
+        ({"model_error": 0.2, "base": "auto", "micro": "smooth", "model_used": np.int8(Model.SMOOTH_THIN_LAYER)}, 1),
+        ({"model_error": 0.2, "base": "auto", "model_used": np.int8(Model.LAYER_ALONE)}, 0),
         ({"Nbar": 99 / (np.pi * 0.02**2), "lam0": 1e-3}, 2),
         ({"Nbar": 101 / (np.pi * 0.02**2), "lam0": 1e-3}, 0),
-        ({"lam0": 1.0, "Nbar": 0.99e4 / np.pi, "a": 0.11, "h": 0.1}, 4),
-        ({"lam0": 1.0, "Nbar": 1.01e4 / np.pi, "a": 0.11, "h": 0.1}, 0),
+        ({"lam0": 0.4, "Nbar": 0.99e4 * 0.4 / np.pi, "a": 0.19, "h": 0.1}, 4),
+        ({"lam0": 0.4, "Nbar": 1.01e4 * 0.4 / np.pi, "a": 0.19, "h": 0.1}, 0),
         ({"n": 1.0}, 8),
-        ({"n": 1.0, "h": 0.03, "Nbar": 1.0}, 1 | 2 | 4 | 8),
+        ({"n": 1.0, "base": "auto"}, 0),
+        ({"n": 1.0, "model_error": 0.3, "Nbar": 1.0, "lam0": 0.5, "a": 0.3}, 1 | 2 | 4 | 8 | 16 | 32),
+        ({"lam0": 0.401}, 16),
+        ({"lam0": 0.399}, 0),
+        ({"lam0": 1.0, "micro": "smooth"}, 0),
+        ({"a": 0.201}, 32),
+        ({"a": 0.199}, 0),
+        ({"D": 1.1e-3, "p0": 0.051}, 32),
+        ({"D": 1.1e-3, "p0": 0.049}, 0),
+        ({"D": 0.9e-3, "p0": 0.051}, 0),
+        ({"D": 1.1e-3, "p0": 0.051, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 0),
         ({"n": 0.999}, 0),
-        ({"base": "layered", "n": 1.0, "h": 0.03}, 0),
-        ({"base": "layered", "Nbar": 1.0}, 2 | 4),
-        ({"base": "half_space", "h": 0.001, "n": 2.0}, 0),
-        ({"base": "half_space", "h": None, "n": None}, 0),
+        ({"base": "layered", "n": 1.0, "h": 0.03, **EXACT}, 0),
+        ({"base": "layered", "Nbar": 1.0, **EXACT}, 2 | 4),
+        ({"base": "half_space", "h": 0.001, "n": 2.0, **EXACT}, 0),
+        ({"base": "half_space", "h": None, "n": None, **EXACT}, 0),
         ({"micro": "smooth", "Nbar": 1.0}, 0),
         ({"micro": "smooth", "Nbar": None}, 0),
-        ({"a": np.nan, "lam0": np.nan, "n": 2.0, "status": np.int8(3)}, 8),
+        ({"a": np.nan, "lam0": np.nan, "model_error": np.nan, "n": 2.0, "status": np.int8(3)}, 8),
     ],
     ids=str,
 )

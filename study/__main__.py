@@ -1,4 +1,4 @@
-"""Command line of roughcoat: python -m study list | check | run | status | plot | table.
+"""Command line of roughcoat: python -m study list | check | run | retry | status | plot | table.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted.
 """
@@ -6,14 +6,18 @@ Exit codes: 0 all right, 1 something could not be computed or written, 2 bad inp
 import argparse
 import logging
 import os
+import signal
 import sys
 from pathlib import Path
+
+from .vocabulary import NOT_RUN
 
 # One BLAS thread per worker: the systems are small and the workers would compete. Must come before numpy is imported.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
 STUDIES = Path("studies")
+INTERRUPTED = 130  # exit code
 
 
 def parser() -> argparse.ArgumentParser:
@@ -33,14 +37,29 @@ def parser() -> argparse.ArgumentParser:
     command(list_, "list the study files, their size and state").add_argument("folder", nargs="?", default=STUDIES)
     command(check, "check study files without computing", "files")
     sub = command(run, "compute what is missing and write the results", "files")
-    sub.add_argument("--workers", type=_positive, metavar="N", help="threads (default: one per processor)")
-    sub.add_argument("--force", action="store_true", help="replace results of another version of the study")
+    _add_engine(sub)
+    sub.add_argument("--part", type=_part, default=(1, 1), metavar="I/N", help="compute the I-th of N parts only")
+    sub.add_argument("--force", action="store_true", help="replace results of which cases would be lost")
+    sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
+    sub = command(retry, "compute cases of some status again", "files")
+    _add_engine(sub)
+    sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
     command(status, "say what has been computed", "files")
     sub = command(plot, "draw figures from results", "names")
     sub.add_argument("--figures", default="figures", metavar="DIR", help="folder of the figures (default: figures)")
     sub = command(table, "write tables from results", "names")
     sub.add_argument("--tables", default="tables", metavar="DIR", help="folder of the tables (default: tables)")
     return top
+
+
+def _add_engine(sub: argparse.ArgumentParser) -> None:
+    """Options of the commands that compute."""
+    sub.add_argument("--workers", type=_positive, metavar="N", help="threads (default: one per processor)")
+    sub.add_argument("--scheduler", default="", metavar="ADDRESS", help="compute on the workers of this dask scheduler")
+    either = sub.add_mutually_exclusive_group()
+    either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
+    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
+    sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
 def list_(options) -> int:
@@ -71,26 +90,51 @@ def run(options) -> int:
 
     def one(file):
         study = load(_file(file), options.results)
-        report = study.run(workers=options.workers, force=options.force, stream=sys.stderr)
-        return _print_report(report, study.definition.name)
+        if options.dry_run:
+            return _print_cost(study.definition.name, study.dry_run(options.workers))
+        return _compute(study, options, part=options.part, force=options.force)
 
     return max(_attempt(lambda file=file: one(file), file) for file in options.files)
 
 
-def status(options) -> int:
+def retry(options) -> int:
     from .api import load
 
     def one(file):
+        return _compute(load(_file(file), options.results), options, retry=_status_values(options.status))
+
+    return max(_attempt(lambda file=file: one(file), file) for file in options.files)
+
+
+def _status_values(words: list[str]) -> tuple[int, ...]:
+    from .dataset import status_words
+    from .definition import StudyError
+    from .vocabulary import suggest
+
+    known = {word: value for value, word in status_words().items()}
+    wrong = [f'--status "{word}" is not known{suggest(word, known)}' for word in words if word not in known]
+    if wrong:
+        raise StudyError(wrong)
+    return tuple(known[word] for word in words)
+
+
+def _compute(study, options, **more) -> int:
+    names = ("workers", "scheduler", "fail_fast", "yes")
+    chosen = {name: getattr(options, name) for name in names}
+    return _print_report(study.run(**chosen, **more, stream=sys.stderr), study.definition.name)
+
+
+def status(options) -> int:
+    from .api import load
+    from .dataset import status_words
+
+    def one(file):
         study = load(_file(file), options.results)
-        state = _print_state(study)
-        if study.status()["state"] == "done" and study.definition.kind == "contact":
-            found = study.open()["status"]
-            words = dict(zip(found.flag_values.tolist(), found.flag_meanings.split(), strict=True))
-            for value, word in words.items():
-                count = int((found == value).sum())
-                if count:
-                    print(f"    {word}: {count}")
-        return state
+        state = study.status()
+        _print_state(study, state)
+        for value, count in state["counts"].items():
+            print(f"    {status_words()[value]}: {count}")
+        return 0
 
     return max(_attempt(lambda file=file: one(file), file) for file in options.files)
 
@@ -122,15 +166,23 @@ def _attempt(action, name: str) -> int:
     except StudyError as error:
         print(error, file=sys.stderr)
         return 2
-    except OSError as error:
+    except OSError as error:  # a full disk, say, or a scheduler that is gone
         print(f"{name}: {error}", file=sys.stderr)
         return 1
 
 
-def _print_state(study) -> int:
-    state, title = study.status(), study.definition.title
-    blocks = f" ({state['blocks']} of {state['of']} blocks)" if state["state"] == "partial" else ""
-    print(f"{study.definition.name:<16} {state['cases']:>8} cases  {state['state']}{blocks}  {title}")
+def _print_state(study, state: dict | None = None) -> int:
+    state, title = state or study.status(), study.definition.title
+    done = state["cases"] - state["counts"].get(NOT_RUN, 0)
+    cases = f" ({done} of {state['cases']} cases)" if state["state"] == "partial" else ""
+    print(f"{study.definition.name:<16} {state['cases']:>8} cases  {state['state']}{cases}  {title}")
+    return 0
+
+
+def _print_cost(name: str, cost) -> int:
+    from .estimate import describe
+
+    print(f"{name}: {cost.cases} cases, {cost.present} of them computed; the others: {describe(cost)}")
     return 0
 
 
@@ -143,8 +195,12 @@ def _print_report(report, name: str) -> int:
             file=sys.stderr,
         )
         return 1
-    if not report.computed and not report.counts:
+    if not report.counts:
         print(f"{report.path} is up to date ({report.cases} cases), nothing to do")
+        return 0
+    if not report.complete:
+        missing = report.counts.get(NOT_RUN, 0)
+        print(f"{name}: {report.computed} cases computed now, {missing} of {report.cases} are missing: other parts")
         return 0
     unsolved = sum(count for value, count in report.counts.items() if value)
     remark = f", {unsolved} of them not converged: see `status` in the file" if unsolved else ""
@@ -169,6 +225,19 @@ def _positive(text: str) -> int:
     return int(text)
 
 
+def _part(text: str) -> tuple[int, int]:
+    numbers = text.split("/")
+    if len(numbers) != 2 or not all(map(str.isdecimal, numbers)) or not 1 <= int(numbers[0]) <= int(numbers[1]):
+        raise argparse.ArgumentTypeError(f"{text}: must be I/N, whole numbers with 1 <= I <= N")
+    return int(numbers[0]), int(numbers[1])
+
+
+def _interrupt(number: int, _frame) -> None:
+    """End in good order; a second signal of the kind ends at once, which costs the blocks in work and no more."""
+    signal.signal(number, signal.SIG_DFL)
+    raise KeyboardInterrupt
+
+
 def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
     options = parser().parse_args(arguments)
@@ -179,11 +248,18 @@ def main(arguments=None) -> int:
         return options.function(options)
     except KeyboardInterrupt:
         print("\ninterrupted; finished blocks are kept, the same command goes on from there", file=sys.stderr)
-        return 130
+        return INTERRUPTED
     except BrokenPipeError:  # the reader, `head` say, has enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    for _number in (signal.SIGINT, signal.SIGTERM):
+        if signal.getsignal(_number) is not signal.SIG_IGN:
+            signal.signal(_number, _interrupt)
+    _code = main()
+    sys.stdout.flush()
+    if _code == INTERRUPTED:
+        os._exit(_code)  # does not wait for the blocks in work
+    sys.exit(_code)

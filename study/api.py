@@ -3,17 +3,24 @@
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
-from .blocks import Blocks, compute, finished
-from .dataset import command_line, digest_in, labelled, open_results
-from .definition import BLOCK, POINTS, Definition, StudyError, complete, read
+from .blocks import compute, parcel
+from .dataset import command_line, digest_in, labelled, open_lazily, open_results
+from .definition import BLOCK, LARGE, POINTS, Definition, StudyError, complete, read
 from .draft import Draft
+from .estimate import Estimate
 from .grid import LONGEST_AXIS
-from .run import Report, partial_dataset, results_path, run
+from .reuse import statuses
+from .run import Report, dry_run, partial_dataset, results_path, run
+from .store import Store, count_statuses, inventory
+from .vocabulary import NOT_RUN
+
+LAZY = 200_000_000  # bytes of a results file that is not read at once
 
 
-def solve(*, cases=None, x=POINTS, profiles: bool = True, title: str = "", **parameters) -> xr.Dataset:
+def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
 
     Parameters
@@ -24,7 +31,7 @@ def solve(*, cases=None, x=POINTS, profiles: bool = True, title: str = "", **par
     cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
         which comes first
     x : number of points r/a of the profiles, or the points, from 0 to 1
-    profiles : whether the dataset holds p and lam
+    profiles : whether the dataset holds p and lam, or a list of those that it shall hold
 
     Returns
     -------
@@ -47,9 +54,9 @@ def solve(*, cases=None, x=POINTS, profiles: bool = True, title: str = "", **par
         draft.cases(cases)
     for name, given in parameters.items():
         _add(draft, name, given)
-    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "block": BLOCK}
+    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "block": BLOCK, "most": LARGE}
     definition = complete(draft, "solve", x=x, profiles=profiles, **whole)
-    return labelled(definition, compute(definition, 0, definition.grid.size), "study.solve")
+    return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,30 +66,40 @@ class Study:
     definition: Definition
     results: Path
 
-    def run(self, *, workers: int | None = None, force: bool = False, stream=None) -> Report:
-        """Compute what is missing and write the results file; see `study.run.run`."""
-        return run(self.definition, self.results, workers=workers, force=force, command=command_line(), stream=stream)
+    def run(self, **options) -> Report:
+        """Compute what is missing and write the results file; options as of `study.run.run`."""
+        return run(self.definition, self.results, command=command_line(), **options)
+
+    def dry_run(self, workers: int | None = None) -> Estimate:
+        """What `run` would cost, and how many cases it would find computed. Computes a sample, writes nothing."""
+        return dry_run(self.definition, self.results, workers=workers)
 
     def status(self) -> dict:
-        """State ("done", "outdated", "partial", "new"), cases, blocks finished and in all, path of the results."""
-        blocks, path = Blocks(self.definition, self.results), results_path(self.definition, self.results)
-        ready = len(finished(blocks))
-        state = "partial" if ready else "new"
-        if path.exists():
-            state = "done" if digest_in(path) == self.definition.digest else "outdated"
-        return {"state": state, "cases": self.definition.grid.size, "blocks": ready, "of": blocks.count, "path": path}
+        """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results."""
+        path, counts = results_path(self.definition, self.results), {}
+        state = "new" if not path.exists() else "outdated"
+        if digest_in(path) == self.definition.digest:
+            state = "done"
+        if self.definition.kind == "contact":
+            found = statuses(path) if state == "done" else inventory(Store(self.definition, self.results)).status
+            counts = count_statuses(found)
+            state = "partial" if state == "new" and counts != {NOT_RUN: self.definition.grid.size} else state
+        return {"state": state, "cases": self.definition.grid.size, "counts": counts, "path": path}
 
     def open(self, partial: bool = False) -> xr.Dataset:
         """The results. Raises StudyError when there are none, or none of this definition.
 
+        A large file is opened lazily, its variables are dask arrays in chunks of some thousand cases; others are read.
+
         partial : give the blocks computed so far instead, with status 127 (not run) for the rest
         """
-        path, state = results_path(self.definition, self.results), self.status()["state"]
-        if state == "done":
-            return open_results(path)
+        path = results_path(self.definition, self.results)
+        digest = digest_in(path)
+        if digest == self.definition.digest:
+            return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
         if partial and self.definition.kind == "contact":
             return partial_dataset(self.definition, self.results)
-        reason = "holds results of another definition" if state == "outdated" else "does not exist"
+        reason = "holds results of another definition" if path.exists() else "does not exist"
         raise StudyError([f"{path}: {reason}; run the study first"])
 
 

@@ -1,87 +1,72 @@
-"""The cases of a study in blocks: which cases, computed how, kept where until the results file exists."""
+"""A block: some cases of a study, and all that a worker needs to solve them, wherever it is."""
 
-import shutil
+import traceback
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-import xarray as xr
 
-from solver import Problem, solve
+from solver import NUMERICS_VERSION, Problem, solve
 
-from .dataset import arrays_of, not_run, open_results, write
+from .dataset import arrays_of
 from .definition import Definition
-from .grid import columns
+from .grid import columns_at
 
 
 @dataclass(frozen=True, eq=False)
-class Blocks:
-    """Blocks of one study. Digest and block size are in the name of their folder, so a file there always fits."""
+class Parcel:
+    """Cases to be solved.
 
-    definition: Definition
-    results: Path
-
-    @property
-    def folder(self) -> Path:
-        return (
-            self.results / f".{self.definition.name}.blocks" / f"{self.definition.digest[:16]}-{self.definition.block}"
-        )
-
-    @property
-    def count(self) -> int:
-        return -(-self.definition.grid.size // self.definition.block)
-
-
-def bounds(blocks: Blocks, i: int) -> tuple[int, int]:
-    """First case of block i and the one after its last."""
-    start = i * blocks.definition.block
-    return start, min(start + blocks.definition.block, blocks.definition.grid.size)
-
-
-def compute(definition: Definition, start: int, stop: int) -> dict[str, np.ndarray]:
-    """Solve the cases start <= i < stop. Touches no file and no shared state: may run in any thread."""
-    problem = Problem.of(**columns(definition.grid, start, stop))
-    return arrays_of(solve(problem, definition.x), definition.profiles)
-
-
-def block_path(blocks: Blocks, i: int) -> Path:
-    return blocks.folder / f"{i:05d}.nc"
-
-
-def finished(blocks: Blocks) -> list[int]:
-    """Numbers of the blocks on disk."""
-    return [i for i in range(blocks.count) if block_path(blocks, i).exists()]
-
-
-def store(blocks: Blocks, i: int, arrays: dict[str, np.ndarray]) -> None:
-    """Write block i (main thread only)."""
-    blocks.folder.mkdir(parents=True, exist_ok=True)
-    write(
-        xr.Dataset({name: (("row", "x")[: array.ndim], array) for name, array in arrays.items()}), block_path(blocks, i)
-    )
-
-
-def join(blocks: Blocks) -> tuple[dict[str, np.ndarray], list[int]]:
-    """Arrays of the whole grid from the blocks on disk, and the numbers of the blocks that are not there.
-
-    An unreadable block is deleted, so that the next run computes it again.
+    first, last : numbers of its first and last case; parameters : name -> (n,) or (1,) for all its cases; x : (m,);
+    numerics : version of the solver's numerics that is wanted
     """
-    whole, absent = not_run(blocks.definition), []
-    for i in range(blocks.count):
-        start, stop = bounds(blocks, i)
-        try:
-            part = open_results(block_path(blocks, i))
-            values = {name: part[name].values for name in whole}
-            for name, array in whole.items():
-                array[start:stop] = values[name]
-        except (OSError, KeyError, ValueError):
-            block_path(blocks, i).unlink(missing_ok=True)
-            absent.append(i)
-    return whole, absent
+
+    first: int
+    last: int
+    parameters: dict[str, np.ndarray]
+    x: np.ndarray
+    profiles: tuple[str, ...]
+    dtype: str
+    numerics: str
 
 
-def discard(blocks: Blocks) -> None:
-    """Remove the blocks of this definition, and the folder above when nothing else is in it."""
-    shutil.rmtree(blocks.folder, ignore_errors=True)
-    if blocks.folder.parent.is_dir() and not any(blocks.folder.parent.iterdir()):
-        blocks.folder.parent.rmdir()
+@dataclass(frozen=True)
+class Failure:
+    """A block that raised: the message and where."""
+
+    message: str
+    trace: str
+
+
+def parcel(definition: Definition, index: np.ndarray) -> Parcel:
+    """The cases at `index` (n,), n > 0."""
+    found = columns_at(definition.grid, index)
+    found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
+    profiles, dtype = definition.profiles, definition.dtype
+    return Parcel(int(index[0]), int(index[-1]), found, definition.x, profiles, dtype, NUMERICS_VERSION)
+
+
+def compute(wanted: Parcel) -> dict[str, np.ndarray]:
+    """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
+    found = arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
+    return {name: array.astype(wanted.dtype) if array.dtype.kind == "f" else array for name, array in found.items()}
+
+
+def guarded(wanted: Parcel) -> dict[str, np.ndarray] | Failure:
+    """`compute`, with an exception as a value."""
+    try:
+        if wanted.numerics != NUMERICS_VERSION:
+            raise RuntimeError(f"the worker has version {NUMERICS_VERSION} of the numerics, not {wanted.numerics}")
+        return compute(wanted)
+    except Exception as error:
+        message = f"cases {wanted.first} to {wanted.last}: {type(error).__name__}: {error}"
+        return Failure(message, traceback.format_exc())
+
+
+def cut(missing: np.ndarray, size: int, part: tuple[int, int] = (1, 1)) -> list[np.ndarray]:
+    """The numbers of the missing cases in runs of at most `size`.
+
+    part : (i, n), only those of the i-th of n parts. Which cases these are depends on `size` alone, not on what is
+        missing: parts that start at different times share no case.
+    """
+    mine = missing[missing // size % part[1] == part[0] - 1]
+    return [mine[start : start + size] for start in range(0, len(mine), size)]

@@ -21,31 +21,34 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from solver import NUMERICS_VERSION, Model, Solution, Status
+from solver import NUMERICS_VERSION, Solution, Status
 
+from .atomic import replacing
 from .definition import Definition
 from .derived import validity
 from .grid import unflatten
 from .vocabulary import CONTROLS, NOT_RUN, PARAMETERS, attributes, names
 
-INTEGERS = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes_used": np.int16}
+INTEGERS = {"status": np.int8, "iterations": np.int32, "nodes_used": np.int16}
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
 
-def arrays_of(solution: Solution, profiles: bool) -> dict[str, np.ndarray]:
-    """The columns that are stored: vocabulary name -> (B,), and p, lam (B, m) if wanted."""
-    special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
-    kept = (*CONTROLS, *names("result"), *INTEGERS)
-    found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
-    found |= {"p": solution.p, "lam": solution.lam} if profiles else {}
+def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
+    """The columns that are stored: vocabulary name -> (B,), and the wanted profiles (B, m)."""
+    found = {
+        name: getattr(solution, name)
+        for name in (*CONTROLS, "p0", "p_max", "Ar_An", "A0", "dP_dD", "error", "residual")
+    }
+    found |= {"lam0": solution.lam[:, 0]}
+    found |= {"status": solution.status, "iterations": solution.iterations, "nodes_used": solution.nodes}
+    found |= {name: getattr(solution, name) for name in profiles}
     return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}
 
 
-def not_run(definition: Definition) -> dict[str, np.ndarray]:
-    """What `arrays_of` gives for cases that were never computed: NaN, status NOT_RUN, counts 0."""
-    size = definition.grid.size
-    found = {name: np.full(size, np.nan) for name in (*CONTROLS, *names("result"))}
-    found |= {name: np.full((size, len(definition.x)), np.nan) for name in names("profile") if definition.profiles}
+def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
+    """What `arrays_of` gives for `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
+    found = {name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *names("result"))}
+    found |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
     found |= {name: np.zeros(size, dtype) for name, dtype in INTEGERS.items()}
     found["status"][:] = NOT_RUN
     return found
@@ -55,7 +58,6 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     """Dataset of the whole grid from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
     dataset = assembled(definition, arrays, "x", definition.x, command)
     dataset["status"].attrs |= status_attributes()
-    dataset["model_used"].attrs |= model_attributes()
     return dataset.assign(validity=validity(dataset))
 
 
@@ -78,21 +80,20 @@ def assembled(
     return xr.Dataset(variables, coordinates, provenance(definition, command))
 
 
+def status_words() -> dict[int, str]:
+    """What the values of `status` are called: the solver's statuses and 127, not run."""
+    return {int(status): status.name.lower() for status in Status} | {NOT_RUN: "not_run"}
+
+
 def status_attributes() -> dict:
-    """CF flags of `status`: the solver's statuses and 127, not run."""
-    words = {int(status): status.name.lower() for status in Status} | {NOT_RUN: "not_run"}
+    """CF flags of `status`."""
+    words = status_words()
     sentences = {int(status): status.meaning for status in Status} | {NOT_RUN: "the case has not been computed"}
     return {
         "flag_values": np.array(list(words), dtype=np.int8),
         "flag_meanings": " ".join(words.values()),
         "comment": "; ".join(f"{value}: {text}" for value, text in sentences.items()),
     }
-
-
-def model_attributes() -> dict:
-    """CF flags of `model_used`."""
-    values = np.array([int(model) for model in Model], dtype=np.int8)
-    return {"flag_values": values, "flag_meanings": " ".join(model.name.lower() for model in Model)}
 
 
 def provenance(definition: Definition, command: str) -> dict:
@@ -164,45 +165,55 @@ def _version(package: str) -> str:
 
 @contextmanager
 def interrupts_wait() -> Iterator[None]:
-    """Hold SIGINT back until the block is left: an exception inside xarray's locks leaves one locked, and hangs."""
+    """Hold SIGINT and SIGTERM back until the block is left: an exception inside xarray's locks leaves one locked."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
     pending = []
-    previous = signal.signal(signal.SIGINT, lambda *_: pending.append(True))
+    kinds = (signal.SIGINT, signal.SIGTERM)
+    previous = {kind: signal.signal(kind, lambda number, _: pending.append(number)) for kind in kinds}
     try:
         yield
     finally:
-        signal.signal(signal.SIGINT, previous or signal.SIG_DFL)
+        for kind, handler in previous.items():
+            signal.signal(kind, handler or signal.SIG_DFL)
         if pending:
-            signal.raise_signal(signal.SIGINT)
+            signal.raise_signal(pending[0])
+
+
+def encoding(array: xr.DataArray) -> dict:
+    """How a variable is stored, in the words of netCDF4 and of xarray.
+
+    Profiles are nearly all of a file and not worth compressing: a quarter smaller for twice the time of the whole run.
+    """
+    data, numbers = array.name not in array.coords, array.dtype.kind in "fiu"
+    options = {"fill_value": np.nan if data and array.dtype.kind == "f" else None}
+    if not data or not numbers or not array.ndim:
+        return options
+    if "x" in array.dims:
+        return options | {"fletcher32": True}
+    return options | {"zlib": True, "complevel": 1, "shuffle": True}
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write netCDF so that `path` either is complete or does not exist: a temporary name beside it, then a rename."""
-    encoding = {
-        name: {"_FillValue": None}
-        for name, array in dataset.variables.items()
-        if name in dataset.coords or array.dtype.kind in "iu"
-    }
-    for name, array in dataset.data_vars.items():
-        if array.dtype.kind in "fiu" and array.ndim:
-            encoding[name] = encoding.get(name, {}) | {"zlib": True, "complevel": 1, "shuffle": True}
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.tmp")
-    try:
-        with interrupts_wait():
-            dataset.to_netcdf(temporary, engine="netcdf4", encoding=encoding)
-        with open(temporary, "rb+") as file:
-            os.fsync(file.fileno())  # a rename may reach the disk before the data do
-        os.replace(temporary, path)
-    finally:
-        temporary.unlink(missing_ok=True)
+    """Write a small dataset: `path` either is complete or does not exist."""
+    options = {name: encoding(dataset[name]) for name in dataset.variables}
+    for given in options.values():
+        given["_FillValue"] = given.pop("fill_value")
+    with replacing(path) as temporary, interrupts_wait():
+        dataset.to_netcdf(temporary, engine="netcdf4", encoding=options)
 
 
 def open_results(path) -> xr.Dataset:
     """A results file, read into memory and closed. Raises OSError when it does not exist or is no netCDF file."""
     with interrupts_wait(), xr.open_dataset(path, engine="netcdf4") as dataset:
         return dataset.load()
+
+
+def open_lazily(path) -> xr.Dataset:
+    """A results file as dask arrays in its chunks: numbers are read when they are asked for."""
+    with interrupts_wait():
+        return xr.open_dataset(path, engine="netcdf4", chunks={})
 
 
 def digest_in(path: Path) -> str:

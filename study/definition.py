@@ -4,7 +4,7 @@ import hashlib
 import json
 import re
 import tomllib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -17,7 +17,9 @@ from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, 
 
 BLOCK = 2000
 POINTS = 33
-MOST_VALUES = 500_000_000  # numbers in one results file, 4 GB: a larger grid is a slip or wants to be several studies
+LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
+MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
+DTYPES = ("float64", "float32")
 FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
 PER_CASE = 16  # numbers per case besides the profiles, roughly
 SECTIONS = {
@@ -41,6 +43,8 @@ class Definition:
     kind : "contact" or "micro_law"
     text : the study file as it was read; goes into the dataset
     x : (m,) points r/a of the profiles; for a micro law its pressures p/E1*
+    profiles : names of the profiles that are stored
+    dtype : "float64" or "float32", of the stored numbers
     fit : arguments of `solver.fit_power_law` (micro_law only)
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
@@ -52,10 +56,16 @@ class Definition:
     text: str
     grid: Grid
     x: np.ndarray
-    profiles: bool
+    profiles: tuple[str, ...]
+    dtype: str
     fit: dict
     block: int
     digest: str
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers the results hold, roughly."""
+        return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
 
 
 def read(path) -> Definition:
@@ -95,14 +105,17 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
         draft.sample(tables["sample"])
     for key, value in _table(tables, "axes", None, draft).items():
         draft.axis(key, value, "[axes]")
-    output = _table(tables, "output", ("x", "profiles"), draft)
+    output = _table(tables, "output", ("x", "profiles", "dtype"), draft)
     fit = fit_arguments(_table(tables, "fit", (*FIT, "check"), draft), draft.errors) if kind == "micro_law" else {}
     whole = {"name": name, "kind": kind, "title": tables.get("title", ""), "text": text, "fit": fit}
     whole |= {"x": output.get("x", POINTS), "profiles": output.get("profiles", True)}
+    whole |= {"dtype": output.get("dtype", DTYPES[0])}
     return complete(draft, where, block=numerics.get("block", BLOCK), **whole)
 
 
-def complete(draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, block) -> Definition:
+def complete(
+    draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, block, dtype=DTYPES[0], most=MOST_VALUES
+) -> Definition:
     """Finish a draft: the checks of the whole, and the digest. Raises StudyError with every message collected."""
     grid = draft.finish()
     x = profile_points(x, draft.errors) if kind == "contact" else law_points(fit, draft.errors)
@@ -110,34 +123,52 @@ def complete(draft: Draft, where: str, *, name, kind, title, text, x, profiles, 
         draft.errors.append(f"title = {shown(title)}: must be text")
     if type(block) is not int or not 1 <= block <= 1_000_000:
         draft.errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    if not isinstance(profiles, bool):
-        draft.errors.append(f"profiles = {shown(profiles)}: must be true or false")
-    count = grid.size * (PER_CASE + 2 * len(x) * bool(profiles))
-    if count > MOST_VALUES:
+    profiles = profile_names(profiles, draft.errors)
+    if dtype not in DTYPES:
+        draft.errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
+    made = Definition(name, kind, title, text, grid, x, profiles, dtype, fit, block, "")
+    if made.numbers > most:
         draft.errors.append(
-            f"{grid.size} cases make {count:.1e} numbers: at most {MOST_VALUES:.0e} (fewer points, or profiles = false)"
+            f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
         )
     if draft.errors:
         raise StudyError(f"{where}: {message}" for message in draft.errors)
-    digest = digest_of(kind, grid, x, profiles, fit)
-    return Definition(name, kind, title, text, grid, x, profiles, fit, block, digest)
+    return replace(made, digest=digest_of(made))
 
 
-def digest_of(kind: str, grid: Grid, x: np.ndarray, profiles: bool, fit: dict) -> str:
+def digest_of(definition: Definition) -> str:
     """sha256 over what determines the numbers: not title, comments or block size."""
+    grid = definition.grid
+    arrays = {**grid.values, **grid.labels, "x": (("x",), definition.x)}
     content = {
         "numerics_version": NUMERICS_VERSION,
-        "kind": kind,
+        "kind": definition.kind,
         "sizes": list(grid.sizes.items()),
-        "values": {name: (dims, np.asarray(array).tolist()) for name, (dims, array) in grid.values.items()},
-        "labels": {
-            name: (dims, [str(label) for label in array.tolist()]) for name, (dims, array) in grid.labels.items()
-        },
-        "x": x.tolist(),
-        "profiles": profiles,
-        "fit": fit,
+        "arrays": {name: (dims, _digest_of_array(array)) for name, (dims, array) in arrays.items()},
+        "profiles": definition.profiles,
+        "dtype": definition.dtype,
+        "fit": definition.fit,
     }
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _digest_of_array(array: np.ndarray) -> str:
+    """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
+    numbers = array.dtype.kind in "iuf"
+    raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()
+    return hashlib.sha256(raw).hexdigest()
+
+
+def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
+    """Names of the profiles to store, from true, false or their list; in the order of the vocabulary."""
+    known = names("profile")
+    if isinstance(profiles, bool):
+        return known if profiles else ()
+    if not isinstance(profiles, (list, tuple)) or not set(map(str, profiles)) <= set(known):
+        listed = ", ".join(f'"{name}"' for name in known)
+        errors.append(f"profiles = {shown(profiles)}: must be true or false, or a list of {listed}")
+        return ()
+    return tuple(name for name in known if name in profiles)
 
 
 def profile_points(x, errors: list[str]) -> np.ndarray:

@@ -9,6 +9,7 @@ from pathlib import Path
 import pytest
 
 import study
+from study import blocks
 from study import run as running
 from study.__main__ import main
 from study.progress import Progress, describe, duration
@@ -83,25 +84,25 @@ def test_results_of_another_definition(studies, capsys):
 
 
 def test_failed_block(monkeypatch, capsys):
-    real = running.compute
+    real = blocks.compute
 
-    def compute(definition, start, stop):
-        if start == 1:
+    def compute(wanted):
+        if wanted.first == 1:
             raise MemoryError("too large")
-        return real(definition, start, stop)
+        return real(wanted)
 
-    monkeypatch.setattr(running, "compute", compute)
+    monkeypatch.setattr(blocks, "compute", compute)
     assert main(["run", "good"]) == 1
     assert "good: block 1 failed: cases 1 to 1: MemoryError: too large" in capsys.readouterr().err
     assert main(["status", "good"]) == 0
-    assert "partial (2 of 3 blocks)" in capsys.readouterr().out
+    assert "partial (2 of 3 cases)" in capsys.readouterr().out
 
 
 def test_full_disk(monkeypatch, capsys):
     def store(*_):
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(running, "store", store)
+    monkeypatch.setattr(running, "add", store)
     assert main(["run", "good"]) == 1
     assert "good: [Errno 28] No space left on device" in capsys.readouterr().err
 
@@ -110,7 +111,7 @@ def test_interrupt(monkeypatch, capsys):
     def store(*_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(running, "store", store)
+    monkeypatch.setattr(running, "add", store)
     assert main(["run", "good", "--workers", "1"]) == 130
     assert "finished blocks are kept" in capsys.readouterr().err
 

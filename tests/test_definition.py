@@ -125,7 +125,7 @@ BAD = [
         "x = [0, 0.7, 0.5, 1]: a list must increase from 0 to 1, both included",
     ),
     ("x = [0, 0.5, 1]", "x = [0, 0.5]", "x = [0, 0.5]: a list must increase from 0 to 1, both included"),
-    ("x = [0, 0.5, 1]", "profiles = 1", "profiles = 1: must be true or false"),
+    ("x = [0, 0.5, 1]", "profiles = 1", 'profiles = 1: must be true or false, or a list of "p", "lam"'),
     ('title = "Prüfung"', "title = 3", "title = 3: must be text"),
     ('title = "Prüfung"', 'kind = "contract"', 'kind = "contract": must be one of "contact", "micro_law"'),
     ('title = "Prüfung"', "kind = ['contact']", "kind = ['contact']: must be one of"),

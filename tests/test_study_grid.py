@@ -168,12 +168,11 @@ def test_cases_in_python_with_an_axis():
 @settings(max_examples=20, deadline=None)
 @given(cuts=st.lists(st.integers(0, 18), max_size=4))
 def test_the_answer_does_not_depend_on_the_blocks(cuts):
-    from study.blocks import compute
+    from study.blocks import compute, parcel
 
-    whole = chunked_definition()
-    edges = sorted({0, 18, *cuts})
-    parts = [compute(whole, start, stop) for start, stop in zip(edges, edges[1:], strict=False)]
-    for name, expected in compute(whole, 0, 18).items():
+    whole, cases = chunked_definition(), np.arange(18)
+    parts = [compute(parcel(whole, part)) for part in np.split(cases, sorted({0, 18, *cuts})[1:-1])]
+    for name, expected in compute(parcel(whole, cases)).items():
         joined = np.concatenate([part[name] for part in parts])
         # error and residual are differences of nearly equal numbers: the last digits of those are in them
         np.testing.assert_allclose(joined, expected, rtol=1e-10, atol=1e-13, err_msg=name)

@@ -40,7 +40,7 @@ def test_solver_imports_numpy_and_scipy_only(path):
 
 @pytest.mark.parametrize("path", STUDY, ids=lambda path: path.name)
 def test_study_imports_what_is_declared(path):
-    allowed = {"numpy", "scipy", "xarray", "dask", "matplotlib", "solver", "study"}
+    allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "solver", "study"}
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
 
 

@@ -1,0 +1,99 @@
+"""Where blocks are computed: threads of this process, or the workers of a dask cluster. One way to use either."""
+
+import os
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from contextlib import contextmanager
+from dataclasses import dataclass
+
+from .blocks import Failure
+from .definition import StudyError
+
+CONNECT = 10  # seconds
+AHEAD = 2  # blocks submitted for each worker: one that it computes, one that waits
+
+
+class Lost(ConnectionError):
+    """The scheduler is gone."""
+
+
+@dataclass(frozen=True, eq=False)
+class Engine:
+    """executor : takes the tasks; width : how many of them it should have at a time, which may change."""
+
+    executor: Executor
+    width: Callable[[], int]
+
+
+@contextmanager
+def engine(workers: int | None, scheduler: str) -> Iterator[Engine]:
+    """Threads (default one for each processor), or with the address of a `scheduler` its workers (at most so many).
+
+    What has been submitted and not begun is cancelled at the end; what has begun is left to end by itself.
+    """
+    if scheduler:
+        with _cluster(workers, scheduler) as found:
+            yield found
+        return
+    count = workers or available_workers()
+    executor = ThreadPoolExecutor(count)
+    try:
+        yield Engine(executor, lambda: AHEAD * count)
+    finally:
+        executor.shutdown(wait=False, cancel_futures=True)
+
+
+@contextmanager
+def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
+    try:
+        from dask.distributed import Client
+    except ImportError:
+        raise StudyError(["--scheduler needs the package distributed: pip install 'roughcoat[cluster]'"]) from None
+    try:
+        client = Client(scheduler, timeout=CONNECT, set_as_default=False)
+    except (OSError, ValueError) as error:
+        raise StudyError([f"--scheduler {scheduler}: no scheduler answers there ({error})"]) from None
+
+    def width() -> int:
+        threads = sum(client.nthreads().values())  # workers come and go
+        return AHEAD * max(1, min(threads, workers or threads))
+
+    try:
+        yield Engine(client.get_executor(pure=False), width)
+    finally:
+        client.close(timeout=1)
+
+
+def available_workers() -> int:
+    """Processors that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterator[tuple[int, object]]:
+    """(number of the task, function(task)) in the order in which they end, in this thread.
+
+    A task is made when there is room for it, and forgotten when its result has been taken: memory stays bounded.
+
+    Raises
+    ------
+    Lost : the scheduler is gone
+    """
+    pending: dict[Future, int] = {}
+    for number, task in enumerate(tasks):
+        pending[engine.executor.submit(function, task)] = number
+        while len(pending) >= engine.width():
+            yield _next(pending)
+    while pending:
+        yield _next(pending)
+
+
+def _next(pending: dict[Future, int]) -> tuple[int, object]:
+    done, _ = wait(pending, return_when=FIRST_COMPLETED)
+    future = done.pop()
+    number = pending.pop(future)
+    try:
+        return number, future.result()
+    except CancelledError:
+        raise Lost("the scheduler is gone") from None
+    except Exception as error:  # of the cluster, such as a block that killed its workers
+        return number, Failure(f"{type(error).__name__}: {error}", "")

@@ -1,0 +1,71 @@
+"""The results file, written window by window: never more than a small part of a study is in memory.
+
+netCDF is touched here and in `dataset` only, and must be by the main thread only: from several threads it crashes.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import netCDF4
+import xarray as xr
+from xarray.conventions import encode_dataset_coordinates
+
+from .atomic import replacing
+from .dataset import assembled, encoding, labelled
+from .definition import Definition
+from .grid import box, cut_out, windows
+from .store import Inventory, Store, gather
+
+CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
+AT_ONCE = 100_000_000  # bytes gathered and written at a time
+
+
+def write_results(store: Store, known: Inventory, path: Path, command: str) -> None:
+    """Write the results file from the blocks.
+
+    Raises
+    ------
+    Damaged : a block has been spoiled since the inventory was made
+    OSError : the file cannot be written
+    """
+    with replacing(path, store.folder) as temporary:
+        try:
+            with netCDF4.Dataset(temporary, "w") as file:
+                _fill(file, store, known, command)
+        except RuntimeError as error:  # of the HDF5 library, which does not say more
+            raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
+
+
+def _fill(file: netCDF4.Dataset, store: Store, known: Inventory, command: str) -> None:
+    definition, start = store.definition, 0
+    most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
+    for window in windows(definition.grid, most, CHUNK):
+        grid = cut_out(definition.grid, window)
+        arrays = gather(store, known, start, start + grid.size)
+        part = labelled(replace(definition, grid=grid), arrays, command)
+        if not start:
+            create(file, definition, part, command)
+        for name, array in part.data_vars.items():
+            file[name][tuple(window.get(dim, slice(None)) for dim in array.dims)] = array.values
+        start += grid.size
+
+
+def create(file: netCDF4.Dataset, definition: Definition, part: xr.Dataset, command: str) -> None:
+    """Dimensions, attributes and variables as in `part`, the coordinates with the values of the whole study."""
+    whole = assembled(definition, {}, "x", definition.x, command)
+    variables, attributes = encode_dataset_coordinates(part)
+    sizes = dict(whole.sizes)
+    chunk = dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True))
+    for dim, size in sizes.items():
+        file.createDimension(dim, size)
+    for name, variable in variables.items():
+        options = encoding(part[name])
+        if name in part.data_vars and variable.dims:
+            options["chunksizes"] = [chunk.get(dim, sizes[dim]) for dim in variable.dims]
+        kind = str if variable.dtype.kind in "UO" else variable.dtype
+        made = file.createVariable(name, kind, variable.dims, **options)
+        made.set_auto_maskandscale(False)
+        made.setncatts(variable.attrs)
+        if name in part.coords:
+            made[...] = whole[name].values.astype(object if kind is str else kind)
+    file.setncatts(attributes)

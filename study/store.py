@@ -1,0 +1,163 @@
+"""The blocks of a study on disk, and which of its cases they hold. What is on disk is the progress.
+
+Cases are found by their keys, so it does not matter by which version of the study, in which order or in blocks of which
+size they were computed.
+"""
+
+import hashlib
+import json
+import logging
+import shutil
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from solver import NUMERICS_VERSION
+
+from .block_file import Block, Damaged, read_block, write_block
+from .case_key import case_keys, find
+from .dataset import not_run
+from .definition import Definition, StudyError
+from .vocabulary import NOT_RUN
+
+log = logging.getLogger(__name__)
+
+
+@dataclass(frozen=True, eq=False)
+class Store:
+    """The folder of the blocks of one study."""
+
+    definition: Definition
+    results: Path
+
+    @property
+    def folder(self) -> Path:
+        return self.results / f".{self.definition.name}.blocks"
+
+    @property
+    def lock(self) -> Path:
+        return self.folder / "lock"
+
+
+@dataclass(eq=False)
+class Inventory:
+    """Where each of the B cases is.
+
+    keys : (B, 2); files : the block files; file, row : (B,) int32, number of the file (-1: missing) and row in it;
+    status : (B,) int8, NOT_RUN for a missing case
+    """
+
+    keys: np.ndarray
+    files: list[Path]
+    file: np.ndarray
+    row: np.ndarray
+    status: np.ndarray
+
+    @property
+    def missing(self) -> np.ndarray:
+        """Numbers of the missing cases."""
+        return np.flatnonzero(self.file < 0)
+
+
+def count_statuses(status: np.ndarray) -> dict[int, int]:
+    """status -> number of cases."""
+    values, numbers = np.unique(status, return_counts=True)
+    return dict(zip(values.tolist(), numbers.tolist(), strict=True))
+
+
+def facts(x: np.ndarray) -> dict:
+    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles."""
+    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
+
+
+def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:
+    """Whether numbers computed under the facts `given` hold all that the study wants, at least as exactly."""
+    wanted = not_run(definition, 0)
+    here = all(name in arrays and arrays[name].dtype.itemsize >= wanted[name].dtype.itemsize for name in wanted)
+    same_points = not definition.profiles or given.get("x") == definition.x.tolist()
+    return here and same_points and given.get("numerics_version") == NUMERICS_VERSION
+
+
+def blocks_on_disk(store: Store) -> Iterator[tuple[Path, Block]]:
+    """Every whole block. The cases of a damaged one are missing, so they are computed again."""
+    for path in sorted(store.folder.glob("*.block")):
+        try:
+            yield path, read_block(path)
+        except Damaged as error:
+            log.warning("%s", error)
+        except FileNotFoundError:  # the run that it belongs to has just ended
+            continue
+
+
+def inventory(store: Store, retry: tuple[int, ...] = (), force: bool = False) -> Inventory:
+    """What the blocks on disk hold of the study.
+
+    retry : cases of these statuses count as missing; force : remove blocks of another version of the numerics
+
+    Raises
+    ------
+    StudyError : there are blocks of another version of the numerics, and no `force`
+    """
+    files, parts = [], []
+    for path, block in blocks_on_disk(store):
+        if block.facts["numerics_version"] != NUMERICS_VERSION:
+            if not force:
+                raise StudyError([_of_other_numerics(store, block.facts)])
+            path.unlink(missing_ok=True)
+        elif usable(store.definition, block.facts, block.arrays):
+            status = block.arrays["status"]
+            row = np.flatnonzero(~np.isin(status, retry)).astype(np.int32)
+            parts.append((block.keys[row], np.full(len(row), len(files), np.int32), row, status[row]))
+            files.append(path)
+    nothing = (np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))
+    known, file, row, status = (np.concatenate(column) for column in zip(nothing, *parts, strict=True))
+    keys = case_keys(store.definition.grid)
+    where = find(keys, known, status)
+    at = [np.append(array, array.dtype.type(none))[where] for array, none in ((file, -1), (row, -1), (status, NOT_RUN))]
+    return Inventory(keys, files, *at)
+
+
+def _of_other_numerics(store: Store, given: dict) -> str:
+    version = f"version {given['numerics_version']} of the numerics, this is {NUMERICS_VERSION}"
+    choice = "--force computes it again, --results DIR writes elsewhere"
+    return f"{store.folder}: holds unfinished work of {version}: {choice}"
+
+
+def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
+    """Write the block of the cases at `index` (n,) and note it."""
+    path = put(store, Block(facts(store.definition.x), known.keys[index], arrays))
+    known.file[index], known.row[index] = len(known.files), np.arange(len(index))
+    known.status[index] = arrays["status"]
+    known.files.append(path)
+
+
+def put(store: Store, block: Block) -> Path:
+    """Write a block under a name that says what is in it: a second run writes the same file again, not another."""
+    content = [block.keys.tobytes(), json.dumps(block.facts).encode(), json.dumps(list(block.arrays)).encode()]
+    path = store.folder / f"{hashlib.sha256(b''.join(content)).hexdigest()[:32]}.block"
+    write_block(path, block)
+    return path
+
+
+def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, np.ndarray]:
+    """Columns of the cases start <= i < stop, name -> (stop - start, ...); missing ones as `not_run` has them.
+
+    Raises
+    ------
+    Damaged : a block that was whole when the inventory was made
+    """
+    found = not_run(store.definition, stop - start)
+    file = known.file[start:stop]
+    for number in np.unique(file[file >= 0]):
+        block = read_block(known.files[number])
+        here = np.flatnonzero(file == number)
+        for name, array in found.items():
+            array[here] = block.arrays[name][known.row[start + here]]
+    return found
+
+
+def discard(store: Store) -> None:
+    """Remove the blocks and what a killed run left beside them."""
+    shutil.rmtree(store.folder, ignore_errors=True)

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from solver import NUMERICS_VERSION, Solution, Status
+from solver import NUMERICS_VERSION, Model, Solution, Status
 
 from .atomic import replacing
 from .definition import Definition
@@ -29,18 +29,15 @@ from .derived import validity
 from .grid import unflatten
 from .vocabulary import CONTROLS, NOT_RUN, PARAMETERS, attributes, names
 
-INTEGERS = {"status": np.int8, "iterations": np.int32, "nodes_used": np.int16}
+INTEGERS = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes_used": np.int16}
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
 
 def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
     """The columns that are stored: vocabulary name -> (B,), and the wanted profiles (B, m)."""
-    found = {
-        name: getattr(solution, name)
-        for name in (*CONTROLS, "p0", "p_max", "Ar_An", "A0", "dP_dD", "error", "residual")
-    }
-    found |= {"lam0": solution.lam[:, 0]}
-    found |= {"status": solution.status, "iterations": solution.iterations, "nodes_used": solution.nodes}
+    special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
+    kept = (*CONTROLS, *names("result"), *INTEGERS)
+    found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
     found |= {name: getattr(solution, name) for name in profiles}
     return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}
 
@@ -58,6 +55,7 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     """Dataset of the whole grid from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
     dataset = assembled(definition, arrays, "x", definition.x, command)
     dataset["status"].attrs |= status_attributes()
+    dataset["model_used"].attrs |= model_attributes()
     return dataset.assign(validity=validity(dataset))
 
 
@@ -94,6 +92,12 @@ def status_attributes() -> dict:
         "flag_meanings": " ".join(words.values()),
         "comment": "; ".join(f"{value}: {text}" for value, text in sentences.items()),
     }
+
+
+def model_attributes() -> dict:
+    """CF flags of `model_used`."""
+    values = np.array([int(model) for model in Model], dtype=np.int8)
+    return {"flag_values": values, "flag_meanings": " ".join(model.name.lower() for model in Model)}
 
 
 def provenance(definition: Definition, command: str) -> dict:

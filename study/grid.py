@@ -84,7 +84,7 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
     """Lengths of a box of at most `most` cases that are consecutive in flat order: 1, ..., 1, length, whole, ..."""
     lengths, inner = [1] * len(shape), 1
     for axis in reversed(range(len(shape))):
-        pieces = -(-shape[axis] * inner // most)
+        pieces = -(-shape[axis] // (most // inner))
         lengths[axis] = -(-shape[axis] // pieces)
         if pieces > 1:
             break

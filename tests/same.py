@@ -1,0 +1,21 @@
+"""When two datasets of the same study are the same."""
+
+import xarray as xr
+
+OF_ROUNDING = ("error", "residual")  # differences of nearly equal numbers: rounding is what is in their last digits
+OF_THE_RUN = ("history", "created", "command")
+
+
+def assert_same(found: xr.Dataset, expected: xr.Dataset) -> None:
+    """The same numbers to 1e-12, the same types, labels and attributes."""
+    xr.testing.assert_allclose(found.drop_vars(OF_ROUNDING), expected.drop_vars(OF_ROUNDING), rtol=1e-12, atol=0)
+    xr.testing.assert_allclose(found[[*OF_ROUNDING]], expected[[*OF_ROUNDING]], rtol=1e-12, atol=1e-12)
+    assert found.sizes == expected.sizes and dict(found.dtypes) == dict(expected.dtypes)
+    for name in expected.variables:
+        assert repr(found[name].attrs) == repr(expected[name].attrs), name
+        assert repr(found[name].encoding.get("_FillValue")) == repr(expected[name].encoding.get("_FillValue")), name
+    assert of_the_study(found) == of_the_study(expected)
+
+
+def of_the_study(dataset: xr.Dataset) -> dict:
+    return {name: value for name, value in dataset.attrs.items() if name not in OF_THE_RUN}

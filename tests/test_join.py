@@ -1,0 +1,87 @@
+"""The results file written by windows is the one that would be written whole."""
+
+import math
+
+import numpy as np
+import pytest
+import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from same import assert_same
+
+import study
+from study import join
+from study.blocks import compute, parcel
+from study.dataset import labelled, open_lazily, write
+from study.definition import from_tables
+from study.grid import Grid, box, cut_out, windows
+
+shapes = st.lists(st.integers(1, 7), max_size=4).map(tuple)
+
+
+@given(shape=shapes, most=st.integers(1, 60), chunk=st.integers(1, 30))
+def test_windows_follow_each_other_in_flat_order(shape, most, chunk):
+    grid = Grid({f"d{i}": size for i, size in enumerate(shape)}, {})
+    numbers = np.arange(math.prod(shape)).reshape(shape)
+    found = [numbers[tuple(window.values())].ravel() for window in windows(grid, most, chunk)]
+    np.testing.assert_array_equal(np.concatenate(found), np.arange(numbers.size))
+    assert max(map(len, found)) <= max(most, chunk)
+    chunks = box(shape, chunk)
+    for window in windows(grid, most, chunk):
+        assert all(part.start % length == 0 for part, length in zip(window.values(), chunks, strict=True))
+
+
+@given(shape=shapes, most=st.integers(1, 60))
+def test_a_box_is_not_needlessly_small(shape, most):
+    lengths = box(shape, most)
+    assert math.prod(lengths) <= most
+    assert math.prod(lengths) == math.prod(shape) or 4 * math.prod(lengths) >= most
+
+
+def tables(**output) -> dict:
+    return {
+        "model": {"n": 0.5, "Ra": 0.004, "base": "thin_layer"},
+        "cases": [{"label": "soft", "Nbar": 250000, "nu1": 0.4}, {"label": "", "micro": "smooth"}],
+        "axes": {"P": [1e-5, 2e-5, 3e-5], "h": [0.01, 0.02], "bonding": ["bonded", "frictionless"]},
+        "numerics": {"block": 5},
+        "output": {"x": 4} | output,
+    }
+
+
+@pytest.mark.parametrize(("size", "output"), [(1, {}), (3, {"profiles": False}), (8, {}), (1000, {})])
+def test_written_by_windows_as_written_whole(tmp_path, monkeypatch, size, output):
+    monkeypatch.setattr(join, "CHUNK", size)
+    monkeypatch.setattr(join, "AT_ONCE", 1)
+    definition = from_tables(tables(**output), "windows", "text", "windows.toml")
+    opened = study.Study(definition, tmp_path)
+    opened.run()
+    whole = labelled(definition, compute(parcel(definition, np.arange(24))), "command")
+    write(whole, tmp_path / "whole.nc")
+    expected, found = study.open_results(tmp_path / "whole.nc"), opened.open()
+    assert_same(found, expected)
+
+
+@settings(max_examples=20, deadline=None)
+@given(low=st.integers(0, 5), length=st.integers(1, 3))
+def test_a_grid_cut_out_is_the_cases_there(low, length):
+    grid = from_tables(tables(), "w", "", "w").grid
+    window = {dim: slice(low % size, min(low % size + length, size)) for dim, size in grid.sizes.items()}
+    from study.grid import columns
+
+    part, whole = cut_out(grid, window), columns(grid, 0, grid.size)
+    for name, column in columns(part, 0, part.size).items():
+        expected = whole[name].reshape(grid.shape)[tuple(window.values())].ravel()
+        np.testing.assert_array_equal(column, expected)
+
+
+def test_a_large_file_is_opened_lazily(tmp_path, monkeypatch):
+    monkeypatch.setattr(study.api, "LAZY", 1000)
+    monkeypatch.setattr(join, "CHUNK", 6)
+    opened = study.Study(from_tables(tables(), "lazy", "", "lazy"), tmp_path)
+    opened.run()
+    found = opened.open()
+    assert all(found[name].chunks for name in found.data_vars)
+    assert found.p.data.chunks[:2] == ((1, 1), (1, 1, 1))
+    eager = study.open_results(tmp_path / "lazy.nc")
+    assert float(found.p.max().compute(num_workers=4)) == float(eager.p.max())
+    xr.testing.assert_identical(open_lazily(tmp_path / "lazy.nc").load(), eager)

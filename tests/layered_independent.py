@@ -120,14 +120,20 @@ def spot(v, E, Nbar, Ra):
     return p, b**2 / Ra - 2 * p / E * gap
 
 
-def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5):
+def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5, base="layered"):
     """P, D, p(0) of a rough sphere at the contact radius a, R = E2* = 1, on `count` nodes."""
     s, w, x, centre, t, tw, potential, H = collocation(count)
-    k, kw = wave_rule(h / a, n)
-    transform = (np.cos(np.outer(k, t)) * tw) @ potential
-    layer = (j0(np.outer(x, k)) * (kw * printed_kernel(k * h / a, n, nu1, nu2, bonded))) @ transform
-    u = 4 * a / (np.pi * n) * (H + layer)
-    edge, U = u[-1], u[:-1] - u[-1]
+    if base == "layered":
+        k, kw = wave_rule(h / a, n)
+        transform = (np.cos(np.outer(k, t)) * tw) @ potential
+        layer = (j0(np.outer(x, k)) * (kw * printed_kernel(k * h / a, n, nu1, nu2, bonded))) @ transform
+        u, springs = 4 * a / (np.pi * n) * (H + layer), 0.0
+    else:  # (3) with A1 = n: a half-space of E2* and springs
+        n = 1.0 if base == "half_space" else n
+        alpha = n * (1 - nu1) / (1 - nu2)
+        A2 = (1 + alpha * (1 - 2 * nu2)) * (1 - 2 * nu1 - alpha * (1 - 2 * nu2)) / (2 * (1 - nu1) ** 2)
+        u, springs = 4 * a / np.pi * H, 2 * h / n * (A2 if bonded else 0.5) * (base == "thin_layer")
+    edge, U = u[-1], u[:-1] - u[-1] + springs * np.eye(count)
 
     def law(v):
         return (n * v ** (2 / beta), B * Ra * v**2) if micro == "power_law" else spot(v, n, Nbar, Ra)

@@ -1,0 +1,98 @@
+"""The accuracy contract over the ordinary ranges, on fixed random samples: every case converges, the true error is
+within rtol, and `error` is near the true one.
+
+P 1e-7…1e-3, Ra 5e-4…1e-2, N̄Ra² 0.1…10, n 0.05…0.95, h 1e-3…0.1, both bondings, and the loads given by P, a or D. The
+truth is the same case on twice the nodes; on a smaller sample, a formulation that shares nothing with the solver.
+"""
+
+from functools import cache
+
+import numpy as np
+import pytest
+from layered_independent import rough
+from solver_cases import ALL_KINDS, difference, random_cases
+
+from solver import Problem, Status, solve
+
+RTOLS = (1e-2, 1e-3, 1e-6, 1e-9, 1e-11)
+#: Below this the two solutions that make the truth differ by their rounding.
+NOISE = {"half_space": 1e-13, "thin_layer": 1e-13, "layered": 1e-11}
+SIZE = {"half_space": 360, "thin_layer": 360, "layered": 120}
+ITERATED = [kind for kind in ALL_KINDS if kind != ("half_space", "smooth")]
+kinds = pytest.mark.parametrize(("base", "law"), ITERATED, ids=["-".join(kind) for kind in ITERATED])
+
+
+@cache
+def batches(base, law):
+    """Arguments of ``Problem.of`` without rtol: a third of the sample for each control."""
+    case = random_cases(SIZE[base], 2024) | {"base": base, "micro": law}
+    case["beta"] = np.random.default_rng(2024).uniform(0.3, 0.95, SIZE[base])
+    P = case.pop("P")
+    given = solve(Problem.of(P=P, **case, rtol=1e-3))
+    parts = [np.arange(first, SIZE[base], 3) for first in range(3)]
+    return [
+        {name: v[part] if isinstance(v, np.ndarray) else v for name, v in case.items()} | {control: value[part]}
+        for part, (control, value) in zip(parts, {"P": P, "a": given.a, "D": given.D}.items(), strict=True)
+    ]
+
+
+@cache
+def measured(base, law, rtol):
+    """Of every case of the sample: status, error, true error, nodes."""
+    found = []
+    for case in batches(base, law):
+        s = solve(Problem.of(**case, rtol=rtol))
+        fine = solve(Problem.of(**case, rtol=0.5, nodes=np.clip(2 * s.nodes, 48, 256)))
+        found.append((s.status, s.error, difference(s, fine), s.nodes))
+    return tuple(map(np.concatenate, zip(*found, strict=True)))
+
+
+@kinds
+@pytest.mark.parametrize("rtol", RTOLS)
+def test_every_case_converges_within_rtol(base, law, rtol):
+    status, error, truth, _ = measured(base, law, rtol)
+    smallest = rtol == 1e-11 and base == "layered"  # where the rounding of the layer's operator is not small
+    assert (status == Status.CONVERGED).mean() >= (0.99 if smallest else 1.0)
+    assert np.all(error[status == Status.CONVERGED] <= rtol)
+    assert (truth <= rtol).mean() >= (0.95 if smallest else 0.999)
+    assert truth.max() <= 10 * rtol
+
+
+@kinds
+@pytest.mark.parametrize("rtol", RTOLS[:-1])
+def test_the_estimate_is_near_the_truth(base, law, rtol):
+    _, error, truth, _ = measured(base, law, rtol)
+    above_noise = truth > NOISE[base]
+    assert above_noise.sum() >= 20, "else there is nothing to judge"
+    ratio = (error / truth)[above_noise]
+    assert ((ratio >= 1 / 3) & (ratio <= 30)).mean() >= 0.99
+    assert 1 <= np.median(ratio) <= 10
+
+
+@kinds
+def test_each_rtol_buys_its_accuracy(base, law):
+    """A smaller rtol takes more nodes and leaves a smaller error; the loosest two may share their mesh."""
+    found = [measured(base, law, rtol) for rtol in RTOLS]
+    truths, nodes = [np.median(truth) for _, _, truth, _ in found], [n.mean() for _, _, _, n in found]
+    assert np.all(np.diff(nodes) >= 0) and np.all(np.diff(nodes[1:]) > 0)
+    assert np.all(np.diff(truths[1:4]) < 0)
+    assert truths[4] < max(truths[3], NOISE[base])
+
+
+@pytest.mark.parametrize(("base", "law"), [kind for kind in ITERATED if kind[1] != "smooth"])
+def test_against_another_formulation(base, law):
+    """Collocation through the Abel transform: P, D, p(0) at given a, where its meshes agree well enough to tell."""
+    case = random_cases(16, 5) | {"base": base, "micro": law}
+    a = solve(Problem.of(**case)).a
+    del case["P"]
+    found = {rtol: solve(Problem.of(**case, a=a, rtol=rtol)) for rtol in (1e-3, 1e-6, 1e-9)}
+    names, judged = ("h", "n", "Nbar", "Ra", "B", "beta"), 0
+    for i in range(len(a)):
+        one = {name: case[name][i] for name in names} | {"nu1": 0.3, "nu2": 0.3, "base": base}
+        coarse, fine = (rough(count, law, a[i], bonded=case["bonding"][i] == "bonded", **one) for count in (36, 54))
+        own = 3 * np.abs(coarse / fine - 1).max()  # it converges slowly for some β
+        for rtol, s in found.items():
+            truth = np.abs(np.array([s.P[i], s.D[i], s.p0[i]]) / fine - 1).max()
+            assert truth <= rtol + own, (rtol, i)
+            judged += own < rtol
+    assert judged >= 2 * len(a)

@@ -18,6 +18,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 STUDIES = Path("studies")
 INTERRUPTED = 130  # exit code
+KEPT = "; finished blocks are kept, the same command goes on from there"
 
 
 def parser() -> argparse.ArgumentParser:
@@ -94,7 +95,7 @@ def run(options) -> int:
             return _print_cost(study.definition.name, study.dry_run(options.workers))
         return _compute(study, options, part=options.part, force=options.force)
 
-    return max(_attempt(lambda file=file: one(file), file) for file in options.files)
+    return max(_attempt(lambda file=file: one(file), file, KEPT) for file in options.files)
 
 
 def retry(options) -> int:
@@ -103,7 +104,7 @@ def retry(options) -> int:
     def one(file):
         return _compute(load(_file(file), options.results), options, retry=_status_values(options.status))
 
-    return max(_attempt(lambda file=file: one(file), file) for file in options.files)
+    return max(_attempt(lambda file=file: one(file), file, KEPT) for file in options.files)
 
 
 def _status_values(words: list[str]) -> tuple[int, ...]:
@@ -157,7 +158,7 @@ def table(options) -> int:
     )
 
 
-def _attempt(action, name: str) -> int:
+def _attempt(action, name: str, hint: str = "") -> int:
     """Exit code of an action on one file; what is wrong with it does not keep the others from their turn."""
     from .definition import StudyError
 
@@ -165,9 +166,9 @@ def _attempt(action, name: str) -> int:
         return action()
     except StudyError as error:
         print(error, file=sys.stderr)
-        return 2
+        return error.code
     except OSError as error:  # a full disk, say, or a scheduler that is gone
-        print(f"{name}: {error}", file=sys.stderr)
+        print(f"{name}: {error}{hint}", file=sys.stderr)
         return 1
 
 
@@ -247,7 +248,7 @@ def main(arguments=None) -> int:
     try:
         return options.function(options)
     except KeyboardInterrupt:
-        print("\ninterrupted; finished blocks are kept, the same command goes on from there", file=sys.stderr)
+        print(f"\ninterrupted{KEPT}", file=sys.stderr)
         return INTERRUPTED
     except BrokenPipeError:  # the reader, `head` say, has enough
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())

@@ -46,12 +46,19 @@ def write_block(path: Path, block: Block) -> None:
 def read_block(path: Path) -> Block:
     """The block in a file. Raises Damaged, or OSError when it cannot be read."""
     data = path.read_bytes()
-    if not data.startswith(MAGIC) or hashlib.sha256(memoryview(data)[:-CHECK]).digest() != data[-CHECK:]:
-        raise Damaged(f"{path}: is no whole block; the same command computes its cases again")
-    end = data.index(b"\n", len(MAGIC)) + 1
-    head = json.loads(data[len(MAGIC) : end])
-    arrays, place = {}, end
-    for name, dtype, shape in [["", "<u8", (head["cases"], 2)], *head["columns"]]:
-        arrays[name] = np.frombuffer(data, dtype, math.prod(shape), place).reshape(shape)
-        place += arrays[name].nbytes
-    return Block(head["facts"], arrays.pop(""), arrays)
+    try:
+        if not data.startswith(MAGIC) or checksum_of(memoryview(data)[:-CHECK]) != data[-CHECK:]:
+            raise ValueError
+        end = data.index(b"\n", len(MAGIC)) + 1
+        head = json.loads(data[len(MAGIC) : end])
+        arrays, place = {}, end
+        for name, dtype, shape in [["", "<u8", (head["cases"], 2)], *head["columns"]]:
+            arrays[name] = np.frombuffer(data, dtype, math.prod(shape), place).reshape(shape)
+            place += arrays[name].nbytes
+        return Block(head["facts"], arrays.pop(""), arrays)
+    except (ValueError, KeyError, TypeError) as error:
+        raise Damaged(f"{path}: is no whole block; the same command computes its cases again") from error
+
+
+def checksum_of(data) -> bytes:
+    return hashlib.sha256(data).digest()

@@ -1,5 +1,6 @@
 """Where blocks are computed: threads of this process, or the workers of a dask cluster. One way to use either."""
 
+import logging
 import os
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
@@ -15,6 +16,9 @@ AHEAD = 2  # blocks submitted for each worker: one that it computes, one that wa
 
 class Lost(ConnectionError):
     """The scheduler is gone."""
+
+    def __init__(self):
+        super().__init__("the scheduler is gone")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,13 +53,17 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
         from dask.distributed import Client
     except ImportError:
         raise StudyError(["--scheduler needs the package distributed: pip install 'roughcoat[cluster]'"]) from None
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # says at length what `Lost` says
     try:
         client = Client(scheduler, timeout=CONNECT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise StudyError([f"--scheduler {scheduler}: no scheduler answers there ({error})"]) from None
 
     def width() -> int:
-        threads = sum(client.nthreads().values())  # workers come and go
+        try:
+            threads = sum(client.nthreads().values())  # workers come and go
+        except OSError:
+            raise Lost from None
         return AHEAD * max(1, min(threads, workers or threads))
 
     try:
@@ -94,6 +102,6 @@ def _next(pending: dict[Future, int]) -> tuple[int, object]:
     try:
         return number, future.result()
     except CancelledError:
-        raise Lost("the scheduler is gone") from None
+        raise Lost from None
     except Exception as error:  # of the cluster, such as a block that killed its workers
         return number, Failure(f"{type(error).__name__}: {error}", "")

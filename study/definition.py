@@ -29,7 +29,9 @@ SECTIONS = {
 
 
 class StudyError(ValueError):
-    """Input that cannot be used; `messages` has every reason, one line each."""
+    """Input that cannot be used; `messages` has every reason, one line each; `code`: exit code of a command."""
+
+    code = 2
 
     def __init__(self, messages):
         self.messages = tuple(messages)

@@ -25,6 +25,12 @@ log = logging.getLogger(__name__)
 WHOLE = (1, 1)
 
 
+class CannotWrite(StudyError):
+    """The study is right, the place for its results is not."""
+
+    code = 1
+
+
 @dataclass(frozen=True)
 class Report:
     """What a run did.
@@ -112,14 +118,14 @@ def up_to_date(definition: Definition, path: Path, retry: tuple[int, ...]) -> bo
 
 
 def check_writable(path: Path) -> None:
-    """Raise StudyError when the folder of the results cannot be made or written."""
+    """Raise CannotWrite when the folder of the results cannot be made or written."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
         probe = path.with_name(f".{path.name}.{secrets.token_hex(4)}.probe")
         probe.touch()
         probe.unlink()
     except OSError as error:
-        raise StudyError([f"{path.parent}: cannot be written: {error.strerror}"]) from None
+        raise CannotWrite([f"{path.parent}: cannot be written: {error.strerror}"]) from None
 
 
 def check_size(definition: Definition, workers: int | None, yes: bool) -> None:

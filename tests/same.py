@@ -3,13 +3,18 @@
 import xarray as xr
 
 OF_ROUNDING = ("error", "residual")  # differences of nearly equal numbers: rounding is what is in their last digits
-OF_THE_RUN = ("history", "created", "command")
+OF_THE_RUN = ("history", "created", "command", "git_commit")
+
+
+def assert_same_numbers(found: xr.Dataset, expected: xr.Dataset) -> None:
+    """The same numbers to 1e-12 at the same coordinates."""
+    xr.testing.assert_allclose(found.drop_vars(OF_ROUNDING), expected.drop_vars(OF_ROUNDING), rtol=1e-12, atol=0)
+    xr.testing.assert_allclose(found[[*OF_ROUNDING]], expected[[*OF_ROUNDING]], rtol=1e-12, atol=1e-12)
 
 
 def assert_same(found: xr.Dataset, expected: xr.Dataset) -> None:
-    """The same numbers to 1e-12, the same types, labels and attributes."""
-    xr.testing.assert_allclose(found.drop_vars(OF_ROUNDING), expected.drop_vars(OF_ROUNDING), rtol=1e-12, atol=0)
-    xr.testing.assert_allclose(found[[*OF_ROUNDING]], expected[[*OF_ROUNDING]], rtol=1e-12, atol=1e-12)
+    """The same numbers, types, labels and attributes."""
+    assert_same_numbers(found, expected)
     assert found.sizes == expected.sizes and dict(found.dtypes) == dict(expected.dtypes)
     for name in expected.variables:
         assert repr(found[name].attrs) == repr(expected[name].attrs), name

@@ -1,0 +1,173 @@
+"""More than one machine: the walk-through of docs/cluster.md, and workers and schedulers that die."""
+
+import os
+import random
+import re
+import signal
+import subprocess
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from children import PROCESSES, wait_for
+from same import assert_same, assert_same_numbers
+from test_faults import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, undisturbed, written  # noqa: F401
+
+import study
+from study import run
+
+distributed = pytest.importorskip("distributed")
+ROOT = Path(__file__).resolve().parents[1]
+WALK = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8")
+ENVIRONMENT = os.environ | {
+    "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
+    "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")]),
+    "DASK_DISTRIBUTED__WORKER__DAEMON": "False",
+}
+
+
+class Cluster:
+    """A scheduler and workers, processes of this machine."""
+
+    def __init__(self, folder: Path):
+        self.log = open(folder / "cluster.log", "w")
+        self.file = folder / "scheduler.json"
+        self.processes = []
+        self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(self.file))
+
+    def start(self, *command: str) -> subprocess.Popen:
+        command = [sys.executable, "-m", "dask", *command, "--no-dashboard"]
+        self.processes.append(subprocess.Popen(command, env=ENVIRONMENT, stdout=self.log, stderr=self.log))
+        return self.processes[-1]
+
+    def worker(self) -> subprocess.Popen:
+        wait_for(self.file.exists)
+        options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1")
+        return self.start("worker", "--scheduler-file", str(self.file), *options)
+
+    @property
+    def address(self) -> str:
+        wait_for(self.file.exists)
+        return re.search(r'"address": "(tcp://[^"]+)"', self.file.read_text())[1]
+
+    def stop(self) -> None:
+        for process in self.processes:
+            process.kill()
+            process.wait()
+        self.log.close()
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    found = Cluster(tmp_path)
+    yield found
+    found.stop()
+
+
+def run_on(address: str, file: Path, results: Path, answers) -> None:
+    """In a process of its own: run the study on the cluster, answer with the exit code and what was said."""
+    import contextlib
+    import io
+
+    from study.__main__ import main
+
+    with contextlib.redirect_stderr(io.StringIO()) as errors:
+        code = main(["run", str(file), "--results", str(results), "--scheduler", address])
+    answers.put((code, errors.getvalue()))
+
+
+def started(cluster: Cluster, opened: study.Study, tmp_path: Path):
+    """A run on the cluster in a process of its own, and the queue of its answer."""
+    answers = PROCESSES.Queue()
+    arguments = (cluster.address, tmp_path / "line.toml", opened.results, answers)
+    process = PROCESSES.Process(target=run_on, args=arguments)
+    process.start()
+    return process, answers
+
+
+def stored(opened: study.Study) -> int:
+    return len(list(opened.results.rglob("*.block")))
+
+
+def test_walk_through_of_the_documentation(tmp_path):
+    walk, slurm = re.findall(r"```sh\n(.*?)```", WALK, flags=re.DOTALL)
+    script = "set -eu\nexport PYTHONPATH\n" + walk
+    ran = subprocess.run(
+        ["sh", "-c", script], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, timeout=120
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert "results/walk.nc: 600 cases, 600 computed now" in ran.stdout and "converged: 600" in ran.stdout
+    opened = study.load(tmp_path / "walk.toml", tmp_path / "results")
+    here = study.Study(opened.definition, tmp_path / "here")
+    here.run()
+    assert_same(opened.open(), here.open())
+    assert subprocess.run(["sh", "-n"], input=slurm, text=True, check=False).returncode == 0
+
+
+def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):  # noqa: F811
+    opened = written(tmp_path)
+    workers = [cluster.worker(), cluster.worker()]
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: stored(opened) >= 3)
+    workers[0].send_signal(signal.SIGKILL)
+    process.join(90)
+    code, errors = answers.get(timeout=5)
+    assert code == 0, errors
+    assert_ends_well(opened, undisturbed, 0)
+
+
+def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):  # noqa: F811
+    opened = written(tmp_path)
+    cluster.worker()
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: stored(opened) >= 3)
+    cluster.processes[0].kill()
+    process.join(60)
+    code, errors = answers.get(timeout=5)
+    assert code == 1
+    assert "line: the scheduler is gone" in errors and "the same command goes on from there" in errors
+    done = len(cases_on_disk(opened))
+    assert 3 * BLOCK <= done < CASES
+    assert_ends_well(opened, undisturbed, CASES - done)
+
+
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
+def test_a_scheduler_that_is_not_there(tmp_path, address, monkeypatch, undisturbed):  # noqa: F811
+    from study import cluster as engines
+
+    monkeypatch.setattr(engines, "CONNECT", 0.5)
+    opened = written(tmp_path)
+    with pytest.raises(study.StudyError, match=f"--scheduler {address}: no scheduler answers there"):
+        opened.run(scheduler=address)
+    assert_ends_well(opened, undisturbed, CASES)
+
+
+def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):  # noqa: F811
+    """Blocks of random size, axes in another order; the second worker comes while the run is on."""
+    cluster.worker()
+    text = TEXT.replace("[0.001, 0.002, 0.003]", "[0.003, 0.001, 0.002]")
+    opened = written(tmp_path, text.replace(f"block = {BLOCK}", f"block = {random.randint(3, 60)}"))
+    process, answers = started(cluster, opened, tmp_path)
+    cluster.worker()
+    process.join(90)
+    assert answers.get(timeout=5)[0] == 0
+    assert_same_numbers(opened.open().sel(h=undisturbed.h), undisturbed)
+
+
+def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):  # noqa: F811
+    cluster.worker()
+    opened = written(tmp_path)
+    real = run.parcel
+
+    def parcel(definition, index):
+        found = real(definition, index)
+        return found if found.first != 50 else replace(found, numerics="another")
+
+    monkeypatch.setattr(run, "parcel", parcel)
+    report = opened.run(scheduler=cluster.address)
+    monkeypatch.undo()
+    ((_, reason),) = report.failures.items()
+    assert reason.startswith("cases 50 to 54: RuntimeError: the worker has version")
+    assert report.computed == CASES - BLOCK
+    assert_ends_well(opened, undisturbed, BLOCK)

@@ -107,6 +107,36 @@ def test_full_disk(monkeypatch, capsys):
     assert "good: [Errno 28] No space left on device" in capsys.readouterr().err
 
 
+def test_dry_run_retry_and_parts(capsys):
+    assert main(["run", "good", "--dry-run"]) == 0
+    assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; the others: about 0 s, at most 0.")
+    assert main(["run", "good", "--part", "1/2"]) == 0
+    assert capsys.readouterr().out == "good: 2 cases computed now, 1 of 3 are missing: other parts\n"
+    assert main(["status", "good"]) == 0
+    assert capsys.readouterr().out.split("\n")[1:3] == ["    converged: 2", "    not_run: 1"]
+    assert main(["run", "good", "--part", "2/2"]) == 0
+    assert capsys.readouterr().out == "results/good.nc: 3 cases, 1 computed now\n"
+    assert main(["retry", "good", "--status", "diverged"]) == 0
+    assert capsys.readouterr().out.endswith("is up to date (3 cases), nothing to do\n")
+    assert main(["retry", "good", "--status", "converged"]) == 0
+    assert capsys.readouterr().out == "results/good.nc: 3 cases, 3 computed now\n"
+    assert main(["retry", "good", "--status", "divergd"]) == 2
+    assert capsys.readouterr().err == '--status "divergd" is not known; did you mean "diverged"?\n'
+
+
+def test_fail_fast(studies, capsys):
+    text = GOOD.replace("[axes]", "max_iterations = 1\n[axes]").replace(
+        '"smooth"', '"disc_cell"\nNbar = 1e5\nRa = 0.004'
+    )
+    (studies / "hard.toml").write_text(
+        text.replace("max_iterations = 1\n", "") + "max_iterations = 1", encoding="utf-8"
+    )
+    assert main(["run", "hard", "--fail-fast", "--workers", "1"]) == 1
+    assert "hard: block 0 failed: case 0: iteration_limit" in capsys.readouterr().err
+    assert main(["run", "hard", "--keep-going"]) == 0
+    assert "3 of them not converged" in capsys.readouterr().out
+
+
 def test_interrupt(monkeypatch, capsys):
     def store(*_):
         raise KeyboardInterrupt
@@ -117,7 +147,17 @@ def test_interrupt(monkeypatch, capsys):
 
 
 @pytest.mark.parametrize(
-    "arguments", [[], ["rnu"], ["run"], ["run", "good", "--workers", "0"], ["run", "good", "--workers", "two"]]
+    "arguments",
+    [
+        [],
+        ["rnu"],
+        ["run"],
+        ["run", "good", "--workers", "0"],
+        ["run", "good", "--workers", "two"],
+        ["run", "good", "--part", "3/2"],
+        ["retry", "good"],
+        ["run", "good", "--fail-fast", "--keep-going"],
+    ],
 )
 def test_wrong_calls(arguments, capsys):
     with pytest.raises(SystemExit) as caught:

@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 import weakref
@@ -14,11 +15,15 @@ import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from same import assert_same_numbers
 
 import study
 from study import blocks, dataset, join, reuse
 from study import run as running
 from study.blocks import parcel
+from study.definition import from_tables
 from study.store import Store, add, inventory
 
 TEXT = """
@@ -274,6 +279,113 @@ def test_blocks_of_a_killed_run_are_removed_when_the_results_are_there(file):
     store_block(opened, 0, 5)
     opened.run()
     assert leftovers(opened.results) == []
+
+
+@settings(max_examples=15, deadline=None)
+@given(data=st.data())
+def test_random_blocks_orders_workers_and_parts_give_the_same_dataset(data):
+    axes = {"P": [1e-6, 3e-6, 5e-6, 9e-6], "h": [0.001, 0.002, 0.003], "nu1": [0.2, 0.3], "bonding": ["bonded"]}
+    model = {"micro": "smooth", "n": 0.5, "base": "thin_layer"}
+    shuffled = {name: data.draw(st.permutations(axes[name])) for name in data.draw(st.permutations(list(axes)))}
+    tables = {"model": model, "axes": shuffled, "numerics": {"block": data.draw(st.integers(1, 30))}}
+    tables |= {"output": {"x": 3}}
+    parts, workers = data.draw(st.integers(1, 4)), data.draw(st.integers(1, 3))
+    with tempfile.TemporaryDirectory() as folder:
+        opened = study.Study(from_tables(tables, "random", "", "random"), Path(folder))
+        for part in data.draw(st.permutations(range(parts))):
+            report = opened.run(workers=workers, part=(part + 1, parts))
+        assert report.complete and leftovers(Path(folder)) == ["random.nc"]
+        found = opened.open()
+    whole = study.solve(**axes, **model, x=3)
+    assert_same_numbers(found.sel({name: whole[name] for name in axes}).transpose(*whole.dims), whole)
+
+
+def failing(monkeypatch, first: int) -> None:
+    """The second case of the block that begins with `first` ends with status 3, diverged, without numbers."""
+    real = blocks.compute
+
+    def compute(wanted):
+        found = real(wanted)
+        if wanted.first == first:
+            found["status"][1] = 3
+            found["a"][1] = np.nan
+        return found
+
+    monkeypatch.setattr(blocks, "compute", compute)
+
+
+def test_a_failed_case_does_not_stop_the_others_unless_asked(file, monkeypatch, computed):
+    failing(monkeypatch, 5)
+    report = load(file).run(workers=1, fail_fast=True)
+    assert report.failures == {1: "case 6: diverged"}
+    assert not report.complete and report.computed < 23
+    report = load(file).run(workers=1)
+    assert report.complete and report.counts == {0: 22, 3: 1}
+    assert set(computed) == {0, 5, 10, 15, 20}
+    assert computed.count(0) == computed.count(5) == 1, "what was stored before the stop is kept, the failed case too"
+
+
+@pytest.mark.parametrize("ended", [True, False])
+def test_retry_computes_the_cases_of_a_status_again(file, monkeypatch, computed, ended):
+    opened = load(file)
+    with monkeypatch.context() as patched:
+        failing(patched, 5)
+        opened.run(workers=1, fail_fast=not ended)
+    assert opened.status()["state"] == ("done" if ended else "partial")
+    assert opened.status()["counts"][3] == 1
+    known = set(np.flatnonzero(opened.open(partial=True).status.isin([0, 3])).tolist())
+    computed.clear()
+    assert opened.run(retry=(1, 2)).computed == 23 - len(known), "no case has this status"
+    known = 23
+    report = opened.run(retry=(3, 2))
+    assert (report.computed, report.counts, report.complete) == (1, {0: 23}, True)
+    whole = study.solve(P=np.linspace(1e-6, 1e-4, 23), micro="smooth", base="half_space", x=3)
+    assert_same_numbers(opened.open(), whole)
+    assert opened.run(retry=(3,)).counts == {}, "nothing to do"
+
+
+def test_a_block_size_of_one_part_does_not_change_which_cases_it_has(file):
+    whole = np.arange(23)
+    shares = [np.concatenate([*blocks.cut(whole, 5, (i, 3)), []]) for i in (1, 2, 3)]
+    assert sorted(np.concatenate(shares).tolist()) == whole.tolist()
+    later = np.concatenate(blocks.cut(whole[whole % 2 == 0], 5, (2, 3)))
+    assert set(later) == {case for case in shares[1] if case % 2 == 0}
+    assert [len(block) for block in blocks.cut(whole, 5)] == [5, 5, 5, 5, 3]
+
+
+def test_a_large_study_asks_first(file, monkeypatch, computed):
+    monkeypatch.setattr(running, "LARGE", 400)
+    opened = load(file)
+    with pytest.raises(
+        study.StudyError, match=r"^line: 23 cases: about \d+ s, at most .* on disk; --yes computes them$"
+    ):
+        opened.run()
+    assert not opened.results.joinpath("line.nc").exists() and computed == [], "nothing but a sample is computed"
+    assert opened.run(yes=True).computed == 23
+
+
+def test_dry_run_says_what_is_there_and_writes_nothing(file):
+    opened = load(file)
+    cost = opened.dry_run()
+    assert (cost.cases, cost.present) == (23, 0) and cost.seconds > 0
+    assert cost.size == 8 * 23 * (16 + 2 * 3) and cost.memory > cost.size
+    assert not opened.results.exists()
+    store_block(opened, 0, 5)
+    assert opened.dry_run().present == 5
+    opened.run()
+    before = sorted(opened.results.rglob("*"))
+    cost = opened.dry_run()
+    assert (cost.present, cost.seconds) == (23, 0.0)
+    assert load(file, **{"num = 23": "num = 45"}).dry_run().present == 23
+    assert sorted(opened.results.rglob("*")) == before
+
+
+def test_estimated_time_is_of_the_order_of_the_run(file):
+    opened = load(file, **{"num = 23": "num = 20000", "block = 5": "block = 2000"})
+    cost = opened.dry_run(workers=1)
+    begun = time.perf_counter()
+    blocks.compute(parcel(opened.definition, np.arange(20000)))
+    assert 0.02 < cost.seconds / (time.perf_counter() - begun) < 50
 
 
 # a test run in the background of a shell ignores SIGINT, and so would its children

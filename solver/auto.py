@@ -22,9 +22,9 @@ from .problem import Model, Solution
 from .quadrature import gauss_legendre
 from .status import Status
 
-#: What the closed forms make of asperities (A[p(0)]/a²) and of a layer that is dropped or left alone, times this, is
-#: about the error under a given load, radius, depth: a rung that need not be tried is cheaper left out.
-_ASPERITIES = {"P": 1.5, "a": 5.0, "D": 1.3}
+#: A rung that is bound to fail is cheaper left out: the error of leaving out the asperities is about this times
+#: (A[p(0)]/a²)^0.75, that of dropping the layer this times the change of the kernel, at given load, radius, depth.
+_ASPERITIES = {"P": 0.8, "a": 2.3, "D": 0.9}
 _LAYER = {"P": 0.8, "a": 2.5, "D": 1.0}
 
 _BY_NAME = {"half_space": Model.HALF_SPACE, "thin_layer": Model.THIN_LAYER, "layered": Model.LAYERED}
@@ -81,7 +81,7 @@ def _descend(part, index, n, x, solve, out):
     for rung in RUNGS:
         if rung.model == Model.LAYERED or (part.micro[0] == "smooth" and not rung.smooth):
             continue
-        tried = left[expected[rung.model][left] < part.accuracy[left]]
+        tried = left[MARGIN * expected[rung.model][left] < part.accuracy[left]]
         if len(tried):
             found = _on_rung(rung, part.take(tried), n, x, solve)
             good = (found["status"] == Status.CONVERGED) & (
@@ -104,7 +104,7 @@ def _on_rung(rung, part, n, x, solve):
     _, at_nodes, at_area = np.split(found["p"], np.cumsum([len(v) for v in points[:-1]]), axis=1)
     if asperities:
         found = found | _asperities(part, found, at_area, weight)
-    error = MARGIN * _model_error(part, found, n, at_nodes)
+    error = MARGIN * _model_error(part, found, n, at_nodes, 1 + asperities)
     return _shown(found, len(x)) | {"model_error": error, "model_used": np.full(len(part), rung.model)}
 
 
@@ -127,7 +127,7 @@ def _asperities(part, found, p, weight):
     }
 
 
-def _model_error(part, found, n, p):
+def _model_error(part, found, n, p, steps=1):
     """Estimated model error (B,) without margin of the solution `found` of the cases `part`; p at the nodes."""
     error = np.full(len(part), np.nan)
     thick_enough = part.h / found["a"] >= THINNEST
@@ -137,7 +137,7 @@ def _model_error(part, found, n, p):
         dear, C = dimensionless(_with(part.take(index), base=base))
         cases, law = as_cases(dear, C)
         cheap = {name: v[index] for name, v in found.items()}
-        error[index] = first_order(cases, law, cheap, p[index], n)
+        error[index] = first_order(cases, law, cheap, p[index], n, steps)
         if not thick:
             error[index] += closed_form(dear, cheap["a"])
     return error
@@ -180,10 +180,6 @@ def _thin(part, x):
     return np.nan_to_num(closed_form(part, part.h / x), nan=np.inf)
 
 
-def _none(part, x):
-    return np.zeros_like(x)
-
-
 #: From the cheapest to the dearest; the last one is the truth.
 RUNGS = (
     Rung(Model.SMOOTH_HALF_SPACE, True, _half_space, _dropped),
@@ -192,7 +188,7 @@ RUNGS = (
     Rung(Model.HALF_SPACE, False, _half_space, _dropped),
     Rung(Model.LAYER_ALONE, False, _layer_alone, _alone),
     Rung(Model.THIN_LAYER, False, lambda part: _with(part, base="thin_layer"), _thin),
-    Rung(Model.SMOOTH_LAYERED, True, lambda part: _with(part, base="layered"), _none),
+    Rung(Model.SMOOTH_LAYERED, True, lambda part: _with(part, base="layered"), lambda part, x: 0.0),
 )
 
 
@@ -205,8 +201,10 @@ def _expected_errors(part):
     p0 = 2 / np.pi * a * part.n / layered_kernel(1.5 * x, *material).L
     y = law.from_pressure((p0 / cases.p_star)[:, None], cases.exponent)
     A0 = cases.A_star * law.evaluate(y, cases.exponent).g[:, 0]
-    asperities = _ASPERITIES[part.control] * A0 / a**2
+    asperities = _ASPERITIES[part.control] * (A0 / a**2) ** 0.75
     errors = {rung.model: rung.expected(part, x) + rung.smooth * asperities for rung in RUNGS}
+    # on the exact layer a smooth case costs little less than a rough one: it must be nearly sure
+    errors[Model.SMOOTH_LAYERED] = 2 * asperities
     # asperities soften the edge, where the thin layer errs
     errors[Model.THIN_LAYER] = errors[Model.THIN_LAYER] / (1 + 0.15 / x)
     if part.micro[0] == "smooth":

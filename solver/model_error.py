@@ -1,9 +1,9 @@
 """How far a cheap model is from the exact layered rough one, estimated from the cheap solution.
 
-One Newton step of the dear equation, begun at the nominal pressure and the radius of the cheap solution, gives to
-first order what the dear model would have found under the same control. The dear operator is applied once, on few
-nodes, instead of at each of some ten steps on each mesh of the ladder. What the two differ by is the estimate: the
-largest over a, P, D, p(0), p_max, Ar/An.
+One Newton step of the dear equation (two, where asperities come in), begun at the nominal pressure and the radius of
+the cheap solution, gives to first order what the dear model would have found under the same control. The dear operator
+is applied on few nodes, instead of at each of some ten steps on each mesh of the ladder. What the two differ by is the
+estimate: the largest over a, P, D, p(0), p_max, Ar/An.
 """
 
 import numpy as np
@@ -32,7 +32,7 @@ def nodes_for(accuracy):
     return np.select([accuracy >= limit for limit, _ in _NODES], [n for _, n in _NODES], 24)
 
 
-def first_order(cases, law, cheap, p, n):
+def first_order(cases, law, cheap, p, n, steps=1):
     """Estimated relative error (B,) of a cheap solution against the dear model `cases`, to first order.
 
     Parameters
@@ -45,6 +45,9 @@ def first_order(cases, law, cheap, p, n):
         Its nominal pressure at the nodes ``mesh(n).x``.
     n : int
         Number of nodes.
+    steps : int
+        Newton steps; asperities added to a smooth solution take two, for they change the pressure most where it is
+        singular.
 
     Returns
     -------
@@ -54,13 +57,14 @@ def first_order(cases, law, cheap, p, n):
     grid = mesh(n)
     y = law.from_pressure(p / cases.p_star[:, None], cases.exponent)
     state = State(y, np.log(cheap["a"]))
-    ev = evaluate(cases, state, law, grid)
-    better = advance(cases, state, ev, grid, law)
-    curve = law.evaluate(better.y, cases.exponent)
+    for _ in range(steps):
+        ev = evaluate(cases, state, law, grid)
+        state, last = advance(cases, state, ev, grid, law), state
+    curve = law.evaluate(state.y, cases.exponent)
     # to first order, as the step itself: the operator is not formed anew
-    edge_q = (ev.base.edge * curve.q).sum(axis=1) + ev.base.d_edge_q * (better.eta - state.eta)
-    X, _, _ = groups(cases, better.eta)
-    dear = quantities(cases, better, curve, X[:, 0], edge_q, law, grid)
+    edge_q = (ev.base.edge * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)
+    X, _, _ = groups(cases, state.eta)
+    dear = quantities(cases, state, curve, X[:, 0], edge_q, law, grid)
     error = np.max([np.abs(cheap[name] / dear[name] - 1) for name in JUDGED], axis=0)
     return np.where(np.isfinite(cheap["a"]) & ~np.isfinite(error), np.inf, error)
 

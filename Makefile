@@ -2,12 +2,15 @@
 # numbers has changed: make calls `study run`, which compares digests.
 
 PYTHON ?= python3
-STUDIES := table1 reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings
+STUDIES := table1 reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings \
+  extremes extremes_layered picard_domain
 PAPERS := fig01 fig02 fig03 fig04 fig05 fig06 fig07 fig08 fig09 fig10
 COMPANIONS := fig03_layered fig04_layered fig05_layered fig06_layered fig07_layered fig08_layered fig10_layered
 FIGURES := $(PAPERS) $(COMPANIONS) validity validity_load coatings
+# With a target of their own: long to compute.
+APART := extremes picard_domain tradeoff
 DRAWN := table1 main_case load_sweep spot_density validity validity_load coatings
-TABLES := table1 paper_numbers validity
+TABLES := table1 paper_numbers validity extremes tradeoff
 
 VENV := .venv
 READY := $(VENV)/.ready
@@ -15,7 +18,7 @@ RUN := $(VENV)/bin/python -m study
 SOURCES := $(wildcard solver/*.py study/*.py)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup figures table1 paper_numbers validity map test bench lint clean
+.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test bench lint clean
 .NOTPARALLEL:
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -40,6 +43,14 @@ validity: tables/validity.txt ## up to which h/a the thin-layer model errs by le
 
 map: results/parameter_map.nc ## 25,000 cases for exploration: results/parameter_map.nc
 
+extremes: figures/extremes.pdf tables/extremes.txt ## 135,000 random cases far beyond any scene: status, error, iterations
+	@cat tables/extremes.txt
+
+tradeoff: docs/tradeoff.png tables/tradeoff.txt docs/tradeoff.md ## error against time of every way to solve
+	@cat docs/tradeoff.md
+
+picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
+
 test: $(READY) ## all tests
 	$(VENV)/bin/python -m pytest -q
 
@@ -50,7 +61,7 @@ lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .
 
 clean: ## remove figures, tables and caches; results and .venv stay
-	rm -f $(foreach name,$(FIGURES),$(addprefix figures/$(name).,pdf png csv))
+	rm -f $(foreach name,$(FIGURES) $(APART),$(addprefix figures/$(name).,pdf png csv))
 	rm -f $(foreach name,$(TABLES),$(addprefix tables/$(name).,txt csv tex)) bench.json figures/.drawn
 	rm -rf .pytest_cache .ruff_cache .hypothesis
 	find solver study tests -name __pycache__ -type d -prune -exec rm -rf {} +
@@ -71,6 +82,15 @@ results/%.nc: studies/%.toml $(SOURCES) | $(READY)
 	$(RUN) run $(if $(filter $*,$(STUDIES)),--force) $<
 	@touch $@
 
+# Measured, not computed: anew only for other numerics or other settings.
+docs/tradeoff.md: results/tradeoff.nc
+results/tradeoff.nc docs/tradeoff.md: $(SOURCES) | $(READY)
+	$(RUN) tradeoff
+	@touch $@
+
+docs/tradeoff.png: figures/tradeoff.pdf
+	@cp figures/tradeoff.png $@
+
 figures/fig01.pdf figures/fig02.pdf figures/fig03.pdf figures/fig07.pdf: results/main_case.nc
 figures/fig03_layered.pdf figures/fig07_layered.pdf: results/main_case.nc
 figures/fig04.pdf figures/fig05.pdf figures/fig06.pdf figures/fig08.pdf: results/load_sweep.nc results/main_case.nc
@@ -81,6 +101,9 @@ figures/fig10.pdf figures/fig10_layered.pdf: results/spot_density.nc
 figures/validity.pdf: results/validity.nc
 figures/validity_load.pdf: results/validity_load.nc
 figures/coatings.pdf: results/coatings.nc
+figures/picard_domain.pdf: results/picard_domain.nc
+figures/tradeoff.pdf: results/tradeoff.nc
+figures/extremes.pdf: results/extremes.nc results/extremes_layered.nc
 figures/%.pdf: study/roughcoat.mplstyle | $(READY)
 	$(RUN) plot $*
 
@@ -93,5 +116,7 @@ figures/.drawn: $(DRAWN:%=results/%.nc) study/roughcoat.mplstyle | $(READY)
 tables/table1.txt: results/table1.nc
 tables/paper_numbers.txt: results/reference_load.nc results/main_case.nc results/table1.nc
 tables/validity.txt: results/validity.nc results/validity_load.nc
+tables/tradeoff.txt: results/tradeoff.nc
+tables/extremes.txt: results/extremes.nc results/extremes_layered.nc
 tables/%.txt: $(SOURCES) | $(READY)
 	$(RUN) table $*

@@ -13,8 +13,11 @@ from matplotlib.figure import Figure
 
 from .coatings import master_curves
 from .curves import PAPERS_FIGURES, laws
+from .extremes_map import maps
 from .outputs import csv_text, open_studies, write_text
+from .picard_domain import domain
 from .schemes import contact_scheme, spot_scheme
+from .tradeoff_view import work_precision
 from .validity_maps import given_load, given_radius
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
@@ -47,6 +50,9 @@ RECIPES = {
     "validity": Recipe(("validity",), given_load, (TWO_COLUMNS, 7.4), (5, 5)),
     "validity_load": Recipe(("validity_load",), given_radius, (TWO_COLUMNS, 3.7), (2, 5)),
     "coatings": Recipe(("coatings",), master_curves, (TWO_COLUMNS, 7.0), (3, 2)),
+    "extremes": Recipe(("extremes", "extremes_layered"), maps, (TWO_COLUMNS, 9.2), (5, 3)),
+    "picard_domain": Recipe(("picard_domain",), domain, (TWO_COLUMNS, 4.6), (2, 3)),
+    "tradeoff": Recipe(("tradeoff",), work_precision, (TWO_COLUMNS, 6.4), (2, 2)),
 }
 for _name, _draw in PAPERS_FIGURES.items():
     _size = (ONE_COLUMN, 3.2 if _name == "fig08" else 2.6)

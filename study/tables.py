@@ -9,7 +9,9 @@ import xarray as xr
 
 from . import paper
 from .derived import from_layered, nominal_area_ratio
+from .extremes_map import shares
 from .outputs import csv_text, open_studies, pick, write_text
+from .tradeoff_view import rows as work_precision
 from .vocabulary import VOCABULARY
 
 
@@ -142,6 +144,35 @@ TABLES = {
             *(Column(f"{name} {level}%", rf"{name}, {level}\%", ".3g") for name in MATERIALS for level in (1, 10)),
         ),
         validity,
+    ),
+    "extremes": Table(
+        ("extremes", "extremes_layered"),
+        "Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not apply, the"
+        " punch lifts off), shares of the others, error over rtol and iterations of the converged ones.",
+        (
+            Column("base", "base"),
+            Column("law", "law"),
+            Column("cases", "cases", "d"),
+            *(Column(name, name, ".2%") for name in ("n/a", "lift-off", "converged", "above rtol", "failed")),
+            *(Column(name, name.replace("%", r"\%"), ".1e") for name in ("error 50%", "error 99.9%", "error max")),
+            *(Column(name, name, ".0f") for name in ("iterations", "max")),
+        ),
+        shares,
+    ),
+    "tradeoff": Table(
+        ("tradeoff",),
+        "Work and precision: time per case on one thread, error of half and of 95% of the cases, largest error,"
+        " share of the cases that ended.",
+        (
+            Column("set", "set"),
+            Column("way", "way"),
+            Column("setting", "setting"),
+            Column("cases", "cases", "d"),
+            Column("time/us", r"time/\textmu s", ".1f"),
+            *(Column(name, name.replace("%", r"\%"), ".1e") for name in ("error 50%", "error 95%", "largest")),
+            Column("ended", "ended", ".1%"),
+        ),
+        work_precision,
     ),
 }
 

@@ -1,6 +1,7 @@
 """Results of every study of the repository, shrunken so that all of them take seconds."""
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,24 +11,29 @@ STUDIES = sorted((ROOT / "studies").glob("*.toml"))
 
 
 def shrunken(tables: dict) -> dict:
-    """The tables of a study file with long axes cut down: ranges to 4 points, lists to first, middle and last."""
+    """The tables of a study file cut down: ranges to 4 points, lists to first, middle and last, samples to 3 cases."""
     axes = {}
     for name, values in tables.get("axes", {}).items():
         if isinstance(values, dict):
             axes[name] = values | {"num": min(values["num"], 4)}
         else:
             axes[name] = values if len(values) <= 3 else [values[0], values[len(values) // 2], values[-1]]
-    return tables | ({"axes": axes} if axes else {})
+    sample = {"sample": tables["sample"] | {"size": min(tables["sample"]["size"], 3)}} if "sample" in tables else {}
+    return tables | ({"axes": axes} if axes else {}) | sample
 
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory) -> Path:
-    """Folder with the results of every study, shrunken."""
+    """Folder with the results of every study, shrunken, and of the measurement of work and precision."""
+    from study.dataset import write
     from study.definition import from_tables
     from study.run import run
+    from study.tradeoff import WAYS, measure
 
     folder = tmp_path_factory.mktemp("project") / "results"
     for file in STUDIES:
         text = file.read_text(encoding="utf-8")
         run(from_tables(shrunken(tomllib.loads(text)), file.stem, text, file.name), folder)
+    write(measure(10, 1, {name: replace(way, settings=way.settings[:1], most=5) for name, way in WAYS.items()}),
+          folder / "tradeoff.nc")  # fmt: skip
     return folder

@@ -122,7 +122,7 @@ def displacement_between(ev, H, x, mesh):
     half_space = q @ H.T
     if ev.base.weights is None:
         return half_space
-    return half_space + (np.pi / 2) * layer_displacement(ev.base.weights, q, mesh, x)
+    return half_space + (np.pi / 2) * layer_displacement(ev.base.weights, q, mesh, x, half_space)
 
 
 def evaluate(cases, state, law, mesh, weights=None):

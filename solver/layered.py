@@ -4,11 +4,12 @@
     dx,
 
 k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity; L - 1 decays
-like e^(-2kη), so Λ is a smooth kernel for every η. The quadrature in k is fixed for an octave of η: its panels
+like e^(-2u), so Λ is a smooth kernel for every η. The quadrature in k is fixed for an octave of η: its panels
 follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers n^(-1/3)/η and
 1/(nη)), so that it is accurate to rounding for every h/a and n of the octave, and J0 φ is tabulated once. For a
 batch, Λ is then one matrix product of (L - 1)-values with that table, its derivative by η another one with u dL/du; no
-interpolation is made, and the octaves agree to rounding where they meet.
+interpolation is made, and the octaves agree to rounding where they meet. Films, below the last octave, all share
+one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
 """
 
 from functools import lru_cache
@@ -17,11 +18,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import j0
 
-from .kernel import decaying_part
-from .quadrature import gauss_legendre
+from . import film
+from .kernel import decaying_part, layered_kernel
+from .quadrature import gauss_legendre, lagrange
 
-#: Octaves of h/a with tables, 2^-11 = 4.9e-4 to 2^40; their cost grows like a/h.
-OCTAVES = (-11, 40)
+#: Octaves of h/a with tables of their own; below is the octave FILM, above nothing of the half-space is left.
+OCTAVES = (-8, 40)
+FILM = OCTAVES[0] - 1
 #: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
 _KEEP = 4e6
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
@@ -45,23 +48,32 @@ class Layer(NamedTuple):
 
 
 class Table(NamedTuple):
-    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²)."""
+    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²).
+
+    `film`: what makes the convolution of a film at the first m nodes (F, m, n), and at the edge (F, n).
+    """
 
     k: np.ndarray
     J: np.ndarray
     phi: np.ndarray
     J_edge: np.ndarray
     product: np.ndarray | None
+    film: tuple | None
 
 
 class Weights(NamedTuple):
-    """Part of a batch in one octave: its cases `index` (b,), the key of its table, w (L - 1), -w u dL/du (b, G)."""
+    """Part of a batch in one octave: its cases `index` (b,), the key of its table, w (L - 1), -w u dL/du (b, G).
+
+    Films have w χ (L - n') there, and what the table of the convolution asks for (b, F), the last n' - 1.
+    """
 
     index: np.ndarray
     octave: int
     depth: int
     W: np.ndarray
     dW: np.ndarray
+    film: np.ndarray | None
+    d_film: np.ndarray | None
 
 
 class LayerRows(NamedTuple):
@@ -73,12 +85,20 @@ class LayerRows(NamedTuple):
     d_edge_q: np.ndarray
 
 
+def _end(octave):
+    """Where the integral over u may end: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1, their product below rounding."""
+    return min(17.0, 15.0 + 0.7 * octave)
+
+
+#: Largest k of the quadrature of films.
+CUT = _end(FILM) * 2.0**-FILM
+
+
 @lru_cache(maxsize=64)
 def quadrature(octave, depth):
     """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
     scale = 2.0**-octave
-    # L - 1 ~ u² e^(-2u), and J0 φ ~ 1/k² for k > 1: their product is below rounding beyond
-    cut = min(17.0, 15.0 + 0.7 * octave)
+    cut = _end(octave)
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
     for low, high in zip(ends[:-1], ends[1:], strict=True):
@@ -102,7 +122,14 @@ def table(grid, octave, depth):
     phi = _transform(grid, k)
     keep = J.shape[0] * n * n <= _KEEP
     product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n) if keep else None
-    return Table(k, J, phi, J_edge, product)
+    return Table(k, J, phi, J_edge, product, _film_table(grid) if octave == FILM else None)
+
+
+@lru_cache(maxsize=16)
+def _film_table(grid):
+    near = np.append(grid.s[: np.searchsorted(grid.s, np.sqrt(2 * film.REACH / CUT))], 0.0)
+    table = film.convolution(grid, near, CUT)
+    return table[:, :-1], table[:, -1]
 
 
 def _transform(grid, k):
@@ -111,24 +138,34 @@ def _transform(grid, k):
     ends = np.arcsin(grid.breaks)
     for part in np.array_split(np.arange(len(k)), -(-len(k) // 500)):
         # x = cos φ, s = sin φ: the phase k cos φ advances by at most 20 a piece
-        pieces = [int(k[part].max() * (high - low) / 20) + 1 for low, high in zip(ends[:-1], ends[1:], strict=True)]
-        starts = np.concatenate([np.linspace(*ends[i : i + 2], m + 1)[:-1] for i, m in enumerate(pieces)])
-        width = np.repeat(np.diff(ends) / pieces, pieces)
-        t, w = gauss_legendre(24 + grid.order // (2 * min(pieces)))
-        angle = (starts[:, None] + width[:, None] * t).ravel()
-        sin, cos = np.sin(angle), np.cos(angle)
-        weight = (width[:, None] * w).ravel() * sin * cos
-        phi[part] = j0(k[part, None] * cos) @ (weight[:, None] * grid.basis(sin))
+        for i, (low, high) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+            pieces = int(k[part].max() * (high - low) / 20) + 1
+            t, w = gauss_legendre(24 + grid.order // (2 * pieces))
+            angle = low + (high - low) * ((np.arange(pieces)[:, None] + t) / pieces).ravel()
+            sin, cos = np.sin(angle), np.cos(angle)
+            weight = (high - low) * np.tile(w / pieces, pieces) * sin * cos
+            own = slice(i * grid.order, (i + 1) * grid.order)
+            phi[part, own] = j0(k[part, None] * cos) @ (weight[:, None] * lagrange(grid.s[own], sin))
     return phi
 
 
 def octave_of(layer, a):
-    """Octave of h/a and depth of the quadrature for the stiffness of the layer, (B,) int each."""
-    octave = np.clip(np.floor(np.nan_to_num(np.log2(layer.h / a))), *OCTAVES).astype(int)
+    """Octave of h/a, or FILM, and depth of the quadrature for the stiffness of the layer, (B,) int each."""
+    eta = layer.h / a
+    octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
     # a stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n
     ratio = np.maximum(np.where(layer.bonded, layer.n, np.cbrt(layer.n)), 1.0)
-    wanted = np.ceil(np.log2(3.5 * ratio))  # 0.5 2^-depth <= 0.15/ratio
+    ratio = np.where(octave == FILM, ratio * eta * 2.0**-FILM, ratio)
+    wanted = np.ceil(np.log2(np.maximum(3.5 * ratio, 1.0)))  # 0.5 2^-depth <= 0.15/ratio
     return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
+
+
+def operator_error(layer, a, nodes):
+    """Relative error (B,) of the operator itself: rounding, and for films what the convolution leaves out."""
+    L = layered_kernel(10 * layer.h / a, *layer[1:]).L
+    octave, _ = octave_of(layer, a)
+    local = np.abs(L - layer.n) / np.maximum(L, layer.n)
+    return 1e-14 * nodes / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
 
 def layer_weights(layer, a):
@@ -142,38 +179,80 @@ def layer_weights(layer, a):
 
 def _weights(layer, a, octave, depth, index):
     k, weight = quadrature(octave, depth)
-    W, dW = np.empty((len(index), len(k))), np.empty((len(index), len(k)))
-    eta, material = layer.h[index] / a[index], [field[index] for field in layer[1:]]
-    rows = max(1, _BLOCK // len(k))
-    for low in range(0, len(index), rows):  # a block at a time: the temporaries of the kernel stay in the cache
+    eta, part = layer.h[index] / a[index], layer.take(index)
+    if octave != FILM:
+        return Weights(index, octave, depth, *_sampled(part, eta, k, weight, 0.0), None, None)
+    level = layered_kernel(CUT * eta / 2, *part[1:]).L[:, None] - 1
+    kappa, _ = film.waves()
+    below = _sampled(part, eta, k, weight * film.step(k / CUT), level)
+    beyond, d_beyond = _sampled(part, eta, CUT * kappa, 1 - film.step(kappa), level)
+    beyond = np.hstack([film.transform(beyond - level * np.expm1(-kappa)), level])
+    return Weights(index, octave, depth, *below, beyond, np.hstack([film.transform(d_beyond), 0 * level]))
+
+
+def _sampled(layer, eta, k, weight, level):
+    """w (L - 1 - level) and -w u dL/du (b, G) at the nodes k."""
+    W, dW = np.empty((len(eta), len(k))), np.empty((len(eta), len(k)))
+    rows, material = max(1, _BLOCK // len(k)), layer[1:]
+    for low in range(0, len(eta), rows):  # a block at a time: the temporaries of the kernel stay in the cache
         part = slice(low, low + rows)
         L1, uL = decaying_part(k * eta[part, None], *(field[part, None] for field in material))
-        np.multiply(weight, L1, out=W[part])
+        np.multiply(weight, L1 - (level[part] if np.ndim(level) else level), out=W[part])
         np.multiply(-weight, uL, out=dW[part])
-    return Weights(index, octave, depth, W, dW)
+    return W, dW
 
 
 def layer_rows(weights, q, grid):
     """:class:`LayerRows` of a batch from its weights, for q (B, n) on a mesh."""
     size, n = q.shape
     out = LayerRows(np.empty((size, n, n)), np.empty((size, n)), np.empty((size, n)), np.empty(size))
-    for index, octave, depth, W, dW in weights:
-        tab = table(grid, octave, depth)
+    for part in weights:
+        index, W = part.index, part.W
+        tab = table(grid, part.octave, part.depth)
         if tab.product is not None:
             out.rows[index] = (W @ tab.product).reshape(-1, n, n)
         else:
             for i, w in zip(index, W, strict=True):
                 out.rows[i] = (tab.J * w[:, None]).T @ tab.phi
         out.edge[index] = (W * tab.J_edge) @ tab.phi
-        moved = dW * (q[index] @ tab.phi.T)
+        moved = part.dW * (q[index] @ tab.phi.T)
         out.d_rows_q[index], out.d_edge_q[index] = moved @ tab.J, moved @ tab.J_edge
+        if part.film is not None:
+            _add_film(out, part, tab, q[index], grid)
     return out
 
 
-def layer_displacement(weights, q, grid, x):
-    """Λ[q](x) - Λ[q](1) (B, m) at radii x (m,) for q (B, n) on a mesh."""
+def _add_film(out, part, tab, q, grid):
+    """Add n' - 1 times the half-space and the convolution to the rows of films, in place."""
+    index, (near, edge), level = part.index, tab.film, part.film[:, -1, None] * (2 / np.pi)
+    m, n = near.shape[1:]
+    at_edge = part.film @ edge
+    out.rows[index] += level[:, :, None] * grid.K - at_edge[:, None]
+    out.edge[index] += level * grid.edge + at_edge
+    out.rows[index, :m] += (part.film @ near.reshape(-1, m * n)).reshape(-1, m, n)
+    moved_edge = ((part.d_film @ edge) * q).sum(axis=1)
+    moved = np.matmul((part.d_film @ near.reshape(-1, m * n)).reshape(-1, m, n), q[:, :, None])[..., 0]
+    out.d_rows_q[index] -= moved_edge[:, None]
+    out.d_edge_q[index] += moved_edge
+    out.d_rows_q[index, :m] += moved
+
+
+def layer_displacement(weights, q, grid, x, half_space):
+    """Λ[q](x) - Λ[q](1) (B, m) at radii x (m,) for q (B, n) on a mesh; half_space (B, m) is H[q](x) - H[q](1)."""
     out = np.empty((len(q), len(x)))
-    for index, octave, depth, W, _ in weights:
-        tab = table(grid, octave, depth)
-        out[index] = (W * (q[index] @ tab.phi.T)) @ (j0(tab.k[:, None] * x) - tab.J_edge[:, None])
+    for part in weights:
+        index, tab = part.index, table(grid, part.octave, part.depth)
+        out[index] = (part.W * (q[index] @ tab.phi.T)) @ (j0(tab.k[:, None] * x) - tab.J_edge[:, None])
+        if part.film is not None:
+            near = np.flatnonzero((1 - x) * CUT < film.REACH)
+            rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
+            values = (part.film @ rows.reshape(len(rows), len(near) * grid.n)).reshape(len(index), len(near), grid.n)
+            out[index] += part.film[:, -1:] * (2 / np.pi) * half_space[index]
+            out[index] -= ((part.film @ tab.film[1]) * q[index]).sum(axis=1)[:, None]
+            out[np.ix_(index, near)] += np.matmul(values, q[index][:, :, None])[..., 0]
     return out
+
+
+@lru_cache(maxsize=64)
+def _film_rows(grid, s_bytes):
+    return film.convolution(grid, np.frombuffer(s_bytes), CUT)

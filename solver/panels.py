@@ -17,10 +17,14 @@ from .quadrature import radau_nodes
 START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
 ORDER = 12
 DEPTH = 30
+#: More panels than this are not made: the operator is not accurate enough to tell more.
+_MOST = 24
 #: Rounds of solving and halving; the second mostly changes nothing.
 _ROUNDS = 6
 #: A panel is resolved when what its last coefficients add to the load and the real area is below this times rtol.
 _SHARE = 0.3
+#: ... or, for the smallest rtol, below this: the operator has an error too.
+_FLOOR = 1e-12
 
 
 def solve_on_panels(case, law, rtol, iterate):
@@ -63,13 +67,15 @@ def resolve(case, ev, state, law, grid, rtol):
     for i, panel in enumerate(zip(grid.breaks[:-1], grid.breaks[1:], strict=True)):
         part = slice(i * grid.order, (i + 1) * grid.order)
         inside[panel] = np.stack([q[part], lam[part]])
-    ends, todo = {1.0}, list(inside)
+    scale = np.maximum(scale, _FLOOR * scale / (_SHARE * rtol))
+    ends, todo, room = {1.0}, list(inside), _MOST - len(inside)
     while todo:
         halves = []
         for low, high in todo:
-            if high - low > 2.0**-DEPTH and np.any(_tail(inside[low, high]) * (high**2 - low**2) > scale):
+            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(inside[low, high]) * (high**2 - low**2) > scale):
                 middle = (low + high) / 2
                 halves += [(low, middle), (middle, high)]
+                room -= 1
             else:
                 ends.add(low)
         if halves:

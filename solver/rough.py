@@ -21,7 +21,7 @@ from .equation import (
     smooth_start,
 )
 from .ladder import MARGIN, climb, finer_mesh
-from .layered import OCTAVES, octave_of
+from .layered import octave_of, operator_error
 from .mesh import mesh
 from .outputs import interpolate, profiles, quantities
 from .panels import solve_on_panels
@@ -65,8 +65,6 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
     out["status"][unmet] = Status.TOLERANCE_NOT_MET
     lowest = out.pop("lowest")
     _refuse(out, lowest < -np.maximum(10 * out["error"], 1e-9), Status.LIFT_OFF)
-    if cases.layer is not None:
-        _refuse(out, cases.layer.h < out["a"] * 2.0 ** OCTAVES[0], Status.LAYER_TOO_THIN)
     return out
 
 
@@ -134,9 +132,15 @@ def finish(cases, law, grid, state, x):
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     values["p"], values["lam"] = profiles(cases, ev, grid, law, x)
     values |= {"dP_dD": stiffness(cases, state, ev, values, grid), "residual": ev.residual}
-    values["error"] = np.maximum(MARGIN * error, 4 * grid.n * np.finfo(float).eps)
+    values["error"] = np.maximum(MARGIN * error, _floor(cases, values["a"], grid.n))
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
     return values | {"nodes": np.full(len(finite), grid.n)}, finer
+
+
+def _floor(cases, a, nodes):
+    """Error (B,) that no estimate may go below: rounding, and on the exact layer the operator's own."""
+    rounding = 4 * nodes * np.finfo(float).eps
+    return rounding if cases.layer is None else np.maximum(rounding, operator_error(cases.layer, a, nodes))
 
 
 def iterate(cases, state, law, grid, limit=newton.LIMIT):
@@ -172,21 +176,22 @@ def _rescue(cases, law, grid, state, closed, count):
 
     def at_radius(eta, index):
         fixed = part.take(index)._replace(control="a", value=np.exp(eta))
-        found, done, steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid, newton.LIMIT)
+        found, done, steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid)
         count[failed[index]] += steps
         return found, done
 
     def control_at(eta, index):
-        q, here = law.evaluate(at_radius(eta, index)[0].y, part.exponent[index]).q, part.take(index)
+        found, closed = at_radius(eta, index)
+        q, here = law.evaluate(found.y, part.exponent[index]).q, part.take(index)
         edge_q = operate(here, eta, q, grid).edge_q
-        return control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid)
+        return np.where(closed, control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid), np.nan)
 
     eta = np.log(guess_radius(part, law))
     if cases.control != "a":
         eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
     found, done = at_radius(eta, np.arange(len(failed)))
     if cases.control != "a":
-        found, done, steps = iterate(part, found, law, grid, newton.LIMIT)
+        found, done, steps = iterate(part, found, law, grid)
         count[failed] += steps
     state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done
 

@@ -1,11 +1,10 @@
 """The paper's successive approximations, Eqs (8) and (10), and the load or depth by a search on the contact radius.
 
 On a layer (C > 0), Eq. (8): p̂ = ((a² - r²)/(2R) - half-space part - A[p])/C, without a layer, Eq. (10): p̂ is the
-pressure whose A is what the half-space part leaves; either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 +
-k), from p = 0, until |p̂ - p|
-is below rtol/10 of the largest pressure. The slope of A ~ p^β, β
-< 1, is infinite at the edge, and where A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure
-there never settles, the load does to 3 to 4 digits.
+pressure whose A is what the half-space part leaves; either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 + k),
+from p = 0, until |p̂ - p| is below rtol/10 of the largest pressure. The slope of A ~ p^β, β < 1, is infinite at the
+edge, and where A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure there never settles, the
+load does to 3 to 4 digits. The finer the mesh, the nearer to the edge is its last node, and the more k it takes.
 """
 
 from typing import NamedTuple

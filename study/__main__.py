@@ -1,4 +1,4 @@
-"""Command line of roughcoat: python -m study list | check | run | retry | status | plot | table.
+"""Command line of roughcoat: python -m study list | check | run | retry | status | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted.
 """
@@ -9,8 +9,6 @@ import os
 import signal
 import sys
 from pathlib import Path
-
-from .vocabulary import NOT_RUN
 
 # One BLAS thread per worker: the systems are small and the workers would compete. Must come before numpy is imported.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
@@ -50,6 +48,9 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--figures", default="figures", metavar="DIR", help="folder of the figures (default: figures)")
     sub = command(table, "write tables from results", "names")
     sub.add_argument("--tables", default="tables", metavar="DIR", help="folder of the tables (default: tables)")
+    sub = command(tradeoff, "measure error against time of every way to solve, and write the page about it")
+    sub.add_argument("--docs", default="docs", metavar="DIR", help="folder of the page (default: docs)")
+    sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 
 
@@ -87,12 +88,13 @@ def check(options) -> int:
 
 
 def run(options) -> int:
+    from .answers import cost_line
     from .api import load
 
     def one(file):
         study = load(_file(file), options.results)
         if options.dry_run:
-            return _print_cost(study.definition.name, study.dry_run(options.workers))
+            return _print_lines([cost_line(study.definition.name, study.dry_run(options.workers))])
         return _compute(study, options, part=options.part, force=options.force)
 
     return max(_attempt(lambda file=file: one(file), file, KEPT) for file in options.files)
@@ -144,7 +146,7 @@ def plot(options) -> int:
     from .recipes import draw
 
     return max(
-        _attempt(lambda name=name: _print_paths(draw(name, options.results, options.figures)), name)
+        _attempt(lambda name=name: _print_lines(draw(name, options.results, options.figures)), name)
         for name in options.names
     )
 
@@ -153,9 +155,22 @@ def table(options) -> int:
     from .tables import tabulate
 
     return max(
-        _attempt(lambda name=name: _print_paths(tabulate(name, options.results, options.tables)), name)
+        _attempt(lambda name=name: _print_lines(tabulate(name, options.results, options.tables)), name)
         for name in options.names
     )
+
+
+def tradeoff(options) -> int:
+    from .dataset import command_line
+    from .outputs import write_text
+    from .tradeoff import results
+    from .tradeoff_page import page
+
+    def one():
+        found = results(options.results, force=options.force, command=command_line())
+        return _print_lines([write_text(Path(options.docs) / "tradeoff.md", page(found))])
+
+    return _attempt(one, "tradeoff")
 
 
 def _attempt(action, name: str, hint: str = "") -> int:
@@ -173,44 +188,24 @@ def _attempt(action, name: str, hint: str = "") -> int:
 
 
 def _print_state(study, state: dict | None = None) -> int:
-    state, title = state or study.status(), study.definition.title
-    done = state["cases"] - state["counts"].get(NOT_RUN, 0)
-    cases = f" ({done} of {state['cases']} cases)" if state["state"] == "partial" else ""
-    print(f"{study.definition.name:<16} {state['cases']:>8} cases  {state['state']}{cases}  {title}")
-    return 0
+    from .answers import state_line
 
-
-def _print_cost(name: str, cost) -> int:
-    from .estimate import describe
-
-    print(f"{name}: {cost.cases} cases, {cost.present} of them computed; the others: {describe(cost)}")
+    print(state_line(study.definition, state or study.status()))
     return 0
 
 
 def _print_report(report, name: str) -> int:
+    from .answers import failure_lines, report_line
+
     if report.failures:
-        for block, reason in sorted(report.failures.items()):
-            print(f"{name}: block {block} failed: {reason}", file=sys.stderr)
-        print(
-            f"{name}: {len(report.failures)} blocks failed; the others are kept, the same command tries again",
-            file=sys.stderr,
-        )
+        print("\n".join(failure_lines(report, name)), file=sys.stderr)
         return 1
-    if not report.counts:
-        print(f"{report.path} is up to date ({report.cases} cases), nothing to do")
-        return 0
-    if not report.complete:
-        missing = report.counts.get(NOT_RUN, 0)
-        print(f"{name}: {report.computed} cases computed now, {missing} of {report.cases} are missing: other parts")
-        return 0
-    unsolved = sum(count for value, count in report.counts.items() if value)
-    remark = f", {unsolved} of them not converged: see `status` in the file" if unsolved else ""
-    print(f"{report.path}: {report.cases} cases, {report.computed} computed now{remark}")
+    print(report_line(report, name))
     return 0
 
 
-def _print_paths(paths) -> int:
-    print("\n".join(map(str, paths)))
+def _print_lines(lines) -> int:
+    print("\n".join(map(str, lines)))
     return 0
 
 

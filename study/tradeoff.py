@@ -1,7 +1,7 @@
 """Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
 
 Time is that of one thread, the shortest of the repeats, over all cases of a set, solved as one batch. The error of a
-case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11; a case without
+case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-12; a case without
 an answer, or more than 100 % off, counts as 1.
 """
 
@@ -10,6 +10,7 @@ import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
@@ -20,11 +21,11 @@ from solver.problem import BASES
 from solver.uniform import solve_uniform
 
 from . import paper_error
-from .dataset import provenance
+from .dataset import digest_in, open_results, provenance, write
 from .problem_sets import SETS
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
-REFERENCE = 1e-11
+REFERENCE = 1e-12
 ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 X = np.array([0.0, 1.0])
 PATIENCE = 1.0
@@ -34,6 +35,7 @@ PAPERS = ("paper, layer", "paper, half-space")
 PAPERS_BASES = ("thin_layer", "half_space")
 TOLERANCES = tuple(10.0**-i for i in range(2, 11))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0, 48.0)
+SLOW = 50
 MESHES = (10.0, 20.0, 40.0, 80.0, 160.0)
 
 
@@ -41,7 +43,7 @@ MESHES = (10.0, 20.0, 40.0, 80.0, 160.0)
 class Way:
     """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
 
-    sets : where it is measured; bases : the cases it takes part in; model : it solves another model than the set's
+    sets : where it is measured; bases : the cases it takes part in; most : of these it takes no more, for slow ones
     """
 
     run: Callable[[dict, float], Solution]
@@ -49,7 +51,12 @@ class Way:
     settings: tuple[float, ...]
     sets: tuple[str, ...] = tuple(SETS)
     bases: tuple[str, ...] = BASES
-    model: bool = False
+    most: int = 10**6
+
+    def index(self, cases: dict) -> np.ndarray:
+        """The cases that it takes."""
+        fits = np.flatnonzero(np.isin(cases["base"], self.bases))
+        return fits[np.unique(np.linspace(0, len(fits) - 1, min(self.most, len(fits))).round().astype(int))]
 
 
 def papers_way(cases: dict, k: float, intervals: float) -> Solution:
@@ -85,60 +92,69 @@ def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution
 
 def _picard(k: float) -> Way:
     options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
-    return Way(changed(**options), "nodes", NODES[:5], PAPERS)
+    return Way(changed(**options), "nodes", NODES[:5], PAPERS, most=SLOW)
+
+
+def _paper(k: float, sets=PAPERS) -> Way:
+    return Way(lambda cases, n: papers_way(cases, k, n), "intervals", MESHES, sets, PAPERS_BASES, SLOW)
 
 
 WAYS = {
-    **{
-        f"paper k = {k:g}": Way(lambda cases, n, k=k: papers_way(cases, k, n), "intervals", MESHES, PAPERS)
-        for k in (0.0, 1.0, 2.0, 5.0, 20.0)
-    },
-    "paper k = 5, extremes": Way(
-        lambda cases, n: papers_way(cases, 5.0, n), "intervals", MESHES[1:4], ("extremes",), PAPERS_BASES
-    ),
-    "picard k = 2": _picard(2.0),
-    "picard k = 20": _picard(20.0),
+    **{f"paper k = {k:g}": _paper(k) for k in (0.0, 1.0, 2.0, 20.0)},
+    "paper k = 5": _paper(5.0, sets=(*PAPERS, "extremes")),
+    **{f"picard k = {k:g}": _picard(k) for k in (2.0, 20.0)},
     "newton, nodes": Way(changed(nodes=int, rtol=REFERENCE), "nodes", NODES),
     "newton, rtol": Way(changed(rtol=float), "rtol", TOLERANCES),
-    "the other law": Way(
-        swapped("micro", "power_law", "disc_cell"), "rtol", (1e-6,), (*PAPERS, "coatings"), model=True
+    "auto": Way(
+        changed(base="auto", accuracy=float, rtol=lambda accuracy: 0.1 * accuracy),
+        "accuracy",
+        (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4),
+        ("coatings", "extremes"),
+        ("layered",),
     ),
-    "the other layer": Way(
-        swapped("base", "thin_layer", "layered"), "rtol", (1e-6,), ("paper, layer", "coatings"), model=True
-    ),
+    "the other law": Way(swapped("micro", "power_law", "disc_cell"), "rtol", (1e-6,), (*PAPERS, "coatings")),
+    "the other layer": Way(swapped("base", "thin_layer", "layered"), "rtol", (1e-6,), ("paper, layer", "coatings")),
 }
-QUALITIES = ("setting", "time", "median", "most", "worst", "ended")
+SIZE, SEED = 250, 1
+WORDS = {
+    "setting": "what is varied along step, as `varied` says",
+    "time": "time per case on one thread",
+    "median": "error of half the cases",
+    "most": "error of 95 % of the cases",
+    "worst": "largest error",
+    "ended": "share of cases whose iteration closed",
+}
 
 
-def measure(size: int = 100, repeats: int = 3, seed: int = 1, command: str = "") -> xr.Dataset:
+def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, command: str = "") -> xr.Dataset:
     """Work and precision over (set, way, step), with `cases` that were measured, and the variables of `paper_error`.
 
     size : cases of each set; those that the model cannot solve (`status` of the reference) are left out
     """
-    shape = len(SETS), len(WAYS), max(len(way.settings) for way in WAYS.values())
-    found = {name: np.full(shape, np.nan) for name in QUALITIES}
+    shape = len(SETS), len(ways), max(len(way.settings) for way in ways.values())
+    found = {name: np.full(shape, np.nan) for name in WORDS}
     counts = np.zeros(shape[:2], dtype=np.int32)
     for i, (name, make) in enumerate(SETS.items()):
-        everything = with_reference(make(size, seed))
-        for j, way in enumerate(WAYS.values()):
+        everything = with_reference(make(size, SEED))
+        for j, way in enumerate(ways.values()):
             if name not in way.sets:
                 continue
-            cases, reference = taken(*everything, np.flatnonzero(np.isin(everything[0]["base"], way.bases)))
+            cases, reference = taken(*everything, way.index(everything[0]))
             counts[i, j] = len(reference.a)
             for step, setting in enumerate(way.settings):
                 for key, value in measured(way, setting, cases, reference, repeats).items():
                     found[key][i, j, step] = value
-    return assembled(found, counts, {"size": size, "repeats": repeats, "seed": seed}, command)
+    return assembled(found, counts, ways, size, command)
 
 
 def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int) -> dict[str, float]:
-    """QUALITIES of one way with one setting."""
+    """WORDS of one way with one setting."""
     seconds, solution = timed(lambda: way.run(cases, setting), repeats)
     error = errors(solution, reference)
     median, most = np.quantile(error, (0.5, 0.95), method="higher")
     ended = np.isin(solution.status, ENDED).mean()
     numbers = (setting, seconds / len(error), median, most, error.max(), ended)
-    return dict(zip(QUALITIES, numbers, strict=True))
+    return dict(zip(WORDS, numbers, strict=True))
 
 
 def with_reference(cases: dict) -> tuple[dict, Solution]:
@@ -172,26 +188,35 @@ def errors(solution: Solution, reference: Solution) -> np.ndarray:
     return np.minimum(np.nan_to_num(np.max(found, axis=0), nan=1.0, posinf=1.0), 1.0)
 
 
-def assembled(found: dict, counts: np.ndarray, settings: dict, command: str) -> xr.Dataset:
+def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, command: str) -> xr.Dataset:
     """The dataset, with the provenance of every other one."""
-    words = {
-        "setting": "what is varied along step, as `varied` says",
-        "time": "time per case on one thread",
-        "median": "error of half the cases",
-        "most": "error of 95 % of the cases",
-        "worst": "largest error",
-        "ended": "share of cases whose iteration closed",
-    }
     variables = {
-        name: (("set", "way", "step"), array, {"long_name": words[name], "units": "s" if name == "time" else "1"})
+        name: (("set", "way", "step"), array, {"long_name": WORDS[name], "units": "s" if name == "time" else "1"})
         for name, array in found.items()
     }
     variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured", "units": "1"}
-    variables["varied"] = "way", [way.varied for way in WAYS.values()]
-    variables["model"] = "way", np.array([way.model for way in WAYS.values()], dtype=np.int8)
-    text = json.dumps(settings)
-    digest = hashlib.sha256((NUMERICS_VERSION + text).encode()).hexdigest()
-    title = "Work and precision of every way to solve the model"
-    whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest)
-    coordinates = {"set": list(SETS), "way": list(WAYS)}
+    variables["varied"] = "way", [way.varied for way in ways.values()]
+    title, text = "Work and precision of every way to solve the model", plan(ways, size)
+    whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
+    coordinates = {"set": list(SETS), "way": list(ways)}
     return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.iterates())
+
+
+def plan(ways: dict[str, Way], size: int) -> str:
+    """What is measured, as text."""
+    settings = {name: [way.varied, way.settings, way.sets, way.most] for name, way in ways.items()}
+    return json.dumps({"size": size, "seed": SEED, "ways": settings})
+
+
+def digest(text: str) -> str:
+    """sha256 of a plan and the numerics."""
+    return hashlib.sha256((NUMERICS_VERSION + text).encode()).hexdigest()
+
+
+def results(folder, size: int = SIZE, force: bool = False, command: str = "") -> xr.Dataset:
+    """The measurements in FOLDER/tradeoff.nc; made first if they are not there, of another plan, or by `force`."""
+    path = Path(folder) / "tradeoff.nc"
+    if force or digest_in(path) != digest(plan(WAYS, size)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(measure(size, command=command), path)
+    return open_results(path)

@@ -1,0 +1,118 @@
+"""The work-precision study as a figure and as a table."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.lines import Line2D
+
+FLOOR = 1e-13
+"""Smaller errors are those of the reference."""
+STYLES = {
+    "paper k = 0": ("#fdbe85", "o"),
+    "paper k = 1": ("#fd8d3c", "s"),
+    "paper k = 2": ("#e6550d", "^"),
+    "paper k = 5": ("#a63603", "D"),
+    "paper k = 20": ("#4d1a02", "v"),
+    "picard k = 2": ("#c994c7", "P"),
+    "picard k = 20": ("#88419d", "X"),
+    "newton, nodes": ("#74add1", "<"),
+    "newton, rtol": ("#0b559f", "o"),
+    "auto": ("#1b7837", "*"),
+}
+NAMES = {
+    "newton, nodes": "Newton, 8 to 48 nodes",
+    "newton, rtol": "Newton, rtol $10^{-2}$ to $10^{-10}$",
+    "auto": "base auto, accuracy 0.5 to $10^{-4}$",
+}
+MODELS = {"the other law": "power law for the exact law", "the other layer": "thin layer for the exact layer"}
+SETTLED = 0.99
+"""Share of ended cases from which on a mark is filled."""
+Columns = dict[str, np.ndarray]
+
+
+def work_precision(panels, found: xr.Dataset) -> Columns:
+    """Error of 95 % of the cases against time per case; a panel a set. Models that differ are lines at their median."""
+    for axes, name in zip(panels.ravel(), found["set"].values.tolist(), strict=True):
+        here = found.sel(set=name)
+        for way, (colour, mark) in STYLES.items():
+            part = here.sel(way=way).dropna("step", subset=["time"])
+            curve(axes, 1e6 * part["time"].values, part["most"].values, part["ended"].values, colour, mark)
+        for way, words in MODELS.items():
+            model_line(axes, here.sel(way=way), words)
+        axes.set(xscale="log", yscale="log", ylim=(FLOOR / 2, 3))
+        axes.set_title(name, fontsize=9)
+        axes.set_yticks(10.0 ** np.arange(-12, 1, 3))
+    for axes in panels[-1]:
+        axes.set_xlabel("time per case, one thread (µs)")
+    for axes in panels[:, 0]:
+        axes.set_ylabel("error, 95 % of the cases below")
+    legend(panels)
+    return columns(found)
+
+
+def curve(axes, time, error, ended, colour: str, mark: str) -> None:
+    """One way; marks are open where more than a hundredth of the cases did not end."""
+    error = np.maximum(error, FLOOR)
+    axes.plot(time, error, "-", color=colour, linewidth=0.9)
+    for where, face in ((ended >= SETTLED, colour), (ended < SETTLED, "white")):
+        size = 7 if mark == "*" else 4
+        style = {"markersize": size, "markerfacecolor": face, "markeredgewidth": 0.8}
+        axes.plot(time[where], error[where], mark, color=colour, linestyle="none", **style)
+
+
+def model_line(axes, part: xr.Dataset, words: str) -> None:
+    """A line across the panel at the median difference of two models, and in how many cases there is one."""
+    error, ended = float(part["median"][0]), float(part["ended"][0])
+    if not np.isfinite(error):
+        return
+    axes.axhline(error, color="0.35", linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
+    share = "" if ended >= SETTLED else f" (applies to {ended:.0%})"
+    text = f"{words}: {error:.1%}{share}"
+    axes.annotate(text, (0.99, error), (0, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points",
+                  ha="right", va="bottom", fontsize=6.5, color="0.25")  # fmt: skip
+
+
+def legend(panels) -> None:
+    """One legend below the figure."""
+    handles = [
+        Line2D([], [], color=colour, marker=mark, markersize=6 if mark == "*" else 4, linewidth=0.9, label=label(way))
+        for way, (colour, mark) in STYLES.items()
+    ]
+    words = "open: fewer than 99 % ended"
+    handles.append(
+        Line2D([], [], color="0.3", marker="o", markerfacecolor="white", markersize=4, linewidth=0, label=words)
+    )
+    panels[0, 0].figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=7.5)
+
+
+def label(way: str) -> str:
+    """Name of a way in the legend."""
+    if way.startswith("paper"):
+        return way.replace("paper", "the paper's way,").replace("k", "$k$")
+    return NAMES.get(way, way.replace("picard", "(8), (10) on Newton's nodes,").replace("k =", "$k$ ="))
+
+
+def rows(found: xr.Dataset) -> list[tuple]:
+    """Set, way, cases, setting, time per case (µs), median, 95 % and largest error, share ended."""
+    table = []
+    for name in found["set"].values.tolist():
+        for way in found["way"].values.tolist():
+            part = found.sel(set=name, way=way)
+            for step in np.flatnonzero(np.isfinite(part["time"].values)):
+                here = part.isel(step=step)
+                errors = [float(here[key]) for key in ("median", "most", "worst")]
+                setting = f"{str(here['varied'].values)} {float(here['setting']):g}"
+                words = MODELS.get(way, way)
+                table.append(
+                    (name, words, setting, int(here["cases"]), 1e6 * float(here["time"]), *errors, float(here["ended"]))
+                )
+    return table
+
+
+def columns(found: xr.Dataset) -> Columns:
+    """What the figure shows, as numbers: set and way by their place."""
+    known = np.isfinite(found["time"].transpose("set", "way", "step").values)
+    i, j, _ = np.nonzero(known)
+    return {"set": i, "way": j, "cases": found["cases"].values[i, j]} | {
+        name: found[name].transpose("set", "way", "step").values[known]
+        for name in ("setting", "time", "median", "most", "worst", "ended")
+    }

@@ -12,8 +12,9 @@ from .definition import BLOCK, LARGE, POINTS, Definition, StudyError, complete, 
 from .draft import Draft
 from .estimate import Estimate
 from .grid import LONGEST_AXIS
+from .order import Report, results_path
 from .reuse import statuses
-from .run import Report, dry_run, partial_dataset, results_path, run
+from .run import dry_run, partial_dataset, run
 from .store import Store, count_statuses, inventory
 from .vocabulary import NOT_RUN
 
@@ -67,7 +68,7 @@ class Study:
     results: Path
 
     def run(self, **options) -> Report:
-        """Compute what is missing and write the results file; options as of `study.run.run`."""
+        """Compute what is missing and write the results file; options as of `study.order.Order`."""
         return run(self.definition, self.results, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None) -> Estimate:

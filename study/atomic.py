@@ -20,5 +20,6 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
         with open(temporary, "rb+") as file:
             os.fsync(file.fileno())  # a rename may reach the disk before the data do
         os.replace(temporary, path)
-    finally:
+    except BaseException:
         temporary.unlink(missing_ok=True)
+        raise

@@ -11,7 +11,7 @@ from .blocks import Failure
 from .definition import StudyError
 
 CONNECT = 10  # seconds
-AHEAD = 2  # blocks submitted for each worker: one that it computes, one that waits
+AHEAD = 4  # blocks submitted for each worker: it goes on while this thread writes
 
 
 class Lost(ConnectionError):
@@ -97,7 +97,7 @@ def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterato
 
 def _next(pending: dict[Future, int]) -> tuple[int, object]:
     done, _ = wait(pending, return_when=FIRST_COMPLETED)
-    future = done.pop()
+    future = min(done, key=pending.get)
     number = pending.pop(future)
     try:
         return number, future.result()

@@ -3,6 +3,7 @@
 netCDF is touched here and in `dataset` only, and must be by the main thread only: from several threads it crashes.
 """
 
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -17,11 +18,13 @@ from .grid import box, cut_out, windows
 from .store import Inventory, Store, gather
 
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
-AT_ONCE = 100_000_000  # bytes gathered and written at a time
+AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
 
 
-def write_results(store: Store, known: Inventory, path: Path, command: str) -> None:
-    """Write the results file from the blocks.
+def writing(store: Store, known: Inventory, path: Path, command: str) -> Iterator[None]:
+    """Write the results file from the blocks, in steps, while other threads compute: each `next` is one step.
+
+    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is at `path`.
 
     Raises
     ------
@@ -31,22 +34,25 @@ def write_results(store: Store, known: Inventory, path: Path, command: str) -> N
     with replacing(path, store.folder) as temporary:
         try:
             with netCDF4.Dataset(temporary, "w") as file:
-                _fill(file, store, known, command)
+                yield from _steps(file, store, known, command)
         except RuntimeError as error:  # of the HDF5 library, which does not say more
             raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
 
 
-def _fill(file: netCDF4.Dataset, store: Store, known: Inventory, command: str) -> None:
+def _steps(file: netCDF4.Dataset, store: Store, known: Inventory, command: str) -> Iterator[None]:
     definition, start = store.definition, 0
     most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
     for window in windows(definition.grid, most, CHUNK):
         grid = cut_out(definition.grid, window)
+        while (known.file[start : start + grid.size] < 0).any():
+            yield
         arrays = gather(store, known, start, start + grid.size)
         part = labelled(replace(definition, grid=grid), arrays, command)
         if not start:
             create(file, definition, part, command)
         for name, array in part.data_vars.items():
             file[name][tuple(window.get(dim, slice(None)) for dim in array.dims)] = array.values
+            yield
         start += grid.size
 
 

@@ -14,7 +14,7 @@ class Progress:
 
     name: str
     total: int
-    stream: TextIO
+    stream: TextIO | None
     done: int = 0
     failed: int = 0
     computed: int = 0
@@ -27,13 +27,15 @@ class Progress:
         self.computed += cases
         self.failed += failed
         now = time.monotonic()
+        if self.stream is None:
+            return
         if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
             self.written = now
             self._write(now)
 
     def close(self) -> None:
         """End the rewritten line."""
-        if self.stream.isatty() and self.computed:
+        if self.stream and self.stream.isatty() and self.computed:
             self.stream.write("\n")
 
     def _write(self, now: float) -> None:

@@ -158,6 +158,12 @@ def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, n
     return found
 
 
+def remove_litter(store: Store) -> None:
+    """Remove what runs that were killed while they wrote have left."""
+    for path in store.folder.glob(".*.tmp"):
+        path.unlink(missing_ok=True)
+
+
 def discard(store: Store) -> None:
     """Remove the blocks and what a killed run left beside them."""
     shutil.rmtree(store.folder, ignore_errors=True)

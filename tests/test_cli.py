@@ -125,12 +125,8 @@ def test_dry_run_retry_and_parts(capsys):
 
 
 def test_fail_fast(studies, capsys):
-    text = GOOD.replace("[axes]", "max_iterations = 1\n[axes]").replace(
-        '"smooth"', '"disc_cell"\nNbar = 1e5\nRa = 0.004'
-    )
-    (studies / "hard.toml").write_text(
-        text.replace("max_iterations = 1\n", "") + "max_iterations = 1", encoding="utf-8"
-    )
+    hard = GOOD.replace('"smooth"', '"disc_cell"\nNbar = 1e5\nRa = 0.004') + "max_iterations = 1"
+    (studies / "hard.toml").write_text(hard, encoding="utf-8")
     assert main(["run", "hard", "--fail-fast", "--workers", "1"]) == 1
     assert "hard: block 0 failed: case 0: iteration_limit" in capsys.readouterr().err
     assert main(["run", "hard", "--keep-going"]) == 0

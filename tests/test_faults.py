@@ -26,7 +26,7 @@ from study.block_file import read_block
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals and limits")
 
 CASES, BLOCK = 300, 5
-IN_FLIGHT = 2 * 2 * BLOCK  # cases submitted and not stored, for two workers
+IN_FLIGHT = 4 * 2 * BLOCK  # cases submitted and not stored, for two workers
 TEXT = f"""
 [model]
 micro = "smooth"
@@ -90,7 +90,7 @@ def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
     assert_ends_well(opened, undisturbed, None if opened.status()["state"] == "done" else CASES - len(before))
 
 
-@pytest.mark.parametrize("at", ["run.write_results", "join.create", "run.discard"])
+@pytest.mark.parametrize("at", ["run._finish", "join.create", "run.discard"])
 def test_killed_while_the_results_are_written(opened, undisturbed, tmp_path, at):
     process = child(tmp_path / "line.toml", tmp_path / "log", at=at, workers=2)
     process.join(60)

@@ -20,7 +20,7 @@ from hypothesis import strategies as st
 from same import assert_same_numbers
 
 import study
-from study import blocks, dataset, join, reuse
+from study import blocks, dataset, join, order, reuse
 from study import run as running
 from study.blocks import parcel
 from study.definition import from_tables
@@ -354,7 +354,7 @@ def test_a_block_size_of_one_part_does_not_change_which_cases_it_has(file):
 
 
 def test_a_large_study_asks_first(file, monkeypatch, computed):
-    monkeypatch.setattr(running, "LARGE", 400)
+    monkeypatch.setattr(order, "LARGE", 400)
     opened = load(file)
     with pytest.raises(
         study.StudyError, match=r"^line: 23 cases: about \d+ s, at most .* on disk; --yes computes them$"

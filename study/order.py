@@ -1,0 +1,107 @@
+"""What a run is asked for, what it reports, and what it checks before it begins."""
+
+import secrets
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from .dataset import digest_in
+from .definition import LARGE, Definition, StudyError
+from .estimate import describe, estimate
+from .reuse import statuses
+from .store import Inventory, Store, count_statuses
+from .vocabulary import NOT_RUN
+
+
+class CannotWrite(StudyError):
+    """The study is right, the place for its results is not."""
+
+    code = 1
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a run did.
+
+    computed : cases computed now; failures : number of the block -> reason; counts : status -> number of cases, empty
+    when there was nothing to do; path : written if `complete`, otherwise cases failed or belong to other parts
+    """
+
+    path: Path
+    cases: int
+    computed: int
+    failures: dict[int, str]
+    counts: dict[int, int]
+    complete: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """What a run is asked for.
+
+    workers, scheduler : see `cluster.engine`; part : (i, n), only the i-th of n parts, whichever ends last writes the
+    results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds a
+    case that has not converged; force : replace a results file of which cases would be lost; yes : go on however large
+    the study is; command : for the history of the results; stream : text stream for progress
+    """
+
+    definition: Definition
+    results: Path
+    workers: int | None = None
+    scheduler: str = ""
+    part: tuple[int, int] = (1, 1)
+    retry: tuple[int, ...] = ()
+    fail_fast: bool = False
+    force: bool = False
+    yes: bool = False
+    command: str = ""
+    stream: TextIO | None = None
+
+    @property
+    def path(self) -> Path:
+        """Of the results file."""
+        return results_path(self.definition, self.results)
+
+    @property
+    def store(self) -> Store:
+        return Store(self.definition, self.results)
+
+    @property
+    def shared(self) -> bool:
+        """Whether others compute at the same time."""
+        return self.part[1] > 1
+
+    @property
+    def done(self) -> bool:
+        """Whether the results are there already, and hold no case to be tried again."""
+        there = digest_in(self.path) == self.definition.digest
+        return there and not (self.retry and np.isin(statuses(self.path), self.retry).any())
+
+    def report(self, known: Inventory | None = None, **what) -> Report:
+        counts = count_statuses(known.status) if known else {}
+        return replace(Report(self.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what)
+
+
+def results_path(definition: Definition, results) -> Path:
+    return Path(results) / f"{definition.name}.nc"
+
+
+def check_writable(path: Path) -> None:
+    """Raise CannotWrite when the folder of the results cannot be made or written."""
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        probe = path.with_name(f".{path.name}.{secrets.token_hex(4)}.probe")
+        probe.touch()
+        probe.unlink()
+    except OSError as error:
+        raise CannotWrite([f"{path.parent}: cannot be written: {error.strerror}"]) from None
+
+
+def check_size(order: Order) -> None:
+    """Raise StudyError for a study so large that it may be a slip, with what it would cost."""
+    definition = order.definition
+    if definition.numbers > LARGE and not order.yes:
+        cost = describe(estimate(definition, order.workers))
+        raise StudyError([f"{definition.name}: {definition.grid.size} cases: {cost}; --yes computes them"])

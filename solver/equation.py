@@ -111,7 +111,8 @@ def operate(cases, eta, q, mesh, weights=None):
         return Operator(mesh.K[None], mesh.edge[None], q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], None)
     weights = weights or layer_weights(cases.layer, np.exp(eta))
     rows = layer_rows(weights, q, mesh)
-    K, edge = mesh.K + (np.pi / 2) * rows.rows, mesh.edge + (np.pi / 2) * rows.edge
+    share = rows.half_space[:, None]
+    K, edge = share[:, :, None] * mesh.K + (np.pi / 2) * rows.rows, share * mesh.edge + (np.pi / 2) * rows.edge
     Kq, edge_q = np.matmul(K, q[..., None])[..., 0], (edge * q).sum(axis=1)
     return Operator(K, edge, Kq, edge_q, (np.pi / 2) * rows.d_rows_q, (np.pi / 2) * rows.d_edge_q, weights)
 
@@ -122,7 +123,7 @@ def displacement_between(ev, H, x, mesh):
     half_space = q @ H.T
     if ev.base.weights is None:
         return half_space
-    return half_space + (np.pi / 2) * layer_displacement(ev.base.weights, q, mesh, x, half_space)
+    return layer_displacement(ev.base.weights, q, mesh, x, half_space)
 
 
 def evaluate(cases, state, law, mesh, weights=None):

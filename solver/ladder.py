@@ -5,18 +5,18 @@ import numpy as np
 
 from .mesh import mesh, panel_mesh
 
-LADDER = (8, 12, 16, 24, 32, 48, 64, 96)
-#: First mesh for rtol at least this.
-_START = ((1e-3, 8), (5e-5, 12), (3e-7, 16), (1e-9, 24))
+LADDER = (6, 8, 12, 16, 24, 32, 48, 64, 96)
+#: First mesh for rtol at least this: on a half-space or a thin layer, and on the exact layer, whose edge is sharper.
+_START = ((1e-3, 6, 8), (1e-5, 8, 12), (3e-7, 12, 16), (3e-8, 16, 16), (1e-9, 24, 24))
 #: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
 MARGIN = 2.0
 #: Cases solved together: their matrices stay in the cache.
 STACK = 512
 
 
-def start_nodes(rtol):
+def start_nodes(rtol, layered=False):
     """Number of nodes (B,) on which to begin for `rtol` (B,)."""
-    return np.select([rtol >= limit for limit, _ in _START], [n for _, n in _START], 32)
+    return np.select([rtol >= row[0] for row in _START], [row[2 if layered else 1] for row in _START], 32)
 
 
 def next_rung(n):
@@ -31,7 +31,7 @@ def finer_mesh(grid):
     return panel_mesh(grid.order + grid.order // 3, grid.breaks)
 
 
-def climb(rtol, nodes, solve_on, order=None):
+def climb(rtol, nodes, solve_on, order=None, layered=False):
     """Let every case climb to the mesh that meets its tolerance.
 
     Parameters
@@ -44,13 +44,15 @@ def climb(rtol, nodes, solve_on, order=None):
         estimated errors (NaN: no use going on).
     order : (B,) int, optional
         Permutation of the cases; neighbours in it are solved together.
+    layered : bool
+        Whether the base is the exact layer.
 
     Returns
     -------
     (B,) bool
         The cases whose error still exceeds rtol on the last mesh.
     """
-    rung = np.where(nodes > 0, nodes, start_nodes(rtol))
+    rung = np.where(nodes > 0, nodes, start_nodes(rtol, layered))
     unmet = np.zeros(len(rtol), dtype=bool)
     order = np.arange(len(rtol)) if order is None else order
     while (rung > 0).any():

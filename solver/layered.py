@@ -77,8 +77,12 @@ class Weights(NamedTuple):
 
 
 class LayerRows(NamedTuple):
-    """Λ - Λ(edge) (B, n, n), Λ(edge) (B, n), and the derivatives by ln a of their products with q: (B, n), (B,)."""
+    """Λ - Λ(edge) (B, n, n), Λ(edge) (B, n), and the derivatives by ln a of their products with q: (B, n), (B,).
 
+    `half_space` (B,): the share of the half-space that stands beside them, 1 but for films.
+    """
+
+    half_space: np.ndarray
     rows: np.ndarray
     edge: np.ndarray
     d_rows_q: np.ndarray
@@ -205,7 +209,7 @@ def _sampled(layer, eta, k, weight, level):
 def layer_rows(weights, q, grid):
     """:class:`LayerRows` of a batch from its weights, for q (B, n) on a mesh."""
     size, n = q.shape
-    out = LayerRows(np.empty((size, n, n)), np.empty((size, n)), np.empty((size, n)), np.empty(size))
+    out = LayerRows(np.ones(size), np.empty((size, n, n)), np.empty((size, n)), np.empty((size, n)), np.empty(size))
     for part in weights:
         index, W = part.index, part.W
         tab = table(grid, part.octave, part.depth)
@@ -218,17 +222,18 @@ def layer_rows(weights, q, grid):
         moved = part.dW * (q[index] @ tab.phi.T)
         out.d_rows_q[index], out.d_edge_q[index] = moved @ tab.J, moved @ tab.J_edge
         if part.film is not None:
-            _add_film(out, part, tab, q[index], grid)
+            _add_film(out, part, tab, q[index])
     return out
 
 
-def _add_film(out, part, tab, q, grid):
-    """Add n' - 1 times the half-space and the convolution to the rows of films, in place."""
-    index, (near, edge), level = part.index, tab.film, part.film[:, -1, None] * (2 / np.pi)
+def _add_film(out, part, tab, q):
+    """Add the convolution to the rows of films, in place."""
+    index, (near, edge) = part.index, tab.film
     m, n = near.shape[1:]
     at_edge = part.film @ edge
-    out.rows[index] += level[:, :, None] * grid.K - at_edge[:, None]
-    out.edge[index] += level * grid.edge + at_edge
+    out.half_space[index] = 1 + part.film[:, -1]
+    out.rows[index] -= at_edge[:, None]
+    out.edge[index] += at_edge
     out.rows[index, :m] += (part.film @ near.reshape(-1, m * n)).reshape(-1, m, n)
     moved_edge = ((part.d_film @ edge) * q).sum(axis=1)
     moved = np.matmul((part.d_film @ near.reshape(-1, m * n)).reshape(-1, m, n), q[:, :, None])[..., 0]
@@ -238,8 +243,11 @@ def _add_film(out, part, tab, q, grid):
 
 
 def layer_displacement(weights, q, grid, x, half_space):
-    """Λ[q](x) - Λ[q](1) (B, m) at radii x (m,) for q (B, n) on a mesh; half_space (B, m) is H[q](x) - H[q](1)."""
-    out = np.empty((len(q), len(x)))
+    """K[q] = H[q] + (π/2) Λ[q], less its value at the edge, (B, m) at radii x (m,) for q (B, n) on a mesh.
+
+    half_space (B, m) is H[q](x) - H[q](1).
+    """
+    out, share = np.empty((len(q), len(x))), np.ones((len(q), 1))
     for part in weights:
         index, tab = part.index, table(grid, part.octave, part.depth)
         out[index] = (part.W * (q[index] @ tab.phi.T)) @ (j0(tab.k[:, None] * x) - tab.J_edge[:, None])
@@ -247,10 +255,10 @@ def layer_displacement(weights, q, grid, x, half_space):
             near = np.flatnonzero((1 - x) * CUT < film.REACH)
             rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
             values = (part.film @ rows.reshape(len(rows), len(near) * grid.n)).reshape(len(index), len(near), grid.n)
-            out[index] += part.film[:, -1:] * (2 / np.pi) * half_space[index]
+            share[index] += part.film[:, -1:]
             out[index] -= ((part.film @ tab.film[1]) * q[index]).sum(axis=1)[:, None]
             out[np.ix_(index, near)] += np.matmul(values, q[index][:, :, None])[..., 0]
-    return out
+    return share * half_space + (np.pi / 2) * out
 
 
 @lru_cache(maxsize=64)

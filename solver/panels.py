@@ -8,7 +8,6 @@ contact area on each panel, and enclosed by halving.
 import numpy as np
 
 from .equation import State, evaluate, first_guess
-from .ladder import finer_mesh
 from .mesh import panel_mesh
 from .outputs import interpolate, spot_area
 from .quadrature import radau_nodes

@@ -57,7 +57,7 @@ def lagrange(nodes, points):
 def log_rule(n):
     """Rule on [0, 1] for integrands with a logarithm or a root at 0: distances from it and weights.
 
-    Each panel is a quarter as long as the one before, with an `n`-point Gauss rule: its relative error is below 3^(-2n).
+    Each panel is a quarter as long as the one before, with an `n`-point Gauss rule: relative error below 3^(-2n).
     """
     nodes, weights = gauss_legendre(n)
     upper = 4.0 ** -np.arange(_PANELS)

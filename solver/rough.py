@@ -11,7 +11,6 @@ from . import newton
 from .bracket import false_position
 from .equation import (
     State,
-    control_gradient,
     control_residual,
     evaluate,
     first_guess,
@@ -43,7 +42,7 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         "iterations": np.zeros(size, int),
         "nodes": np.zeros(size, int),
     }
-    out["lowest"] = np.zeros(size)  # smallest over largest unknown; below 0 only where the equation is linear
+    out["tension"] = np.zeros(size)
     out |= {"p": np.full((size, len(x)), np.nan), "lam": np.full((size, len(x)), np.nan)}
     starts = {}
 
@@ -57,14 +56,13 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         starts.update({index[i]: State(finer.y[i], finer.eta[i]) for i in np.flatnonzero(missed)})
         return np.where(closed, out["error"][index], np.nan)
 
-    unmet = climb(rtol, nodes, solve_on, _neighbours(cases, law))
+    unmet = climb(rtol, nodes, solve_on, _neighbours(cases, law), cases.layer is not None)
     open_end = (unmet | (out["status"] != Status.CONVERGED)) & (nodes == 0) & (limit == 0)
     for i in np.flatnonzero(open_end):
         with np.errstate(all="ignore"):
             unmet[i] = _on_panels(cases.take([i]), law, rtol[i], x, out, i)
     out["status"][unmet] = Status.TOLERANCE_NOT_MET
-    lowest = out.pop("lowest")
-    _refuse(out, lowest < -np.maximum(10 * out["error"], 1e-9), Status.LIFT_OFF)
+    _refuse(out, out.pop("tension") > np.maximum(10 * out["error"], 1e-9), Status.LIFT_OFF)
     return out
 
 
@@ -102,7 +100,6 @@ def _rung(cases, law, n, limit, start, x, out, index):
     values, finer = finish(cases, law, grid, state, x)
     for name, value in values.items():
         out[name][index] = value
-    out["lowest"][index] = state.y.min(axis=1) / np.abs(state.y).max(axis=1)
     finite = np.isfinite(values["error"])
     out["status"][index] = np.where(finite, np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT), Status.DIVERGED)
     out["iterations"][index] += count
@@ -118,7 +115,6 @@ def _on_panels(case, law, rtol, x, out, i):
         return out["status"][i] == Status.CONVERGED
     for name, value in values.items():
         out[name][i] = value[0]
-    out["lowest"][i] = state.y.min() / np.abs(state.y).max()
     out["status"][i] = Status.CONVERGED
     return values["error"][0] > rtol
 
@@ -127,11 +123,13 @@ def finish(cases, law, grid, state, x):
     """Output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
-    finer, better = refine(cases, state, ev, law, grid)
+    finer, better, dP_dD = refine(cases, state, ev, law, grid)
     error = np.max([np.abs(values[name] / better[name] - 1) for name in _JUDGED], axis=0)
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     values["p"], values["lam"] = profiles(cases, ev, grid, law, x)
-    values |= {"dP_dD": stiffness(cases, state, ev, values, grid), "residual": ev.residual}
+    # share of tension in the load: only where the equation is linear can it be
+    values["tension"] = np.maximum(-ev.curve.q, 0.0) @ np.abs(grid.w) / np.abs(ev.curve.q @ grid.w)
+    values |= {"dP_dD": dP_dD * values["P"] / values["D"], "residual": ev.residual}
     values["error"] = np.maximum(MARGIN * error, _floor(cases, values["a"], grid.n))
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
     return values | {"nodes": np.full(len(finite), grid.n)}, finer
@@ -162,7 +160,7 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT):
             break
         if len(keep) < len(active):
             active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
-        state = newton.advance(cases, state, ev, grid, law)
+        state, _ = newton.advance(cases, state, ev, grid, law)
     return State(y, eta), closed, count
 
 
@@ -197,24 +195,14 @@ def _rescue(cases, law, grid, state, closed, count):
 
 
 def refine(cases, state, ev, law, grid):
-    """One Newton step on the next finer mesh: the state there and its quantities (dict)."""
+    """One Newton step on the next finer mesh: the state there, its quantities (dict), and d ln P/d ln D (B,)."""
     fine = finer_mesh(grid)
     start = State(interpolate(cases, ev, law, grid, fine.s, 1e-4), state.eta)
     at_start = evaluate(cases, start, law, fine, ev.base.weights)
-    better = newton.advance(cases, start, at_start, fine, law)
+    better, dq = newton.advance(cases, start, at_start, fine, law)
     curve, base = law.evaluate(better.y, cases.exponent), at_start.base
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (base.edge * curve.q).sum(axis=1) + base.d_edge_q * (better.eta - start.eta)
     X, _, _ = groups(cases, better.eta)
-    return better, quantities(cases, better, curve, X[:, 0], edge_q, law, fine)
-
-
-def stiffness(cases, state, ev, values, grid):
-    """Contact stiffness dP/dD (B,) in E2* R, along the solution branch, from the Jacobian."""
-    dq = newton.tangents(ev, grid)[..., 0]
-
-    def slope(control):
-        by_q, by_eta = control_gradient(control, ev, grid)
-        return (by_q * dq).sum(axis=1) + by_eta
-
-    return values["P"] * slope("P") / (values["D"] * slope("D"))
+    slope = {control: newton.slope(control, dq, at_start, fine) for control in ("P", "D")}
+    return better, quantities(cases, better, curve, X[:, 0], edge_q, law, fine), slope["P"] / slope["D"]

@@ -167,7 +167,11 @@ def test_failing_block_costs_that_block_only(file, monkeypatch):
 
     opened = load(file)
     monkeypatch.setattr(blocks, "compute", compute)
+    litter = Store(opened.definition, opened.results).folder / ".line.nc.killed.tmp"
+    litter.parent.mkdir(parents=True)
+    litter.touch()
     report = opened.run(workers=2)
+    assert not litter.exists()
     assert report.failures == {2: "cases 10 to 14: ZeroDivisionError: on purpose"}
     assert report.computed == 18
     assert report.counts == {0: 18, 127: 5}

@@ -42,20 +42,22 @@ def coatings(size: int, seed: int) -> dict:
 
 
 def extremes(size: int, seed: int) -> dict:
-    """Log-uniform far beyond any scene, all bases, both laws and interfaces."""
+    """Log-uniform far beyond any scene, thin layer and half-space, both laws and interfaces.
+
+    The exact layer there takes seconds a case at the reference's tolerance; `make extremes` has it.
+    """
     random = np.random.default_rng(seed)
-    base = random.choice(["half_space", "thin_layer", "layered"], size)
     Ra = _between(random, 1e-5, 0.1, size)
     return {
         "P": _between(random, 1e-12, 0.1, size),
         "h": _between(random, 1e-8, 1e3, size),
-        "n": np.where(base == "layered", _between(random, 1e-6, 1e6, size), _between(random, 1e-6, 0.999999, size)),
+        "n": _between(random, 1e-6, 0.999999, size),
         "bonding": random.choice(["frictionless", "bonded"], size),
         "Ra": Ra,
         "Nbar": _between(random, 1e-6, 1e6, size) / Ra**2,
         "B": _between(random, 1e-2, 10, size),
         "beta": random.uniform(0.3, 0.95, size),
-        "base": base,
+        "base": random.choice(["half_space", "thin_layer"], size),
         "micro": random.choice(["disc_cell", "power_law"], size),
     }
 

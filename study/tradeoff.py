@@ -1,7 +1,7 @@
 """Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
 
 Time is that of one thread, the shortest of the repeats, over all cases of a set, solved as one batch. The error of a
-case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-12; a case without
+case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11; a case without
 an answer, or more than 100 % off, counts as 1.
 """
 
@@ -25,7 +25,7 @@ from .dataset import digest_in, open_results, provenance, write
 from .problem_sets import SETS
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
-REFERENCE = 1e-12
+REFERENCE = 1e-11
 ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 X = np.array([0.0, 1.0])
 PATIENCE = 1.0
@@ -33,9 +33,9 @@ PATIENCE = 1.0
 
 PAPERS = ("paper, layer", "paper, half-space")
 PAPERS_BASES = ("thin_layer", "half_space")
-TOLERANCES = tuple(10.0**-i for i in range(2, 11))
-NODES = (8.0, 12.0, 16.0, 24.0, 32.0, 48.0)
-SLOW = 50
+TOLERANCES = tuple(10.0**-i for i in range(2, 10))
+NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
+SLOW = 20
 MESHES = (10.0, 20.0, 40.0, 80.0, 160.0)
 
 
@@ -92,7 +92,7 @@ def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution
 
 def _picard(k: float) -> Way:
     options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
-    return Way(changed(**options), "nodes", NODES[:5], PAPERS, most=SLOW)
+    return Way(changed(**options), "nodes", NODES, PAPERS, most=SLOW)
 
 
 def _paper(k: float, sets=PAPERS) -> Way:
@@ -109,13 +109,12 @@ WAYS = {
         changed(base="auto", accuracy=float, rtol=lambda accuracy: 0.1 * accuracy),
         "accuracy",
         (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4),
-        ("coatings", "extremes"),
-        ("layered",),
+        ("coatings",),
     ),
     "the other law": Way(swapped("micro", "power_law", "disc_cell"), "rtol", (1e-6,), (*PAPERS, "coatings")),
     "the other layer": Way(swapped("base", "thin_layer", "layered"), "rtol", (1e-6,), ("paper, layer", "coatings")),
 }
-SIZE, SEED = 250, 1
+SIZE, SEED = 100, 1
 WORDS = {
     "setting": "what is varied along step, as `varied` says",
     "time": "time per case on one thread",

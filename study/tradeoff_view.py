@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
 
-FLOOR = 1e-13
+FLOOR = 1e-12
 """Smaller errors are those of the reference."""
 STYLES = {
     "paper k = 0": ("#fdbe85", "o"),
@@ -19,8 +19,8 @@ STYLES = {
     "auto": ("#1b7837", "*"),
 }
 NAMES = {
-    "newton, nodes": "Newton, 8 to 48 nodes",
-    "newton, rtol": "Newton, rtol $10^{-2}$ to $10^{-10}$",
+    "newton, nodes": "Newton, 8 to 32 nodes",
+    "newton, rtol": "Newton, rtol $10^{-2}$ to $10^{-9}$",
     "auto": "base auto, accuracy 0.5 to $10^{-4}$",
 }
 MODELS = {"the other law": "power law for the exact law", "the other layer": "thin layer for the exact layer"}

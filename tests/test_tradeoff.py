@@ -69,6 +69,7 @@ def test_a_long_run_is_not_repeated(monkeypatch):
 
 def test_slow_ways_take_a_spread_sample_of_the_bases_they_know():
     cases = SETS["extremes"](90, 1)
+    cases["base"][::3] = "layered"
     index = replace(WAYS["paper k = 5"], most=7).index(cases)
     assert len(index) == 7 and (np.diff(index) > 0).all() and not (cases["base"][index] == "layered").any()
     assert len(WAYS["newton, rtol"].index(cases)) == 90

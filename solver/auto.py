@@ -12,12 +12,12 @@ from typing import NamedTuple
 import numpy as np
 
 from .base import local_compliance
-from .cases import as_cases, dimensionless
+from .cases import as_cases
 from .equation import guess_radius
 from .kernel import layered_kernel
 from .mesh import mesh
 from .micro import contact_fraction, largest_pressure
-from .model_error import MARGIN, THINNEST, TRUSTED, closed_form, first_order, nodes_for
+from .model_error import MARGIN, TRUSTED, closed_form, first_order, nodes_for
 from .problem import Model, Solution
 from .quadrature import gauss_legendre
 from .status import Status
@@ -62,14 +62,14 @@ def cheapest(problem, x, solve):
 
 
 def judged(problem, x, solve):
-    """:class:`Solution` of thin layers in units R = E2* = 1, with the model error of first order."""
+    """:class:`Solution` of thin layers in units R = E2* = 1, with the model error of first order, no margin."""
     out = Solution.empty(len(problem), len(x))
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
         part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
         n = int(nodes_for(np.zeros(1))[0])
         found = vars(solve(part, np.concatenate([x, mesh(n).x])))
-        error = MARGIN * _model_error(part, found, n, found["p"][:, len(x) :])
+        error = _model_error(part, found, n, found["p"][:, len(x) :])
         out.put(index, _shown(found, len(x)) | {"model_error": error})
     return out
 
@@ -129,18 +129,8 @@ def _asperities(part, found, p, weight):
 
 def _model_error(part, found, n, p, steps=1):
     """Estimated model error (B,) without margin of the solution `found` of the cases `part`; p at the nodes."""
-    error = np.full(len(part), np.nan)
-    thick_enough = part.h / found["a"] >= THINNEST
-    for thick in np.unique(thick_enough):
-        index = np.flatnonzero(thick_enough == thick)
-        base = "layered" if thick else "thin_layer"  # where the exact operator ends, the thin layer is the dear model
-        dear, C = dimensionless(_with(part.take(index), base=base))
-        cases, law = as_cases(dear, C)
-        cheap = {name: v[index] for name, v in found.items()}
-        error[index] = first_order(cases, law, cheap, p[index], n, steps)
-        if not thick:
-            error[index] += closed_form(dear, cheap["a"])
-    return error
+    cases, law = as_cases(_with(part, base="layered"), np.zeros(len(part)))
+    return first_order(cases, law, found, p, n, steps)
 
 
 def _shown(found, m):

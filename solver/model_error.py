@@ -9,7 +9,6 @@ estimate: the largest over a, P, D, p(0), p_max, Ar/An.
 import numpy as np
 
 from .equation import State, evaluate, groups
-from .layered import OCTAVES
 from .mesh import mesh
 from .newton import advance
 from .outputs import quantities
@@ -23,8 +22,6 @@ MARGIN = 1.25
 TRUSTED = 0.3
 #: Nodes of the step for an accuracy of at least this; they need only resolve the error, not the solution.
 _NODES = ((5e-5, 16),)
-#: Thinner layers (h/a) have no exact operator.
-THINNEST = 2.0 ** OCTAVES[0]
 
 
 def nodes_for(accuracy):
@@ -59,7 +56,8 @@ def first_order(cases, law, cheap, p, n, steps=1):
     state = State(y, np.log(cheap["a"]))
     for _ in range(steps):
         ev = evaluate(cases, state, law, grid)
-        state, last = advance(cases, state, ev, grid, law), state
+        last = state
+        state, _ = advance(cases, state, ev, grid, law)
     curve = law.evaluate(state.y, cases.exponent)
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (ev.base.edge * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)

@@ -121,6 +121,7 @@ def _picard(part, C, x):
     with np.errstate(all="ignore"):
         state, status, count = picard.solve(cases, law, grid, part.k, part.rtol, int(part.max_iterations[0]))
         values, _ = rough.finish(cases, law, grid, state, x)
+    del values["tension"]  # asperities carry none
     status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
     return values | {"status": status.astype(np.int8), "iterations": count}
 

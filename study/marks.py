@@ -7,7 +7,7 @@ from matplotlib.patheffects import withStroke
 from .derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
 
 ASSUMPTION_TEXT = {
-    "layer_not_thin": rf"thin layer wrong by $> {100 * NOT_THIN:g}$ %",
+    "layer_not_thin": f"thin layer off by over {100 * NOT_THIN:g} %",
     "few_spots": rf"$\bar N A_n < {FEW_SPOTS:g}$",
     "spot_not_small_against_h": rf"$b > {SPOT_OVER_LAYER:g}\,h$",
     "n_not_below_one": r"$n \geq 1$",

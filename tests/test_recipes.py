@@ -155,11 +155,12 @@ def test_shading_names_the_assumption_and_its_curves():
     from matplotlib.figure import Figure
 
     axes = Figure().subplots()
-    attributes = {"flag_masks": np.array([1, 2, 4, 8]), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+    attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
     first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
     shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
-    assert axes.get_legend_handles_labels()[1] == [r"not valid: $h \geq a$ (1)", r"not valid: $\bar N A_n < 100$ (1)"]
-    assert violated(first[1]) == [r"$h \geq a$"]
+    thick, few = "thin layer off by over 10 %", r"$\bar N A_n < 100$"
+    assert axes.get_legend_handles_labels()[1] == [f"not valid: {thick} (1)", f"not valid: {few} (1)"]
+    assert violated(first[1]) == [thick]
 
 
 def test_scheme_of_the_contact_draws_the_solution(results):

@@ -18,7 +18,7 @@ def tangents(ev, mesh, *more):
 
 
 def advance(cases, state, ev, mesh, law):
-    """The :class:`State` after one step from `state`, where the equation is `ev`; and dq/dη (B, n) at the latter.
+    """The :class:`State` after one step from `state`, where the equation is `ev`.
 
     The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from
     the first guess of :mod:`equation` it converges without a line search.
@@ -30,10 +30,4 @@ def advance(cases, state, ev, mesh, law):
     d_eta = np.clip(d_eta, -1.0, 1.0)
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = law.limit(state.y + dy, state.y)
-    return State(y, state.eta + d_eta), dq_deta
-
-
-def slope(control, dq_deta, ev, mesh):
-    """Derivative (B,) of the logarithm of `control` by η along the solution branch."""
-    by_q, by_eta = control_gradient(control, ev, mesh)
-    return (by_q * dq_deta).sum(axis=1) + by_eta
+    return State(y, state.eta + d_eta)

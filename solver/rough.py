@@ -11,6 +11,7 @@ from . import newton
 from .bracket import false_position
 from .equation import (
     State,
+    control_gradient,
     control_residual,
     evaluate,
     first_guess,
@@ -123,13 +124,13 @@ def finish(cases, law, grid, state, x):
     """Output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh."""
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
-    finer, better, dP_dD = refine(cases, state, ev, law, grid)
+    finer, better = refine(cases, state, ev, law, grid)
     error = np.max([np.abs(values[name] / better[name] - 1) for name in _JUDGED], axis=0)
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     values["p"], values["lam"] = profiles(cases, ev, grid, law, x)
     # share of tension in the load: only where the equation is linear can it be
     values["tension"] = np.maximum(-ev.curve.q, 0.0) @ np.abs(grid.w) / np.abs(ev.curve.q @ grid.w)
-    values |= {"dP_dD": dP_dD * values["P"] / values["D"], "residual": ev.residual}
+    values |= {"dP_dD": stiffness(ev, values, grid), "residual": ev.residual}
     values["error"] = np.maximum(MARGIN * error, _floor(cases, values["a"], grid.n))
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
     return values | {"nodes": np.full(len(finite), grid.n)}, finer
@@ -160,7 +161,7 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT):
             break
         if len(keep) < len(active):
             active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
-        state, _ = newton.advance(cases, state, ev, grid, law)
+        state = newton.advance(cases, state, ev, grid, law)
     return State(y, eta), closed, count
 
 
@@ -195,14 +196,24 @@ def _rescue(cases, law, grid, state, closed, count):
 
 
 def refine(cases, state, ev, law, grid):
-    """One Newton step on the next finer mesh: the state there, its quantities (dict), and d ln P/d ln D (B,)."""
+    """One Newton step on the next finer mesh: the state there and its quantities (dict)."""
     fine = finer_mesh(grid)
     start = State(interpolate(cases, ev, law, grid, fine.s, 1e-4), state.eta)
     at_start = evaluate(cases, start, law, fine, ev.base.weights)
-    better, dq = newton.advance(cases, start, at_start, fine, law)
+    better = newton.advance(cases, start, at_start, fine, law)
     curve, base = law.evaluate(better.y, cases.exponent), at_start.base
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (base.edge * curve.q).sum(axis=1) + base.d_edge_q * (better.eta - start.eta)
     X, _, _ = groups(cases, better.eta)
-    slope = {control: newton.slope(control, dq, at_start, fine) for control in ("P", "D")}
-    return better, quantities(cases, better, curve, X[:, 0], edge_q, law, fine), slope["P"] / slope["D"]
+    return better, quantities(cases, better, curve, X[:, 0], edge_q, law, fine)
+
+
+def stiffness(ev, values, grid):
+    """Contact stiffness dP/dD (B,) in E2* R, along the solution branch, from the Jacobian."""
+    dq = newton.tangents(ev, grid)[..., 0]
+
+    def slope(control):
+        by_q, by_eta = control_gradient(control, ev, grid)
+        return (by_q * dq).sum(axis=1) + by_eta
+
+    return values["P"] * slope("P") / (values["D"] * slope("D"))

@@ -4,10 +4,10 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from .derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from .derived import COMPRESSED, FEW_SPOTS, MERGING, SPOT_OVER_LAYER, STEEP
 
 ASSUMPTION_TEXT = {
-    "layer_not_thin": f"thin layer off by over {100 * NOT_THIN:g} %",
+    "layer_not_thin": "layer not thin",
     "few_spots": rf"$\bar N A_n < {FEW_SPOTS:g}$",
     "spot_not_small_against_h": rf"$b > {SPOT_OVER_LAYER:g}\,h$",
     "n_not_below_one": r"$n \geq 1$",
@@ -45,6 +45,8 @@ def load_axis(axes, largest: float, P0: float) -> None:
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
     """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
 
+    What is broken at every load is said without a band.
+
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
     flags = next(iter(validity.values())).attrs
@@ -54,8 +56,12 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
         curves = [name for name, where in broken.items() if where.any()]
         if not curves:
             continue
-        label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
-        for start, stop in bands(P, np.any([broken[name] for name in curves], axis=0)):
+        where = np.any([broken[name] for name in curves], axis=0)
+        extent, drawn = ("nowhere valid", where & False) if where.all() else ("not valid", where)
+        label = f"{extent}: {ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
+        if where.all():
+            axes.plot([], [], " ", label=label)
+        for start, stop in bands(P, drawn):
             axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend
 

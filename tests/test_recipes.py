@@ -158,9 +158,13 @@ def test_shading_names_the_assumption_and_its_curves():
     attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
     first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
     shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
-    thick, few = "thin layer off by over 10 %", r"$\bar N A_n < 100$"
+    thick, few = "layer not thin", r"$\bar N A_n < 100$"
     assert axes.get_legend_handles_labels()[1] == [f"not valid: {thick} (1)", f"not valid: {few} (1)"]
     assert violated(first[1]) == [thick]
+    bands_so_far = len(axes.patches)
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": first * 0 + 1})
+    assert axes.get_legend_handles_labels()[1][-1] == f"nowhere valid: {thick} (3)"
+    assert len(axes.patches) == bands_so_far
 
 
 def test_scheme_of_the_contact_draws_the_solution(results):

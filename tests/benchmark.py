@@ -2,15 +2,18 @@
 
     python tests/benchmark.py [bench.json]
 
-The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case. Last it
-prints how much longer the exact layer takes than the thin one for the same batch of cases at rtol 1e-6.
+The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case. Beside it:
+time and memory against the number of cases, one and two threads, and at equal error the paper's way and, if they are
+installed (extra `peers`), other codes.
 """
 
 import json
 import os
 import platform
+import resource
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
 
@@ -18,26 +21,31 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # before numpy is imported
 
 import numpy as np  # noqa: E402
+from benchmark_peers import peers  # noqa: E402
 
 from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
+from study.problem_sets import SETS  # noqa: E402
+from study.tradeoff import WAYS, measured, taken, with_reference  # noqa: E402
 
 CASES, REPEATS, SYSTEMS, ORDER = 4000, 3, 20_000, 17
+SIZES = (1_000, 10_000, 100_000, 1_000_000)
+BLOCK = 2000
 X = np.linspace(0.0, 1.0, 5)
 
 
-def problem(micro: str, base: str, rtol: float) -> Problem:
+def problem(micro: str, base: str, rtol: float, size: int = CASES) -> Problem:
     """Random ordinary cases on a layer (see `MODEL`: P 1e-7..1e-3, Ra 5e-4..1e-2, N̄Ra² 0.1..10)."""
     random = np.random.default_rng(1)
 
     def between(low, high):
-        return np.exp(random.uniform(np.log(low), np.log(high), CASES))
+        return np.exp(random.uniform(np.log(low), np.log(high), size))
 
     Ra = between(5e-4, 1e-2)
     return Problem.of(
         P=between(1e-7, 1e-3),
         Ra=Ra,
         Nbar=between(0.1, 10) / Ra**2,
-        n=random.uniform(0.05, 0.95, CASES),
+        n=random.uniform(0.05, 0.95, size),
         h=between(1e-3, 0.1),
         micro=micro,
         base=base,
@@ -64,9 +72,8 @@ def systems_per_second() -> float:
     return SYSTEMS / seconds(lambda: np.linalg.solve(matrices, right))
 
 
-def measure() -> dict:
-    """All figures of the benchmark."""
-    systems = systems_per_second()
+def speed(systems: float) -> list[dict]:
+    """Cases per second of every kind of case at three tolerances."""
     rows = []
     for micro, base in product(("smooth", "disc_cell"), ("thin_layer", "layered")):
         for rtol in (1e-3, 1e-6, 1e-9):
@@ -76,14 +83,7 @@ def measure() -> dict:
             row = {"micro": micro, "base": base, "rtol": rtol, "cases_per_second": rate, "r": rate / systems}
             row |= {"converged": float(np.mean(solution.status == Status.CONVERGED))}
             rows.append(row | {"largest_error": float(np.nanmax(solution.error))})
-    return {
-        "numerics_version": NUMERICS_VERSION,
-        "cpu": platform.processor() or platform.machine(),
-        "numpy": np.__version__,
-        "systems_17_per_second": systems,
-        "rows": rows,
-        "layered_over_thin": {micro: layered_over_thin(rows, micro) for micro in ("smooth", "disc_cell")},
-    }
+    return rows
 
 
 def layered_over_thin(rows: list[dict], micro: str, rtol: float = 1e-6) -> float:
@@ -92,9 +92,71 @@ def layered_over_thin(rows: list[dict], micro: str, rtol: float = 1e-6) -> float
     return rate["thin_layer"] / rate["layered"]
 
 
-def main(arguments: list[str]) -> None:
-    """Print the table and write it as JSON."""
-    result = measure()
+def sizes(count=SIZES) -> list[dict]:
+    """Time of one call with ever more thin rough cases, and the largest memory of the process so far (must come
+    first)."""
+    rows = []
+    for size in count:
+        cases = problem("disc_cell", "thin_layer", 1e-3, size)
+        start = time.perf_counter()
+        solve(cases, X)
+        used = time.perf_counter() - start
+        peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+        rows.append({"cases": size, "seconds": used, "peak_bytes": peak})
+    return rows
+
+
+def threads() -> list[dict]:
+    """Cases per second of one and of two threads that share the blocks of a batch."""
+    rows = []
+    for micro, base in product(("disc_cell",), ("thin_layer", "layered")):
+        whole = problem(micro, base, 1e-6)
+        blocks = [whole.take(np.arange(i, i + BLOCK)) for i in range(0, CASES, BLOCK)]
+        for count in (1, 2):
+            with ThreadPoolExecutor(count) as pool:
+                rate = CASES / seconds(lambda pool=pool, blocks=blocks: list(pool.map(lambda b: solve(b, X), blocks)))
+            rows.append({"micro": micro, "base": base, "threads": count, "cases_per_second": rate})
+    return rows
+
+
+def papers_way() -> list[dict]:
+    """The paper's way on its own cases on the layer, and Newton with the loosest rtol that is at least as accurate."""
+    cases, reference = with_reference(SETS["paper, layer"](50, 1))
+    rows = []
+    for k, intervals in ((2.0, 20.0), (5.0, 40.0), (5.0, 80.0)):
+        way = WAYS[f"paper k = {k:g}"]
+        theirs = measured(way, intervals, *taken(cases, reference, way.index(cases)), REPEATS)
+        for rtol in WAYS["newton, rtol"].settings:
+            ours = measured(WAYS["newton, rtol"], rtol, cases, reference, REPEATS)
+            if ours["most"] <= theirs["most"]:
+                break
+        row = {"k": k, "intervals": intervals, "ended": theirs["ended"], "error": theirs["most"]}
+        row |= {"seconds": theirs["time"], "newton_rtol": rtol, "newton_error": ours["most"]}
+        rows.append(row | {"newton_seconds": ours["time"], "times_faster": theirs["time"] / ours["time"]})
+    return rows
+
+
+def measure() -> dict:
+    """All figures of the benchmark."""
+    by_size = sizes()
+    systems = systems_per_second()
+    rows = speed(systems)
+    return {
+        "numerics_version": NUMERICS_VERSION,
+        "cpu": platform.processor() or platform.machine(),
+        "numpy": np.__version__,
+        "systems_17_per_second": systems,
+        "rows": rows,
+        "layered_over_thin": {micro: layered_over_thin(rows, micro) for micro in ("smooth", "disc_cell")},
+        "sizes": by_size,
+        "threads": threads(),
+        "papers_way": papers_way(),
+        "peers": peers(seconds),
+    }
+
+
+def report(result: dict) -> None:
+    """Print the tables."""
     print(f"{result['systems_17_per_second']:.3g} systems of 17 x 17 per second (numpy.linalg.solve, stacked)")
     print(f"{'micro law':<10} {'base':<10} {'rtol':>6} {'cases/s':>9} {'r':>7} {'converged':>9} {'largest error':>13}")
     for row in result["rows"]:
@@ -104,6 +166,17 @@ def main(arguments: list[str]) -> None:
         )
     for micro, ratio in result["layered_over_thin"].items():
         print(f"{micro}: a case on the exact layer takes {ratio:.1f} times as long as on the thin one (rtol 1e-6)")
+    for name in ("sizes", "threads", "papers_way", "peers"):
+        print(f"\n{name}")
+        for row in result[name]:
+            print("  " + ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"
+                                   for key, value in row.items()))  # fmt: skip
+
+
+def main(arguments: list[str]) -> None:
+    """Print the tables and write all as JSON."""
+    result = measure()
+    report(result)
     if arguments:
         Path(arguments[0]).write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
 

@@ -55,8 +55,10 @@ class Between(NamedTuple):
 def _between(mesh, s_bytes):
     s, ends = np.frombuffer(s_bytes), np.array(mesh.breaks)
     home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)
+    low, high = ends[home], ends[home + 1]
+    gap = (high - low) / (4 * mesh.order**2)  # of the nodes at an end of a panel
     # half the distance of the nodes in x = sqrt(1 - s²), where |dx| = s ds/x
-    spread = (s - ends[home]) * np.where(ends[home + 1] < 1, (ends[home + 1] - s) / np.maximum(1 - s, 1e-300), 1.0)
+    spread = (s - low + gap * (low > 0)) * np.where(high < 1, (high - s + gap) / np.maximum(1 - s, 1e-300), 1.0)
     kappa = np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
     return Between(s, mesh.basis(s), mesh.rows(s), kappa)
 

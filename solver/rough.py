@@ -27,6 +27,9 @@ from .outputs import interpolate, profiles, quantities
 from .panels import solve_on_panels
 from .status import Status
 
+#: Tension over the largest pressure on panels that is no oscillation of a polynomial.
+_TENSION = 1e-3
+
 _JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
 
@@ -112,6 +115,9 @@ def _on_panels(case, law, rtol, x, out, i):
     grid, state, closed, count = solve_on_panels(case, law, rtol, iterate)
     values, _ = finish(case, law, grid, state, x)
     out["iterations"][i] += count[0]
+    if closed[0] and state.y.min() < -_TENSION * np.abs(state.y).max():  # a linear equation: no disc of contact
+        out["tension"][i] = np.inf
+        return False
     if not closed[0] or not values["error"][0] < np.nan_to_num(out["error"][i], nan=np.inf):
         return out["status"][i] == Status.CONVERGED
     for name, value in values.items():

@@ -1,6 +1,6 @@
 """One block on disk: a line of JSON, the keys of its cases, its columns as raw numbers, and a checksum of all that.
 
-Not netCDF: 20 times faster to write, and safe to read anywhere. Nothing in it is executable.
+Not netCDF: this may be read and written by any thread, and a checksum covers all of it. Nothing in it is executable.
 """
 
 import hashlib

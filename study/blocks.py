@@ -25,7 +25,6 @@ class Parcel:
     parameters: dict[str, np.ndarray]
     x: np.ndarray
     profiles: tuple[str, ...]
-    dtype: str
     numerics: str
 
 
@@ -41,14 +40,12 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     """The cases at `index` (n,), n > 0."""
     found = columns_at(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
-    profiles, dtype = definition.profiles, definition.dtype
-    return Parcel(int(index[0]), int(index[-1]), found, definition.x, profiles, dtype, NUMERICS_VERSION)
+    return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION)
 
 
 def compute(wanted: Parcel) -> dict[str, np.ndarray]:
     """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
-    found = arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
-    return {name: array.astype(wanted.dtype) if array.dtype.kind == "f" else array for name, array in found.items()}
+    return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
 
 
 def guarded(wanted: Parcel) -> dict[str, np.ndarray] | Failure:

@@ -188,7 +188,7 @@ def interrupts_wait() -> Iterator[None]:
 def encoding(array: xr.DataArray) -> dict:
     """How a variable is stored, in the words of netCDF4 and of xarray.
 
-    Profiles are nearly all of a file and not worth compressing: a quarter smaller for twice the time of the whole run.
+    Profiles are nearly all of a file. Compressing them takes longer than the rest of the writing and gains little.
     """
     data, numbers = array.name not in array.coords, array.dtype.kind in "fiu"
     options = {"fill_value": np.nan if data and array.dtype.kind == "f" else None}

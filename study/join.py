@@ -71,6 +71,8 @@ def create(file: netCDF4.Dataset, definition: Definition, part: xr.Dataset, comm
         kind = str if variable.dtype.kind in "UO" else variable.dtype
         made = file.createVariable(name, kind, variable.dims, **options)
         made.set_auto_maskandscale(False)
+        if "chunksizes" in options:
+            made.set_var_chunk_cache(size=1, nelems=1)  # whole chunks are written, once: 64 MB each would hold them
         made.setncatts(variable.attrs)
         if name in part.coords:
             made[...] = whole[name].values.astype(object if kind is str else kind)

@@ -40,8 +40,8 @@ def _run(file: Path, log: Path, at: str, locks: bool, options: dict) -> None:
         module, name = at.split(".")
         setattr(getattr(study, module), name, lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL))
     note(log, "begun")
-    study.load(file, file.parent / "results").run(**options)
-    note(log, "ended")
+    report = study.load(file, file.parent / "results").run(**options)
+    note(log, "ended" if report.counts else "nothing to do")
 
 
 def note(log: Path, line: str) -> None:

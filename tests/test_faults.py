@@ -236,7 +236,9 @@ def test_two_runs_at_once(opened, undisturbed, tmp_path, locks):
     computed = [case for log in logs for case in computed_in(log)]
     assert set(computed) == set(range(CASES))
     if locks:
-        assert len(computed) == CASES, "the second waits and finds all done"
+        assert len(computed) == CASES
+        ends = sorted(lines(log)[-1] for log in logs)
+        assert ends == ["ended", "nothing to do"], "the second waits and finds all done"
     assert_ends_well(opened, undisturbed, 0)
 
 

@@ -1,11 +1,13 @@
 """The results file written by windows is the one that would be written whole."""
 
 import math
+import sys
 
 import numpy as np
 import pytest
 import xarray as xr
-from hypothesis import given, settings
+from children import PROCESSES
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from same import assert_same
 
@@ -20,6 +22,7 @@ shapes = st.lists(st.integers(1, 7), max_size=4).map(tuple)
 
 
 @given(shape=shapes, most=st.integers(1, 60), chunk=st.integers(1, 30))
+@example(shape=(7,), most=5, chunk=3)
 def test_windows_follow_each_other_in_flat_order(shape, most, chunk):
     grid = Grid({f"d{i}": size for i, size in enumerate(shape)}, {})
     numbers = np.arange(math.prod(shape)).reshape(shape)
@@ -85,3 +88,33 @@ def test_a_large_file_is_opened_lazily(tmp_path, monkeypatch):
     eager = study.open_results(tmp_path / "lazy.nc")
     assert float(found.p.max().compute(num_workers=4)) == float(eager.p.max())
     xr.testing.assert_identical(open_lazily(tmp_path / "lazy.nc").load(), eager)
+
+
+def peak_of_a_run(folder, points: int, answers) -> None:
+    """Peak memory and size of the results, in bytes, of a run whose solver gives every block the same numbers."""
+    import resource
+
+    from study import blocks
+
+    axes = {"P": {"start": 1e-6, "stop": 1e-4, "num": points}, "h": {"start": 0.001, "stop": 0.01, "num": 300}}
+    model = {"micro": "smooth", "base": "half_space"}
+    opened = study.Study(from_tables({"model": model, "axes": axes}, "large", "", "large"), folder)
+    solved = compute(parcel(opened.definition, np.arange(2000)))
+    blocks.compute = lambda wanted: {name: array[: wanted.last - wanted.first + 1] for name, array in solved.items()}
+    join.AT_ONCE = 4_000_000
+    opened.run(workers=2)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+    answers.put((peak, 8 * opened.definition.numbers))
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="getrusage")
+def test_memory_does_not_grow_with_the_study(tmp_path):
+    answers, found = PROCESSES.Queue(), []
+    for points in (50, 300):
+        process = PROCESSES.Process(target=peak_of_a_run, args=(tmp_path / str(points), points, answers))
+        process.start()
+        found.append(answers.get(timeout=60))
+        process.join()
+    (small, of_small), (large, of_large) = found
+    assert of_large - of_small > 49e6
+    assert large - small < 0.3 * (of_large - of_small)

@@ -1,6 +1,7 @@
 """Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
 
-Time is that of one thread, the shortest of the repeats, over all cases of a set, solved as one batch. The error of a
+Time is processor time of one thread, which other work on the machine hardly changes: the shortest of the repeats, over
+all cases of a set, solved as one batch. The error of a
 case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11; a case without
 an answer, or more than 100 % off, counts as 1.
 """
@@ -117,7 +118,7 @@ WAYS = {
 SIZE, SEED = 100, 1
 WORDS = {
     "setting": "what is varied along step, as `varied` says",
-    "time": "time per case on one thread",
+    "time": "processor time per case on one thread",
     "median": "error of half the cases",
     "most": "error of 95 % of the cases",
     "worst": "largest error",
@@ -172,9 +173,9 @@ def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution
     """Shortest time of an action and what it gave; the first run, which fills the caches, counts only if it is long."""
     times, solution = [], None
     for _ in range(1 + repeats):
-        start = time.perf_counter()
+        start = time.process_time()
         solution = action()
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
         if sum(times) > PATIENCE:
             break
     return min(times), solution

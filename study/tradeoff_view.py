@@ -6,6 +6,7 @@ from matplotlib.lines import Line2D
 
 FLOOR = 1e-12
 """Smaller errors are those of the reference."""
+TIMES = (30, 2e6)
 STYLES = {
     "paper k = 0": ("#fdbe85", "o"),
     "paper k = 1": ("#fd8d3c", "s"),
@@ -38,11 +39,11 @@ def work_precision(panels, found: xr.Dataset) -> Columns:
             curve(axes, 1e6 * part["time"].values, part["most"].values, part["ended"].values, colour, mark)
         for way, words in MODELS.items():
             model_line(axes, here.sel(way=way), words)
-        axes.set(xscale="log", yscale="log", ylim=(FLOOR / 2, 3))
+        axes.set(xscale="log", yscale="log", xlim=TIMES, ylim=(FLOOR / 2, 3))
         axes.set_title(name, fontsize=9)
         axes.set_yticks(10.0 ** np.arange(-12, 1, 3))
     for axes in panels[-1]:
-        axes.set_xlabel("time per case, one thread (µs)")
+        axes.set_xlabel("processor time per case (µs)")
     for axes in panels[:, 0]:
         axes.set_ylabel("error, 95 % of the cases below")
     legend(panels)
@@ -67,8 +68,8 @@ def model_line(axes, part: xr.Dataset, words: str) -> None:
     axes.axhline(error, color="0.35", linewidth=0.8, linestyle=(0, (4, 2)), zorder=0)
     share = "" if ended >= SETTLED else f" (applies to {ended:.0%})"
     text = f"{words}: {error:.1%}{share}"
-    axes.annotate(text, (0.99, error), (0, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points",
-                  ha="right", va="bottom", fontsize=6.5, color="0.25")  # fmt: skip
+    axes.annotate(text, (0.02, error), (0, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points",
+                  ha="left", va="bottom", fontsize=6.5, color="0.25")  # fmt: skip
 
 
 def legend(panels) -> None:

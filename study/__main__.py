@@ -67,12 +67,10 @@ def _add_engine(sub: argparse.ArgumentParser) -> None:
 def list_(options) -> int:
     from .api import load
 
-    files, code = sorted(Path(options.folder).glob("*.toml")), 0
-    for file in files:
-        code = max(code, _attempt(lambda file=file: _print_state(load(file, options.results)), str(file)))
+    files = sorted(Path(options.folder).glob("*.toml"))
     if not files:
         print(f"no study files in {options.folder}")
-    return code
+    return _each(files, lambda file: _print_state(load(file, options.results)))
 
 
 def check(options) -> int:
@@ -84,7 +82,7 @@ def check(options) -> int:
         print(f"{file}: {definition.grid.size} cases ({dims}), digest {definition.digest[:16]}")
         return 0
 
-    return max(_attempt(lambda file=file: one(file), file) for file in options.files)
+    return _each(options.files, one)
 
 
 def run(options) -> int:
@@ -97,28 +95,17 @@ def run(options) -> int:
             return _print_lines([cost_line(study.definition.name, study.dry_run(options.workers))])
         return _compute(study, options, part=options.part, force=options.force)
 
-    return max(_attempt(lambda file=file: one(file), file, KEPT) for file in options.files)
+    return _each(options.files, one, KEPT)
 
 
 def retry(options) -> int:
     from .api import load
+    from .order import status_values
 
     def one(file):
-        return _compute(load(_file(file), options.results), options, retry=_status_values(options.status))
+        return _compute(load(_file(file), options.results), options, retry=status_values(options.status))
 
-    return max(_attempt(lambda file=file: one(file), file, KEPT) for file in options.files)
-
-
-def _status_values(words: list[str]) -> tuple[int, ...]:
-    from .dataset import status_words
-    from .definition import StudyError
-    from .vocabulary import suggest
-
-    known = {word: value for value, word in status_words().items()}
-    wrong = [f'--status "{word}" is not known{suggest(word, known)}' for word in words if word not in known]
-    if wrong:
-        raise StudyError(wrong)
-    return tuple(known[word] for word in words)
+    return _each(options.files, one, KEPT)
 
 
 def _compute(study, options, **more) -> int:
@@ -139,25 +126,19 @@ def status(options) -> int:
             print(f"    {status_words()[value]}: {count}")
         return 0
 
-    return max(_attempt(lambda file=file: one(file), file) for file in options.files)
+    return _each(options.files, one)
 
 
 def plot(options) -> int:
     from .recipes import draw
 
-    return max(
-        _attempt(lambda name=name: _print_lines(draw(name, options.results, options.figures)), name)
-        for name in options.names
-    )
+    return _each(options.names, lambda name: _print_lines(draw(name, options.results, options.figures)))
 
 
 def table(options) -> int:
     from .tables import tabulate
 
-    return max(
-        _attempt(lambda name=name: _print_lines(tabulate(name, options.results, options.tables)), name)
-        for name in options.names
-    )
+    return _each(options.names, lambda name: _print_lines(tabulate(name, options.results, options.tables)))
 
 
 def tradeoff(options) -> int:
@@ -166,24 +147,28 @@ def tradeoff(options) -> int:
     from .tradeoff import results
     from .tradeoff_page import page
 
-    def one():
+    def one(_):
         found = results(options.results, force=options.force, command=command_line())
         return _print_lines([write_text(Path(options.docs) / "tradeoff.md", page(found))])
 
-    return _attempt(one, "tradeoff")
+    return _each(["tradeoff"], one)
 
 
-def _attempt(action, name: str, hint: str = "") -> int:
-    """Exit code of an action on one file; what is wrong with it does not keep the others from their turn."""
+def _each(items, action, hint: str = "") -> int:
+    """Largest exit code of the actions; what is wrong with one item does not keep the others from their turn."""
+    return max((_attempt(action, item, hint) for item in items), default=0)
+
+
+def _attempt(action, item, hint: str) -> int:
     from .definition import StudyError
 
     try:
-        return action()
+        return action(item)
     except StudyError as error:
         print(error, file=sys.stderr)
         return error.code
     except OSError as error:  # a full disk, say, or a scheduler that is gone
-        print(f"{name}: {error}{hint}", file=sys.stderr)
+        print(f"{item}: {error}{hint}", file=sys.stderr)
         return 1
 
 

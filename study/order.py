@@ -7,12 +7,12 @@ from typing import TextIO
 
 import numpy as np
 
-from .dataset import digest_in
+from .dataset import digest_in, status_words
 from .definition import LARGE, Definition, StudyError
 from .estimate import describe, estimate
 from .reuse import statuses
 from .store import Inventory, Store, count_statuses
-from .vocabulary import NOT_RUN
+from .vocabulary import NOT_RUN, suggest
 
 
 class CannotWrite(StudyError):
@@ -86,6 +86,15 @@ class Order:
 
 def results_path(definition: Definition, results) -> Path:
     return Path(results) / f"{definition.name}.nc"
+
+
+def status_values(words: list[str]) -> tuple[int, ...]:
+    """Values of `status` by their words. Raises StudyError for a word that is none."""
+    known = {word: value for value, word in status_words().items()}
+    wrong = [f'--status "{word}" is not known{suggest(word, known)}' for word in words if word not in known]
+    if wrong:
+        raise StudyError(wrong)
+    return tuple(known[word] for word in words)
 
 
 def check_writable(path: Path) -> None:

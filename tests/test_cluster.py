@@ -6,6 +6,7 @@ import re
 import signal
 import subprocess
 import sys
+from concurrent.futures import Executor, Future
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,6 +16,7 @@ from same import assert_same, assert_same_numbers
 from test_faults import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, undisturbed, written  # noqa: F401
 
 import study
+from study import cluster as engines
 from study import run
 
 distributed = pytest.importorskip("distributed")
@@ -126,7 +128,8 @@ def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, und
     process.join(60)
     code, errors = answers.get(timeout=5)
     assert code == 1
-    assert errors.endswith("line.toml: the scheduler is gone; finished blocks are kept, the same command goes on from there\n")
+    said = "line.toml: the scheduler is gone; finished blocks are kept, the same command goes on from there\n"
+    assert errors.endswith(said)
     done = len(cases_on_disk(opened))
     assert 3 * BLOCK <= done < CASES
     assert_ends_well(opened, undisturbed, CASES - done)
@@ -134,8 +137,6 @@ def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, und
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
 def test_a_scheduler_that_is_not_there(tmp_path, address, monkeypatch, undisturbed):  # noqa: F811
-    from study import cluster as engines
-
     monkeypatch.setattr(engines, "CONNECT", 0.5)
     opened = written(tmp_path)
     with pytest.raises(study.StudyError, match=f"--scheduler {address}: no scheduler answers there"):
@@ -171,3 +172,15 @@ def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path
     assert reason.startswith("cases 50 to 54: RuntimeError: the worker has version")
     assert report.computed == CASES - BLOCK
     assert_ends_well(opened, undisturbed, BLOCK)
+
+
+def test_blocks_that_a_lost_scheduler_has_cancelled_are_not_failures():
+    class Gone(Executor):
+        def submit(self, *_):
+            future = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    with pytest.raises(engines.Lost, match="the scheduler is gone"):
+        list(engines.as_they_come(engines.Engine(Gone(), lambda: 2), len, ["", ""]))

@@ -236,6 +236,13 @@ def test_size_is_checked_before_anything_is_allocated(tmp_path):
     assert f"{MOST_VALUES:.0e}" in found[0]
 
 
+@pytest.mark.parametrize("value", ["0.6", "-1.0", "nan", "inf"])
+def test_a_wrong_number_among_right_ones_is_named(tmp_path, value):
+    text = f"[axes]\nP = [1.0]\nnu1 = [0.3, {value}, 0.2]\n[model]\nmicro = 'smooth'\nh = 1\nn = 0.5"
+    (message,) = messages(tmp_path, text)
+    assert message.startswith(f"nu1[1] = {value}: must be ") and "(-1, 0.5]" in message
+
+
 def test_digest_is_of_the_numbers(tmp_path):
     digest = read(tmp_path, GOOD).digest
     same = [

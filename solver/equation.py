@@ -13,7 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .kernel import layered_kernel
+from .kernel import whole
 from .layered import Layer, layer_displacement, layer_rows, layer_weights
 from .linalg import solve_stack
 from .mesh import HERTZ
@@ -197,7 +197,7 @@ def _softness(cases, a):
     if cases.layer is None:
         return np.ones_like(a)
     h, *material = cases.layer
-    return layered_kernel(1.5 * h / a, *material).L
+    return whole(1.5 * h / a, *material)
 
 
 def guess_radius(cases, law):

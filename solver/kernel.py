@@ -48,9 +48,18 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     u, n, nu1, nu2, bonded = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
     shape = u.shape
     u, n, nu1, nu2, bonded = (np.atleast_1d(v) for v in (u, n, nu1, nu2, bonded))
-    L1, uL = decaying_part(u, n, nu1, nu2, bonded)
-    L = np.where(bonded, _bonded_whole(u, n, nu1, nu2), _frictionless_whole(u, n))
+    L, L1, uL = whole(u, n, nu1, nu2, bonded), *decaying_part(u, n, nu1, nu2, bonded)
     return Kernel(*(v.reshape(shape) for v in (L, L1, uL)))
+
+
+def whole(u, n, nu1, nu2, bonded):
+    """L alone, of arrays u (at least one-dimensional); arguments as in :func:`layered_kernel`."""
+    bonded = np.asarray(bonded)
+    if bonded.all():
+        return _bonded_whole(u, n, nu1, nu2)
+    if not bonded.any():
+        return _frictionless_whole(u, n)
+    return np.where(bonded, _bonded_whole(u, n, nu1, nu2), _frictionless_whole(u, n))
 
 
 def decaying_part(u, n, nu1, nu2, bonded):

@@ -19,7 +19,7 @@ import numpy as np
 from scipy.special import j0
 
 from . import film
-from .kernel import decaying_part, layered_kernel
+from .kernel import decaying_part, whole
 from .quadrature import gauss_legendre, lagrange
 
 #: Octaves of h/a with tables of their own; below is the octave FILM, above nothing of the half-space is left.
@@ -166,7 +166,7 @@ def octave_of(layer, a):
 
 def operator_error(layer, a, nodes):
     """Relative error (B,) of the operator itself: rounding, and for films what the convolution leaves out."""
-    L = layered_kernel(10 * layer.h / a, *layer[1:]).L
+    L = whole(10 * layer.h / a, *layer[1:])
     octave, _ = octave_of(layer, a)
     local = np.abs(L - layer.n) / np.maximum(L, layer.n)
     return 1e-14 * nodes / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
@@ -186,7 +186,7 @@ def _weights(layer, a, octave, depth, index):
     eta, part = layer.h[index] / a[index], layer.take(index)
     if octave != FILM:
         return Weights(index, octave, depth, *_sampled(part, eta, k, weight, 0.0), None, None)
-    level = layered_kernel(CUT * eta / 2, *part[1:]).L[:, None] - 1
+    level = whole(CUT * eta / 2, *part[1:])[:, None] - 1
     kappa, _ = film.waves()
     below = _sampled(part, eta, k, weight * film.step(k / CUT), level)
     beyond, d_beyond = _sampled(part, eta, CUT * kappa, 1 - film.step(kappa), level)

@@ -11,16 +11,20 @@ radius the load is wrong by -m κ h/a with m = d ln P/d ln a. For h >> a the loa
 (3π/(32 A2)) (a/h) of the true one, (4/3) E1* a³/R. The estimate is the simplest fraction with both limits.
 """
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
 from .base import thin_layer_coefficients
-from .kernel import layered_kernel
+from .kernel import whole
 
 #: Points and step of the trapezoidal rule for κ in ln u, at both ends of which the integrand decays like e^-|ln u|.
 _STEP = 0.5
 _U = np.exp(np.arange(-16.0, 36.0, _STEP))
+#: Largest |ln n| of the table without friction.
+_RANGE = 25.0
 #: Number of points up to u = 45; beyond, L = 1 to rounding.
 _NEAR = int(np.sum(_U < 45.0))
 
@@ -55,14 +59,31 @@ def edge_shift(n, nu1, nu2, bonded):
     0.2326 0.1447
     """
     given = np.broadcast_arrays(np.asarray(n, float), nu1, nu2, bonded)
-    # a batch has few materials: each is integrated once
-    materials, places = np.unique([v.ravel() for v in given], axis=1, return_inverse=True)
-    n, nu1, nu2, bonded = materials[..., None]
+    n, nu1, nu2, bonded = (v.ravel() for v in given)
+    kappa, tabulated = np.empty(len(n)), (bonded == 0) & (np.abs(np.log(n)) < _RANGE)
+    kappa[tabulated] = _without_friction()(np.log(n[tabulated]))
+    rest = np.flatnonzero(~tabulated)
+    if len(rest):  # a batch has few materials: each is integrated once
+        materials, places = np.unique([v[rest] for v in (n, nu1, nu2, bonded)], axis=1, return_inverse=True)
+        kappa[rest] = _integrated(*materials)[places.ravel()]
+    return kappa.reshape(given[0].shape)
+
+
+@lru_cache(maxsize=1)
+def _without_friction():
+    """κ over ln n without friction, a spline to 1e-8."""
+    ln_n = np.linspace(-_RANGE, _RANGE, 1001)
+    none = np.zeros_like(ln_n)
+    return CubicSpline(ln_n, _integrated(np.exp(ln_n), none, none, none))
+
+
+def _integrated(n, nu1, nu2, bonded):
+    """κ (B,) of B materials, by the trapezoidal rule."""
+    n, nu1, nu2, bonded = (v[:, None] for v in (n, nu1, nu2, bonded))
     A1, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
     L = np.ones((len(n), len(_U)))
-    L[:, :_NEAR] = layered_kernel(_U[:_NEAR], n, nu1, nu2, bonded != 0).L
-    kappa = np.log((A1 + np.where(A2 > 0, A2, np.nan) * _U) / L) @ (_STEP / np.pi / _U)
-    return kappa[places.ravel()].reshape(given[0].shape)
+    L[:, :_NEAR] = whole(_U[:_NEAR] + 0 * n, n, nu1, nu2, bonded != 0)
+    return np.log((A1 + np.where(A2 > 0, A2, np.nan) * _U) / L) @ (_STEP / np.pi / _U)
 
 
 def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):

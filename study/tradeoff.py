@@ -170,7 +170,7 @@ def taken(cases: dict, reference: Solution, index: np.ndarray) -> tuple[dict, So
 
 
 def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution]:
-    """Shortest time of an action and what it gave; the first run, which fills the caches, counts only if it is long."""
+    """Shortest time of up to 1 + repeats runs of an action, and what it gave; long ones are not repeated."""
     times, solution = [], None
     for _ in range(1 + repeats):
         start = time.process_time()

@@ -8,7 +8,7 @@ import pytest
 import xarray as xr
 from conftest import ROOT
 
-from solver import Problem, Status, solve
+from solver import Problem, solve
 from study import open_results, paper_error, tradeoff
 from study.problem_sets import SETS
 from study.tradeoff import JUDGED, WAYS, errors, measure, taken, timed, with_reference
@@ -46,17 +46,16 @@ def test_error_counts_what_has_no_answer_as_one():
 
 
 def test_reference_leaves_out_what_has_no_solution():
-    cases = SETS["extremes"](60, 1)
-    kept, reference = with_reference(cases)
-    status = solve(Problem.of(**cases, rtol=1e-12)).status
-    assert 0 < len(kept["P"]) < 60 or (status == Status.CONVERGED).all()
+    cases = SETS["coatings"](6, 1) | {"base": np.full(6, "thin_layer"), "bonding": "bonded", "n": 0.3}
+    kept, reference = with_reference(cases | {"nu1": np.array([0.3, 0.3, 0.5, 0.3, 0.3, 0.3])})  # C = 0 at ν = 1/2
+    assert kept["P"].tolist() == np.delete(cases["P"], 2).tolist()
     assert np.isfinite([getattr(reference, name) for name in JUDGED]).all()
     part, of_part = taken(kept, reference, np.array([3, 1]))
     assert part["P"].tolist() == kept["P"][[3, 1]].tolist() and of_part.a.tolist() == reference.a[[3, 1]].tolist()
 
 
-def test_the_shortest_run_counts_and_the_first_does_not(monkeypatch):
-    clock = iter([0.0, 0.001, 1.0, 1.5, 2.0, 2.2])  # runs of 0.001 (with filled caches), 0.5, 0.2 seconds
+def test_the_shortest_run_counts(monkeypatch):
+    clock = iter([0.0, 0.4, 1.0, 1.2, 2.0, 2.3])
     monkeypatch.setattr(tradeoff.time, "process_time", lambda: next(clock))
     assert timed(lambda: "answer", 2) == (pytest.approx(0.2), "answer")
 
@@ -84,7 +83,8 @@ def test_newton_is_as_accurate_as_asked_and_the_papers_way_of_second_order():
     newton, theirs = (here.sel(way=way)["worst"].values for way in ways)
     assert newton[0] < 1e-3 and newton[1] < 1e-8
     assert 2 < theirs[0] / theirs[1] < 8 and theirs[1] < 5e-3
-    assert (here["ended"] == 1).all() and (here["time"] > 0).all()
+    assert (here["ended"].sel(way="newton, rtol") == 1).all() and (here["ended"] >= 0.9).all()
+    assert (here["time"] > 0).all()
 
 
 def test_the_models_differ_as_they_do(found):

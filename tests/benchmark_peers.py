@@ -1,8 +1,8 @@
 """The smooth sphere on a half-space with other codes, if they are installed (extra `peers`): time against error of D.
 
-Both solve on a square grid of three contact radii with a free (not periodic) kernel; beside them stands this solver, on
-the exact layer, bonded to a half-space of its own material: a Hertz contact that
-it does not know to be one. Its basis holds the pressure of Hertz, so that its error is that of rounding.
+Both solve on a square grid of three contact radii with a free (not periodic) kernel. Beside them stands this solver on
+the exact layer, bonded to a half-space of its own material: a Hertz contact that it does not know to be one. Its basis
+holds the pressure of Hertz, so that its error is that of rounding.
 """
 
 from importlib.util import find_spec

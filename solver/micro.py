@@ -64,7 +64,9 @@ def angle(y):
 
 def spot_curve(y):
     """q(y), g(y) of Eqs (7) and (6) and their derivatives; y = cot θ > 0 of any shape."""
-    sin, cos, theta = angle(y)
+    y = np.asarray(y, dtype=float)
+    sin = 1 / np.sqrt(1 + y * y)
+    cos, theta = y * sin, np.arctan(1 / y)  # three times as fast as arctan2
     sin2, cos2, sc = sin * sin, cos * cos, sin * cos
     total = theta + sc
     q = cos2 * cos / total
@@ -78,9 +80,12 @@ def spot_curve(y):
 
 def _theta_minus_sc(theta, sc):
     """θ - sinθ cosθ, by its series where the difference would cancel."""
-    z2 = 4 * theta * theta
-    series = theta * z2 / 6 * (1 - z2 / 20 * (1 - z2 / 42 * (1 - z2 / 72 * (1 - z2 / 110 * (1 - z2 / 156)))))
-    return np.where(theta < 0.3, series, theta - sc)
+    difference, small = np.asarray(theta - sc), theta < 0.3
+    if small.any():
+        t = theta[small]
+        z2 = 4 * t * t
+        difference[small] = t * z2 / 6 * (1 - z2 / 20 * (1 - z2 / 42 * (1 - z2 / 72 * (1 - z2 / 110 * (1 - z2 / 156)))))
+    return difference
 
 
 def spot_from_pressure(q):

@@ -70,7 +70,7 @@ def _on_mesh(control, value, C, n, x):
     with np.errstate(all="ignore"):
         modal, finer = modes(n), modes(next_rung(n))
         a, steps = _radius(control, value, C, modal)
-        values, better = _values(a, C, modal), _values(_radius(control, value, C, finer)[0], C, finer)
+        values, better = _values(a, C, modal), _values(_radius(control, value, C, finer, a)[0], C, finer)
         error = np.max([np.abs(values[name] / better[name] - 1) for name in ("a", "P", "D", "p0")], axis=0)
         q = (modal.c / _denominator(a, C, modal)) @ modal.V.T
         grid = mesh(n)
@@ -109,11 +109,13 @@ def _values(a, C, modal):
     return {"a": a, "P": P, "D": D, "p0": p0, "p_max": p0, "dP_dD": P * by_P / (D * by_D)}
 
 
-def _radius(control, value, C, modal):
+def _radius(control, value, C, modal, start=None):
     """a (B,) for the given load or depth by Newton on logarithms, and the number of steps of the batch."""
     if control == "a":
         return value, 0
-    if control == "P":
+    if start is not None:
+        eta = np.log(start)
+    elif control == "P":
         eta = 0.25 * np.log(np.cbrt(0.75 * value) ** 4 + 4 * C * value / np.pi)
     else:
         eta = 0.5 * np.log(1.5 * value)

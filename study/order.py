@@ -76,8 +76,10 @@ class Order:
     @property
     def done(self) -> bool:
         """Whether the results are there already, and hold no case to be tried again."""
-        there = digest_in(self.path) == self.definition.digest
-        return there and not (self.retry and np.isin(statuses(self.path), self.retry).any())
+        if digest_in(self.path) != self.definition.digest:
+            return False
+        again = self.retry and self.definition.kind == "contact"
+        return not (again and np.isin(statuses(self.path), self.retry).any())
 
     def report(self, known: Inventory | None = None, **what) -> Report:
         counts = count_statuses(known.status) if known else {}

@@ -169,6 +169,7 @@ def test_the_lock_pins_everything_and_names_no_machine():
     wanted = [
         *PROJECT["build-system"]["requires"],
         *PROJECT["project"]["dependencies"],
+        *extras["cluster"],
         *extras["test"],
         *extras["lint"],
     ]

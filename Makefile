@@ -46,7 +46,8 @@ map: results/parameter_map.nc ## 25,000 cases for exploration: results/parameter
 extremes: figures/extremes.pdf tables/extremes.txt ## 135,000 random cases far beyond any scene: status, error, iterations
 	@cat tables/extremes.txt
 
-tradeoff: docs/tradeoff.png tables/tradeoff.txt docs/tradeoff.md ## error against time of every way to solve
+tradeoff: figures/tradeoff.pdf tables/tradeoff.txt docs/tradeoff.md ## error against time of every way to solve
+	@cp figures/tradeoff.png docs/
 	@cat docs/tradeoff.md
 
 picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
@@ -87,9 +88,6 @@ docs/tradeoff.md: results/tradeoff.nc
 results/tradeoff.nc docs/tradeoff.md: $(SOURCES) | $(READY)
 	$(RUN) tradeoff
 	@touch $@
-
-docs/tradeoff.png: figures/tradeoff.pdf
-	@cp figures/tradeoff.png $@
 
 figures/fig01.pdf figures/fig02.pdf figures/fig03.pdf figures/fig07.pdf: results/main_case.nc
 figures/fig03_layered.pdf figures/fig07_layered.pdf: results/main_case.nc

@@ -32,7 +32,7 @@ def step(kappa):
 
 @lru_cache(maxsize=1)
 def waves():
-    """Nodes κ (G,) of half-octaves, and the matrix (T, G) of (1/π) ∫ · cos(κτ) dκ/κ at the nodes τ of octaves.
+    """Nodes κ (G,) of half-octaves, τ (T,) of octaves, and the matrix (T, G) of (1/π) ∫ · cos(κτ) dκ/κ.
 
     The integral is exact for polynomials over κ on each panel (Filon).
     """
@@ -48,23 +48,23 @@ def waves():
     bessel = spherical_jn(degree[:, None, None], tau[:, None] * width / 2)
     wave = np.real(np.exp(1j * tau[:, None] * (low + width / 2)) * (1j**degree)[:, None, None])
     matrix = np.einsum("lto,lg->tog", width * bessel * wave, legendre).reshape(len(tau), -1)
-    return kappa, matrix / (np.pi * kappa)
+    return kappa, tau, matrix / (np.pi * kappa)
 
 
-def transform(f):
-    """c(τ) but for its end (b, T) from f = (L - n')(1 - χ) + (n' - 1)(1 - e^-κ) at the nodes κ (b, G)."""
-    return f @ waves()[1].T
+def transform(f, level, p):
+    """c (b, T) at the nodes τ, from f = (L - n')(1 - χ) (b, G) at the nodes κ, which ends as 1 - n' = -level (b, 1).
+
+    p (b, 1) is the thickness in 1/cut: the end -level (1 - e^-pκ)/κ has the transform -level ln(1 + p²/τ²)/2.
+    """
+    kappa, tau, matrix = waves()
+    return (f - level * np.expm1(-p * kappa)) @ matrix.T - level / (2 * np.pi) * np.log1p((p / tau) ** 2)
 
 
 def convolution(grid, points, cut):
-    """What makes the convolution at `points` (m,) in s of the basis of a mesh: (T + 1, m, n).
-
-    It is linear in the values of :func:`transform`, followed by n' - 1: the end (1 - n')(1 - e^-κ)/κ of the integrand
-    has the transform (1 - n') ln(1 + 1/τ²)/2.
-    """
+    """What makes the convolution at `points` (m,) in s of the basis of a mesh of c at the nodes τ: (T, m, n)."""
     x = np.sqrt((1 - points) * (1 + points))
-    table = np.zeros((len(waves()[1]) + 1, len(points), grid.n))
-    for i in np.flatnonzero((1 - x) * cut < REACH):
+    table = np.zeros((len(waves()[1]), len(points), grid.n))
+    for i in range(len(points)):
         s, weight, gap = _around(points[i], x[i], grid.order)
         used = np.flatnonzero(cut * gap < REACH)
         tau, values = cut * gap[used], weight[used, None] * grid.basis(s[used])
@@ -72,7 +72,6 @@ def convolution(grid, points, cut):
         for o in np.unique(octave):
             here = octave == o
             table[o * _ORDER : (o + 1) * _ORDER, i] = basis[here].T @ values[here]
-        table[-1, i] = -np.log1p(tau**-2.0) / (2 * np.pi) @ values
     return table
 
 

@@ -13,6 +13,7 @@ one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
 """
 
 from functools import lru_cache
+from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +28,8 @@ OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
 _KEEP = 4e6
+#: Bytes of tables kept.
+_MOST_BYTES = 4e8
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
 _WIDEST = 200.0
 #: Numbers in one block of kernel values.
@@ -50,7 +53,7 @@ class Layer(NamedTuple):
 class Table(NamedTuple):
     """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²).
 
-    `film`: what makes the convolution of a film at the first m nodes (F, m, n), and at the edge (F, n).
+    `film`: the m nodes where the convolution is felt, what makes it there (T, m, n), and at the edge (T, n).
     """
 
     k: np.ndarray
@@ -64,7 +67,7 @@ class Table(NamedTuple):
 class Weights(NamedTuple):
     """Part of a batch in one octave: its cases `index` (b,), the key of its table, w (L - 1), -w u dL/du (b, G).
 
-    Films have w χ (L - n') there, and what the table of the convolution asks for (b, F), the last n' - 1.
+    Films have w χ (L - n') there; c of the convolution and its derivative (b, T), and n' - 1 (b, 1).
     """
 
     index: np.ndarray
@@ -74,6 +77,7 @@ class Weights(NamedTuple):
     dW: np.ndarray
     film: np.ndarray | None
     d_film: np.ndarray | None
+    level: np.ndarray | None
 
 
 class LayerRows(NamedTuple):
@@ -116,9 +120,29 @@ def quadrature(octave, depth):
     return np.concatenate(k), np.concatenate(weight)
 
 
-@lru_cache(maxsize=256)
+_tables = {}
+_tables_lock = Lock()
+
+
 def table(grid, octave, depth):
-    """The :class:`Table` of a mesh; cached."""
+    """The :class:`Table` of a mesh; the latest used, up to _MOST_BYTES, are kept."""
+    key = grid, octave, depth
+    with _tables_lock:
+        found = _tables.pop(key, None)
+    found = found or _table(*key)
+    with _tables_lock:
+        _tables[key] = found
+        while len(_tables) > 1 and sum(_size(kept) for kept in _tables.values()) > _MOST_BYTES:
+            _tables.pop(next(iter(_tables)))
+    return found
+
+
+def _size(found):
+    """Bytes of a table."""
+    return sum(part.nbytes for part in (*found[:5], *(found.film or ())) if part is not None)
+
+
+def _table(grid, octave, depth):
     k, _ = quadrature(octave, depth)
     n = grid.n
     J_edge = j0(k)
@@ -129,11 +153,18 @@ def table(grid, octave, depth):
     return Table(k, J, phi, J_edge, product, _film_table(grid) if octave == FILM else None)
 
 
-@lru_cache(maxsize=16)
 def _film_table(grid):
-    near = np.append(grid.s[: np.searchsorted(grid.s, np.sqrt(2 * film.REACH / CUT))], 0.0)
-    table = film.convolution(grid, near, CUT)
-    return table[:, :-1], table[:, -1]
+    near = _felt(grid, grid.x)
+    rows = film.convolution(grid, np.append(grid.s[near], 0.0), CUT)
+    return near, rows[:, :-1], rows[:, -1]
+
+
+def _felt(grid, x):
+    """Indices of the radii x where the convolution is felt: near the edge, and where panels resolve more than CUT."""
+    ends = np.sqrt(1 - np.array(grid.breaks) ** 2)
+    home = np.clip(np.searchsorted(-ends, -x) - 1, 0, len(ends) - 2)
+    fine = (ends[home] - ends[home + 1]) * CUT < 16 * grid.order
+    return np.flatnonzero(((1 - x) * CUT < film.REACH) | (fine & (x * CUT > film.REACH)))
 
 
 def _transform(grid, k):
@@ -185,13 +216,15 @@ def _weights(layer, a, octave, depth, index):
     k, weight = quadrature(octave, depth)
     eta, part = layer.h[index] / a[index], layer.take(index)
     if octave != FILM:
-        return Weights(index, octave, depth, *_sampled(part, eta, k, weight, 0.0), None, None)
+        return Weights(index, octave, depth, *_sampled(part, eta, k, weight, 0.0), None, None, None)
     level = whole(CUT * eta / 2, *part[1:])[:, None] - 1
-    kappa, _ = film.waves()
+    kappa, _, _ = film.waves()
     below = _sampled(part, eta, k, weight * film.step(k / CUT), level)
     beyond, d_beyond = _sampled(part, eta, CUT * kappa, 1 - film.step(kappa), level)
-    beyond = np.hstack([film.transform(beyond - level * np.expm1(-kappa)), level])
-    return Weights(index, octave, depth, *below, beyond, np.hstack([film.transform(d_beyond), 0 * level]))
+    p = CUT * eta[:, None]
+    return Weights(
+        index, octave, depth, *below, film.transform(beyond, level, p), film.transform(d_beyond, 0 * level, p), level
+    )
 
 
 def _sampled(layer, eta, k, weight, level):
@@ -228,18 +261,19 @@ def layer_rows(weights, q, grid):
 
 def _add_film(out, part, tab, q):
     """Add the convolution to the rows of films, in place."""
-    index, (near, edge) = part.index, tab.film
+    index, (nodes, near, edge) = part.index, tab.film
+    here = np.ix_(index, nodes)
     m, n = near.shape[1:]
     at_edge = part.film @ edge
-    out.half_space[index] = 1 + part.film[:, -1]
+    out.half_space[index] = 1 + part.level[:, 0]
     out.rows[index] -= at_edge[:, None]
     out.edge[index] += at_edge
-    out.rows[index, :m] += (part.film @ near.reshape(-1, m * n)).reshape(-1, m, n)
+    out.rows[here] += (part.film @ near.reshape(-1, m * n)).reshape(-1, m, n)
     moved_edge = ((part.d_film @ edge) * q).sum(axis=1)
     moved = np.matmul((part.d_film @ near.reshape(-1, m * n)).reshape(-1, m, n), q[:, :, None])[..., 0]
     out.d_rows_q[index] -= moved_edge[:, None]
     out.d_edge_q[index] += moved_edge
-    out.d_rows_q[index, :m] += moved
+    out.d_rows_q[here] += moved
 
 
 def layer_displacement(weights, q, grid, x, half_space):
@@ -252,15 +286,15 @@ def layer_displacement(weights, q, grid, x, half_space):
         index, tab = part.index, table(grid, part.octave, part.depth)
         out[index] = (part.W * (q[index] @ tab.phi.T)) @ (j0(tab.k[:, None] * x) - tab.J_edge[:, None])
         if part.film is not None:
-            near = np.flatnonzero((1 - x) * CUT < film.REACH)
+            near = _felt(grid, x)
             rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
             values = (part.film @ rows.reshape(len(rows), len(near) * grid.n)).reshape(len(index), len(near), grid.n)
-            share[index] += part.film[:, -1:]
-            out[index] -= ((part.film @ tab.film[1]) * q[index]).sum(axis=1)[:, None]
+            share[index] += part.level
+            out[index] -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
             out[np.ix_(index, near)] += np.matmul(values, q[index][:, :, None])[..., 0]
     return share * half_space + (np.pi / 2) * out
 
 
-@lru_cache(maxsize=64)
+@lru_cache(maxsize=8)
 def _film_rows(grid, s_bytes):
     return film.convolution(grid, np.frombuffer(s_bytes), CUT)

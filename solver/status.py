@@ -12,8 +12,7 @@ class Status(IntEnum):
     DIVERGED = 3
     THIN_LAYER_NOT_APPLICABLE = 4
     TOLERANCE_NOT_MET = 5
-    INVALID_INPUT = 6
-    LAYER_TOO_THIN = 7
+    INVALID_INPUT = 6  # 7 was in numerics version 2
     LIFT_OFF = 8
 
     @property
@@ -30,6 +29,5 @@ _MEANINGS = {
     Status.THIN_LAYER_NOT_APPLICABLE: "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers",
     Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
     Status.LIFT_OFF: "the pressure is tensile inside the contact: the punch would lift off there; no numbers",
-    Status.LAYER_TOO_THIN: "h/a is below 2^-11, where the layered operator ends; no numbers",
     Status.INVALID_INPUT: "a parameter is not finite or outside its bounds; no numbers",
 }

@@ -23,12 +23,18 @@ from .equation import (
 from .ladder import MARGIN, climb, finer_mesh
 from .layered import octave_of, operator_error
 from .mesh import mesh
-from .outputs import interpolate, profiles, quantities
+from .micro import disc_cell
+from .outputs import interpolate, profiles, quantities, spot_area
 from .panels import solve_on_panels
+from .quadrature import gauss_legendre
 from .status import Status
 
 #: Tension over the largest pressure on panels that is no oscillation of a polynomial.
 _TENSION = 1e-3
+#: Areas of the ring outside the first node, times λ there, that the error of Ar/An may come to (3 were seen).
+_UNSEEN = 8.0
+#: λ in the centre from which on it may rise sharply inside the contact.
+_SATURATED = 0.5
 
 _JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
@@ -137,9 +143,27 @@ def finish(cases, law, grid, state, x):
     # share of tension in the load: only where the equation is linear can it be
     values["tension"] = np.maximum(-ev.curve.q, 0.0) @ np.abs(grid.w) / np.abs(ev.curve.q @ grid.w)
     values |= {"dP_dD": stiffness(ev, values, grid), "residual": ev.residual}
-    values["error"] = np.maximum(MARGIN * error, _floor(cases, values["a"], grid.n))
+    error = np.maximum(MARGIN * error, _area_error(cases, law, state, ev, grid, values["Ar_An"]))
+    values["error"] = np.maximum(error, _floor(cases, values["a"], grid.n))
     values = {name: np.where(finite.reshape(-1, *[1] * (v.ndim - 1)), v, np.nan) for name, v in values.items()}
     return values | {"nodes": np.full(len(finite), grid.n)}, finer
+
+
+def _area_error(cases, law, state, ev, grid, Ar_An):
+    """Relative error (B,) of Ar/An that both meshes may miss: λ is smooth where y is with the exact law only.
+
+    Near the edge, where λ rises from 0, and, where asperities saturate, against a rule with other nodes.
+    """
+    ratio = (cases.p_star / cases.spot_scale)[:, None]
+    ends = spot_area(law.spot(state.y[:, [0, -1]], ratio * ev.curve.q[:, [0, -1]]))
+    error = np.where(cases.spot_scale > 0, _UNSEEN * grid.s[0] ** 2 / 2 * ends[:, 0] / Ar_An, 0.0)
+    saturated = ends[:, 1] > _SATURATED
+    if law is disc_cell or not saturated.any() or not (cases.spot_scale > 0).all():
+        return error
+    s, w = gauss_legendre(grid.n + 5)
+    y = interpolate(cases, ev, law, grid, s, 1e-9)
+    area = spot_area(law.spot(y, ratio * law.evaluate(y, cases.exponent).q)) @ (2 * w * s)
+    return np.where(saturated, np.maximum(error, MARGIN * np.abs(area / Ar_An - 1)), error)
 
 
 def _floor(cases, a, nodes):

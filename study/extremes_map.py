@@ -31,7 +31,8 @@ Columns = dict[str, np.ndarray]
 
 def maps(panels, *studies: xr.Dataset) -> Columns:
     """Rows: a base and two of its parameters; columns: every case as a point, by its status; of the converged cases of
-    a cell the median error over rtol, and the largest number of iterations."""
+    a cell the median error over rtol, and the largest number of iterations. The numbers are those of the cells that
+    hold cases."""
     cases, parts = pooled(studies), []
     for row, (base, x, y) in zip(panels, ROWS, strict=True):
         drawn = {name: values[cases["base"] == base] for name, values in cases.items()}
@@ -45,7 +46,9 @@ def maps(panels, *studies: xr.Dataset) -> Columns:
             axes.tick_params(top=False, right=False, which="both", direction="out", labelsize=7)
             axes.minorticks_off()
         row[0].set_ylabel(f"{BASES[base]}\n{AXES[y]}")
-        parts.append({"row": np.full(BINS * BINS, len(parts))} | cells)
+        held = cells["cases"] > 0
+        numbers = {name: values[held] for name, values in cells.items()}
+        parts.append({"row": np.full(held.sum(), len(parts))} | numbers)
     for axes, title in zip(panels[0], ("status", "error / rtol, median", "iterations, largest"), strict=True):
         axes.set_title(title, fontsize=9)
     legend(panels, images, np.unique(cases["status"]))
@@ -64,13 +67,14 @@ def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
 
 
 def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]) -> Columns:
-    """Per cell of the plane: its middle, the cases, those that failed, and the median and largest error and largest
-    number of iterations of the converged ones (NaN without any)."""
+    """Per cell of the plane: its middle, the cases, those that converged and that failed, and the median and largest
+    error and largest number of iterations of the converged ones (NaN without any)."""
     at = [np.searchsorted(e[1:-1], cases[name], "right") for name, e in zip((x, y), edges, strict=True)]
     cell, status = at[0] * BINS + at[1], cases["status"]
     middles = np.meshgrid(*(np.sqrt(e[1:] * e[:-1]) for e in edges), indexing="ij")
     found = {"x": middles[0].ravel(), "y": middles[1].ravel(), "cases": np.bincount(cell, minlength=BINS**2)}
     found["failed"] = np.bincount(cell[np.isin(status, list(FAILED))], minlength=BINS**2)
+    found["converged"] = np.bincount(cell[status == Status.CONVERGED], minlength=BINS**2)
     columns = {"median error/rtol": np.median, "largest error/rtol": np.max, "largest iterations": np.max}
     converged = [np.flatnonzero((cell == i) & (status == Status.CONVERGED)) for i in range(BINS**2)]
     for column, reduce in columns.items():

@@ -147,8 +147,8 @@ TABLES = {
     ),
     "extremes": Table(
         ("extremes", "extremes_layered"),
-        "Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not apply, the"
-        " punch lifts off), shares of the others, error over rtol and iterations of the converged ones.",
+        "Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not apply,"
+        " the punch lifts off), shares of the others, error over rtol and iterations of the converged ones.",
         (
             Column("base", "base"),
             Column("law", "law"),

@@ -36,12 +36,24 @@ def test_maps_hold_every_case_once(results, tmp_path):
     with open(draw("extremes", results, tmp_path)[0], encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
     columns = dict(zip(head, np.array(rows, dtype=float).T, strict=True))
-    assert len(rows) == len(ROWS) * BINS**2
+    assert (columns["cases"] > 0).all() and set(columns["row"]) == set(range(len(ROWS)))
     for i, (base, *_) in enumerate(ROWS):
         found = open_results(results / ("extremes_layered.nc" if base == "layered" else "extremes.nc"))
         assert columns["cases"][columns["row"] == i].sum() == found.sizes["case"] * found.sizes["micro"]
-    assert np.nanmax(columns["largest error/rtol"]) <= 1
-    assert np.all(np.isnan(columns["largest iterations"][columns["cases"] == 0]))
+    assert columns["largest error/rtol"].max() <= 1
+
+
+def test_a_cell_without_a_converged_case_has_no_error(datasets):
+    from matplotlib.figure import Figure
+
+    broken = datasets[0].copy(deep=True)
+    broken["status"][{"case": 0}] = Status.DIVERGED
+    columns = maps(Figure().subplots(len(ROWS), 3), broken, datasets[1])
+    none = columns["converged"] == 0
+    assert none.any() and not none.all()
+    for name, values in columns.items():
+        wanted = none if name.split()[-1] in ("error/rtol", "iterations") else none & False
+        np.testing.assert_array_equal(np.isnan(values), wanted, err_msg=name)
 
 
 def test_cells_take_median_and_largest_of_the_converged():
@@ -56,8 +68,9 @@ def test_cells_take_median_and_largest_of_the_converged():
     }
     found = {name: values.reshape(BINS, BINS) for name, values in binned(cases, "x", "y", edges).items()}
     first, other = (0, BINS - 1), (BINS - 1, 0)
-    assert [found[name][first] for name in ("cases", "failed", "largest iterations")] == [4, 1, 5]
-    assert [found[name][other] for name in ("cases", "failed", "largest iterations")] == [3, 1, 6]
+    counts = ("cases", "converged", "failed", "largest iterations")
+    assert [found[name][first] for name in counts] == [4, 3, 1, 5]
+    assert [found[name][other] for name in counts] == [3, 1, 1, 6]
     assert (found["median error/rtol"][first], found["largest error/rtol"][first]) == (0.2, 0.9)
     assert found["cases"].sum() == 7 and np.isnan(found["median error/rtol"]).sum() == BINS**2 - 2
     assert found["x"][first] == pytest.approx(middle) and found["y"][first] == pytest.approx(last)

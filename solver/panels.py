@@ -18,11 +18,11 @@ START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
 ORDER = 12
 DEPTH = 30
 #: More panels than this are not made: the operator is not accurate enough to tell more.
-_MOST = 24
+_MOST = 32
 #: Films thinner than this times the radius start from the thin layer.
 _THIN = 0.02
-#: Rounds of solving and halving; the second mostly changes nothing.
-_ROUNDS = 6
+#: Tolerances of the rounds of solving and halving: a coarse solution cannot tell where a fine one is not resolved.
+_GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-13)
 #: A panel is resolved when what its last coefficients add to the load and the real area is below this times rtol.
 _SHARE = 0.3
 #: ... or, for the smallest rtol, below this: the operator has an error too.
@@ -45,16 +45,18 @@ def solve_on_panels(case, law, rtol, iterate):
             grid, found, closed, total = solve_on_panels(alike, law, rtol, iterate)
             if closed[0]:
                 breaks, state = grid.breaks, found
-    for _ in range(_ROUNDS):
+    for goal in np.maximum(rtol, _GOALS):
         grid = panel_mesh(ORDER, breaks)
         state, closed, count = iterate(case, state or first_guess(case, law, grid), law, grid)
         total += count
         ev = evaluate(case, state, law, grid)
         if not np.isfinite(ev.residual[0]):
             break
-        better = resolve(case, ev, state, law, grid, rtol)
+        better = resolve(case, ev, state, law, grid, goal)
         if better == breaks:
-            break
+            if goal == rtol:
+                break
+            continue
         nodes = panel_nodes(better)
         state, breaks = State(interpolate(case, ev, law, grid, nodes), state.eta), better
     return grid, state, closed, total

@@ -23,14 +23,12 @@ from .equation import (
 from .ladder import MARGIN, climb, finer_mesh
 from .layered import octave_of, operator_error
 from .mesh import mesh
-from .micro import disc_cell
+from .micro import power_law
 from .outputs import interpolate, profiles, quantities, spot_area
 from .panels import solve_on_panels
 from .quadrature import gauss_legendre
 from .status import Status
 
-#: Tension over the largest pressure on panels that is no oscillation of a polynomial.
-_TENSION = 1e-3
 #: Areas of the ring outside the first node, times λ there, that the error of Ar/An may come to (3 were seen).
 _UNSEEN = 8.0
 #: λ in the centre from which on it may rise sharply inside the contact.
@@ -121,7 +119,7 @@ def _on_panels(case, law, rtol, x, out, i):
     grid, state, closed, count = solve_on_panels(case, law, rtol, iterate)
     values, _ = finish(case, law, grid, state, x)
     out["iterations"][i] += count[0]
-    if closed[0] and state.y.min() < -_TENSION * np.abs(state.y).max():  # a linear equation: no disc of contact
+    if closed[0] and values["tension"][0] > 10 * values["error"][0]:  # there is no disc of contact
         out["tension"][i] = np.inf
         return False
     if not closed[0] or not values["error"][0] < np.nan_to_num(out["error"][i], nan=np.inf):
@@ -150,15 +148,16 @@ def finish(cases, law, grid, state, x):
 
 
 def _area_error(cases, law, state, ev, grid, Ar_An):
-    """Relative error (B,) of Ar/An that both meshes may miss: λ is smooth where y is with the exact law only.
+    """Relative error (B,) of Ar/An that both meshes may miss with a power law, where λ is not as smooth as y.
 
     Near the edge, where λ rises from 0, and, where asperities saturate, against a rule with other nodes.
     """
+    if law is not power_law:
+        return 0.0
     ratio = (cases.p_star / cases.spot_scale)[:, None]
     ends = spot_area(law.spot(state.y[:, [0, -1]], ratio * ev.curve.q[:, [0, -1]]))
-    error = np.where(cases.spot_scale > 0, _UNSEEN * grid.s[0] ** 2 / 2 * ends[:, 0] / Ar_An, 0.0)
-    saturated = ends[:, 1] > _SATURATED
-    if law is disc_cell or not saturated.any() or not (cases.spot_scale > 0).all():
+    error, saturated = _UNSEEN * grid.s[0] ** 2 / 2 * ends[:, 0] / Ar_An, ends[:, 1] > _SATURATED
+    if not saturated.any():
         return error
     s, w = gauss_legendre(grid.n + 5)
     y = interpolate(cases, ev, law, grid, s, 1e-9)

@@ -1,0 +1,82 @@
+"""Films: the convolution at the edge against closed forms, against the full quadrature, and against Wiener and Hopf."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from solver_cases import JUDGED, MAIN, difference
+
+from solver import Problem, Status, film, layered, solve
+from solver.kernel import decaying_part
+from solver.layered import CUT, FILM, Layer, layer_rows, layer_weights
+from solver.mesh import mesh
+from solver.thin_layer_error import edge_shift
+
+MATERIALS = [(0.5, 0.3, False), (0.5, 0.3, True), (0.01, 0.45, True), (30.0, 0.2, True), (1e3, 0.3, False)]
+
+
+def test_waves_integrate_cosines():
+    """(1/π) ∫₀^∞ κ e^-κ cos(κτ) dκ/κ = 1/(π (1 + τ²)), from τ = 6e-8 to 128."""
+    kappa, tau, matrix = film.waves()
+    assert_allclose(matrix @ (kappa * np.exp(-kappa)), 1 / (np.pi * (1 + tau**2)), rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("p", [1e-6, 1e-3, 1.0])
+def test_transform_of_a_kernel_known_in_closed_form(p):
+    """f = 1 - e^-pκ, which ends as 1: c = ln(1 + p²/τ²)/(2π) whatever the level that takes the end away."""
+    kappa, tau, _ = film.waves()
+    c = film.transform(-np.expm1(-p * kappa)[None], np.array([[-1.0]]), np.array([[p]]))[0]
+    assert_allclose(c, np.log1p((p / tau) ** 2) / (2 * np.pi), rtol=1e-9, atol=1e-12)
+
+
+@pytest.mark.parametrize(("n", "nu", "bonded"), MATERIALS)
+def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
+    """At h/a = 2^-8.5, with the half-space and all k to the end of the kernel: 1e-8 of the displacement."""
+    eta, grid = 2.0**-8.5, mesh(16)
+    layer = Layer(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded)))
+    weights = layer_weights(layer, np.ones(1))
+    assert weights[0].octave == FILM
+    k, weight = layered.quadrature(FILM, int(layered.octave_of(layer, np.array([0.1]))[1][0]))
+    assert k.max() < CUT < 15 / eta  # the quadrature of films would miss something here
+    k, weight = layered.quadrature(FILM, weights[0].depth)
+    W = weight * decaying_part(k * eta, n, nu, 0.3, np.array(bonded))[0]
+    table = layered.table(grid, FILM, weights[0].depth)
+    whole = (table.J * W[:, None]).T @ table.phi  # less what lies beyond CUT, where L - 1 is not small
+    beyond = np.abs(decaying_part(np.array([CUT * eta]), n, nu, 0.3, np.array([bonded]))[0][0])
+    rows = layer_rows(weights, np.ones((1, grid.n)), grid)
+    for q in (grid.s, grid.s**3):
+        found = rows.half_space[0] * grid.K @ q + np.pi / 2 * rows.rows[0] @ q
+        expected = grid.K @ q + np.pi / 2 * whole @ q
+        assert_allclose(found, expected, rtol=0, atol=(1e-8 + 1e-4 * beyond) * np.abs(expected).max())
+
+
+@pytest.mark.parametrize(("n", "nu", "bonded"), MATERIALS[:3])
+def test_a_film_shifts_the_edge_as_wiener_and_hopf_say(n, nu, bonded):
+    """Under one load a_thin - a → κ h for h << a: another formulation of the edge, in closed form."""
+    h = np.array([3e-6, 1e-5])
+    case = {"P": 1e-3, "h": h, "n": n, "nu1": nu, "bonding": "bonded" if bonded else "frictionless", "micro": "smooth"}
+    thin, film_ = (solve(Problem.of(**case, base=base, rtol=1e-9)) for base in ("thin_layer", "layered"))
+    assert np.all(film_.a * 2.0**FILM > h)
+    kappa = edge_shift(n, nu, 0.3, bonded)
+    assert_allclose((thin.a - film_.a) / h, kappa, rtol=0.02, atol=2e-3)
+
+
+@pytest.mark.parametrize("law", ["smooth", "disc_cell", "power_law"])
+@pytest.mark.parametrize("bonding", ["frictionless", "bonded"])
+def test_no_cliff_where_films_begin(law, bonding):
+    """The two sides of h/a = 2^-8 differ by the thickness alone."""
+    h = 0.04 * 2.0**-8 * (1 + np.array([-2e-9, 2e-9]))
+    s = solve(Problem.of(**(MAIN | {"h": h}), a=0.04, base="layered", micro=law, bonding=bonding, rtol=1e-9))
+    assert np.all(np.isfinite(s.P))
+    for name in JUDGED:
+        low, high = getattr(s, name)
+        assert abs(high / low - 1) < 1e-7
+
+
+def test_films_of_any_thinness():
+    """From h/a = 2^-8 to 1e-9: converged, and ever nearer to the thin layer."""
+    h = 0.04 * np.array([1e-3, 1e-4, 1e-5, 1e-7, 1e-9])
+    case = MAIN | {"h": h, "a": 0.04, "micro": "disc_cell"}
+    thin, found = (solve(Problem.of(**case, base=base)) for base in ("thin_layer", "layered"))
+    assert np.all(found.status == Status.CONVERGED)
+    gap = difference(thin, found)
+    assert np.all(gap < 2 * h / 0.04 + 2e-6)

@@ -47,12 +47,12 @@ def profile(axes, cases: tuple, a0: float, name: str, label: str, side: str) -> 
     case, thin = cases
     r, p = case["x"].values * float(case["a"]) / a0, case["p"].values
     (line,) = axes.plot(r, p * 100, label=label)
-    name_curve(axes, line, name, 0.25, side=side)
-    columns = {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
+    lines, columns = [line], {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
     if thin is not None:
         r, p = thin["x"].values * float(thin["a"]) / a0, thin["p"].values
-        axes.plot(r, p * 100, color=line.get_color(), **PAPER)
+        lines += axes.plot(r, p * 100, color=line.get_color(), **PAPER)
         columns |= {f"r/a0 ({name}, thin layer)": r, f"p/E2* ({name}, thin layer)": p}
+    name_curve(axes, lines, name, 0.12, side=side)
     return columns
 
 
@@ -60,7 +60,7 @@ def pressure_axes(axes, exact: bool) -> None:
     """Labels, limits and legend of pressures that have all been drawn."""
     if exact:
         axes.plot([], [], color="0.3", label=PAPER_LABEL, **PAPER)
-    axes.set(xlabel="$r/a_0$", ylabel=r"$p\ /\ (10^{-2} E_2^*)$", xlim=(0, None), ylim=(0, None))
+    axes.set(xlabel="$r/a_0$", ylabel=r"$p\ /\ (10^{-2} E_2^*)$", xlim=(0, None), ylim=(0, 1.1 * axes.dataLim.y1))
     axes.legend(loc="lower left")
 
 
@@ -75,13 +75,14 @@ def against_load(
     P, columns = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}
     cases = {name: case_of(sweep, name, exact) for name in sides}
     for name, case in cases.items():
-        (line,) = axes.plot(P * 1e5, case[quantity] / scale, label=f"{name}: {CURVES[name]}")
-        name_curve(axes, line, name, 0.85 * P[-1] * 1e5, side=sides[name])
+        lines = axes.plot(P * 1e5, case[quantity] / scale, label=f"{name}: {CURVES[name]}")
         columns[f"{quantity} ({name})"] = case[quantity].values
         thin = thin_beside(sweep, name, exact)
         if thin is not None:
-            axes.plot(P * 1e5, thin[quantity] / scale, color=line.get_color(), **PAPER)
+            lines += axes.plot(P * 1e5, thin[quantity] / scale, color=lines[0].get_color(), **PAPER)
             columns[f"{quantity} ({name}, thin layer)"] = thin[quantity].values
+        align = "right" if sides[name] == "above" else "left"  # away from a curve that rises
+        name_curve(axes, lines, name, 0.85 * P[-1] * 1e5, side=sides[name], align=align)
     if exact:
         axes.plot([], [], color="0.3", label=PAPER_LABEL, **PAPER)
     load_axis(axes, P[-1], float(main["P"]))
@@ -100,9 +101,9 @@ def laws(panels, fits: xr.Dataset) -> Columns:
         for i, (Ra, Nbar) in enumerate(roughnesses):
             case, colour = pick(fits, Ra=Ra, Nbar=Nbar), f"C{i}"
             name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
-            (line,) = axes.plot(p, case["A_fit"] * 1e4, "-", color=colour)
+            lines = axes.plot(p, case["A_fit"] * 1e4, "-", color=colour)
             axes.plot(p, case["A_exact"] * 1e4, **EXACT_LAW)
-            name_curve(axes, line, name, 0.95 * p[-1], align="right")
+            name_curve(axes, lines, name, 0.95 * p[-1], align="right")
             columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": case[f"A_{kind}"].values for kind in ("exact", "fit")}
         axes.plot([], [], label="exact, Eqs (6), (7)", **EXACT_LAW)
         axes.plot([], [], "-", color="0.5", label=r"fitted, $B p^{\beta}$")

@@ -1,5 +1,6 @@
 """Marks on axes that several figures share: names of curves, the axis of loads, shading of broken assumptions."""
 
+import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
@@ -17,18 +18,21 @@ ASSUMPTION_TEXT = {
 GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9")
 
 
-def name_curve(axes, line, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
-    """Write the name of a curve at the abscissa `at`, "above" or "below" it, `align`ed there (left, center, right)."""
-    x, y = line.get_data()
-    gap, anchor = (3, "bottom") if side == "above" else (-3, "top")
+def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
+    """Write the name of a curve at the abscissa `at`, `align`ed there (left, center, right).
+
+    It stands "above" or "below" all the lines that belong to the curve, in the colour of the first.
+    """
+    heights = [np.interp(at, *line.get_data()) for line in lines]
+    gap, anchor, height = (2, "bottom", max(heights)) if side == "above" else (-2, "top", min(heights))
     axes.annotate(
         text,
-        (at, np.interp(at, x, y)),
+        (at, height),
         (0, gap),
         textcoords="offset points",
         ha=align,
         va=anchor,
-        color=line.get_color(),
+        color=lines[0].get_color(),
         path_effects=[withStroke(linewidth=2, foreground="white")],
     )
 
@@ -45,11 +49,11 @@ def load_axis(axes, largest: float, P0: float) -> None:
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
     """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
 
-    What is broken at every load is said without a band.
+    What is broken at every load is written in the upper left corner instead.
 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
-    flags = next(iter(validity.values())).attrs
+    flags, nowhere = next(iter(validity.values())).attrs, []
     meanings = flags["flag_meanings"].split()
     for mask, meaning, grey in zip(np.atleast_1d(flags["flag_masks"]), meanings, GREYS, strict=True):
         broken = {name: (array.values & mask) != 0 for name, array in validity.items()}
@@ -57,13 +61,19 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
         if not curves:
             continue
         where = np.any([broken[name] for name in curves], axis=0)
-        extent, drawn = ("nowhere valid", where & False) if where.all() else ("not valid", where)
-        label = f"{extent}: {ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
+        text = f"{ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
         if where.all():
-            axes.plot([], [], " ", label=label)
-        for start, stop in bands(P, drawn):
+            nowhere.append(text)
+            continue
+        label = f"not valid: {text}"
+        for start, stop in bands(P, where):
             axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend
+    if nowhere:
+        axes.annotate(
+            "\n".join(["nowhere valid:", *nowhere]), (0, 1), (7, -5), xycoords="axes fraction",
+            textcoords="offset points", va="top", fontsize=matplotlib.rcParams["legend.fontsize"],
+        )  # fmt: skip
 
 
 def violated(validity: xr.DataArray) -> list[str]:

@@ -43,10 +43,10 @@ validity: tables/validity.txt ## up to which h/a the thin-layer model errs by le
 
 map: results/parameter_map.nc ## 25,000 cases for exploration: results/parameter_map.nc
 
-extremes: figures/extremes.pdf tables/extremes.txt ## 135,000 random cases far beyond any scene: status, error, iterations
+extremes: figures/extremes.pdf tables/extremes.txt ## 102,000 random cases far beyond any scene: status, error, iterations
 	@cat tables/extremes.txt
 
-tradeoff: figures/tradeoff.pdf tables/tradeoff.txt docs/tradeoff.md ## error against time of every way to solve
+tradeoff: figures/tradeoff.pdf tables/tradeoff.txt docs/tradeoff.md ## error against time of every way to solve: docs/tradeoff.md, .png
 	@cp figures/tradeoff.png docs/
 	@cat docs/tradeoff.md
 

@@ -163,6 +163,23 @@ def test_the_readme_is_right_about_the_main_case(results):
     assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in README
 
 
+def microseconds(text: str, head: str, row: str, columns: int) -> dict[float, float]:
+    """The last columns of one row of a table, by the error in its head."""
+    found = [re.search(rf"^\| {start}.*$", text, flags=re.MULTILINE)[0] for start in (head, row)]
+    errors, times = ([cell.strip() for cell in line.strip("|").split("|")[-columns:]] for line in found)
+    units = {"": 1.0, "µs": 1.0, "ms": 1e3}
+    split = [time.partition(" ") for time in times]
+    return {float(error): float(number) * units[unit] for error, (number, _, unit) in zip(errors, split, strict=True)}
+
+
+@pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
+def test_the_times_of_the_readme_are_those_of_tradeoff(ours, measured):
+    page = (ROOT / "docs/tradeoff.md").read_text(encoding="utf-8")
+    found = microseconds(README, "processor time", ours, 3)
+    known = microseconds(page, "set ", rf"{measured} \| newton, rtol", 5)
+    assert found == pytest.approx({error: known[error] for error in (1e-3, 1e-6, 1e-9)}, rel=0.3)
+
+
 def test_the_lock_pins_everything_and_names_no_machine():
     pins = dict(re.findall(r"^([a-z0-9_.-]+)==(\S+)$", LOCK, flags=re.MULTILINE))
     extras = PROJECT["project"]["optional-dependencies"]

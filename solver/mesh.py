@@ -56,6 +56,10 @@ class Mesh:
         """Number of nodes of a panel."""
         return self.n // (len(self.breaks) - 1)
 
+    def rule(self, order):
+        """Gauss rule of ∫₀¹ · ds with `order` points on each panel: points and weights (m,)."""
+        return panel_rule(gauss_legendre(order), self.breaks)
+
     def basis(self, points):
         """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others."""
         return piecewise_lagrange(self.s, points, self.breaks)
@@ -91,6 +95,12 @@ def _build(order, breaks):
     for array in (s, x, w, K, edge):
         array.flags.writeable = False
     return Mesh(breaks=breaks, s=s, x=x, w=w, K=K, edge=edge)
+
+
+def panel_rule(rule, breaks):
+    """Points and weights (m,) of a rule on [0, 1] repeated on each panel."""
+    low, width = np.array(breaks[:-1])[:, None], np.diff(breaks)[:, None]
+    return (low + width * rule[0]).ravel(), (width * rule[1]).ravel()
 
 
 def piecewise_lagrange(nodes, points, breaks=WHOLE):

@@ -23,14 +23,14 @@ from .equation import (
 from .ladder import MARGIN, climb, finer_mesh
 from .layered import octave_of, operator_error
 from .mesh import mesh
-from .micro import power_law
+from .micro import power_law, smooth
 from .outputs import interpolate, profiles, quantities, spot_area
 from .panels import solve_on_panels
-from .quadrature import gauss_legendre
 from .status import Status
 
 #: Areas of the ring outside the first node, times λ there, that the error of Ar/An may come to (3 were seen).
 _UNSEEN = 8.0
+_RISEN = 0.05
 #: λ in the centre from which on it may rise sharply inside the contact.
 _SATURATED = 0.5
 
@@ -148,18 +148,21 @@ def finish(cases, law, grid, state, x):
 
 
 def _area_error(cases, law, state, ev, grid, Ar_An):
-    """Relative error (B,) of Ar/An that both meshes may miss with a power law, where λ is not as smooth as y.
+    """Relative error (B,) of Ar/An that both meshes may miss.
 
-    Near the edge, where λ rises from 0, and, where asperities saturate, against a rule with other nodes.
+    Near the edge, if λ has risen before the first node (with a power law, where λ is not as smooth as y, however
+    little); and where asperities saturate, against a rule with other nodes.
     """
-    if law is not power_law:
+    if law is smooth:
         return 0.0
     ratio = (cases.p_star / cases.spot_scale)[:, None]
     ends = spot_area(law.spot(state.y[:, [0, -1]], ratio * ev.curve.q[:, [0, -1]]))
     error, saturated = _UNSEEN * grid.s[0] ** 2 / 2 * ends[:, 0] / Ar_An, ends[:, 1] > _SATURATED
+    if law is not power_law:
+        error = np.where(ends[:, 0] > _RISEN, error, 0.0)
     if not saturated.any():
         return error
-    s, w = gauss_legendre(grid.n + 5)
+    s, w = grid.rule(grid.order + 5)
     y = interpolate(cases, ev, law, grid, s, 1e-9)
     area = spot_area(law.spot(y, ratio * law.evaluate(y, cases.exponent).q)) @ (2 * w * s)
     return np.where(saturated, np.maximum(error, MARGIN * np.abs(area / Ar_An - 1)), error)

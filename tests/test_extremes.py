@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from conftest import ROOT
 from layered_independent import rough
-from solver_cases import ALL_KINDS, KINDS, ROUGH_KINDS, difference
+from solver_cases import ALL_KINDS, ROUGH_KINDS, difference
 
 from solver import Problem, Status, solve
 from study.sample import draw
 
 RTOL = 1e-6
 #: Cases of the sample, and the share of those with a solution that must converge.
-SIZE = {"half_space": 150, "thin_layer": 60, "layered": 8}
+SIZE = {"half_space": 300, "thin_layer": 60, "layered": 12}
 CONVERGED = dict.fromkeys(ALL_KINDS, 0.999)
 NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "p", "lam")
 WITH_NUMBERS = {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
@@ -57,16 +57,16 @@ def test_every_answer_is_numbers_or_a_flag(base, law):
     assert solvable.mean() > 0.8
 
 
-@pytest.mark.parametrize(("base", "law"), KINDS)
+@kinds
 def test_no_case_converges_to_another_answer(base, law):
-    """The truth: the same case at a hundredth of rtol, which takes too long for a test on the exact layer."""
-    s, fine = solved(base, law), solved(base, law, RTOL / 100)
+    """The truth: the same case at a hundredth of rtol; at a tenth on the exact layer, which takes longer."""
+    s, fine = solved(base, law), solved(base, law, RTOL / (10 if base == "layered" else 100))
     np.testing.assert_array_equal(np.isin(s.status, list(NO_SOLUTION)), np.isin(fine.status, list(NO_SOLUTION)))
     both = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
     truth = difference(s, fine)[both]
     assert both.sum() > 0.8 * (s.status == Status.CONVERGED).sum()
     assert truth.max() <= 10 * RTOL
-    assert (truth <= RTOL).mean() >= 0.95
+    assert (truth <= RTOL).mean() >= 0.99
 
 
 @pytest.mark.parametrize(("base", "law"), ROUGH_KINDS)

@@ -51,7 +51,7 @@ class Between(NamedTuple):
     kappa: np.ndarray
 
 
-@lru_cache(maxsize=128)
+@lru_cache(maxsize=32)
 def _between(mesh, s_bytes):
     s, ends = np.frombuffer(s_bytes), np.array(mesh.breaks)
     home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)

@@ -44,13 +44,17 @@ class Cluster:
         return self.processes[-1]
 
     def worker(self) -> subprocess.Popen:
-        wait_for(self.file.exists)
+        wait_for(self.known)
         options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1")
         return self.start("worker", "--scheduler-file", str(self.file), *options)
 
+    def known(self) -> bool:
+        """Whether the scheduler has written its address: the file exists before."""
+        return self.file.exists() and self.file.stat().st_size > 0
+
     @property
     def address(self) -> str:
-        wait_for(self.file.exists)
+        wait_for(self.known)
         return re.search(r'"address": "(tcp://[^"]+)"', self.file.read_text())[1]
 
     def stop(self) -> None:

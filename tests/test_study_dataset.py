@@ -94,6 +94,15 @@ def test_provenance(reread):
     assert all(isinstance(text, str) for text in found.values())
 
 
+@pytest.fixture
+def interruptible():
+    """Ctrl-C interrupts, also where the tests run in the background and ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupt_waits_until_netcdf_is_done():
     """An exception inside xarray's locks would leave one locked, and the next access would hang."""
     reached = []
@@ -105,6 +114,7 @@ def test_an_interrupt_waits_until_netcdf_is_done():
         signal.raise_signal(signal.SIGINT)
 
 
+@pytest.mark.usefixtures("interruptible")
 def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
     real = xr.Dataset.to_netcdf
 

@@ -25,7 +25,7 @@ NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE: "0.4", Status.LIFT_OFF: "#56b4e
 _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
 COLOURS = {Status.CONVERGED: "0.85"} | NO_SOLUTION | FAILED
-ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200)
+ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 Columns = dict[str, np.ndarray]
 
 
@@ -87,7 +87,7 @@ def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:
     """Every case by its status, the failures uppermost."""
     for status, colour in COLOURS.items():
         which = cases["status"] == status
-        size = 1.0 if status == Status.CONVERGED else 2.5
+        size = 1.0 if status == Status.CONVERGED else 5.0 if status in FAILED else 2.5
         style = {"color": colour, "markersize": size, "markeredgewidth": 0, "rasterized": True}
         axes.plot(cases[x][which], cases[y][which], ".", **style)
 
@@ -122,8 +122,9 @@ def shares(*studies: xr.Dataset) -> list[tuple]:
         which = (cases["base"] == base) & (cases["micro"] == law)
         status = cases["status"][which]
         solvable = status[~np.isin(status, list(NO_SOLUTION))]
-        converged, missed = ((solvable == s).mean() for s in (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
-        counts = [*((status == s).mean() for s in NO_SOLUTION), converged, missed, 1 - converged - missed]
+        kinds = [Status.CONVERGED], [Status.TOLERANCE_NOT_MET], set(FAILED) - {Status.TOLERANCE_NOT_MET}
+        counts = [(status == s).mean() for s in NO_SOLUTION]
+        counts += [np.isin(solvable, list(kind)).mean() for kind in kinds]
         error, iterations = (cases[name][which][status == Status.CONVERGED] for name in ("error/rtol", "iterations"))
         numbers = [*counts, *np.quantile(error, (0.5, 0.999, 1)), *np.quantile(iterations, (0.5, 1))]
         rows.append((BASES[base], law.replace("_", " "), len(status), *map(float, numbers)))

@@ -11,7 +11,7 @@ _START = ((1e-3, 6, 8), (1e-5, 8, 12), (3e-7, 12, 16), (3e-8, 16, 16), (1e-9, 24
 #: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
 MARGIN = 2.0
 #: Cases solved together: their matrices stay in the cache.
-STACK = 512
+STACK = 1024
 
 
 def start_nodes(rtol, layered=False):

@@ -45,12 +45,13 @@ def solve_on_panels(case, law, rtol, iterate):
             grid, found, closed, total = solve_on_panels(alike, law, rtol, iterate)
             if closed[0]:
                 breaks, state = grid.breaks, found
-    for goal in np.maximum(rtol, _GOALS):
+    goals = np.maximum(rtol, _GOALS)
+    for i, goal in enumerate(goals):
         grid = panel_mesh(ORDER, breaks)
         state, closed, count = iterate(case, state or first_guess(case, law, grid), law, grid)
         total += count
         ev = evaluate(case, state, law, grid)
-        if not np.isfinite(ev.residual[0]):
+        if not np.isfinite(ev.residual[0]) or i == len(goals) - 1:
             break
         better = resolve(case, ev, state, law, grid, goal)
         if better == breaks:

@@ -58,7 +58,8 @@ class Mesh:
 
     def rule(self, order):
         """Gauss rule of ∫₀¹ · ds with `order` points on each panel: points and weights (m,)."""
-        return panel_rule(gauss_legendre(order), self.breaks)
+        points, weights = gauss_legendre(order)
+        return on_panels(points, self.breaks), (np.diff(self.breaks)[:, None] * weights).ravel()
 
     def basis(self, points):
         """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others."""
@@ -84,7 +85,7 @@ def panel_mesh(order, breaks):
 def _build(order, breaks):
     ends = np.array(breaks)
     lengths = np.diff(ends)
-    s = (ends[:-1, None] + lengths[:, None] * radau_nodes(order)).ravel()
+    s = on_panels(radau_nodes(order), breaks)
     s[-1] = 1.0
     edge = half_space_rows(s, np.zeros(1), breaks)[0]
     K = half_space_rows(s, s, breaks) - edge
@@ -97,10 +98,9 @@ def _build(order, breaks):
     return Mesh(breaks=breaks, s=s, x=x, w=w, K=K, edge=edge)
 
 
-def panel_rule(rule, breaks):
-    """Points and weights (m,) of a rule on [0, 1] repeated on each panel."""
-    low, width = np.array(breaks[:-1])[:, None], np.diff(breaks)[:, None]
-    return (low + width * rule[0]).ravel(), (width * rule[1]).ravel()
+def on_panels(points, breaks):
+    """Points (m,) of [0, 1] repeated on each of the p panels: (p m,)."""
+    return (np.array(breaks[:-1])[:, None] + np.diff(breaks)[:, None] * points).ravel()
 
 
 def piecewise_lagrange(nodes, points, breaks=WHOLE):

@@ -9,7 +9,7 @@ import numpy as np
 
 from .base import local_compliance
 from .equation import State, evaluate, first_guess, guess_radius
-from .mesh import panel_mesh
+from .mesh import on_panels, panel_mesh
 from .outputs import interpolate, spot_area
 from .quadrature import radau_nodes
 
@@ -58,7 +58,7 @@ def solve_on_panels(case, law, rtol, iterate):
             if goal == rtol:
                 break
             continue
-        nodes = panel_nodes(better)
+        nodes = on_panels(radau_nodes(ORDER), better)
         state, breaks = State(interpolate(case, ev, law, grid, nodes), state.eta), better
     return grid, state, closed, total
 
@@ -69,22 +69,15 @@ def _on_thin_layer(case):
     return case._replace(layer=None, E=np.ones_like(case.E), C=springs)
 
 
-def panel_nodes(breaks):
-    """Nodes (n,) of ``panel_mesh(ORDER, breaks)``."""
-    ends = np.array(breaks)
-    return (ends[:-1, None] + np.diff(ends)[:, None] * radau_nodes(ORDER)).ravel()
-
-
 def resolve(case, ev, state, law, grid, rtol):
     """Ends of panels (tuple) that resolve q and λ of a solution; those of `grid` where it is resolved."""
     q = ev.curve.q[0]
     lam = _area(case, state.y, q[None], law)[0]
-    scale = np.array([q @ grid.w, lam @ grid.w]) * _SHARE * rtol
+    scale = np.array([q @ grid.w, lam @ grid.w]) * max(_SHARE * rtol, _FLOOR)
     inside = {}  # panel -> values of q and λ at its nodes
     for i, panel in enumerate(zip(grid.breaks[:-1], grid.breaks[1:], strict=True)):
         part = slice(i * grid.order, (i + 1) * grid.order)
         inside[panel] = np.stack([q[part], lam[part]])
-    scale = np.maximum(scale, _FLOOR * scale / (_SHARE * rtol))
     ends, todo, room = {1.0}, list(inside), _MOST - len(inside)
     while todo:
         halves = []

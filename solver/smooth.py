@@ -1,8 +1,9 @@
 """Smooth cases: Hertz's closed form, and one linear solve on a thin layer.
 
 On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once per mesh,
-K = V diag(κ) V⁻¹, so that q = V (c/(X κ + Y)) for every case, and the load is a sum of n fractions in a.
-(κ is real and positive, the condition of V below 20 up to 200 nodes.)
+K = V diag(κ) V⁻¹, so that X q = V (c/(κ + t)), t = Y/X = pi C/(4 a), for every case: load, depth and central pressure
+are sums of n fractions of t. (κ is real and positive, the condition of V below 20 up to 200 nodes.) Cases are columns
+here: sums over the nodes then run along whole rows.
 """
 
 from functools import lru_cache
@@ -15,19 +16,27 @@ from .ladder import MARGIN, climb, next_rung
 from .mesh import mesh
 from .status import Status
 
-#: Newton steps for ln a under a given load or depth: from above, where the logarithm is concave; 8 do.
-_STEPS = 30
+#: What the sums S (3, B) stand for; powers of a; what is left of S without pressure.
+_OF_SUMS = {
+    "P": lambda a, S: np.pi**2 / 4 * a * a * a * S[0],
+    "D": lambda a, S: a * a / 2 * S[1],
+    "p0": lambda a, S: np.pi / 8 * a * S[2],
+}
+_ROWS = {name: row for row, name in enumerate(_OF_SUMS)}
+_POWERS, _BARE = np.array([[3.0], [2.0], [1.0]]), np.array([[0.0], [1.0], [0.0]])
+#: With Hertz's radius and that on the layer alone, (a_H^m + a_L^m)^(1/m) is within 0.0022 of the radius under a load.
+_BLEND = 3.21
+#: Newton steps for ln a leave an error below 0.04 times their square, so that one below _LAST is the last: the second
+#: under a load, the third at a depth.
+_STEPS, _LAST = 30, 2e-7
 
 
 class Modes(NamedTuple):
-    """Spectral form of a mesh: κ (n,), coefficients c (n,) of s², V (n, n); load, edge and centre by modes."""
+    """Spectral form of a mesh: κ (n, 1), `nodal` (n, n) from the fractions to X q, `sums` (3, n) from them to S."""
 
     kappa: np.ndarray
-    c: np.ndarray
-    V: np.ndarray
-    load: np.ndarray
-    edge: np.ndarray
-    centre: np.ndarray
+    nodal: np.ndarray
+    sums: np.ndarray
 
 
 @lru_cache(maxsize=32)
@@ -35,10 +44,8 @@ def modes(n):
     """:class:`Modes` of ``mesh(n)``."""
     grid = mesh(n)
     kappa, V = np.linalg.eig(grid.K)
-    c = np.linalg.solve(V, grid.s**2)
-    return Modes(
-        kappa.real, c.real, V.real, (grid.w @ V).real * c.real, (grid.edge @ V).real * c.real, V[-1].real * c.real
-    )
+    nodal = (V * np.linalg.solve(V, grid.s**2)).real
+    return Modes(kappa.real[:, None], nodal, np.stack([grid.w @ nodal, grid.edge @ nodal, nodal[-1]]))
 
 
 def half_space(control, value, x):
@@ -65,73 +72,65 @@ def thin_layer(control, value, C, rtol, nodes, x):
     return out | _smooth_extras(out["p"], out["p0"] * 0) | {"status": status.astype(np.int8), control: value}
 
 
+@np.errstate(all="ignore")
 def _on_mesh(control, value, C, n, x):
-    """Solve on n nodes; the error is the difference to the next finer mesh."""
-    with np.errstate(all="ignore"):
-        modal, finer = modes(n), modes(next_rung(n))
-        a, steps = _radius(control, value, C, modal)
-        values, better = _values(a, C, modal), _values(_radius(control, value, C, finer, a)[0], C, finer)
-        error = np.max([np.abs(values[name] / better[name] - 1) for name in ("a", "P", "D", "p0")], axis=0)
-        q = (modal.c / _denominator(a, C, modal)) @ modal.V.T
-        grid = mesh(n)
-        F = (8 / np.pi / a)[:, None] * (q @ grid.K.T) + (2 * C / a**2)[:, None] * q - grid.s**2
-    p = np.maximum(q @ grid.basis(np.sqrt((1 - x) * (1 + x))).T, 0.0)
-    p[:, x == 1.0] = 0.0
-    error = np.maximum(MARGIN * error, 4 * n * np.finfo(float).eps)
-    residual = np.abs(F).max(axis=1)
-    return values | {
+    """Solve on n nodes; the error is the distance, to first order, to the next finer mesh."""
+    grid, modal = mesh(n), modes(n)
+    a, steps = _radius(control, value, C, modal)
+    t, S, slopes, fractions = _sums(a, C, modal)
+    P, D, p0 = (of_sums(a, S) for of_sums in _OF_SUMS.values())
+    Xq = modal.nodal @ fractions
+    residual = np.abs(grid.K @ Xq + t * Xq - grid.s[:, None] ** 2).max(axis=0)
+    p = np.pi / 8 * a * np.maximum(grid.basis(np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
+    p[x == 1.0] = 0.0
+    error = np.maximum(MARGIN * _distance(control, t, S, slopes, modes(next_rung(n))), 4 * n * np.finfo(float).eps)
+    return {
+        "a": a,
+        "P": P,
+        "D": D,
+        "p0": p0,
+        "p_max": p0,
+        "dP_dD": P * slopes[0] / (D * slopes[1]),
         "error": error,
         "residual": residual,
-        "p": p,
+        "p": p.T,
         "nodes": np.full(len(a), n),
         "iterations": np.full(len(a), steps),
     }
 
 
-def _denominator(a, C, modal):
-    """X κ + Y, (B, n)."""
-    return (8 / np.pi / a)[:, None] * modal.kappa + (2 * C / a**2)[:, None]
-
-
 def _sums(a, C, modal):
-    """P/(2 pi a²), 2 D/a² - 1, p(0), and the logarithmic derivatives of P and D by η = ln a."""
-    X, Y = 8 / np.pi / a, 2 * C / a**2
-    share = 1 / _denominator(a, C, modal)
-    rate = share**2 * (X[:, None] * modal.kappa + 2 * Y[:, None])  # d share/dη
-    load, edge = share @ modal.load, X * (share @ modal.edge)
-    d_load, d_edge = rate @ modal.load, X * (rate @ modal.edge) - edge
-    return load, edge, share @ modal.centre, 2 + d_load / load, 2 + d_edge / (1 + edge)
+    """t (B,), the sums S (3, B), the logarithmic derivatives of P, D, p(0) by η = ln a (3, B), fractions (n, B)."""
+    t = np.pi / 4 * C / a
+    fractions = 1 / (modal.kappa + t)
+    S = modal.sums @ fractions + _BARE
+    return t, S, _POWERS + t * (modal.sums @ (fractions * fractions)) / S, fractions
 
 
-def _values(a, C, modal):
-    load, edge, p0, by_P, by_D = _sums(a, C, modal)
-    P, D = 2 * np.pi * a**2 * load, a**2 / 2 * (1 + edge)
-    return {"a": a, "P": P, "D": D, "p0": p0, "p_max": p0, "dP_dD": P * by_P / (D * by_D)}
+def _distance(control, t, S, slopes, finer):
+    """Largest relative change (B,) of a, P, D, p(0), to first order, on the finer mesh under the same control."""
+    change = (finer.sums @ (1 / (finer.kappa + t)) + _BARE) / S - 1
+    if control == "a":
+        return np.abs(change).max(axis=0)
+    shift = -change[_ROWS[control]] / slopes[_ROWS[control]]
+    return np.maximum(np.abs(shift), np.abs(change + slopes * shift).max(axis=0))
 
 
-def _radius(control, value, C, modal, start=None):
+def _radius(control, value, C, modal):
     """a (B,) for the given load or depth by Newton on logarithms, and the number of steps of the batch."""
     if control == "a":
         return value, 0
-    if start is not None:
-        eta = np.log(start)
-    elif control == "P":
-        eta = 0.25 * np.log(np.cbrt(0.75 * value) ** 4 + 4 * C * value / np.pi)
+    if control == "P":
+        a = (np.cbrt(0.75 * value) ** _BLEND + (4 / np.pi * C * value) ** (_BLEND / 4)) ** (1 / _BLEND)
     else:
-        eta = 0.5 * np.log(1.5 * value)
-    steps = 0
-    while steps < _STEPS:
+        a = np.sqrt(1.5 * value)  # a² is between D, Hertz, and 2 D, layer alone
+    row, steps, change = _ROWS[control], 0, np.inf
+    while steps < _STEPS and np.nanmax(np.abs(change), initial=0) > _LAST:
         steps += 1
-        a = np.exp(eta)
-        load, edge, _, by_P, by_D = _sums(a, C, modal)
-        if control == "P":
-            change = np.log(2 * np.pi * a**2 * load / value) / by_P
-        else:
-            change = np.log(a**2 / 2 * (1 + edge) / value) / by_D
-        eta = eta - change
-        if not np.nanmax(np.abs(change), initial=0) > 1e-14:
-            break
-    return np.exp(eta), steps
+        _, S, slopes, _ = _sums(a, C, modal)
+        change = np.log(_OF_SUMS[control](a, S) / value) / slopes[row]
+        a = a * np.exp(-change)
+    return a, steps
 
 
 def _smooth_extras(p, zero):

@@ -34,16 +34,19 @@ class Fixed(NamedTuple):
     earlier: np.ndarray
 
 
-def solve(cases, law, mesh, k, rtol, limit, search=false_position):
+def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False):
     """State, status (B,) and total number of approximations (B,) of :class:`~solver.equation.Cases` by the paper's
     scheme.
 
-    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT); search : of :mod:`.bracket`.
+    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT); search : of :mod:`.bracket`;
+    follow : begin at each radius with the pressure found at the one before, not with p = 0, and multiply all cases at
+    once (their rounding then depends on their number).
     """
     eta, count = np.log(cases.value), np.zeros(len(cases.value), dtype=int)
+    q = np.zeros((len(eta), mesh.n)) if follow else None
     if cases.control != "a":
-        eta = _search(search, cases, law, mesh, k, rtol, limit or LIMIT, count)
-    fixed = approximate(cases, eta, law, mesh, k, rtol, limit or LIMIT)
+        eta = _search(search, cases, law, mesh, k, rtol, limit or LIMIT, count, q)
+    fixed = approximate(cases, eta, law, mesh, k, rtol, limit or LIMIT, q)
     missed = np.abs(_control(cases, eta, fixed.q, mesh))
     with np.errstate(invalid="ignore"):
         status = np.select(
@@ -59,10 +62,11 @@ def solve(cases, law, mesh, k, rtol, limit, search=false_position):
     return State(np.maximum(y, _TINY), eta), status, count + fixed.count
 
 
-def approximate(cases, eta, law, mesh, k, rtol, limit):
-    """Successive approximations at the radii exp(eta) (B,): finished cases leave the batch."""
+def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
+    """Successive approximations at the radii exp(eta) (B,) from `start` (B, n), or from p = 0: finished cases leave
+    the batch."""
     size = len(eta)
-    q = np.zeros((size, mesh.n))
+    q = np.zeros((size, mesh.n)) if start is None else start.copy()
     change, load_change = np.full(size, np.inf), np.full(size, np.inf)
     count, earlier = np.zeros(size, dtype=int), np.full(size, np.inf)
     active = np.arange(size)
@@ -71,8 +75,9 @@ def approximate(cases, eta, law, mesh, k, rtol, limit):
         for step in range(limit):
             if step == limit // 2:
                 earlier = change.copy()
-            here = K if len(K) == 1 else K[active]
-            new = _next(q[active], cases.take(active), [v[active] for v in XYZ], law, mesh, here, k[active])
+            now = q[active]
+            Kq = now @ K[0].T if start is not None and len(K) == 1 else _each(K if len(K) == 1 else K[active], now)
+            new = _next(now, Kq, cases.take(active), [v[active] for v in XYZ], law, mesh, k[active])
             change[active] = (1 + k[active]) * np.abs(new - q[active]).max(axis=1) / np.maximum(new.max(axis=1), _TINY)
             load_change[active] = np.abs((q[active] @ mesh.w) / (new @ mesh.w) - 1)
             q[active] = new
@@ -83,9 +88,14 @@ def approximate(cases, eta, law, mesh, k, rtol, limit):
     return Fixed(q, change, load_change, count, earlier)
 
 
-def _next(q, cases, XYZ, law, mesh, K, k):
+def _each(K, q):
+    """Products (B, n) of K (B or 1, n, n) and q (B, n), one by one."""
+    return np.matmul(K, q[..., None])[..., 0]
+
+
+def _next(q, Kq, cases, XYZ, law, mesh, k):
     X, Y, Z = XYZ
-    left = mesh.s**2 - X * np.matmul(K, q[..., None])[..., 0]
+    left = mesh.s**2 - X * Kq
     y = law.from_pressure(q, cases.exponent)
     by_layer = np.maximum((left - Z * law.evaluate(y, cases.exponent).g) / Y, 0.0)
     y_spots = law.from_displacement(np.maximum(left / Z, 0.0), cases.exponent)
@@ -94,13 +104,16 @@ def _next(q, cases, XYZ, law, mesh, K, k):
     return (target + k[:, None] * q) / (1 + k[:, None])
 
 
-def _search(search, cases, law, mesh, k, rtol, limit, count):
-    """ln a (B,) for the load or depth, each radius from the zero start; adds the approximations to `count` (B,)."""
+def _search(search, cases, law, mesh, k, rtol, limit, count, q):
+    """ln a (B,) for the load or depth; adds the approximations to `count` (B,), and keeps the last ones in q (B, n),
+    where the next radius begins, if it is given."""
 
     def evaluate(eta, index):
         part = cases.take(index)
-        fixed = approximate(part, eta, law, mesh, k[index], rtol[index], limit)
+        fixed = approximate(part, eta, law, mesh, k[index], rtol[index], limit, None if q is None else q[index])
         count[index] += fixed.count
+        if q is not None:
+            q[index] = np.where((fixed.change < 0.1 * rtol[index])[:, None], fixed.q, 0.0)  # no cycle is handed on
         return _control(part, eta, fixed.q, mesh)
 
     with np.errstate(all="ignore"):

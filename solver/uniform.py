@@ -2,8 +2,9 @@
 
 The paper gives Eqs (8) and (10), the parameter k and the search for the contact radius by halving; mesh and stopping
 rule it does not give. Here they are chosen in its favour: pressure linear between uniform nodes, the singular kernel
-integrated exactly against that, a new approximation until it moves by no more than the tolerance. It serves for
-comparison: :func:`solve` of the package needs a tenth of the nodes and of the steps.
+integrated exactly against that, a new approximation until it moves by no more than the tolerance, at each radius from
+the pressure at the radius before, which halves their number. It serves for comparison: :func:`solve` of the package
+needs a tenth of the nodes and of the steps.
 """
 
 from functools import lru_cache
@@ -21,8 +22,10 @@ from .problem import Solution
 from .quadrature import gauss_legendre
 from .status import Status
 
-#: Approximations at one radius: where they have not arrived by then they cycle.
-LIMIT = 200
+#: Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle.
+LIMIT, LIMIT_RELAXED = 200, 40
+#: Rows of the operator that are formed together.
+_ROWS = 64
 
 
 class UniformMesh(NamedTuple):
@@ -59,8 +62,14 @@ def uniform_mesh(intervals):
 
 def _operator(intervals):
     """H (n + 1, n + 1) of the hat functions at the n + 1 nodes i/n."""
-    node, rows = np.arange(intervals + 1), np.zeros((intervals + 1, intervals + 1))
-    target, cell = np.meshgrid(node, node[:-1], indexing="ij")
+    starts = range(0, intervals + 1, _ROWS)
+    return np.concatenate([_rows(np.arange(i, min(i + _ROWS, intervals + 1)), intervals) for i in starts])
+
+
+def _rows(targets, intervals):
+    """Rows (m, n + 1) of H at the nodes `targets` (m,)."""
+    rows = np.zeros((len(targets), intervals + 1))
+    target, cell = np.meshgrid(targets, np.arange(intervals), indexing="ij")
     u, w = gauss_legendre(8)
     v, wv = gauss_legendre(24)
     near, w_near = v**4, 4 * v**3 * wv  # towards the logarithmic singularity at one end
@@ -71,8 +80,8 @@ def _operator(intervals):
     ):
         t, c = target[chosen], cell[chosen]
         kernel = weight * _kernel(t[:, None], c[:, None] + place) / intervals
-        np.add.at(rows, (t, c), kernel @ (1 - place))
-        np.add.at(rows, (t, c + 1), kernel @ place)
+        rows[t - targets[0], c] += kernel @ (1 - place)  # no cell is there twice
+        rows[t - targets[0], c + 1] += kernel @ place
     return rows
 
 
@@ -83,7 +92,7 @@ def _kernel(x, source):
 
 
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
-def solve_uniform(problem, intervals, k, tolerance, limit=LIMIT):
+def solve_uniform(problem, intervals, k, tolerance, limit=None):
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 
     Parameters
@@ -97,8 +106,8 @@ def solve_uniform(problem, intervals, k, tolerance, limit=LIMIT):
     tolerance : float
         The approximations stop when |p̂ - p| is below a tenth of it, relative to the largest pressure; the halving of
         ln a when the bracket is.
-    limit : int
-        Approximations at one radius.
+    limit : int, optional
+        Approximations at one radius; by default LIMIT, or LIMIT_RELAXED (1 + k) if that is more.
 
     Returns
     -------
@@ -137,7 +146,8 @@ def solve_uniform(problem, intervals, k, tolerance, limit=LIMIT):
 def _solve(cases, law, grid, k, tolerance, limit):
     """Output arrays (dict) of :class:`~solver.equation.Cases`."""
     one = np.ones(len(cases.value))
-    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, limit, search=bisection)
+    limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
+    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, limit, bisection, follow=True)
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
     line = np.append(np.ones(grid.n - 1), 0.5) / grid.n

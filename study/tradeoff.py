@@ -19,7 +19,7 @@ import xarray as xr
 
 from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
 from solver.problem import BASES
-from solver.uniform import solve_uniform
+from solver.uniform import solve_uniform, uniform_mesh
 
 from . import paper_error
 from .dataset import digest_in, open_results, provenance, write
@@ -38,13 +38,15 @@ TOLERANCES = tuple(10.0**-i for i in range(2, 10))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
 SLOW = 20
 MESHES = (10.0, 20.0, 40.0, 80.0, 160.0)
+FINE = (160.0, 320.0, 640.0, 1200.0)
 
 
 @dataclass(frozen=True)
 class Way:
     """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
 
-    sets : where it is measured; bases : the cases it takes part in; most : of these it takes no more, for slow ones
+    sets : where it is measured; bases : the cases it takes part in; most : of these it takes no more, for slow ones;
+    prepare : what is done once for a setting, however many cases follow, and not timed
     """
 
     run: Callable[[dict, float], Solution]
@@ -53,6 +55,7 @@ class Way:
     sets: tuple[str, ...] = tuple(SETS)
     bases: tuple[str, ...] = BASES
     most: int = 10**6
+    prepare: Callable[[float], object] = lambda setting: None
 
     def index(self, cases: dict) -> np.ndarray:
         """The cases that it takes."""
@@ -96,13 +99,19 @@ def _picard(k: float) -> Way:
     return Way(changed(**options), "nodes", NODES, PAPERS, most=SLOW)
 
 
-def _paper(k: float, sets=PAPERS) -> Way:
-    return Way(lambda cases, n: papers_way(cases, k, n), "intervals", MESHES, sets, PAPERS_BASES, SLOW)
+def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
+    """The paper's way with one k, on meshes of `settings` intervals."""
+
+    def mesh(intervals: float):
+        return uniform_mesh(int(intervals))
+
+    return Way(lambda cases, n: papers_way(cases, k, n), "intervals", settings, sets, PAPERS_BASES, most, mesh)
 
 
 WAYS = {
-    **{f"paper k = {k:g}": _paper(k) for k in (0.0, 1.0, 2.0, 20.0)},
-    "paper k = 5": _paper(5.0, sets=(*PAPERS, "extremes")),
+    **{f"paper k = {k:g}": paper_way(k) for k in (0.0, 1.0, 2.0, 20.0)},
+    "paper k = 5": paper_way(5.0, sets=(*PAPERS, "extremes")),
+    "paper k = 40": paper_way(40.0, FINE, ("paper, layer",), most=5),
     **{f"picard k = {k:g}": _picard(k) for k in (2.0, 20.0)},
     "newton, nodes": Way(changed(nodes=int, rtol=REFERENCE), "nodes", NODES),
     "newton, rtol": Way(changed(rtol=float), "rtol", TOLERANCES),
@@ -149,6 +158,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, com
 
 def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int) -> dict[str, float]:
     """WORDS of one way with one setting."""
+    way.prepare(setting)
     seconds, solution = timed(lambda: way.run(cases, setting), repeats)
     error = errors(solution, reference)
     median, most = np.quantile(error, (0.5, 0.95), method="higher")

@@ -6,13 +6,14 @@ from matplotlib.lines import Line2D
 
 FLOOR = 1e-12
 """Smaller errors are those of the reference."""
-TIMES = (30, 2e6)
+TIMES = (10, 4e6)
 STYLES = {
     "paper k = 0": ("#fdbe85", "o"),
     "paper k = 1": ("#fd8d3c", "s"),
     "paper k = 2": ("#e6550d", "^"),
     "paper k = 5": ("#a63603", "D"),
     "paper k = 20": ("#4d1a02", "v"),
+    "paper k = 40": ("#000000", "p"),
     "picard k = 2": ("#c994c7", "P"),
     "picard k = 20": ("#88419d", "X"),
     "newton, nodes": ("#74add1", "<"),

@@ -6,8 +6,9 @@ from numpy.testing import assert_allclose
 from scipy.special import ellipk
 from solver_cases import LOAD, MAIN, difference, one
 
-from solver import Problem, Status
+from solver import Problem, Status, picard, uniform
 from solver.bracket import bisection
+from solver.cases import as_cases, dimensionless
 from solver.mesh import HERTZ
 from solver.uniform import solve_uniform, uniform_mesh
 
@@ -66,8 +67,25 @@ def test_a_smooth_punch_on_a_layer():
 
 def test_what_does_not_settle_says_so():
     """k = 0 on a fine mesh cycles at the edge; on a half-space k = 1 is far too little."""
-    assert paper(160, 0.0, P=LOAD).status[0] == Status.LIMIT_CYCLE
+    assert paper(160, 0.0, a=0.04).status[0] == Status.LIMIT_CYCLE
     assert paper(40, 1.0, P=LOAD, base="half_space").status[0] == Status.ITERATION_LIMIT
+
+
+@pytest.mark.parametrize("base", ["thin_layer", "half_space"])
+def test_to_follow_the_pressure_saves_approximations_and_changes_nothing_else(base):
+    problem = Problem.of(**(MAIN | {"micro": "power_law", "P": [LOAD, 0.3 * LOAD], "base": base}))
+    cases, law = as_cases(*dimensionless(problem))
+    given = cases, law, uniform_mesh(40), np.full(2, 20.0), np.full(2, 1e-6), 2000, bisection
+    (anew, status, many), (state, same, few) = picard.solve(*given), picard.solve(*given, follow=True)
+    assert (status == Status.CONVERGED).all() and (same == Status.CONVERGED).all()
+    assert_allclose(state.eta, anew.eta, rtol=0, atol=1e-6)
+    assert (few < 0.7 * many).all()
+
+
+def test_a_mesh_of_several_blocks_of_rows_is_that_of_one(monkeypatch):
+    whole = uniform_mesh(100)
+    monkeypatch.setattr(uniform, "_ROWS", 1000)
+    assert_allclose(whole.K, uniform_mesh.__wrapped__(100).K, rtol=0, atol=1e-15)
 
 
 def test_bad_cases_are_a_status_and_harm_no_neighbour():

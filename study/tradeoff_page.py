@@ -47,12 +47,11 @@ On the paper's layer, the paper's way at its cheapest beside Newton (rtol):
 {factors}
 
 **Reading.** Each further digit takes the paper's way three times as many intervals, for the mesh is of second order,
-and a larger k, for the last node is nearer to the edge. Without a layer
- the scheme (10) is the bottleneck: on its worst mesh {ended} of the cases end. The models
-differ by more than the methods err: the exact layer for the thin one changes half of the paper's cases by {main:.1%}
-or more; to {refused:.0%} of the coatings the thin layer does not apply at all. The power law for the exact law changes
-half of the coatings by {law:.1%} or more. To solve the simpler models to more than two or three digits is work without
-precision.
+and a larger k, for the last node is nearer to the edge. Without a layer the scheme (10) is the bottleneck: on its
+worst mesh {ended} of the cases end. The models differ by more than the methods err: the exact layer for the thin one
+changes half of the paper's cases by {main:.1%} or more; to {refused:.0%} of the coatings the thin layer does not apply
+at all. The power law for the exact law changes half of the coatings by {law:.1%} or more. To solve the simpler models
+to more than two or three digits is work without precision.
 
 ## Where the paper's 0.6 % may come from
 

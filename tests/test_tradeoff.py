@@ -12,7 +12,7 @@ from solver import Problem, solve
 from study import open_results, paper_error, tradeoff
 from study.problem_sets import SETS
 from study.tradeoff import JUDGED, WAYS, errors, measure, taken, timed, with_reference
-from study.tradeoff_page import TARGETS, page, time_to
+from study.tradeoff_page import TARGETS, factors, page, time_to
 from study.tradeoff_view import STYLES, columns, rows
 
 
@@ -110,6 +110,20 @@ def test_time_to_a_target_is_that_of_the_cheapest_setting_that_reaches_it():
         "ended": ("step", [1.0, 1.0, 1.0, 0.5]),
     })  # fmt: skip
     assert [time_to(part, target) for target in (0.1, 1e-3, 1e-5)] == [pytest.approx(1), pytest.approx(3), np.inf]
+
+
+def test_factors_are_those_of_the_cheapest_of_the_papers_ways_where_there_is_one():
+    layer = xr.Dataset({
+        "time": (("way", "step"), [[1e-3, 5e-3], [2e-3, 4e-3], [1e-5, 2e-5], [1e-6, 1e-6]]),
+        "most": (("way", "step"), [[1e-3, 1e-4]] * 4),
+        "ended": (("way", "step"), np.ones((4, 2))),
+        "cases": ("way", [5, 5, 5, 0]),
+    }, {"way": ["paper k = 1", "paper k = 5", "newton, rtol", "paper k = 7"]})  # fmt: skip
+    assert factors(layer).splitlines()[2:] == [
+        "| 0.01 | 1e+03 | k = 1 | 10 | 100 |",
+        "| 0.001 | 1e+03 | k = 1 | 10 | 100 |",
+        "| 0.0001 | 4e+03 | k = 5 | 20 | 200 |",
+    ]
 
 
 def test_the_page_is_filled_and_wrapped(found):

@@ -16,10 +16,13 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import erfc, spherical_jn
 
-from .quadrature import gauss_legendre, log_rule
+from .quadrature import gauss_legendre, lagrange, log_rule
 
-#: Octaves of κ = k/cut above 1 and of τ below 1, and nodes in each panel; the step χ falls between κ = 1/4 and 1.
-_OCTAVES, _ORDER = 24, 14
+#: Octaves of κ = k/cut above 1 and of τ below 1; the step χ falls between κ = 1/4 and 1.
+_OCTAVES = 24
+#: Nodes in each half-octave of κ and in each octave of τ: under a film n times stiffer than its base, what is wrong in
+#: c comes back in the pressure more than n times as large.
+_KAPPA, _TAU = 14, 20
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
@@ -36,15 +39,15 @@ def waves():
 
     The integral is exact for polynomials over κ on each panel (Filon).
     """
-    t, _ = gauss_legendre(_ORDER)
+    t, _ = gauss_legendre(_KAPPA)
     ends = np.append(0.0, 2.0 ** np.arange(-2, _OCTAVES + 0.25, 0.5))
     low, width = ends[:-1], np.diff(ends)
     kappa = (low[:, None] + width[:, None] * t).ravel()
     stop = 2.0 ** np.arange(-_OCTAVES, np.log2(REACH) + 1)
     start = np.append(0.0, stop[:-1])
     tau = (start[:, None] + (stop - start)[:, None] * _chebyshev_nodes()).ravel()
-    degree = np.arange(_ORDER)
-    legendre = np.linalg.inv(np.polynomial.legendre.legvander(2 * t - 1, _ORDER - 1))
+    degree = np.arange(_KAPPA)
+    legendre = np.linalg.inv(np.polynomial.legendre.legvander(2 * t - 1, _KAPPA - 1))
     bessel = spherical_jn(degree[:, None, None], tau[:, None] * width / 2)
     wave = np.real(np.exp(1j * tau[:, None] * (low + width / 2)) * (1j**degree)[:, None, None])
     matrix = np.einsum("lto,lg->tog", width * bessel * wave, legendre).reshape(len(tau), -1)
@@ -61,44 +64,60 @@ def transform(f, level, p):
 
 
 def convolution(grid, points, cut):
-    """What makes the convolution at `points` (m,) in s of the basis of a mesh of c at the nodes τ: (T, m, n)."""
+    """What makes the convolution at `points` (m,) in s of the basis of a mesh of c at the nodes τ: (T, m, n).
+
+    Panel by panel: a rule that runs across the ends of panels is good for smooth pressures only, and what it makes of
+    the others leaves the discrete equation of a stiff film with pressures that are not there.
+    """
     x = np.sqrt((1 - points) * (1 + points))
     table = np.zeros((len(waves()[1]), len(points), grid.n))
+    s, weights = grid.rule(12 + grid.order // 2)
+    plain = s, weights, grid.basis(s)
     for i in range(len(points)):
-        s, weight, gap = _around(points[i], x[i], grid.order)
-        used = np.flatnonzero(cut * gap < REACH)
-        tau, values = cut * gap[used], weight[used, None] * grid.basis(s[used])
-        octave, basis = _interpolation(tau)
+        shift, weight, basis = _around(points[i], grid, *plain)
+        point = points[i] + shift
+        other = np.sqrt((1 - point) * (1 + point))
+        tau = cut * np.abs(shift) * (points[i] + point) / (x[i] + other)
+        used = np.flatnonzero(tau < REACH)
+        values = (weight * point / np.sqrt(other * x[i]))[used, None] * basis[used]  # of ∫ · sqrt(x'/x) dx'
+        octave, interpolation = _interpolation(tau[used])
         for o in np.unique(octave):
             here = octave == o
-            table[o * _ORDER : (o + 1) * _ORDER, i] = basis[here].T @ values[here]
+            table[o * _TAU : (o + 1) * _TAU, i] = interpolation[here].T @ values[here]
     return table
 
 
-def _around(s, x, order):
-    """Nodes s', weights and gaps |x - x'| of ∫ · sqrt(x'/x) dx' over the contact, for a singularity at s."""
-    distance, weight = log_rule(14 + order // 2)
-    parts = []
-    for sign, length in ((-1, s), (1, 1 - s)):
-        if length > 0:
-            gap = length * distance
-            point = s + sign * gap
-            other = np.sqrt((1 - point) * (1 + point))
-            parts.append((point, length * weight * point / np.sqrt(other * x), gap * (s + point) / (x + other)))
-    return tuple(np.concatenate(v) for v in zip(*parts, strict=True))
+def _around(s, grid, points, weights, basis):
+    """Shifts s' - s (g,), weights and basis (g, n) of ∫ · ds' over the contact, for a singularity at s.
+
+    Panels farther from it than their length have the plain rule, whose points, weights and basis are given.
+    """
+    low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
+    far = np.maximum(low - s, s - high) >= high - low
+    plain = np.repeat(far, len(points) // len(far))
+    parts = [(points[plain] - s, weights[plain], basis[plain])]
+    distance, weight = log_rule(14 + grid.order // 2)
+    for i in np.flatnonzero(~far):
+        own = slice(i * grid.order, (i + 1) * grid.order)
+        for sign, start, stop in ((-1, max(s - high[i], 0.0), s - low[i]), (1, max(low[i] - s, 0.0), high[i] - s)):
+            if stop > start:
+                shift, values = sign * (start + (stop - start) * distance), np.zeros((len(distance), grid.n))
+                values[:, own] = lagrange(grid.s[own], s + shift)
+                parts.append((shift, (stop - start) * weight, values))
+    return tuple(np.concatenate(part) for part in zip(*parts, strict=True))
 
 
 def _chebyshev_nodes():
-    return (1 - np.cos(np.pi * (np.arange(_ORDER) + 0.5) / _ORDER)) / 2
+    return (1 - np.cos(np.pi * (np.arange(_TAU) + 0.5) / _TAU)) / 2
 
 
 def _interpolation(tau):
-    """Octave (m,) of each τ (m,), 0 the one that begins at 0, and the Chebyshev basis there (m, _ORDER)."""
+    """Octave (m,) of each τ (m,), 0 the one that begins at 0, and the Chebyshev basis there (m, _TAU)."""
     octave = np.maximum(np.floor(np.log2(tau)).astype(int) + _OCTAVES + 1, 0)
     stop = 2.0 ** (octave - _OCTAVES)
     start = np.where(octave == 0, 0.0, stop / 2)
     distance = ((tau - start) / (stop - start))[:, None] - _chebyshev_nodes()
     distance[distance == 0] = 1e-300
-    weights = (-1.0) ** np.arange(_ORDER) * np.sin(np.pi * (np.arange(_ORDER) + 0.5) / _ORDER)
+    weights = (-1.0) ** np.arange(_TAU) * np.sin(np.pi * (np.arange(_TAU) + 0.5) / _TAU)
     terms = weights / distance
     return octave, terms / terms.sum(axis=1, keepdims=True)

@@ -1,14 +1,19 @@
 """Films: the convolution at the edge against closed forms, against the full quadrature, and against Wiener and Hopf."""
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from solver_cases import JUDGED, MAIN, difference
 
 from solver import Problem, Status, film, layered, solve
+from solver.cases import as_cases, dimensionless
+from solver.equation import first_guess
 from solver.kernel import decaying_part
 from solver.layered import CUT, FILM, Layer, layer_rows, layer_weights
-from solver.mesh import mesh
+from solver.mesh import mesh, panel_mesh
+from solver.rough import iterate
 from solver.thin_layer_error import edge_shift
 
 MATERIALS = [(0.5, 0.3, False), (0.5, 0.3, True), (0.01, 0.45, True), (30.0, 0.2, True), (1e3, 0.3, False)]
@@ -26,6 +31,41 @@ def test_transform_of_a_kernel_known_in_closed_form(p):
     kappa, tau, _ = film.waves()
     c = film.transform(-np.expm1(-p * kappa)[None], np.array([[-1.0]]), np.array([[p]]))[0]
     assert_allclose(c, np.log1p((p / tau) ** 2) / (2 * np.pi), rtol=1e-9, atol=1e-12)
+
+
+def test_the_convolution_on_narrow_panels():
+    """Of pressures that jump from panel to panel, for c = e^-τ: against a rule of many points on every panel."""
+    grid, cut = panel_mesh(4, (0.0, 0.01, 0.02, 0.03, 0.05, 0.1, 1.0)), 1000.0
+    points = grid.s[[0, 5, 11, 15]]
+    _, tau, _ = film.waves()
+    found = np.einsum("t,tmn->mn", np.exp(-tau), film.convolution(grid, points, cut))
+    halves = 2.0 ** np.arange(-40, 0)  # towards every end, and every point
+    fine = np.unique(np.concatenate([low + (high - low) * np.array([*halves, *(1 - halves)]) for low, high in
+                                     pairwise(np.unique([*grid.breaks, *points]))]))  # fmt: skip
+    t, w = np.polynomial.legendre.leggauss(12)
+    s = (fine[:-1, None] + np.diff(fine)[:, None] * (t + 1) / 2).ravel()
+    w, x, at = (np.diff(fine)[:, None] * w / 2).ravel(), np.sqrt(1 - s**2), np.sqrt(1 - points**2)[:, None]
+    kernel = np.exp(-cut * np.abs(x - at)) * (np.abs(x - at) * cut < film.REACH) * s / np.sqrt(x * at)
+    assert_allclose(found, (w * kernel) @ grid.basis(s), rtol=0, atol=1e-10 * np.abs(found).max())
+
+
+@pytest.mark.parametrize(("n", "h"), [(8.6e5, 5.6e-5), (1e5, 5e-6)])
+def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
+    """The pressure of a film of 5 to 56 millionths of the radius, on meshes that share no panel there: 1e-3 of p(0)."""
+    case = {"a": 1.0, "R": 20.0, "h": h, "n": n, "base": "layered", "micro": "smooth"}
+    cases, law = as_cases(*dimensionless(Problem.of(**case)))
+    s = np.sqrt(2 * h * np.geomspace(0.1, 20, 40))
+    pressures = []
+    for width in (0.8, 0.65):
+        ends = np.arange(0, 0.999 * s[-1] + width * np.sqrt(h), width * np.sqrt(h))
+        grid = panel_mesh(12, (*ends, *np.geomspace(ends[-1], 1.0, 9)[1:]))
+        with np.errstate(divide="ignore"):
+            state, closed, _ = iterate(cases, first_guess(cases, law, grid), law, grid)
+        assert closed[0]
+        pressures.append(grid.basis(s) @ state.y[0] / state.y[0, -1])
+    assert np.all(pressures[0] > 0)
+    assert pressures[0].max() > 4 * pressures[0][-1]
+    assert_allclose(*pressures, rtol=0, atol=1e-3)
 
 
 @pytest.mark.parametrize(("n", "nu", "bonded"), MATERIALS)

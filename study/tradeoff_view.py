@@ -13,7 +13,7 @@ STYLES = {
     "paper k = 2": ("#e6550d", "^"),
     "paper k = 5": ("#a63603", "D"),
     "paper k = 20": ("#4d1a02", "v"),
-    "paper k = 40": ("#000000", "p"),
+    "paper k = 35": ("#000000", "p"),
     "picard k = 2": ("#c994c7", "P"),
     "picard k = 20": ("#88419d", "X"),
     "newton, nodes": ("#74add1", "<"),

@@ -32,8 +32,8 @@ SIZES = (1_000, 10_000, 100_000, 1_000_000)
 #: From this size on the time per case is called flat if it is within FLAT of its mean.
 LARGE, FLAT = 10_000, 0.15
 BLOCK = 2000
-#: k, intervals, cases of the paper's way: the k of 5, 10, 20, 40 that costs least among those with which all cases end.
-PAPERS = ((5, 20, 200), (5, 40, 200), (10, 80, 100), (20, 160, 50), (20, 320, 20), (40, 640, 10), (40, 1200, 5))
+#: k, intervals, cases of the paper's way; of k = 5, 10, 20, 30, 35, 40 that with which all end at least cost.
+PAPERS = ((5, 20, 200), (5, 45, 200), (10, 80, 100), (20, 130, 50), (30, 390, 20), (30, 640, 10), (35, 1100, 5))
 PAPERS_CASES = 1000
 X = np.linspace(0.0, 1.0, 5)
 

@@ -76,8 +76,10 @@ def interpolate(cases, ev, law, mesh, s, tolerance=1e-11):
     stiff = ev.X * rows.kappa
     x = np.sqrt((1 - rows.s) * (1 + rows.s))
     Kq = displacement_between(ev, rows.H, x, mesh)
-    right = rows.s**2 - ev.X * Kq + stiff * (ev.curve.q @ rows.L.T)
-    right = np.maximum(right, 1e-9 * rows.s**2)
+    q_L = ev.curve.q @ rows.L.T
+    right = rows.s**2 - ev.X * Kq + stiff * q_L
+    # positive, but by no more than κ q_L is: under a stiff film that is small
+    right = np.maximum(right, np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * rows.s**2, 1e-9 * rows.s**2))
     linear = stiff + ev.Y
     inverse = (ev.Z * gamma[:, None] / right) ** (1 / beta[:, None])  # 0 for a smooth punch
     y = law.guess(1 / (linear / right + inverse), cases.exponent)

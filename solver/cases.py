@@ -49,7 +49,8 @@ def as_cases(part, C):
     layered = part.base[0] == "layered"
     layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
     E = part.n if layered else one
-    return Cases(part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent), LAWS[micro]
+    fields = part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent
+    return Cases(*fields, reach=none, coarse=none > 0), LAWS[micro]
 
 
 def restore(solution, problem):

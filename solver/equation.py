@@ -14,7 +14,15 @@ from typing import NamedTuple
 import numpy as np
 
 from .kernel import whole
-from .layered import Layer, layer_displacement, layer_rows, layer_weights
+from .layered import (
+    Layer,
+    half_space_share,
+    layer_displacement,
+    layer_matrix,
+    layer_products,
+    layer_weights,
+    take_weights,
+)
 from .linalg import solve_stack
 from .mesh import HERTZ
 from .micro import Curve
@@ -26,7 +34,8 @@ class Cases(NamedTuple):
     """A batch of B cases of one base and micro law in units R = 1, E2* = 1; arrays (B,).
 
     `control` is one of CONTROLS for the whole batch; `layer` is None but on the exact layered base. `spot_scale` is
-    p* of the exact law, whatever law is solved; 0 for a smooth punch.
+    p* of the exact law, whatever law is solved; 0 for a smooth punch. `reach` is the change of ln a over which the
+    layer's operator need not be formed anew, and `coarse` says where its quadrature may be the coarse one.
     """
 
     control: str
@@ -38,6 +47,8 @@ class Cases(NamedTuple):
     E: np.ndarray
     C: np.ndarray
     exponent: np.ndarray
+    reach: np.ndarray
+    coarse: np.ndarray
 
     def take(self, index):
         """The sub-batch at `index`."""
@@ -57,25 +68,31 @@ class State(NamedTuple):
 
 
 class Operator(NamedTuple):
-    """The base at a state: K (B or 1, n, n) and edge row (B or 1, n), their products with q, and the derivatives of
-    those by η."""
+    """The base at a state: its edge row (B or 1, n), the products K q and edge q, and their derivatives by η; of the
+    exact layer the weights as well."""
 
-    K: np.ndarray
     edge: np.ndarray
     Kq: np.ndarray
     edge_q: np.ndarray
     d_Kq: np.ndarray
     d_edge_q: np.ndarray
-    weights: list | None
+    weights: list
 
     def take(self, index):
-        """The sub-batch at `index`, without the weights of the layer."""
-        return Operator(*(v if len(v) == 1 else v[index] for v in self[:-1]), None)
+        """The sub-batch at `index`."""
+        return Operator(*(v if len(v) == 1 else v[index] for v in self[:-1]), take_weights(self.weights, index))
+
+    def matrix(self, mesh):
+        """K (B or 1, n, n)."""
+        if not self.weights:
+            return mesh.K[None]
+        return half_space_share(self.weights)[:, None, None] * mesh.K + (np.pi / 2) * layer_matrix(self.weights, mesh)
 
 
 class Evaluation(NamedTuple):
-    """The equation at a state: groups X, Y, Z (B, 1), the law, the base, residuals F (B, n) and G (B,)."""
+    """The equation at a state: y (B, n), groups X, Y, Z (B, 1), the law, the base, residuals F (B, n) and G (B,)."""
 
+    y: np.ndarray
     X: np.ndarray
     Y: np.ndarray
     Z: np.ndarray
@@ -91,9 +108,9 @@ class Evaluation(NamedTuple):
 
     def take(self, index):
         """The sub-batch at `index`."""
-        X, Y, Z, curve, base, F, G = self
+        y, X, Y, Z, curve, base, F, G = self
         curve, base = Curve(*(v[index] for v in curve)), base.take(index)
-        return Evaluation(X[index], Y[index], Z[index], curve, base, F[index], G[index])
+        return Evaluation(y[index], X[index], Y[index], Z[index], curve, base, F[index], G[index])
 
 
 def groups(cases, eta):
@@ -103,36 +120,37 @@ def groups(cases, eta):
     return X[:, None], (2 * cases.C * cases.p_star / a**2)[:, None], (2 * cases.A_star / a**2)[:, None]
 
 
-def operate(cases, eta, q, mesh, weights=None):
-    """:class:`Operator` of the base of `cases` at η = ln a (B,) and q (B, n); `weights` of the layer if known at
-    this η."""
+def operate(cases, eta, q, mesh, known=()):
+    """:class:`Operator` of the base of `cases` at η = ln a (B,) and q (B, n); `known` weights of the layer of the same
+    cases near this η."""
     if cases.layer is None:
         none = np.zeros((1, mesh.n))
-        return Operator(mesh.K[None], mesh.edge[None], q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], None)
-    weights = weights or layer_weights(cases.layer, np.exp(eta))
-    rows = layer_rows(weights, q, mesh)
-    share = rows.half_space[:, None]
-    K, edge = share[:, :, None] * mesh.K + (np.pi / 2) * rows.rows, share * mesh.edge + (np.pi / 2) * rows.edge
-    Kq, edge_q = np.matmul(K, q[..., None])[..., 0], (edge * q).sum(axis=1)
-    return Operator(K, edge, Kq, edge_q, (np.pi / 2) * rows.d_rows_q, (np.pi / 2) * rows.d_edge_q, weights)
+        return Operator(mesh.edge[None], q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], [])
+    weights = layer_weights(cases.layer, np.exp(eta), known, cases.reach, cases.coarse)
+    products, share = layer_products(weights, q, mesh), half_space_share(weights)[:, None]
+    edge = share * mesh.edge + (np.pi / 2) * products.edge
+    Kq = share * (q @ mesh.K.T) + (np.pi / 2) * products.rows_q
+    d_Kq, d_edge_q = (np.pi / 2) * products.d_rows_q, (np.pi / 2) * products.d_edge_q
+    return Operator(edge, Kq, (edge * q).sum(axis=1), d_Kq, d_edge_q, weights)
 
 
 def displacement_between(ev, H, x, mesh):
     """K[q] (B, m) at radii x (m,) between the nodes of the mesh, from the half-space rows H (m, n) there."""
     q = ev.curve.q
     half_space = q @ H.T
-    if ev.base.weights is None:
+    if not ev.base.weights:
         return half_space
     return layer_displacement(ev.base.weights, q, mesh, x, half_space)
 
 
-def evaluate(cases, state, law, mesh, weights=None):
-    """:class:`Evaluation` of `cases` at `state`; `weights` as in :func:`operate`."""
+def evaluate(cases, state, law, mesh, known=()):
+    """:class:`Evaluation` of `cases` at `state`; `known` as in :func:`operate`."""
     X, Y, Z = groups(cases, state.eta)
     curve = law.evaluate(state.y, cases.exponent)
-    base = operate(cases, state.eta, curve.q, mesh, weights)
+    base = operate(cases, state.eta, curve.q, mesh, known)
     F = X * base.Kq + Y * curve.q + Z * curve.g - mesh.s**2
-    return Evaluation(X, Y, Z, curve, base, F, control_residual(cases, state.eta, X, curve.q, base.edge_q, mesh))
+    G = control_residual(cases, state.eta, X, curve.q, base.edge_q, mesh)
+    return Evaluation(state.y, X, Y, Z, curve, base, F, G)
 
 
 def control_residual(cases, eta, X, q, edge_q, mesh):
@@ -157,7 +175,7 @@ def control_gradient(control, ev, mesh):
 
 def jacobian(ev, mesh):
     """dF/dq (B, n, n) at fixed η, and dF/dη (B, n) at fixed q. In q, not y: the operator is linear in it."""
-    matrix = ev.X[:, :, None] * ev.base.K
+    matrix = ev.X[:, :, None] * ev.base.matrix(mesh)
     diagonal = np.arange(mesh.n)
     matrix[:, diagonal, diagonal] += ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     return matrix, ev.X * (ev.base.d_Kq - ev.base.Kq) - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g)
@@ -167,32 +185,29 @@ def first_guess(cases, law, mesh):
     """State from the three one-term solutions (half-space, springs, asperities alone) added as compliances."""
     a = guess_radius(cases, law)
     X, Y, Z = groups(cases, np.log(a))
-    q = guess_pressure(cases, law, X * _softness(cases, a)[:, None], Y, Z, mesh.s)
+    q = guess_pressure(cases, law, X * softness(cases, a)[:, None], Y, Z, mesh.s)
     return State(law.guess(q, cases.exponent), np.log(a))
 
 
 def smooth_start(cases, law, mesh):
     """State at given radii (control a) from the smooth contact there and the asperities alone, added as compliances."""
     X, Y, Z = groups(cases, np.log(cases.value))
-    gamma, beta = law.power(cases.exponent)
     s2 = mesh.s**2
-    K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).K
+    K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).matrix(mesh)
     matrix = X[:, :, None] * K + Y[:, :, None] * np.eye(mesh.n)
     smooth = np.maximum(solve_stack(matrix, np.tile(s2[:, None], (len(X), 1, 1)))[..., 0], 0.0)
-    alone = (Z * gamma[:, None] / s2) ** (1 / beta[:, None])
-    return State(law.guess(1 / (1 / smooth + alone), cases.exponent), np.log(cases.value))
+    alone = law.sparse(s2 / Z, cases.exponent)
+    return State(law.guess(1 / (1 / smooth + 1 / alone), cases.exponent), np.log(cases.value))
 
 
 def guess_pressure(cases, law, X, Y, Z, s):
     """q (B, m) at s (m,) > 0 for groups (B, 1): each of the three terms of the equation is exact where it matters
     alone."""
-    gamma, beta = law.power(cases.exponent)
     s2 = s**2
-    alone = (Z * gamma[:, None] / s2) ** (1 / beta[:, None])  # 0 for a smooth punch
-    return 1 / ((X * HERTZ * s + Y) / s2 + alone)
+    return 1 / ((X * HERTZ * s + Y) / s2 + 1 / law.sparse(s2 / Z, cases.exponent))
 
 
-def _softness(cases, a):
+def softness(cases, a):
     """Compliance of the base over that of a half-space of E, about L at the wave number 1.5/a."""
     if cases.layer is None:
         return np.ones_like(a)
@@ -211,7 +226,7 @@ def guess_radius(cases, law):
         return (hertz**4 + springs**4 + spots**4) ** 0.25
     a = (hertz**4 + spots**4) ** 0.25
     for _ in range(6):  # the modulus the contact feels depends on its radius
-        a = ((hertz * np.cbrt(_softness(cases, a))) ** 4 + spots**4) ** 0.25
+        a = ((hertz * np.cbrt(softness(cases, a))) ** 4 + spots**4) ** 0.25
     return a
 
 

@@ -10,6 +10,8 @@ import numpy as np
 
 #: Below this u, differences of hyperbolic functions and their first terms are taken from series.
 _SERIES = 0.8
+#: In place of u = 0, where the quotients are those of their limits.
+_LEAST = 1e-300
 
 
 class Kernel(NamedTuple):
@@ -73,27 +75,48 @@ def decaying_part(u, n, nu1, nu2, bonded):
     return tuple(np.where(bonded, b, f) for b, f in both)
 
 
-def _frictionless_parts(u, n):
-    """Terms, times 4e, of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u, e = exp(-2u)."""
+class _Frictionless(NamedTuple):
+    """Terms of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u, with e = exp(-2u): rest = 1 - e,
+    e4 = 4e, ue4 = 4ue, and, times 4e, the wedge sc + u, the gap s² - u², the excess sc - u, and the denominator."""
+
+    e: np.ndarray
+    rest: np.ndarray
+    e4: np.ndarray
+    ue4: np.ndarray
+    wedge: np.ndarray
+    gap: np.ndarray
+    excess: np.ndarray
+    below: np.ndarray
+
+
+def _frictionless_terms(u, n):
+    """The terms at u > 0."""
     e, rest = np.exp(-2 * u), -np.expm1(-2 * u)
-    wedge = rest * (1 + e) + 4 * u * e  # 4e (sc + u)
-    limit = _SERIES if np.any(n > 2) else 0.01  # beside the wedge, a small n times the gap needs no series
-    gap = _gap(u, e, rest, limit)  # 4e (s² - u²)
-    return e, rest, wedge, gap, np.where(u == 0, 1.0, wedge + n * gap), limit
+    e4 = 4 * e
+    ue4 = u * e4
+    wedge = rest * (1 + e) + ue4
+    gap, excess = rest * rest - u * ue4, wedge - 2 * ue4
+    if np.any(n > 2):  # beside the wedge, n times what cancels in them does not count for smaller n
+        small = np.flatnonzero(u < _SERIES)
+        v = u.reshape(-1)[small]
+        gap.reshape(-1)[small], excess.reshape(-1)[small] = _gap_series(v), 2 * _excess_series(v)
+    return _Frictionless(e, rest, e4, ue4, wedge, gap, excess, wedge + n * gap)
 
 
 def _frictionless_whole(u, n):
-    _, rest, wedge, _, below, _ = _frictionless_parts(u, n)
-    return np.where(u == 0, n, (rest * rest + n * wedge) / below)
+    t = _frictionless_terms(np.maximum(u, _LEAST), n)
+    return (t.rest * t.rest + n * t.wedge) / t.below
 
 
 def _frictionless(u, n):
-    e, rest, _, gap, below, limit = _frictionless_parts(u, n)
-    above = 4 * e * ((n - 1) * (rest / 2 + u) + n * u * u)  # L - 1 = above/below
-    d_above = 4 * e * ((n - 1) * (e + 1) + 2 * n * u) - 2 * above
-    d_below = 4 * e * (e + 1 - 2 * u) + n * _gap_slope(u, e, gap, limit)
-    L1 = np.where(u == 0, n - 1, above / below)
-    return L1, u * (d_above - L1 * d_below) / below
+    u = np.maximum(u, _LEAST)
+    t = _frictionless_terms(u, n)
+    inverse, nu, more, one_e = 1 / t.below, n * u, n - 1, 1 + t.e
+    share = t.e4 * inverse
+    L1 = share * (more * (t.rest / 2 + u) + nu * u)  # L - 1
+    d_below = t.e4 * one_e - 2 * t.ue4 + 2 * n * (t.excess - t.gap)
+    uL = u * (share * (more * one_e + 2 * nu) - L1 * (2 + d_below * inverse))
+    return L1, np.where(u > _LEAST, uL, 0.0)
 
 
 class _Bond(NamedTuple):
@@ -158,30 +181,35 @@ def _one_minus(a, one_a, e, rest):
     return np.where(a > 0, one_a + a * rest, 1 - a * e)
 
 
-def _gap(u, e, rest, limit=_SERIES):
+def _gap(u, e, rest):
     """(1 - e)² - 4u²e = 4e (sinh² u - u²)."""
-    gap = rest * rest - 4 * u * u * e
-    small = u < limit
-    v, z = _small(u, small)
-    # cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2
-    series = z * z / 24 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
-    gap[small] = 2 * np.exp(-2 * v) * series
+    gap, small = rest * rest - 4 * u * u * e, u < _SERIES
+    gap[small] = _gap_series(u[small])
     return gap
 
 
-def _gap_slope(u, e, gap, limit=_SERIES):
+def _gap_series(v):
+    """4e (sinh² v - v²): cosh 2v - 1 - 2v² = Σ (2v)^(2j)/(2j)!, j >= 2."""
+    z = 4 * v * v
+    return np.exp(-2 * v) * z * z / 12 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
+
+
+def _gap_slope(u, e, gap):
     """Derivative of :func:`_gap` by u."""
-    return 4 * _sinh_excess(u, e, limit) - 2 * gap
+    return 4 * _sinh_excess(u, e) - 2 * gap
 
 
-def _sinh_excess(u, e, limit=_SERIES):
+def _sinh_excess(u, e):
     """e (sinh 2u - 2u)."""
-    excess = (1 - e * e) / 2 - 2 * u * e
-    small = u < limit
-    v, z = _small(u, small)
-    series = _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))
-    excess[small] = np.exp(-2 * v) * v * z / 3 * series
+    excess, small = (1 - e * e) / 2 - 2 * u * e, u < _SERIES
+    excess[small] = _excess_series(u[small])
     return excess
+
+
+def _excess_series(v):
+    """e (sinh 2v - 2v)."""
+    z = 4 * v * v
+    return np.exp(-2 * v) * v * z / 3 * _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))
 
 
 def _nested(z, divisors):
@@ -190,8 +218,3 @@ def _nested(z, divisors):
     for d in reversed(divisors):
         total = 1 + z / d * total
     return total
-
-
-def _small(u, small):
-    v = u[small]
-    return v, 4 * v * v

@@ -56,7 +56,7 @@ def first_order(cases, law, cheap, p, n, steps=1):
     state = State(y, np.log(cheap["a"]))
     for _ in range(steps):
         ev = evaluate(cases, state, law, grid)
-        state, last = advance(cases, state, ev, grid, law), state
+        (state, _), last = advance(cases, state, ev, grid, law), state
     curve = law.evaluate(state.y, cases.exponent)
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (ev.base.edge * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)

@@ -6,28 +6,29 @@ from .equation import State, control_gradient, jacobian
 from .linalg import solve_stack
 
 #: Relative size of the residual at which the iteration has closed, and the largest number of steps.
-TOLERANCE = 1e-12
+TOLERANCE = 1e-13
 LIMIT = 60
 
 
-def tangents(ev, mesh, *more):
-    """Solve the Jacobian for dq/dη along the solution branch and for further right-hand sides `more` (B, n): (B, n,
-    1 + len(more))."""
+def tangent(ev, mesh):
+    """dq/dη (B, n) along the branch of solutions."""
     matrix, dF_deta = jacobian(ev, mesh)
-    return solve_stack(matrix, np.stack([-dF_deta, *more], axis=-1))
+    return solve_stack(matrix, -dF_deta[..., None])[..., 0]
 
 
 def advance(cases, state, ev, mesh, law):
-    """The :class:`State` after one step from `state`, where the equation is `ev`.
+    """The :class:`State` after one step from `state`, where the equation is `ev`, and dq/dη (B, n) along the branch of
+    solutions.
 
     The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from
     the first guess of :mod:`equation` it converges without a line search.
     """
-    solution = tangents(ev, mesh, -ev.F)
+    matrix, dF_deta = jacobian(ev, mesh)
+    solution = solve_stack(matrix, np.stack([-dF_deta, -ev.F], axis=-1))
     dq_deta, dq = solution[..., 0], solution[..., 1]
     by_q, by_eta = control_gradient(cases.control, ev, mesh)
     d_eta = -(ev.G + (by_q * dq).sum(axis=1)) / (by_eta + (by_q * dq_deta).sum(axis=1))
     d_eta = np.clip(d_eta, -1.0, 1.0)
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
     y = law.limit(state.y + dy, state.y)
-    return State(y, state.eta + d_eta)
+    return State(y, state.eta + d_eta), dq_deta

@@ -43,62 +43,81 @@ _STEPS = 40
 
 
 class Between(NamedTuple):
-    """To interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n), and κ (m,)."""
+    """To interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n); κ (m,) and (n,)."""
 
     s: np.ndarray
     L: np.ndarray
     H: np.ndarray
     kappa: np.ndarray
+    node_kappa: np.ndarray
 
 
 @lru_cache(maxsize=32)
 def _between(mesh, s_bytes):
-    s, ends = np.frombuffer(s_bytes), np.array(mesh.breaks)
+    s = np.frombuffer(s_bytes)
+    return Between(s, mesh.basis(s), mesh.rows(s), _stiffness_between(mesh, s), _stiffness_between(mesh, mesh.s))
+
+
+def _stiffness_between(mesh, s):
+    """κ (m,) at points s: about what the half-space makes of an oscillation between the nodes."""
+    ends = np.array(mesh.breaks)
     home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)
     low, high = ends[home], ends[home + 1]
     gap = (high - low) / (4 * mesh.order**2)  # of the nodes at an end of a panel
     # half the distance of the nodes in x = sqrt(1 - s²), where |dx| = s ds/x
     spread = (s - low + gap * (low > 0)) * np.where(high < 1, (high - s + gap) / np.maximum(1 - s, 1e-300), 1.0)
-    kappa = np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
-    return Between(s, mesh.basis(s), mesh.rows(s), kappa)
+    return np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
 
 
-def interpolate(cases, ev, law, mesh, s, tolerance=1e-11):
+def interpolate(cases, ev, law, mesh, s, tolerance=1e-13, rows=slice(None)):
     """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh.
 
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
     interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
     asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
-    nothing it is q_L. Newton from a two-term guess until the steps are below the relative `tolerance`.
+    nothing it is q_L. Newton, from a two-term guess times what it misses at the nodes, until the next step would be
+    below the relative `tolerance`. Of the cases `rows` alone, if given.
     """
-    rows = _between(mesh, np.ascontiguousarray(s, dtype=float).tobytes())
-    gamma, beta = law.power(cases.exponent)
-    stiff = ev.X * rows.kappa
-    x = np.sqrt((1 - rows.s) * (1 + rows.s))
-    Kq = displacement_between(ev, rows.H, x, mesh)
-    q_L = ev.curve.q @ rows.L.T
-    right = rows.s**2 - ev.X * Kq + stiff * q_L
+    between = _between(mesh, np.ascontiguousarray(s, dtype=float).tobytes())
+    x = np.sqrt((1 - between.s) * (1 + between.s))
+    Kq = displacement_between(ev, between.H, x, mesh)[rows]
+    X, Y, Z, exponent = ev.X[rows], ev.Y[rows], ev.Z[rows], cases.exponent[rows]
+    q, g = ev.curve.q[rows], ev.curve.g[rows]
+    stiff = X * between.kappa
+    q_L = q @ between.L.T
     # positive, but by no more than κ q_L is: under a stiff film that is small
-    right = np.maximum(right, np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * rows.s**2, 1e-9 * rows.s**2))
-    linear = stiff + ev.Y
-    inverse = (ev.Z * gamma[:, None] / right) ** (1 / beta[:, None])  # 0 for a smooth punch
-    y = law.guess(1 / (linear / right + inverse), cases.exponent)
+    least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * between.s**2, 1e-9 * between.s**2)
+    right = np.maximum(between.s**2 - X * Kq + stiff * q_L, least)
+    linear, node_linear = stiff + Y, X * between.node_kappa + Y
+
+    def guess(linear, right):
+        return law.guess(1 / (linear / right + 1 / law.sparse(right / Z, exponent)), exponent)
+
+    missed = np.nan_to_num(ev.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
+    missed = np.clip(missed, 0.5, 2.0) @ between.L.T
+    y = guess(linear, right) * np.clip(missed, 0.7, 1.4)
+    active = np.arange(len(y))
     for _ in range(_STEPS):
-        curve = law.evaluate(y, cases.exponent)
-        f = linear * curve.q + ev.Z * curve.g - right
-        old, y = y, law.limit(y - f / (linear * curve.dq + ev.Z * curve.dg), y)
-        if not np.any(np.abs(y - old) > tolerance * y):
+        old, slope, weight = y[active], linear[active], Z[active]
+        curve = law.evaluate(old, exponent[active])
+        f = slope * curve.q + weight * curve.g - right[active]
+        new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
+        y[active] = new
+        active = active[np.any((new - old) ** 2 > tolerance * new**2, axis=1)]
+        if not len(active):
             break
     return y
 
 
-def profiles(cases, ev, mesh, law, x):
-    """p (B, m) in E2* and λ (B, m) at the radii x (m,) from the solution on a mesh; both 0 at the edge."""
+def profiles(cases, ev, mesh, law, x, rows=slice(None)):
+    """p (b, m) in E2* and λ (b, m) of the cases `rows` at the radii x (m,) from the solution on a mesh; 0 at the
+    edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner = s > 0
-    y = interpolate(cases, ev, law, mesh, s[inner])
-    q = law.evaluate(y, cases.exponent).q
+    y = interpolate(cases, ev, law, mesh, s[inner], rows=rows)
+    p_star = cases.p_star[rows][:, None]
+    q = law.evaluate(y, cases.exponent[rows]).q
     p, lam = np.zeros((len(q), len(s))), np.zeros((len(q), len(s)))
-    p[:, inner] = cases.p_star[:, None] * q
-    lam[:, inner] = spot_area(law.spot(y, (cases.p_star / cases.spot_scale)[:, None] * q))
+    p[:, inner] = p_star * q
+    lam[:, inner] = spot_area(law.spot(y, p_star / cases.spot_scale[rows][:, None] * q))
     return p, lam

@@ -70,7 +70,7 @@ def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
     change, load_change = np.full(size, np.inf), np.full(size, np.inf)
     count, earlier = np.zeros(size, dtype=int), np.full(size, np.inf)
     active = np.arange(size)
-    XYZ, K = groups(cases, eta), operate(cases, eta, q, mesh).K
+    XYZ, K = groups(cases, eta), operate(cases, eta, q, mesh).matrix(mesh)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for step in range(limit):
             if step == limit // 2:

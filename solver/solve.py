@@ -6,6 +6,8 @@ import numpy as np
 
 from . import auto, picard, rough, smooth
 from .cases import as_cases, dimensionless, restore
+from .equation import evaluate
+from .estimate import finish
 from .ladder import start_nodes
 from .mesh import mesh
 from .micro import LAWS
@@ -120,7 +122,7 @@ def _picard(part, C, x):
     grid = mesh(n)
     with np.errstate(all="ignore"):
         state, status, count = picard.solve(cases, law, grid, part.k, part.rtol, int(part.max_iterations[0]))
-        values, _ = rough.finish(cases, law, grid, state, x)
+        values, _ = finish(cases, law, grid, state, x, evaluate(cases, state, law, grid))
     del values["tension"]  # asperities carry none
     status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
     return values | {"status": status.astype(np.int8), "iterations": count}

@@ -91,7 +91,7 @@ def theory(case: dict, h: np.ndarray, beta: float, nodes: int) -> tuple[np.ndarr
     grid = mesh(nodes)
     problem = Problem.of(**case, beta=beta, h=h, rtol=1e-6)
     cases, _ = as_cases(*dimensionless(problem))
-    K = operate(cases, np.log(cases.value), np.zeros((len(h), grid.n)), grid).K
+    K = operate(cases, np.log(cases.value), np.zeros((len(h), grid.n)), grid).matrix(grid)
     largest = np.linalg.eigvals(K[0]).real.max()
     whole = 4 / np.pi * cases.value * largest / (cases.E * cases.C)
     p0, B = solve(problem).p0, float(case["B"]) * float(case["Ra"]) / float(case["n"]) ** beta

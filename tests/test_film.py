@@ -10,10 +10,10 @@ from solver_cases import JUDGED, MAIN, difference
 from solver import Problem, Status, film, layered, solve
 from solver.cases import as_cases, dimensionless
 from solver.equation import first_guess
+from solver.iterate import iterate
 from solver.kernel import decaying_part
-from solver.layered import CUT, FILM, Layer, layer_rows, layer_weights
+from solver.layered import CUT, FILM, Layer, half_space_share, layer_matrix, layer_weights
 from solver.mesh import mesh, panel_mesh
-from solver.rough import iterate
 from solver.thin_layer_error import edge_shift
 
 MATERIALS = [(0.5, 0.3, False), (0.5, 0.3, True), (0.01, 0.45, True), (30.0, 0.2, True), (1e3, 0.3, False)]
@@ -80,9 +80,9 @@ def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
     table = layered.table(grid, FILM, weights[0].depth)
     whole = (table.J * W[:, None]).T @ table.phi
     assert np.abs(decaying_part(np.array([CUT * eta]), n, nu, 0.3, np.array([bonded]))[0][0]) < 1e-5  # all of L - 1
-    rows = layer_rows(weights, np.ones((1, grid.n)), grid)
+    K = half_space_share(weights)[0] * grid.K + np.pi / 2 * layer_matrix(weights, grid)[0]
     for q in (grid.s, grid.s**3):
-        found = rows.half_space[0] * grid.K @ q + np.pi / 2 * rows.rows[0] @ q
+        found = K @ q
         expected = grid.K @ q + np.pi / 2 * whole @ q
         assert_allclose(found, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 

@@ -1,0 +1,102 @@
+"""The batched Newton loop: finished cases leave it; and a second way in for those that do not finish."""
+
+import numpy as np
+
+from . import newton
+from .bracket import false_position
+from .equation import State, control_residual, evaluate, groups, guess_radius, operate, smooth_start
+from .estimate import error_floor
+from .layered import place_weights, take_weights
+
+#: Part of the operator's own error at which the iteration has closed.
+_CLOSING = 1e-2
+#: Residual from which one more step closes the iteration: they square.
+NEAR = 3e-8
+
+
+def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
+    """Newton steps until the residual is below its tolerance; finished cases leave the batch.
+
+    So do cases after the step from a residual below `near`, without another look. `known`: weights of the layer (list)
+    near the state, in place replaced by those where the cases left. Returns the state, closed (B,) bool and the number
+    of steps (B,).
+    """
+    size = len(state.eta)
+    y, eta = np.empty_like(state.y), np.empty_like(state.eta)
+    closed, count = np.zeros(size, bool), np.zeros(size, int)
+    active, last, left, weights = np.arange(size), np.zeros(size, bool), [], known or []
+    tolerance = _tolerance(cases, state, grid) * np.ones(size)
+    for step in range(limit + 1):
+        y[active], eta[active], count[active] = state.y, state.eta, step
+        if last.any():
+            closed[active[last]] = True
+            left += place_weights(take_weights(weights, np.flatnonzero(last)), active[last])
+            keep = np.flatnonzero(~last)
+            if not len(keep):
+                break
+            active, cases, state = active[keep], cases.take(keep), state.take(keep)
+            weights = take_weights(weights, keep)
+        ev = evaluate(cases, state, law, grid, weights)
+        residual = ev.residual
+        done = residual < tolerance[active]
+        closed[active[done]] = True
+        go = ~done & np.isfinite(residual)
+        keep = np.flatnonzero(go)
+        if len(keep) < len(active):
+            left += place_weights(take_weights(ev.base.weights, np.flatnonzero(~go)), active[~go])
+        if step == limit or not len(keep):
+            break
+        if len(keep) < len(active):
+            active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
+        last, weights = residual[keep] < near, ev.base.weights
+        state, _ = newton.advance(cases, state, ev, grid, law)
+    if known is not None:
+        known[:] = left
+    return State(y, eta), closed, count
+
+
+def settle(cases, law, grid, state, closed, count, known):
+    """:class:`Evaluation` of states that :func:`iterate` left; those that had not closed after all go on, in place."""
+    ev = evaluate(cases, state, law, grid, known)
+    again = np.flatnonzero(closed & ~(ev.residual < _tolerance(cases, state, grid)))
+    if not len(again):
+        return ev
+    found, closed[again], steps = iterate(cases.take(again), state.take(again), law, grid)
+    state.y[again], state.eta[again] = found
+    count[again] += steps
+    return evaluate(cases, state, law, grid, ev.base.weights)
+
+
+def _tolerance(cases, state, grid):
+    """Residual (B,) below which an iteration has closed: a soft film leaves those of the rounding of its operator."""
+    return np.maximum(newton.TOLERANCE, _CLOSING * error_floor(cases, np.exp(state.eta), grid.n, closing=True))
+
+
+def rescue(cases, law, grid, state, closed, count):
+    """Second attempt at cases that did not close, in place: search the radius, start each from the smooth contact.
+
+    The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
+    """
+    failed = np.flatnonzero(~closed)
+    part = cases.take(failed)
+
+    def at_radius(eta, index):
+        fixed = part.take(index)._replace(control="a", value=np.exp(eta))
+        found, done, steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid)
+        count[failed[index]] += steps
+        return found, done
+
+    def control_at(eta, index):
+        found, closed = at_radius(eta, index)
+        q, here = law.evaluate(found.y, part.exponent[index]).q, part.take(index)
+        edge_q = operate(here, eta, q, grid).edge_q
+        return np.where(closed, control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid), np.nan)
+
+    eta = np.log(guess_radius(part, law))
+    if cases.control != "a":
+        eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
+    found, done = at_radius(eta, np.arange(len(failed)))
+    if cases.control != "a":
+        found, done, steps = iterate(part, found, law, grid)
+        count[failed] += steps
+    state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done

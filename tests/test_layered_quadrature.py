@@ -1,0 +1,75 @@
+"""The layered operator's quadrature in k: both rules against a third, and weights that are moved instead of formed."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.special import j0
+
+from solver import layered
+from solver.kernel import decaying_part
+from solver.layered import COARSE, Layer, layer_matrix, layer_products, layer_weights, take_weights
+from solver.mesh import mesh
+from solver.quadrature import gauss_legendre
+
+
+def layers(eta, seed):
+    """Materials for h/a (B,): n from 1e-3 to 1e3, both bondings."""
+    random, one = np.random.default_rng(seed), np.ones(len(eta))
+    n = np.exp(random.uniform(np.log(1e-3), np.log(1e3), len(eta)))
+    return Layer(eta, n, 0.3 * one, 0.3 * one, random.random(len(eta)) < 0.5)
+
+
+@pytest.mark.parametrize("n", [16, 32])
+@pytest.mark.parametrize("octave", [-8, -7, -5, -3, -1, 0, 1, 4, 10])
+def test_both_rules(octave, n):
+    """To 1e-11, and to COARSE, of the larger of L(0) and L(inf), against panels that halve towards k = 0 and go on."""
+    grid = mesh(n)
+    layer = layers(2.0 ** (octave + np.r_[1e-9, 1 - 1e-9, np.random.default_rng(octave + 9).random(10)]), octave + 9)
+    end = 1.5 * layered.quadrature(octave, 0)[0][-1]
+    ends = np.unique(np.r_[0.0, end * 2.0 ** -np.arange(40.0), np.arange(0.0, end, 30.0)])
+    t, w = gauss_legendre(48)
+    k, w = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
+    material = [v[:, None] for v in layer[1:]]
+    W = w * decaying_part(k * layer.h[:, None], *material)[0]
+    phi, J = layered._transform(grid, k), j0(k[:, None] * grid.x) - j0(k)[:, None]
+    q = grid.s + grid.s**2
+    edge, rows_q = (W * j0(k)) @ phi, (W * (phi @ q)) @ J
+    for coarse, error in ((False, 1e-11), (True, COARSE)):
+        found = layer_products(layer_weights(layer, np.ones(len(layer.h)), coarse=coarse), q + 0 * edge, grid)
+        scale = error * np.maximum(1.0, layer.n)
+        assert np.all(np.abs(found.edge - edge).max(axis=1) < scale)
+        assert np.all(np.abs(found.rows_q - rows_q).max(axis=1) < scale)
+
+
+def test_the_coarse_rule_has_half_the_nodes():
+    for octave in (-1, 0, 1):
+        fine, coarse = (len(layered.quadrature(octave, 0, rule)[0]) for rule in (False, True))
+        assert coarse < 0.66 * fine
+
+
+def test_weights_within_reach_are_moved_to_first_order():
+    """The others are formed anew; films too."""
+    grid, random = mesh(12), np.random.default_rng(2)
+    layer, a = layers(10 ** random.uniform(-3.5, 1, 40), 2), np.ones(40)
+    known = layer_weights(layer, a)
+    step = np.where(np.arange(40) % 2, 1e-5, 1e-2)
+    moved, anew = layer_weights(layer, np.exp(step), known, reach=1e-4), layer_weights(layer, np.exp(step))
+    q = np.tile(grid.s, (40, 1))
+    found, expected = layer_products(moved, q, grid), layer_products(anew, q, grid)
+    difference = np.abs(found.rows_q - expected.rows_q).max(axis=1) / np.maximum(1.0, layer.n)
+    assert np.all(difference[step > 1e-4] < 1e-15)
+    assert 0 < difference[step < 1e-4].max() < 1e-9
+    first = np.abs(layer_products(known, q, grid).rows_q - expected.rows_q).max(axis=1) / np.maximum(1.0, layer.n)
+    assert first[step < 1e-4].max() > 1e-7, "else nothing had to be moved"
+
+
+def test_a_part_of_the_weights():
+    """Those of some cases, as if formed for them alone; the matrix and its product with q agree."""
+    grid = mesh(8)
+    layer, index = layers(10 ** np.random.default_rng(3).uniform(-4, 1, 30), 3), np.array([2, 3, 11, 29])
+    part = take_weights(layer_weights(layer, np.ones(30)), index)
+    alone = layer_weights(layer.take(index), np.ones(4))
+    matrix = layer_matrix(part, grid)
+    assert_allclose(matrix, layer_matrix(alone, grid), rtol=0, atol=1e-14 * np.abs(matrix).max())
+    q = np.tile(grid.s, (4, 1))
+    assert_allclose(matrix @ grid.s, layer_products(part, q, grid).rows_q, rtol=0, atol=1e-13 * np.abs(matrix).max())

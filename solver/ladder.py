@@ -5,9 +5,9 @@ import numpy as np
 
 from .mesh import mesh, panel_mesh
 
-LADDER = (6, 8, 12, 16, 20, 24, 32, 48, 64, 96)
+LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
 #: First mesh for rtol at least this, where nothing else is known.
-_START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 24))
+_START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
 #: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
 MARGIN = 2.0
 #: Unknowns solved together: enough that the cost of calls does not count, few enough that they stay in the cache.

@@ -28,6 +28,8 @@ from .mesh import HERTZ
 from .micro import Curve
 
 CONTROLS = ("P", "a", "D")
+#: Pressure, over the largest, that counts as none, and the least to begin with.
+_NOTHING, _LEAST = 1e-16, 1e-12
 
 
 class Cases(NamedTuple):
@@ -103,8 +105,21 @@ class Evaluation(NamedTuple):
 
     @property
     def residual(self):
-        """Largest residual of a case (B,), relative to the right-hand side (s² <= 1) and to the controlled value."""
-        return np.maximum(np.abs(self.F).max(axis=1), np.abs(self.G))
+        """Largest residual of a case (B,), relative to the right-hand side (s² <= 1) and to the controlled value.
+
+        Where asperities hang over the surface without pressure, none is asked for.
+        """
+        F = np.abs(self.F)
+        if self.base.weights:
+            F[self.gap > 0] = 0.0
+        return np.maximum(F.max(axis=1), np.abs(self.G))
+
+    @property
+    def gap(self):
+        """Height (B, n) over a²/2 at which asperities hang over the surface that the others press down; else 0."""
+        q = self.curve.q
+        bare = (q >= 0) & (q < _NOTHING * q.max(axis=1, keepdims=True))
+        return np.where(bare, np.maximum(self.F - self.Z * self.curve.g, 0.0), 0.0)
 
     def take(self, index):
         """The sub-batch at `index`."""
@@ -195,7 +210,8 @@ def smooth_start(cases, law, mesh):
     s2 = mesh.s**2
     K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).matrix(mesh)
     matrix = X[:, :, None] * K + Y[:, :, None] * np.eye(mesh.n)
-    smooth = np.maximum(solve_stack(matrix, np.tile(s2[:, None], (len(X), 1, 1)))[..., 0], 0.0)
+    smooth = solve_stack(matrix, np.tile(s2[:, None], (len(X), 1, 1)))[..., 0]
+    smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
     alone = law.sparse(s2 / Z, cases.exponent)
     return State(law.guess(1 / (1 / smooth + 1 / alone), cases.exponent), np.log(cases.value))
 

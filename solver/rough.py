@@ -19,6 +19,8 @@ from .status import Status
 
 #: Part of rtol to which panels are made anew where they miss it.
 _FINER = 0.03
+#: Error of p(0) below which its sign is sure, and height of a gap over a²/2 that is none of rounding.
+_SURE, _GAP = 0.1, 1e-9
 
 
 def solve_newton(cases, law, rtol, nodes, limit, x):
@@ -70,8 +72,9 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
 
 
 def _lifted(out):
-    """Cases (B,) in which the share of tension in the load is more than an error."""
-    return out["tension"] > np.maximum(10 * out["error"], 1e-9)
+    """Cases (B,) in which the share of tension in the load, or the tension in the centre, is more than an error."""
+    error = out["error"]
+    return (out["tension"] > np.fmax(10 * error, 1e-9)) | ((out["p0"] < 0) & (error < _SURE))
 
 
 def _refuse(out, mask, status):
@@ -107,6 +110,8 @@ def _rung(cases, law, n, limit, start, known, x, out, index, enough):
         rescue(cases, law, grid, state, closed, count)
     ev = settle(cases, law, grid, state, closed, count, known)
     values, finer = finish(cases, law, grid, state, x, ev, enough)
+    opened = ev.gap.max(axis=1) > _GAP  # perhaps by the mesh
+    values["error"][opened] = np.maximum(values["error"][opened], 1.0)
     for name, value in values.items():
         out[name][index] = value
     finite = np.isfinite(values["error"])
@@ -118,19 +123,22 @@ def _rung(cases, law, n, limit, start, known, x, out, index, enough):
 def _on_panels(case, law, rtol, x, out, i):
     """Solve case `i` on panels of its own and write it to `out` if that is better; returns whether it misses rtol.
 
-    Tension there counts if it is on finer panels as well: what panels do not resolve may look like it.
+    Tension and gaps there count if they are on finer panels as well: what panels do not resolve may look like them.
     """
-    lifts, case = True, case._replace(coarse=np.zeros(1, dtype=bool), reach=np.zeros(1))
+    lifts, case = None, case._replace(coarse=np.zeros(1, dtype=bool), reach=np.zeros(1))
     for goal in (rtol, _FINER * rtol):  # the last coefficients on the panels may be small where the error is not
         grid, state, closed, count = solve_on_panels(case, law, goal, _close)
-        values, _ = finish(case, law, grid, state, x, evaluate(case, state, law, grid))
+        ev = evaluate(case, state, law, grid)
+        values, _ = finish(case, law, grid, state, x, ev)
         out["iterations"][i] += count[0]
-        lifts &= bool(closed[0] and values["tension"][0] > 10 * values["error"][0])
+        if not closed[0]:
+            continue
+        opened = ev.gap.max() > _GAP
+        lifts = bool(lifts is not False and (opened or _lifted(values)[0]))
         if lifts:
             continue
-        if closed[0]:
-            out["tension"][i] = 0.0
-        if closed[0] and values["error"][0] < np.nan_to_num(out["error"][i], nan=np.inf):
+        out["tension"][i] = 0.0
+        if not opened and values["error"][0] < np.nan_to_num(out["error"][i], nan=np.inf):
             for name, value in values.items():
                 out[name][i] = value[0]
             out["status"][i] = Status.CONVERGED

@@ -202,3 +202,14 @@ def test_lift_off_is_a_status():
     assert np.isnan(s.p0[0])
     assert np.isnan(s.p[0]).all()
     assert s.p0[1] > 0
+
+
+@pytest.mark.parametrize("law", ["disc_cell", "power_law"])
+def test_asperities_keep_the_middle_in_contact_if_coarse_enough(law):
+    """On the thinner of these plates: the finer they are, the less they press in the middle; then they lift off."""
+    Nbar = np.array([1e6, 1e7, 1e9])
+    case = {"a": 0.04, "h": 0.012, "n": 1e5, "Nbar": Nbar, "Ra": Nbar**-0.5, "B": 1.0, "beta": 0.6}
+    s = solve(Problem.of(**case, base="layered", micro=law))
+    assert list(s.status) == [Status.CONVERGED, Status.CONVERGED, Status.LIFT_OFF]
+    assert 0 < s.p0[1] < 0.25 * s.p0[0]
+    assert np.isnan(s.p0[2])

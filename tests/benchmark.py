@@ -27,7 +27,7 @@ from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
 from study.problem_sets import SETS  # noqa: E402
 from study.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
 
-CASES, REPEATS, SYSTEMS, ORDER = 4000, 3, 20_000, 17
+CASES, REPEATS, SYSTEMS, ORDER = 16_000, 3, 20_000, 17
 SIZES = (1_000, 10_000, 100_000, 1_000_000)
 #: From this size on the time per case is called flat if it is within FLAT of its mean.
 LARGE, FLAT = 10_000, 0.15

@@ -23,9 +23,10 @@ Written by `make tradeoff`, which measured every number on this page.
 ![Error against time per case of every way, a panel for each problem set](tradeoff.png)
 
 Time is processor time of one thread for one batch, the shortest of several runs, over the number of cases ({cpu}); for
-Newton's method each case of the paper's sets stands {copies} times in the batch. The error of a case is its largest relative error over a, P, D, p(0), pmax and Ar/An against the solution at rtol
-1e-11; a case without an answer, or more than 100 % off, counts as 100 %. The figure shows the error below which 95 %
-of the cases are. The sets (units R = E2* = 1; cases: {sizes}):
+Newton's method each case of the paper's sets stands {copies} times in the batch. The error of a case is its largest
+relative error over a, P, D, p(0), pmax and Ar/An against the solution at rtol 1e-11; a case without an answer, or more
+than 100 % off, counts as 100 %. The figure shows the error below which 95 % of the cases are. The sets (units R = E2* =
+1; cases: {sizes}):
 
 - **paper, layer** and **paper, half-space**: the five roughnesses of Table 1 as power laws, P from 1e-6 to 5e-5
 - **coatings**: exact layer and law, both interfaces, n from 1e-3 to 1e3, h from 1e-3 to 0.1, P from 1e-7 to 1e-3

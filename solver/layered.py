@@ -29,6 +29,8 @@ OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
 _KEEP = 4e6
+#: Of those between the nodes, of which many are kept.
+_KEEP_BETWEEN = 4e4
 #: Bytes of tables kept.
 _MOST_BYTES = 4e8
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
@@ -374,7 +376,7 @@ def layer_displacement(weights, q, grid, x, half_space):
     out = np.empty((len(q), len(x)))
     for part in weights:
         index, tab = part.index, table(grid, *part[1:4])
-        out[index] = (part.W * (q[index] @ tab.phi.T)) @ _between(grid, *part[1:4], x.tobytes())
+        out[index] = (part.W * (q[index] @ tab.phi.T)) @ _between(grid, *part[1:4], x)
         if part.film is not None:
             near = _felt(grid, x)
             rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
@@ -383,9 +385,15 @@ def layer_displacement(weights, q, grid, x, half_space):
     return half_space_share(weights)[:, None] * half_space + (np.pi / 2) * out
 
 
-@lru_cache(maxsize=512)
-def _between(grid, octave, depth, coarse, x_bytes):
+def _between(grid, octave, depth, coarse, x):
     """J0(k x) - J0(k), (G, m)."""
+    key = grid, octave, depth, coarse, x.tobytes()
+    small = len(x) * len(quadrature(octave, depth, coarse)[0]) <= _KEEP_BETWEEN
+    return (_between_kept if small else _between_kept.__wrapped__)(*key)
+
+
+@lru_cache(maxsize=256)
+def _between_kept(grid, octave, depth, coarse, x_bytes):
     tab = table(grid, octave, depth, coarse)
     return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]
 

@@ -44,6 +44,8 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
     starts = {}  # n -> which cases (B,) have a state on n nodes to begin with, and those
 
     def solve_on(index, n):
+        for done in [m for m in starts if m < n]:
+            del starts[done]
         part, begun = cases.take(index), starts.get(n)
         start, known = begin(part, law, mesh(n), limit, *(v[index] for v in begun) if begun else ())
         goes_on = (nodes[index] == 0) & (n < LADDER[-1])

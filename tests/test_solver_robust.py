@@ -109,7 +109,8 @@ def test_poison_is_flagged_and_harmless(base, law):
             assert s.status.tolist() == [0, expected, 0], (name, bad)
             for number in NUMBERS:
                 found = getattr(s, number)
-                assert_allclose(found[[0, 2]], getattr(clean, number)[[0, 2]], rtol=1e-12, atol=1e-14)
+                atol = 6e-14 if number == "error" else 1e-14  # six times a difference of numbers
+                assert_allclose(found[[0, 2]], getattr(clean, number)[[0, 2]], rtol=1e-12, atol=atol)
                 if used(base, law) and number != "P":
                     assert np.all(np.isnan(found[1])), (name, bad, number)
 

@@ -4,37 +4,22 @@
     dx,
 
 k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity; L - 1 decays
-like e^(-2u), so Λ is a smooth kernel for every η. The quadrature in k is fixed for an octave of η: its panels
-follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers n^(-1/3)/η and
-1/(nη)), so that it is accurate to rounding for every h/a and n of the octave, and J0 φ is tabulated once. For a
-batch, Λ is then one matrix product of (L - 1)-values with that table, its derivative by η another one with u dL/du; no
-interpolation is made, and the octaves agree to rounding where they meet. Films, below the last octave, all share
-one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
+like e^(-2u), so Λ is a smooth kernel for every η. What depends on k and the
+mesh alone is tabulated for an octave of η (:mod:`.layer_tables`). For a batch, Λ is then one matrix product of (L -
+1)-values with that table, its derivative by η another one with u dL/du; no interpolation is made, and the octaves agree
+to the error of the quadrature where they meet. Films, below the last octave, all share one quadrature, which ends at
+k = CUT; what lies beyond is in :mod:`.film`.
 """
 
-from collections import OrderedDict
 from functools import lru_cache
-from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
-from scipy.special import j0
 
 from . import film
 from .kernel import decaying_part, whole
-from .quadrature import gauss_legendre, lagrange
+from .layer_tables import COARSE, CUT, FILM, OCTAVES, between, felt, quadrature, table
 
-#: Octaves of h/a with tables of their own; below is the octave FILM, above nothing of the half-space is left.
-OCTAVES = (-8, 40)
-FILM = OCTAVES[0] - 1
-#: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
-_KEEP = 4e6
-#: Of those between the nodes, of which many are kept.
-_KEEP_BETWEEN = 4e4
-#: Bytes of tables kept.
-_MOST_BYTES = 4e8
-#: Widest panel in k: wider ones would need Gauss rules that are slow to make.
-_WIDEST = 200.0
 #: Numbers in one block of kernel values.
 _BLOCK = 8192
 
@@ -51,20 +36,6 @@ class Layer(NamedTuple):
     def take(self, index):
         """The sub-batch at `index`."""
         return Layer(*(field[index] for field in self))
-
-
-class Table(NamedTuple):
-    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²).
-
-    `film`: the m nodes where the convolution is felt, what makes it there (T, m, n), and at the edge (T, n).
-    """
-
-    k: np.ndarray
-    J: np.ndarray
-    phi: np.ndarray
-    J_edge: np.ndarray
-    product: np.ndarray | None
-    film: tuple | None
 
 
 class Weights(NamedTuple):
@@ -110,118 +81,6 @@ class LayerProducts(NamedTuple):
     edge: np.ndarray
     d_rows_q: np.ndarray
     d_edge_q: np.ndarray
-
-
-class Rule(NamedTuple):
-    """Of the quadrature in k: nodes of a panel beside those its oscillation takes, factor of the root of its width,
-    fewest nodes of panels below and above u = 1/2, where u ends, at most and at octave 0; nodes less a digit of e^-2u.
-    """
-
-    more: int
-    root: float
-    least: tuple
-    end: tuple
-    less: float
-
-
-#: To rounding (1e-11 below h/a = 1/64, where it ends), and to COARSE of the larger of L(0) and L(inf) with half the
-#: nodes (tests/test_layered_quadrature.py).
-_RULES = {False: Rule(9, 3.0, (11, 15), (17.0, 15.0), 0.8), True: Rule(4, 2.5, (8, 10), (15.0, 14.5), 1.0)}
-COARSE = 1e-9
-
-
-def _end(octave, coarse=False):
-    """Where the integral over u may end: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1, their product below the error."""
-    most, middle = _RULES[coarse].end
-    return min(most, middle + 0.7 * octave)
-
-
-#: Largest k of the quadrature of films.
-CUT = _end(FILM) * 2.0**-FILM
-
-
-@lru_cache(maxsize=128)
-def quadrature(octave, depth, coarse=False):
-    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
-    rule, scale, cut = _RULES[coarse], 2.0**-octave, _end(octave, coarse)
-    ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
-    k, weight = [], []
-    for low, high in zip(ends[:-1], ends[1:], strict=True):
-        pieces = int(np.ceil((high - low) * scale / _WIDEST))
-        width = (high - low) * scale / pieces
-        order = max(rule.least[int(high >= 0.5)], int(width / 2 + rule.root * np.cbrt(width)) + rule.more)
-        decayed = 2 * (low - np.log1p(low)) / np.log(10)
-        t, w = gauss_legendre(max(7, order - int(rule.less * decayed)))
-        for piece in range(pieces):
-            k.append(low * scale + (piece + t) * width)
-            weight.append(width * w)
-    return np.concatenate(k), np.concatenate(weight)
-
-
-_tables = OrderedDict()
-_tables_lock = Lock()
-
-
-def table(grid, octave, depth, coarse=False):
-    """The :class:`Table` of a mesh; the latest used, up to _MOST_BYTES, are kept."""
-    key = grid, octave, depth, coarse
-    with _tables_lock:
-        if key in _tables:
-            _tables.move_to_end(key)
-            return _tables[key]
-    found = _table(*key)
-    with _tables_lock:
-        _tables[key] = found
-        while len(_tables) > 1 and sum(_size(kept) for kept in _tables.values()) > _MOST_BYTES:
-            _tables.popitem(last=False)
-    return found
-
-
-def _size(found):
-    """Bytes of a table."""
-    return sum(part.nbytes for part in (*found[:5], *(found.film or ())) if part is not None)
-
-
-def _table(grid, octave, depth, coarse):
-    k, _ = quadrature(octave, depth, coarse)
-    n = grid.n
-    J_edge = j0(k)
-    J = j0(k[:, None] * grid.x) - J_edge[:, None]
-    phi = _transform(grid, k)
-    keep = J.shape[0] * n * n <= _KEEP
-    product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n) if keep else None
-    return Table(k, J, phi, J_edge, product, _film_table(grid) if octave == FILM else None)
-
-
-def _film_table(grid):
-    near = _felt(grid, grid.x)
-    rows = film.convolution(grid, np.append(grid.s[near], 0.0), CUT)
-    return near, rows[:, :-1], rows[:, -1]
-
-
-def _felt(grid, x):
-    """Indices of the radii x where the convolution is felt: near the edge, and where panels resolve more than CUT."""
-    ends = np.sqrt(1 - np.array(grid.breaks) ** 2)
-    home = np.clip(np.searchsorted(-ends, -x) - 1, 0, len(ends) - 2)
-    fine = (ends[home] - ends[home + 1]) * CUT < 16 * grid.order
-    return np.flatnonzero(((1 - x) * CUT < film.REACH) | (fine & (x * CUT > film.REACH)))
-
-
-def _transform(grid, k):
-    """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
-    phi = np.empty((len(k), grid.n))
-    ends = np.arcsin(grid.breaks)
-    for part in np.array_split(np.arange(len(k)), -(-len(k) // 500)):
-        # x = cos φ, s = sin φ: the phase k cos φ advances by at most 20 a piece
-        for i, (low, high) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
-            pieces = int(k[part].max() * (high - low) / 20) + 1
-            t, w = gauss_legendre(24 + grid.order // (2 * pieces))
-            angle = low + (high - low) * ((np.arange(pieces)[:, None] + t) / pieces).ravel()
-            sin, cos = np.sin(angle), np.cos(angle)
-            weight = (high - low) * np.tile(w / pieces, pieces) * sin * cos
-            own = slice(i * grid.order, (i + 1) * grid.order)
-            phi[part, own] = j0(k[part, None] * cos) @ (weight[:, None] * lagrange(grid.s[own], sin))
-    return phi
 
 
 def octave_of(layer, a):
@@ -376,26 +235,13 @@ def layer_displacement(weights, q, grid, x, half_space):
     out = np.empty((len(q), len(x)))
     for part in weights:
         index, tab = part.index, table(grid, *part[1:4])
-        out[index] = (part.W * (q[index] @ tab.phi.T)) @ _between(grid, *part[1:4], x)
+        out[index] = (part.W * (q[index] @ tab.phi.T)) @ between(grid, *part[1:4], x)
         if part.film is not None:
-            near = _felt(grid, x)
+            near = felt(grid, x)
             rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
             out[index] -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
             out[np.ix_(index, near)] += np.matmul(_at_nodes(part.film, rows), q[index][:, :, None])[..., 0]
     return half_space_share(weights)[:, None] * half_space + (np.pi / 2) * out
-
-
-def _between(grid, octave, depth, coarse, x):
-    """J0(k x) - J0(k), (G, m)."""
-    key = grid, octave, depth, coarse, x.tobytes()
-    small = len(x) * len(quadrature(octave, depth, coarse)[0]) <= _KEEP_BETWEEN
-    return (_between_kept if small else _between_kept.__wrapped__)(*key)
-
-
-@lru_cache(maxsize=256)
-def _between_kept(grid, octave, depth, coarse, x_bytes):
-    tab = table(grid, octave, depth, coarse)
-    return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]
 
 
 @lru_cache(maxsize=8)

@@ -24,7 +24,7 @@ WITH_NUMBERS = {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
 NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF}
 
 #: By law, cases of a sample with n above 1e3.
-STIFF_FILMS = {"smooth": [216], "disc_cell": [45], "power_law": [41]}
+STIFF_FILMS = {"smooth": [286], "disc_cell": [45], "power_law": [41]}
 
 kinds = pytest.mark.parametrize(("base", "law"), ALL_KINDS, ids=["-".join(kind) for kind in ALL_KINDS])
 

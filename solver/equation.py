@@ -85,10 +85,13 @@ class Operator(NamedTuple):
         return Operator(*(v if len(v) == 1 else v[index] for v in self[:-1]), take_weights(self.weights, index))
 
     def matrix(self, mesh):
-        """K (B or 1, n, n)."""
+        """K (B or 1, n, n); of the exact layer a new array."""
         if not self.weights:
             return mesh.K[None]
-        return half_space_share(self.weights)[:, None, None] * mesh.K + (np.pi / 2) * layer_matrix(self.weights, mesh)
+        K, share = layer_matrix(self.weights, mesh), half_space_share(self.weights)
+        K *= np.pi / 2
+        K += mesh.K if np.all(share == 1) else share[:, None, None] * mesh.K
+        return K
 
 
 class Evaluation(NamedTuple):
@@ -190,7 +193,8 @@ def control_gradient(control, ev, mesh):
 
 def jacobian(ev, mesh):
     """dF/dq (B, n, n) at fixed η, and dF/dη (B, n) at fixed q. In q, not y: the operator is linear in it."""
-    matrix = ev.X[:, :, None] * ev.base.matrix(mesh)
+    K = ev.base.matrix(mesh)
+    matrix = np.multiply(ev.X[:, :, None], K, out=K if ev.base.weights else None)
     diagonal = np.arange(mesh.n)
     matrix[:, diagonal, diagonal] += ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     return matrix, ev.X * (ev.base.d_Kq - ev.base.Kq) - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g)

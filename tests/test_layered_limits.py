@@ -204,6 +204,16 @@ def test_lift_off_is_a_status():
     assert s.p0[1] > 0
 
 
+@pytest.mark.parametrize("bonding", ["frictionless", "bonded"])
+def test_only_stiff_plates_of_some_thickness_lift_off(bonding):
+    """Smooth: of a million times stiffer layers those 4 to 8 times thinner than a, none that is 2e4 times stiffer."""
+    a_h = np.array([2.0, 4.0, 8.0, 16.0])
+    for n, lifted in ((1e6, [False, True, True, False]), (2e4, [False] * 4)):
+        s = solve(Problem.of(a=0.01, h=0.01 / a_h, n=n, bonding=bonding, base="layered", micro="smooth"))
+        assert list(s.status == Status.LIFT_OFF) == lifted
+        assert np.all(s.status[~np.array(lifted)] == Status.CONVERGED)
+
+
 @pytest.mark.parametrize("law", ["disc_cell", "power_law"])
 def test_asperities_keep_the_middle_in_contact_if_coarse_enough(law):
     """On the thinner of these plates: the finer they are, the less they press in the middle; then they lift off."""

@@ -96,3 +96,16 @@ def test_against_another_formulation(base, law):
             assert truth <= rtol + own, (rtol, i)
             judged += own < rtol
     assert judged >= 2 * len(a)
+
+
+@pytest.mark.parametrize("control", ["a", "P", "D"])
+@pytest.mark.parametrize("nodes", [6, 12, 22])
+def test_the_estimate_encloses_springs_that_no_mesh_sees(control, nodes):
+    """Smooth on ever thinner layers, whose springs yield in a ring at the edge far narrower than the first node."""
+    case = {"h": 0.05 * np.geomspace(1e-7, 1.0, 300), "n": 0.5, "base": "thin_layer", "micro": "smooth", "rtol": 0.5}
+    at_radius = solve(Problem.of(a=0.04 * np.ones(300), **case, nodes=250))
+    case |= {control: getattr(at_radius, control)}
+    truth = difference(solve(Problem.of(**case, nodes=250)), found := solve(Problem.of(**case, nodes=nodes)))
+    judged = truth > NOISE["thin_layer"]
+    assert np.all(found.error[judged] >= truth[judged])
+    assert np.median(found.error[judged] / truth[judged]) < 5

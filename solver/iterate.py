@@ -11,7 +11,7 @@ from .layered import place_weights, take_weights
 #: Part of the operator's own error at which the iteration has closed.
 _CLOSING = 1e-2
 #: Residual from which one more step closes the iteration: they square.
-NEAR = 3e-8
+NEAR = 1e-8
 
 
 def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):

@@ -15,7 +15,7 @@ from .draft import Draft
 from .grid import Grid, shown
 from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
 
-BLOCK = 2000
+BLOCK = 8000
 POINTS = 33
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
 MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies

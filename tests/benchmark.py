@@ -31,7 +31,7 @@ CASES, REPEATS, SYSTEMS, ORDER = 16_000, 3, 20_000, 17
 SIZES = (1_000, 10_000, 100_000, 1_000_000)
 #: From this size on the time per case is called flat if it is within FLAT of its mean.
 LARGE, FLAT = 10_000, 0.15
-BLOCK = 2000
+BLOCK = 8000
 #: k, intervals, cases of the paper's way; of k = 5, 10, 20, 30, 35, 40 that with which all end at least cost.
 PAPERS = ((5, 20, 200), (5, 45, 200), (10, 80, 100), (20, 130, 50), (30, 390, 20), (30, 640, 10), (35, 1100, 5))
 PAPERS_CASES = 1000

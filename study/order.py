@@ -1,6 +1,6 @@
 """What a run is asked for, what it reports, and what it checks before it begins."""
 
-import secrets
+import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TextIO
@@ -103,9 +103,8 @@ def check_writable(path: Path) -> None:
     """Raise CannotWrite when the folder of the results cannot be made or written."""
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        probe = path.with_name(f".{path.name}.{secrets.token_hex(4)}.probe")
-        probe.touch()
-        probe.unlink()
+        with tempfile.TemporaryFile(dir=path.parent):  # has no name that a kill could leave behind
+            pass
     except OSError as error:
         raise CannotWrite([f"{path.parent}: cannot be written: {error.strerror}"]) from None
 

@@ -98,7 +98,8 @@ def peak_of_a_run(folder, points: int, answers) -> None:
 
     axes = {"P": {"start": 1e-6, "stop": 1e-4, "num": points}, "h": {"start": 0.001, "stop": 0.01, "num": 300}}
     model = {"micro": "smooth", "base": "half_space"}
-    opened = study.Study(from_tables({"model": model, "axes": axes}, "large", "", "large"), folder)
+    tables = {"model": model, "axes": axes, "numerics": {"block": 2000}}
+    opened = study.Study(from_tables(tables, "large", "", "large"), folder)
     solved = compute(parcel(opened.definition, np.arange(2000)))
     blocks.compute = lambda wanted: {name: array[: wanted.last - wanted.first + 1] for name, array in solved.items()}
     join.AT_ONCE = 4_000_000

@@ -4,11 +4,11 @@
     dx,
 
 k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity; L - 1 decays
-like e^(-2u), so Λ is a smooth kernel for every η. What depends on k and the
-mesh alone is tabulated for an octave of η (:mod:`.layer_tables`). For a batch, Λ is then one matrix product of (L -
-1)-values with that table, its derivative by η another one with u dL/du; no interpolation is made, and the octaves agree
-to the error of the quadrature where they meet. Films, below the last octave, all share one quadrature, which ends at
-k = CUT; what lies beyond is in :mod:`.film`.
+like e^(-2u), so Λ is a smooth kernel for every η. What depends on k and the mesh alone is tabulated for an
+octave of η (:mod:`.layer_tables`). For a batch, Λ is then one matrix product of the values of L - 1 with that table;
+its products with q, and their derivatives by η from u dL/du, do without it. No interpolation is made, and the octaves
+agree to the error of the quadrature where they meet. Films, below the last octave, all share one quadrature, which ends
+at k = CUT; what lies beyond is in :mod:`.film`.
 """
 
 from functools import lru_cache

@@ -18,6 +18,7 @@ from .layered import (
     Layer,
     half_space_share,
     layer_displacement,
+    layer_edge,
     layer_matrix,
     layer_products,
     layer_weights,
@@ -70,10 +71,9 @@ class State(NamedTuple):
 
 
 class Operator(NamedTuple):
-    """The base at a state: its edge row (B or 1, n), the products K q and edge q, and their derivatives by η; of the
-    exact layer the weights as well."""
+    """The base at a state: the products K q (B, n) and edge q (B,) and their derivatives by η; of the exact layer the
+    weights as well."""
 
-    edge: np.ndarray
     Kq: np.ndarray
     edge_q: np.ndarray
     d_Kq: np.ndarray
@@ -83,6 +83,12 @@ class Operator(NamedTuple):
     def take(self, index):
         """The sub-batch at `index`."""
         return Operator(*(v if len(v) == 1 else v[index] for v in self[:-1]), take_weights(self.weights, index))
+
+    def edge(self, mesh):
+        """The row (B or 1, n) of the edge."""
+        if not self.weights:
+            return mesh.edge[None]
+        return half_space_share(self.weights)[:, None] * mesh.edge + (np.pi / 2) * layer_edge(self.weights, mesh)
 
     def matrix(self, mesh):
         """K (B or 1, n, n); of the exact layer a new array."""
@@ -143,13 +149,11 @@ def operate(cases, eta, q, mesh, known=()):
     cases near this η."""
     if cases.layer is None:
         none = np.zeros((1, mesh.n))
-        return Operator(mesh.edge[None], q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], [])
+        return Operator(q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], [])
     weights = layer_weights(cases.layer, np.exp(eta), known, cases.reach, cases.coarse)
-    products, share = layer_products(weights, q, mesh), half_space_share(weights)[:, None]
-    edge = share * mesh.edge + (np.pi / 2) * products.edge
-    Kq = share * (q @ mesh.K.T) + (np.pi / 2) * products.rows_q
-    d_Kq, d_edge_q = (np.pi / 2) * products.d_rows_q, (np.pi / 2) * products.d_edge_q
-    return Operator(edge, Kq, (edge * q).sum(axis=1), d_Kq, d_edge_q, weights)
+    share, products = half_space_share(weights), layer_products(weights, q, mesh)
+    rows_q, edge_q, *slopes = ((np.pi / 2) * product for product in products)
+    return Operator(share[:, None] * (q @ mesh.K.T) + rows_q, share * (q @ mesh.edge) + edge_q, *slopes, weights)
 
 
 def displacement_between(ev, H, x, mesh):
@@ -188,13 +192,13 @@ def control_gradient(control, ev, mesh):
     if control == "a":
         return np.zeros_like(q), np.ones(len(q))
     edge = X * ev.base.edge_q
-    return ev.X * ev.base.edge / (1 + edge)[:, None], 2 + (X * ev.base.d_edge_q - edge) / (1 + edge)
+    return ev.X * ev.base.edge(mesh) / (1 + edge)[:, None], 2 + (X * ev.base.d_edge_q - edge) / (1 + edge)
 
 
-def jacobian(ev, mesh):
-    """dF/dq (B, n, n) at fixed η, and dF/dη (B, n) at fixed q. In q, not y: the operator is linear in it."""
-    K = ev.base.matrix(mesh)
-    matrix = np.multiply(ev.X[:, :, None], K, out=K if ev.base.weights else None)
+def jacobian(ev, mesh, K=None):
+    """dF/dq (B, n, n) at fixed η, and dF/dη (B, n) at fixed q. In q, not y: the operator is linear in it. K (B or 1,
+    n, n) is the matrix of the operator, if it is at hand."""
+    matrix = ev.X[:, :, None] * (ev.base.matrix(mesh) if K is None else K)
     diagonal = np.arange(mesh.n)
     matrix[:, diagonal, diagonal] += ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     return matrix, ev.X * (ev.base.d_Kq - ev.base.Kq) - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g)

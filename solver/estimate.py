@@ -59,7 +59,7 @@ def _refine(cases, state, ev, law, grid):
     # to first order, as the step itself: neither law nor operator are formed anew
     dy = better.y - start.y
     curve = curve._replace(q=curve.q + curve.dq * dy, g=curve.g + curve.dg * dy)
-    edge_q = (base.edge * curve.q).sum(axis=1) + base.d_edge_q * (better.eta - start.eta)
+    edge_q = (base.edge(fine) * curve.q).sum(axis=1) + base.d_edge_q * (better.eta - start.eta)
     X, _, _ = groups(cases, better.eta)
     values = quantities(cases, better, curve, X[:, 0], edge_q, law, fine)
     return better, values, stiffness(at_start, dq_deta, values, fine)

@@ -12,6 +12,8 @@ from .layered import place_weights, take_weights
 _CLOSING = 1e-2
 #: Residual from which one more step closes the iteration: they square.
 NEAR = 1e-8
+#: Change of ln a over which the matrix of the exact layer is not formed anew: the iteration loses so much a step.
+_LAG = 1e-3
 
 
 def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
@@ -25,7 +27,7 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
     y, eta = np.empty_like(state.y), np.empty_like(state.eta)
     closed, count = np.zeros(size, bool), np.zeros(size, int)
     active, last, left, weights = np.arange(size), np.zeros(size, bool), [], known or []
-    tolerance = _tolerance(cases, state, grid) * np.ones(size)
+    tolerance, lagged = _tolerance(cases, state, grid) * np.ones(size), None
     for step in range(limit + 1):
         y[active], eta[active], count[active] = state.y, state.eta, step
         if last.any():
@@ -35,7 +37,7 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
             if not len(keep):
                 break
             active, cases, state = active[keep], cases.take(keep), state.take(keep)
-            weights = take_weights(weights, keep)
+            weights, lagged = take_weights(weights, keep), _take(lagged, keep)
         ev = evaluate(cases, state, law, grid, weights)
         residual = ev.residual
         done = residual < tolerance[active]
@@ -48,11 +50,32 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
             break
         if len(keep) < len(active):
             active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
+            lagged = _take(lagged, keep)
         last, weights = residual[keep] < near, ev.base.weights
-        state, _ = newton.advance(cases, state, ev, grid, law)
+        lagged = _matrix(lagged, ev, state.eta, grid)
+        state, _ = newton.advance(cases, state, ev, grid, law, lagged and lagged[0])
     if known is not None:
         known[:] = left
     return State(y, eta), closed, count
+
+
+def _matrix(lagged, ev, eta, grid):
+    """Matrix (B, n, n) of the operator of the exact layer, and the η (B,) it is of: the one at hand, formed anew where
+    η has moved on. None for other bases."""
+    if not ev.base.weights:
+        return None
+    if lagged is None:
+        return ev.base.matrix(grid), eta.copy()
+    K, at = lagged
+    moved = np.flatnonzero(np.abs(eta - at) > _LAG)
+    if len(moved):
+        K[moved], at[moved] = ev.base.take(moved).matrix(grid), eta[moved]
+    return K, at
+
+
+def _take(lagged, index):
+    """The sub-batch at `index` of what :func:`_matrix` returns."""
+    return lagged and (lagged[0][index], lagged[1][index])
 
 
 def settle(cases, law, grid, state, closed, count, known):

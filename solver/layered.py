@@ -21,7 +21,7 @@ from .kernel import decaying_part, whole
 from .layer_tables import COARSE, CUT, FILM, OCTAVES, between, felt, quadrature, table
 
 #: Numbers in one block of kernel values.
-_BLOCK = 8192
+_BLOCK = 16384
 
 
 class Layer(NamedTuple):
@@ -41,8 +41,8 @@ class Layer(NamedTuple):
 class Weights(NamedTuple):
     """Part of a batch in one octave: its cases `index` (b,), the key of its table, w (L - 1), -w u dL/du (b, G).
 
-    They are those at `radius` (b,), moved to first order over `moved` (b,) of ln a. Films have w χ (L - n') there; c of
-    the convolution and its derivative (b, T), and n' - 1 (b, 1).
+    They are those at `radius` (b,); the contact is `step` (b,) of ln a farther, where they hold to first order. Films
+    have w χ (L - n') there; c of the convolution and its derivative (b, T), and n' - 1 (b, 1).
     """
 
     index: np.ndarray
@@ -50,35 +50,38 @@ class Weights(NamedTuple):
     depth: int
     coarse: bool
     radius: np.ndarray
-    moved: np.ndarray
+    step: np.ndarray
     W: np.ndarray
     dW: np.ndarray
     film: np.ndarray | None
     d_film: np.ndarray | None
     level: np.ndarray | None
 
+    @property
+    def table(self):
+        """The key of its table, without the mesh."""
+        return self.octave, self.depth, self.coarse
+
     def take(self, rows, index):
         """The sub-batch at `rows`, ascending, as the cases `index`."""
         if len(rows) == len(self.index):
             return self._replace(index=index)
         arrays = (None if v is None else v[rows] for v in self[4:])
-        return Weights(index, *self[1:4], *arrays)
+        return Weights(index, *self.table, *arrays)
 
-    def at(self, radius):
-        """The weights moved on to `radius` (b,)."""
-        step = np.log(radius / self.radius)
-        if not step.any():
-            return self
-        film = None if self.film is None else self.film + step[:, None] * self.d_film
-        W = self.W + step[:, None] * self.dW
-        return self._replace(radius=radius, moved=self.moved + step, W=W, film=film)
+    def moved(self):
+        """W and film `step` farther."""
+        if not self.step.any():
+            return self.W, self.film
+        step = self.step[:, None]
+        return self.W + step * self.dW, None if self.film is None else self.film + step * self.d_film
 
 
 class LayerProducts(NamedTuple):
-    """Λ[q] less its value at the edge (B, n), Λ(edge) (B, n), and the derivatives by ln a of both products with q."""
+    """Λ[q] less its value at the edge (B, n), that value (B,), and the derivatives of both by ln a."""
 
     rows_q: np.ndarray
-    edge: np.ndarray
+    edge_q: np.ndarray
     d_rows_q: np.ndarray
     d_edge_q: np.ndarray
 
@@ -107,16 +110,16 @@ def operator_error(layer, a, nodes, coarse=False):
 def layer_weights(layer, a, known=(), reach=0.0, coarse=False):
     """Weights of a batch at contact radii a (B,): a list of :class:`Weights`, one for each octave present.
 
-    `known` are weights of cases of the batch: where ln a has changed by no more than `reach` (B,) they are moved on,
-    to first order; the others are formed anew. coarse (B,) bool: on half the nodes in k.
+    `known` are weights of cases of the batch: where ln a has changed by no more than `reach` (B,) they serve to
+    first order; the others are formed anew. coarse (B,) bool: on half the nodes in k.
     """
     parts, far, reach = [], np.ones(len(a), dtype=bool), reach * np.ones(len(a))
     for part in known:
-        near = np.flatnonzero(np.abs(part.moved + np.log(a[part.index] / part.radius)) <= reach[part.index])
+        step = np.log(a[part.index] / part.radius)
+        near = np.flatnonzero(np.abs(step) <= reach[part.index])
         if len(near):
-            part = part.take(near, part.index[near])
-            far[part.index] = False
-            parts.append(part.at(a[part.index]))
+            far[part.index[near]] = False
+            parts.append(part.take(near, part.index[near])._replace(step=step[near]))
     new = np.flatnonzero(far)
     octave, depth = octave_of(layer.take(new), a[new])
     coarse = (coarse & np.ones(len(a), dtype=bool))[new] & (octave != FILM)
@@ -168,16 +171,17 @@ def _sampled(layer, eta, k, weight, level):
 
 def layer_products(weights, q, grid):
     """:class:`LayerProducts` of a batch from its weights, for q (B, n) on a mesh."""
-    out = LayerProducts(*(np.empty(q.shape) for _ in range(3)), np.empty(len(q)))
+    out = LayerProducts(np.empty(q.shape), np.empty(len(q)), np.empty(q.shape), np.empty(len(q)))
     for part in weights:
-        index, tab = part.index, table(grid, *part[1:4])
+        index, tab = part.index, table(grid, *part.table)
         qk = q[index] @ tab.phi.T
-        moved = part.dW * qk
-        out.rows_q[index] = (part.W * qk) @ tab.J
-        out.edge[index] = (part.W * tab.J_edge) @ tab.phi
+        here, moved = part.W * qk, np.multiply(part.dW, qk, out=qk)
+        out.rows_q[index], out.edge_q[index] = here @ tab.J, here @ tab.J_edge
         out.d_rows_q[index], out.d_edge_q[index] = moved @ tab.J, moved @ tab.J_edge
         if part.film is not None:
             _add_film(out, part, tab, q[index])
+        out.rows_q[index] += part.step[:, None] * out.d_rows_q[index]
+        out.edge_q[index] += part.step * out.d_edge_q[index]
     return out
 
 
@@ -185,13 +189,22 @@ def _add_film(out, part, tab, q):
     """Add the convolution to the products of films, in place."""
     index, (nodes, near, edge) = part.index, tab.film
     here = np.ix_(index, nodes)
-    at_edge, d_at_edge = part.film @ edge, ((part.d_film @ edge) * q).sum(axis=1)
-    out.edge[index] += at_edge
-    out.rows_q[index] -= (at_edge * q).sum(axis=1)[:, None]
-    out.d_rows_q[index] -= d_at_edge[:, None]
-    out.d_edge_q[index] += d_at_edge
-    for rows_q, c in ((out.rows_q, part.film), (out.d_rows_q, part.d_film)):
+    for rows_q, edge_q, c in ((out.rows_q, out.edge_q, part.film), (out.d_rows_q, out.d_edge_q, part.d_film)):
+        at_edge = ((c @ edge) * q).sum(axis=1)
+        edge_q[index] += at_edge
+        rows_q[index] -= at_edge[:, None]
         rows_q[here] += np.matmul(_at_nodes(c, near), q[:, :, None])[..., 0]
+
+
+def layer_edge(weights, grid):
+    """Λ at the edge of a batch on a mesh, (B, n)."""
+    row = np.empty((sum(len(part.index) for part in weights), grid.n))
+    for part in weights:
+        tab, (W, film) = table(grid, *part.table), part.moved()
+        row[part.index] = (W * tab.J_edge) @ tab.phi
+        if film is not None:
+            row[part.index] += film @ tab.film[2]
+    return row
 
 
 def _at_nodes(c, near):
@@ -205,16 +218,16 @@ def layer_matrix(weights, grid):
     size = sum(len(part.index) for part in weights)
     rows = np.empty((size, grid.n, grid.n))
     for part in weights:
-        index, tab = part.index, table(grid, *part[1:4])
+        index, tab, (W, film) = part.index, table(grid, *part.table), part.moved()
         if tab.product is not None:
-            rows[index] = (part.W @ tab.product).reshape(-1, grid.n, grid.n)
+            rows[index] = (W @ tab.product).reshape(-1, grid.n, grid.n)
         else:
-            for i, w in zip(index, part.W, strict=True):
+            for i, w in zip(index, W, strict=True):
                 rows[i] = (tab.J * w[:, None]).T @ tab.phi
-        if part.film is not None:
+        if film is not None:
             nodes, near, edge = tab.film
-            rows[index] -= (part.film @ edge)[:, None]
-            rows[np.ix_(index, nodes)] += _at_nodes(part.film, near)
+            rows[index] -= (film @ edge)[:, None]
+            rows[np.ix_(index, nodes)] += _at_nodes(film, near)
     return rows
 
 
@@ -234,13 +247,13 @@ def layer_displacement(weights, q, grid, x, half_space):
     """
     out = np.empty((len(q), len(x)))
     for part in weights:
-        index, tab = part.index, table(grid, *part[1:4])
-        out[index] = (part.W * (q[index] @ tab.phi.T)) @ between(grid, *part[1:4], x)
-        if part.film is not None:
+        index, tab, (W, film) = part.index, table(grid, *part.table), part.moved()
+        out[index] = (W * (q[index] @ tab.phi.T)) @ between(grid, *part.table, x)
+        if film is not None:
             near = felt(grid, x)
             rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
-            out[index] -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
-            out[np.ix_(index, near)] += np.matmul(_at_nodes(part.film, rows), q[index][:, :, None])[..., 0]
+            out[index] -= ((film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
+            out[np.ix_(index, near)] += np.matmul(_at_nodes(film, rows), q[index][:, :, None])[..., 0]
     return half_space_share(weights)[:, None] * half_space + (np.pi / 2) * out
 
 

@@ -59,7 +59,7 @@ def first_order(cases, law, cheap, p, n, steps=1):
         (state, _), last = advance(cases, state, ev, grid, law), state
     curve = law.evaluate(state.y, cases.exponent)
     # to first order, as the step itself: the operator is not formed anew
-    edge_q = (ev.base.edge * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)
+    edge_q = (ev.base.edge(grid) * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)
     X, _, _ = groups(cases, state.eta)
     dear = quantities(cases, state, curve, X[:, 0], edge_q, law, grid)
     error = np.max([np.abs(cheap[name] / dear[name] - 1) for name in JUDGED], axis=0)

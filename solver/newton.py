@@ -16,14 +16,14 @@ def tangent(ev, mesh):
     return solve_stack(matrix, -dF_deta[..., None])[..., 0]
 
 
-def advance(cases, state, ev, mesh, law):
+def advance(cases, state, ev, mesh, law, K=None):
     """The :class:`State` after one step from `state`, where the equation is `ev`, and dq/dη (B, n) along the branch of
-    solutions.
+    solutions. K is the matrix (B or 1, n, n) of the operator, if it is at hand.
 
     The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from
     the first guess of :mod:`equation` it converges without a line search.
     """
-    matrix, dF_deta = jacobian(ev, mesh)
+    matrix, dF_deta = jacobian(ev, mesh, K)
     solution = solve_stack(matrix, np.stack([-dF_deta, -ev.F], axis=-1))
     dq_deta, dq = solution[..., 0], solution[..., 1]
     by_q, by_eta = control_gradient(cases.control, ev, mesh)

@@ -4,6 +4,7 @@ import numpy as np
 
 from . import newton
 from .equation import State, evaluate, first_guess, groups, guess_pressure, guess_radius, softness
+from .ladder import LADDER
 from .layered import operator_error, place_weights
 from .mesh import mesh
 from .micro import disc_cell, smooth
@@ -12,8 +13,11 @@ from .outputs import interpolate
 #: Part of rtol that the operator's own error may come to, and the largest change of ln a over which the layer's is not
 #: formed anew: what that leaves out is of its square.
 _SHARE, _FARTHEST = 1e-2, 1e-5
-#: Steps on the coarse mesh, and the change of ln a over which the operator is not formed anew there.
-_STEPS, _LAG = 2, 1e-3
+#: Tolerance below which no case on springs begins on the coarsest mesh: few stay there.
+_FINE = 3e-5
+#: Steps on the coarse mesh, and the changes of ln a over which the operator is not formed anew: for them, and for the
+#: state they end in.
+_STEPS, _FAR, _NEAR = 2, 0.2, 1e-3
 
 
 def only_as_wanted(cases, law, rtol):
@@ -34,7 +38,8 @@ def nodes_wanted(cases, law, rtol):
         share = (Z * law.evaluate(law.guess(q, cases.exponent), cases.exponent).g)[:, 0]  # of s² = 1 in the centre
         base, slope = np.where(cases.C > 0, 3.4, 1.1), 1.1 if law is disc_cell else 0.5
     rise = slope * np.clip(np.nan_to_num(share), 0.0, 1.0)
-    return 0.93 * (-np.log10(rtol) - base + 3.6 * rise) / (0.25 + rise)
+    nodes = np.where(cases.C > 0, 0.97, 0.93) * (-np.log10(rtol) - base + 3.6 * rise) / (0.25 + rise)
+    return np.maximum(nodes, np.where((cases.C > 0) & (rtol < _FINE), LADDER[1], 0))
 
 
 def begin(cases, law, grid, limit, begun=None, y=None, eta=None):
@@ -59,10 +64,9 @@ def begin(cases, law, grid, limit, begun=None, y=None, eta=None):
 def _approach(cases, law, grid):
     """State on a mesh, and the weights of the layer there, after a few steps on a coarse mesh."""
     coarse = mesh(5 if grid.n <= 12 else 8)
-    cases = cases._replace(reach=np.maximum(cases.reach, _LAG))
     state, known = first_guess(cases, law, coarse), []
     for _ in range(_STEPS):
-        ev = evaluate(cases, state, law, coarse, known)
+        ev = evaluate(cases._replace(reach=cases.reach + _FAR), state, law, coarse, known)
         state, known = newton.advance(cases, state, ev, coarse, law)[0], ev.base.weights
-    ev = evaluate(cases, state, law, coarse, known)
+    ev = evaluate(cases._replace(reach=cases.reach + _NEAR), state, law, coarse, known)
     return State(interpolate(cases, ev, law, coarse, grid.s, 1e-2), state.eta), ev.base.weights

@@ -8,7 +8,15 @@ from scipy.special import j0
 from solver import layer_tables
 from solver.kernel import decaying_part
 from solver.layer_tables import COARSE
-from solver.layered import Layer, half_space_share, layer_matrix, layer_products, layer_weights, take_weights
+from solver.layered import (
+    Layer,
+    half_space_share,
+    layer_edge,
+    layer_matrix,
+    layer_products,
+    layer_weights,
+    take_weights,
+)
 from solver.mesh import mesh
 from solver.quadrature import gauss_legendre
 
@@ -36,9 +44,10 @@ def test_both_rules(octave, n):
     q = grid.s + grid.s**2
     edge, rows_q = (W * j0(k)) @ phi, (W * (phi @ q)) @ J
     for coarse, error in ((False, 1e-11), (True, COARSE)):
-        found = layer_products(layer_weights(layer, np.ones(len(layer.h)), coarse=coarse), q + 0 * edge, grid)
+        weights = layer_weights(layer, np.ones(len(layer.h)), coarse=coarse)
+        found = layer_products(weights, q + 0 * edge, grid)
         scale = error * np.maximum(1.0, layer.n)
-        assert np.all(np.abs(found.edge - edge).max(axis=1) < scale)
+        assert np.all(np.abs(layer_edge(weights, grid) - edge).max(axis=1) < scale)
         assert np.all(np.abs(found.rows_q - rows_q).max(axis=1) < scale)
 
 
@@ -68,12 +77,22 @@ def test_weights_within_reach_are_moved_to_first_order():
 
 
 def test_a_part_of_the_weights():
-    """Those of some cases, as if formed for them alone; the matrix and its product with q agree."""
+    """Those of some cases, as if formed for them alone."""
     grid = mesh(8)
     layer, index = layers(10 ** np.random.default_rng(3).uniform(-4, 1, 30), 3), np.array([2, 3, 11, 29])
     part = take_weights(layer_weights(layer, np.ones(30)), index)
     alone = layer_weights(layer.take(index), np.ones(4))
     matrix = layer_matrix(part, grid)
     assert_allclose(matrix, layer_matrix(alone, grid), rtol=0, atol=1e-14 * np.abs(matrix).max())
-    q = np.tile(grid.s, (4, 1))
-    assert_allclose(matrix @ grid.s, layer_products(part, q, grid).rows_q, rtol=0, atol=1e-13 * np.abs(matrix).max())
+
+
+@pytest.mark.parametrize("step", [0.0, 0.1])
+def test_matrix_edge_and_products_agree(step):
+    """Of weights as they are formed, and moved; films too."""
+    grid = mesh(8)
+    layer, a = layers(10 ** np.random.default_rng(3).uniform(-4, 1, 30), 3), np.full(30, np.exp(step))
+    weights = layer_weights(layer, a, layer_weights(layer, np.ones(30)), reach=1.0)
+    matrix, edge = layer_matrix(weights, grid), layer_edge(weights, grid)
+    found = layer_products(weights, np.tile(grid.s, (30, 1)), grid)
+    assert np.all(np.abs(matrix @ grid.s - found.rows_q).max(axis=1) < 1e-13 * np.abs(matrix).max(axis=(1, 2)))
+    assert np.all(np.abs(edge @ grid.s - found.edge_q) < 1e-13 * np.abs(edge).max(axis=1))

@@ -12,8 +12,11 @@ nothing of it remains. It is linear in c, so that it is tabulated like the rest.
 """
 
 from functools import lru_cache
+from itertools import pairwise, product
+from typing import NamedTuple
 
 import numpy as np
+from scipy.sparse import csc_array
 from scipy.special import erfc, spherical_jn
 
 from .quadrature import gauss_legendre, lagrange, log_rule
@@ -26,6 +29,8 @@ _KAPPA, _TAU = 14, 20
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
+#: Columns of a block, about; more points are taken in several.
+_COLUMNS = 1536
 
 
 def step(kappa):
@@ -63,57 +68,102 @@ def transform(f, level, p):
     return (f - level * np.expm1(-p * kappa)) @ matrix.T - level / (2 * np.pi) * np.log1p((p / tau) ** 2)
 
 
+class Convolution(NamedTuple):
+    """The convolution at m points, as a matrix, of anything that is linear in c.
+
+    `shape` is (m, n); `blocks` are points (r,) that share the octaves of τ, columns of a panel, nodes τ of these
+    octaves, and what makes the entries there of c at these nodes, (nodes, r order). What is in no block is nought.
+    """
+
+    shape: tuple
+    blocks: list
+
+    @property
+    def nbytes(self):
+        """Size in bytes."""
+        return sum(block.nbytes for *_, block in self.blocks)
+
+    def of(self, c):
+        """The matrices (b, m, n) for c (b, T)."""
+        out = np.zeros((len(c), *self.shape))
+        for points, columns, nodes, block in self.blocks:
+            out[:, points, columns] = (c[:, nodes] @ block).reshape(len(c), len(points), -1)
+        return out
+
+
 def convolution(grid, points, cut):
-    """What makes the convolution at `points` (m,) in s of the basis of a mesh of c at the nodes τ: (T, m, n).
+    """The :class:`Convolution` at `points` (m,) in s, for the basis of a mesh.
 
     Panel by panel: a rule that runs across the ends of panels is good for smooth pressures only, and what it makes of
     the others leaves the discrete equation of a stiff film with pressures that are not there.
     """
-    x = np.sqrt((1 - points) * (1 + points))
-    table = np.zeros((len(waves()[1]), len(points), grid.n))
-    s, weights = grid.rule(12 + grid.order // 2)
-    plain = s, weights, grid.basis(s)
-    for i in range(len(points)):
-        shift, weight, basis = _around(points[i], grid, *plain)
-        point = points[i] + shift
-        other = np.sqrt((1 - point) * (1 + point))
-        tau = cut * np.abs(shift) * (points[i] + point) / (x[i] + other)
-        used = np.flatnonzero(tau < REACH)
-        values = (weight * point / np.sqrt(other * x[i]))[used, None] * basis[used]  # of ∫ · sqrt(x'/x) dx'
-        octave, interpolation = _interpolation(tau[used])
-        for o in np.unique(octave):
-            here = octave == o
-            table[o * _TAU : (o + 1) * _TAU, i] = interpolation[here].T @ values[here]
-    return table
+    blocks, most = [], -(-_COLUMNS // grid.order)
+    for panel, (low, high) in enumerate(pairwise(grid.breaks)):
+        gap = np.maximum(low - points, points - high)  # negative inside
+        shift = np.maximum(gap, 0.0) * np.where(points < low, 1, -1)
+        tau, near = _tau(points, points + shift, shift, cut), gap < high - low
+        octave = _octave(np.maximum(tau, 1e-99))
+        for first, rule in product(np.unique(octave[tau < REACH]), (_near_rule, _plain_rule)):
+            chosen = np.flatnonzero((tau < REACH) & (octave == first) & (near == (rule is _near_rule)))
+            for i in range(0, len(chosen), most):
+                blocks.append(_block(grid, panel, points, chosen[i : i + most], rule, cut, first))
+    return Convolution((len(points), grid.n), blocks)
 
 
-def _around(s, grid, points, weights, basis):
-    """Shifts s' - s (g,), weights and basis (g, n) of ∫ · ds' over the contact, for a singularity at s.
+def _block(grid, panel, points, chosen, rule, cut, first):
+    """A block of the convolution: on one panel, at the points `chosen` (r,), by a rule, from the octave `first` on."""
+    own, s = slice(panel * grid.order, (panel + 1) * grid.order), points[chosen, None]
+    point, shift, weight = rule(s, *grid.breaks[panel : panel + 2], grid.order)
+    tau = _tau(s, point, shift, cut)
+    row, used = np.nonzero((weight > 0) & (tau < REACH))
+    point, tau = point[row, used], tau[row, used]
+    other = np.sqrt((1 - point) * (1 + point))
+    values = weight[row, used] * point / np.sqrt(other * np.sqrt((1 - s) * (1 + s))[row, 0])  # of ∫ · sqrt(x'/x) dx'
+    octave, interpolation = _interpolation(tau)
+    count = octave.max(initial=first) + 1 - first
+    place = ((row * count + octave - first) * _TAU)[:, None] + np.arange(_TAU)
+    ends = np.arange(len(tau) + 1) * _TAU
+    spread = csc_array((interpolation.ravel(), place.ravel(), ends), shape=(len(chosen) * count * _TAU, len(tau)))
+    block = spread @ (values[:, None] * lagrange(grid.s[own], point))
+    block = block.reshape(len(chosen), count * _TAU, -1).transpose(1, 0, 2).reshape(count * _TAU, -1)
+    return chosen, own, slice(first * _TAU, (first + count) * _TAU), block
 
-    Panels farther from it than their length have the plain rule, whose points, weights and basis are given.
-    """
-    low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
-    far = np.maximum(low - s, s - high) >= high - low
-    plain = np.repeat(far, len(points) // len(far))
-    parts = [(points[plain] - s, weights[plain], basis[plain])]
-    distance, weight = log_rule(14 + grid.order // 2)
-    for i in np.flatnonzero(~far):
-        own = slice(i * grid.order, (i + 1) * grid.order)
-        for sign, start, stop in ((-1, max(s - high[i], 0.0), s - low[i]), (1, max(low[i] - s, 0.0), high[i] - s)):
-            if stop > start:
-                shift, values = sign * (start + (stop - start) * distance), np.zeros((len(distance), grid.n))
-                values[:, own] = lagrange(grid.s[own], s + shift)
-                parts.append((shift, (stop - start) * weight, values))
-    return tuple(np.concatenate(part) for part in zip(*parts, strict=True))
+
+def _tau(s, point, shift, cut):
+    """τ = cut |x' - x| between s and s' = `point` = s + shift."""
+    return cut * np.abs(shift) * (s + point) / (np.sqrt((1 - s) * (1 + s)) + np.sqrt((1 - point) * (1 + point)))
+
+
+def _plain_rule(s, low, high, order):
+    """Points s', shifts s' - s and weights (r, g) of ∫ · ds' over a panel farther from s (r, 1) than its length."""
+    t, weight = gauss_legendre(12 + order // 2)
+    point = np.broadcast_to(low + (high - low) * t, (len(s), len(t)))
+    return point, point - s, np.broadcast_to((high - low) * weight, point.shape)
+
+
+def _near_rule(s, low, high, order):
+    """The same over a panel that contains s, or is near: for a singularity at s, no weight on a side not there."""
+    distance, weight = log_rule(14 + order // 2)
+    parts = []
+    for sign, start, stop in ((-1, np.maximum(s - high, 0.0), s - low), (1, np.maximum(low - s, 0.0), high - s)):
+        length = np.maximum(stop - start, 0.0)
+        parts.append((sign * (start + length * distance), length * weight))
+    shift, weight = (np.concatenate(part, axis=1) for part in zip(*parts, strict=True))
+    return s + shift, shift, weight
 
 
 def _chebyshev_nodes():
     return (1 - np.cos(np.pi * (np.arange(_TAU) + 0.5) / _TAU)) / 2
 
 
+def _octave(tau):
+    """Octave of τ > 0, 0 the one that begins at 0."""
+    return np.maximum(np.floor(np.log2(tau)).astype(int) + _OCTAVES + 1, 0)
+
+
 def _interpolation(tau):
-    """Octave (m,) of each τ (m,), 0 the one that begins at 0, and the Chebyshev basis there (m, _TAU)."""
-    octave = np.maximum(np.floor(np.log2(tau)).astype(int) + _OCTAVES + 1, 0)
+    """Octave (m,) of each τ (m,), and the Chebyshev basis there (m, _TAU)."""
+    octave = _octave(tau)
     stop = 2.0 ** (octave - _OCTAVES)
     start = np.where(octave == 0, 0.0, stop / 2)
     distance = ((tau - start) / (stop - start))[:, None] - _chebyshev_nodes()

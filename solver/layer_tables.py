@@ -6,6 +6,7 @@ n^(-1/3)/η and 1/(nη), η = h/a), so that it is as accurate for every h/a and 
 
 from collections import OrderedDict
 from functools import lru_cache
+from itertools import pairwise
 from threading import Lock
 from typing import NamedTuple
 
@@ -24,6 +25,10 @@ _KEEP = 4e6
 _KEEP_BETWEEN = 4e4
 #: Bytes of tables kept.
 _MOST_BYTES = 4e8
+#: Radians of J0 in a piece of its transform.
+_PHASE = 120.0
+#: Nodes k of a part of the transform that is kept.
+_ROWS = 250
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
 _WIDEST = 200.0
 
@@ -31,7 +36,7 @@ _WIDEST = 200.0
 class Table(NamedTuple):
     """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²).
 
-    `film`: the m nodes where the convolution is felt, what makes it there (T, m, n), and at the edge (T, n).
+    `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
     """
 
     k: np.ndarray
@@ -123,10 +128,11 @@ def _table(grid, octave, depth, coarse):
     return Table(k, J, phi, J_edge, product, _film_table(grid) if octave == FILM else None)
 
 
+@lru_cache(maxsize=4)
 def _film_table(grid):
     near = felt(grid, grid.x)
-    rows = film.convolution(grid, np.append(grid.s[near], 0.0), CUT)
-    return near, rows[:, :-1], rows[:, -1]
+    edge = film.convolution(grid, np.zeros(1), CUT).of(np.eye(len(film.waves()[1])))
+    return near, film.convolution(grid, grid.s[near], CUT), edge[:, 0]
 
 
 def felt(grid, x):
@@ -140,18 +146,34 @@ def felt(grid, x):
 def transform(grid, k):
     """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
     phi = np.empty((len(k), grid.n))
-    ends = np.arcsin(grid.breaks)
-    for part in np.array_split(np.arange(len(k)), -(-len(k) // 500)):
-        # x = cos φ, s = sin φ: the phase k cos φ advances by at most 20 a piece
-        for i, (low, high) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
-            pieces = int(k[part].max() * (high - low) / 20) + 1
-            t, w = gauss_legendre(24 + grid.order // (2 * pieces))
-            angle = low + (high - low) * ((np.arange(pieces)[:, None] + t) / pieces).ravel()
-            sin, cos = np.sin(angle), np.cos(angle)
-            weight = (high - low) * np.tile(w / pieces, pieces) * sin * cos
+    for stop in range(len(k), 0, -_ROWS):  # from the end, which quadratures of an octave share
+        part = slice(max(stop - _ROWS, 0), stop)
+        for i, ends in enumerate(pairwise(grid.breaks)):
             own = slice(i * grid.order, (i + 1) * grid.order)
-            phi[part, own] = j0(k[part, None] * cos) @ (weight[:, None] * lagrange(grid.s[own], sin))
+            phi[part, own] = _transform_kept(*ends, grid.s[own].tobytes(), k[part].tobytes())
     return phi
+
+
+@lru_cache(maxsize=1024)
+def _transform_kept(low, high, nodes_bytes, k_bytes):
+    """Part of φ on a panel, which meshes and quadratures have in common: (G', order)."""
+    nodes, k = np.frombuffer(nodes_bytes), np.frombuffer(k_bytes)
+    angle, weight = _angles(low, high, k.max(), len(nodes))
+    sin, cos = np.sin(angle), np.cos(angle)
+    return j0(k[:, None] * cos) @ ((weight * sin * cos)[:, None] * lagrange(nodes, sin))
+
+
+def _angles(low, high, k, order):
+    """Nodes φ and weights (g,) of ∫ · dφ for s = sin φ on a panel: pieces of like phase k cos φ, the first of half."""
+    x = np.sqrt(1 - np.array([low, high]) ** 2)
+    pieces = int(k * (x[0] - x[1]) / _PHASE) + 1
+    ends = np.arccos(x[0] + np.maximum(np.arange(pieces + 1) - 0.5, 0) / (pieces - 0.5) * (x[1] - x[0]))
+    ends[[0, -1]] = np.arcsin([low, high])
+    width, sin = np.diff(ends), np.sin(ends)
+    # at most, of J0 and of a polynomial, which is fastest at the ends of its panel
+    phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(np.diff(sin).max() / (high - low)))
+    t, w = gauss_legendre(8 * int(phase / 32 + np.cbrt(phase / 2) * 3 / 8 + 2))
+    return (ends[:-1, None] + width[:, None] * t).ravel(), (width[:, None] * w).ravel()
 
 
 def between(grid, octave, depth, coarse, x):

@@ -209,8 +209,7 @@ def layer_edge(weights, grid):
 
 def _at_nodes(c, near):
     """The convolution with c (b, T) at the nodes where it is felt: (b, m, n)."""
-    steps, m, n = near.shape
-    return (c @ near.reshape(steps, m * n)).reshape(len(c), m, n)
+    return near.of(c)
 
 
 def layer_matrix(weights, grid):

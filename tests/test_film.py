@@ -5,6 +5,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from scipy.special import gamma, jv
 from solver_cases import JUDGED, MAIN, difference
 
 from solver import Problem, Status, film, layer_tables, solve
@@ -34,12 +35,21 @@ def test_transform_of_a_kernel_known_in_closed_form(p):
     assert_allclose(c, np.log1p((p / tau) ** 2) / (2 * np.pi), rtol=1e-9, atol=1e-12)
 
 
+@pytest.mark.parametrize("grid", [mesh(5), mesh(24), mesh(96), panel_mesh(12, (0.0, 1e-4, 0.01, 0.05, 0.3, 1.0))])
+def test_transforms_at_all_k_of_films(grid):
+    """Sonine's integral: of s^p, 2^(p/2) Γ(1 + p/2) J_(1 + p/2)(k)/k^(1 + p/2)."""
+    k = np.geomspace(1e-2, CUT, 2000)
+    for p in (1, 3, min(grid.order, 41) - 2):
+        expected = 2 ** (p / 2) * gamma(1 + p / 2) * jv(1 + p / 2, k) / k ** (1 + p / 2)
+        assert_allclose(layer_tables.transform(grid, k) @ grid.s**p, expected, rtol=0, atol=1e-14)
+
+
 def test_the_convolution_on_narrow_panels():
     """Of pressures that jump from panel to panel, for c = e^-τ: against a rule of many points on every panel."""
     grid, cut = panel_mesh(4, (0.0, 0.01, 0.02, 0.03, 0.05, 0.1, 1.0)), 1000.0
     points = grid.s[[0, 5, 11, 15]]
     _, tau, _ = film.waves()
-    found = np.einsum("t,tmn->mn", np.exp(-tau), film.convolution(grid, points, cut))
+    found = film.convolution(grid, points, cut).of(np.exp(-tau)[None])[0]
     halves = 2.0 ** np.arange(-40, 0)  # towards every end, and every point
     fine = np.unique(np.concatenate([low + (high - low) * np.array([*halves, *(1 - halves)]) for low, high in
                                      pairwise(np.unique([*grid.breaks, *points]))]))  # fmt: skip
@@ -48,6 +58,14 @@ def test_the_convolution_on_narrow_panels():
     w, x, at = (np.diff(fine)[:, None] * w / 2).ravel(), np.sqrt(1 - s**2), np.sqrt(1 - points**2)[:, None]
     kernel = np.exp(-cut * np.abs(x - at)) * (np.abs(x - at) * cut < film.REACH) * s / np.sqrt(x * at)
     assert_allclose(found, (w * kernel) @ grid.basis(s), rtol=0, atol=1e-10 * np.abs(found).max())
+
+
+def test_a_panel_whose_rule_lies_beyond_the_reach():
+    """Its near end is within reach, no point of the rule is: nothing is felt of it, and all of the others."""
+    grid = panel_mesh(4, (0.0, 0.1, 0.2, 0.3, 0.35, 1.0))
+    cut = 0.9999 * film.REACH / (1 - np.sqrt(1 - 0.3**2))
+    found = film.convolution(grid, np.zeros(1), cut).of(np.ones((1, len(film.waves()[1]))))[0, 0]
+    assert np.all(found[12:] == 0) and np.all(found.reshape(5, 4)[:3].sum(axis=1) > 0)
 
 
 @pytest.mark.parametrize(("n", "h"), [(8.6e5, 5.6e-5), (1e5, 5e-6)])

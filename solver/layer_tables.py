@@ -171,7 +171,8 @@ def _angles(low, high, k, order):
     ends[[0, -1]] = np.arcsin([low, high])
     width, sin = np.diff(ends), np.sin(ends)
     # at most, of J0 and of a polynomial, which is fastest at the ends of its panel
-    phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(np.diff(sin).max() / (high - low)))
+    share = min(np.diff(sin).max() / (high - low), 1.0)
+    phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(share))
     t, w = gauss_legendre(8 * int(phase / 32 + np.cbrt(phase / 2) * 3 / 8 + 2))
     return (ends[:-1, None] + width[:, None] * t).ravel(), (width[:, None] * w).ravel()
 

@@ -23,8 +23,8 @@ NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "er
 WITH_NUMBERS = {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
 NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF}
 
-#: By law, cases of a sample with n above 1e3.
-STIFF_FILMS = {"smooth": [286], "disc_cell": [45], "power_law": [41]}
+#: By law, a case of a sample with n above 1e3 that one rule for all panels of the convolution gets wrong.
+STIFF_FILMS = {"smooth": [286], "disc_cell": [36], "power_law": [3]}
 
 kinds = pytest.mark.parametrize(("base", "law"), ALL_KINDS, ids=["-".join(kind) for kind in ALL_KINDS])
 
@@ -75,11 +75,11 @@ def test_no_case_converges_to_another_answer(base, law):
 
 @pytest.mark.parametrize(("law", "which"), STIFF_FILMS.items())
 def test_stiff_films_neither_fail_nor_lift_off(law, which):
-    """Of 300 films more than 1e3 times stiffer than the body, some that an inaccurate convolution made fail, or appear
-    to be tensile at the edge. The truth: the same case at a tenth of rtol."""
+    """Of 300 films more than 1e3 times stiffer than the body, those that an inaccurate convolution makes fail, or
+    appear to be tensile at the edge. The truth: the same case at a tenth of rtol."""
     case = {name: values[which] for name, values in sample("layered", 300, 5, n=1e3).items()}
     s, fine = (solve(Problem.of(**case, base="layered", micro=law, rtol=rtol)) for rtol in (RTOL, RTOL / 10))
-    assert np.all(s.status == Status.CONVERGED)
+    assert np.all(s.status == Status.CONVERGED) and np.all(fine.status == Status.CONVERGED)
     assert np.all(difference(s, fine) <= RTOL)
 
 

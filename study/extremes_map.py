@@ -20,6 +20,8 @@ AXES = {
 ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_layer", "h", "n"),
         ("layered", "P", "N Ra^2"), ("layered", "h", "n"))  # fmt: skip
 BINS = 24
+#: Cases in a map from which on the points of those that converged are the smallest.
+_MANY = 10_000
 NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE: "0.4", Status.LIFT_OFF: "#56b4e9"}
 """The equations have none that the model means: no failure of the solver."""
 _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
@@ -85,9 +87,10 @@ def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]
 
 def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:
     """Every case by its status, the failures uppermost."""
+    least = 1.0 if len(cases["status"]) > _MANY else 2.0
     for status, colour in COLOURS.items():
         which = cases["status"] == status
-        size = 1.0 if status == Status.CONVERGED else 5.0 if status in FAILED else 2.5
+        size = least if status == Status.CONVERGED else 5.0 if status in FAILED else 2.5
         style = {"color": colour, "markersize": size, "markeredgewidth": 0, "rasterized": True}
         axes.plot(cases[x][which], cases[y][which], ".", **style)
 

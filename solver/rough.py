@@ -21,6 +21,8 @@ from .status import Status
 _FINER = 0.03
 #: Error of p(0) below which its sign is sure, and height of a gap over a²/2 that is none of rounding.
 _SURE, _GAP = 0.1, 1e-9
+#: Share of tension in the load that is none of rounding.
+_TENSION = 1e-9
 
 
 def solve_newton(cases, law, rtol, nodes, limit, x):
@@ -52,10 +54,12 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         with np.errstate(all="ignore"):  # a case that goes wrong is a NaN and a status
             finer = _rung(part, law, n, limit, start, known, x, out, index, np.where(goes_on, rtol[index], np.inf))
         closed = out["status"][index] == Status.CONVERGED
-        missed = closed & goes_on & (out["error"][index] > rtol[index])
+        unsure = (nodes[index] == 0) & _perhaps_lifted(out, index)
+        error = np.where(unsure, np.inf, out["error"][index])
+        missed = closed & goes_on & (error > rtol[index])
         if missed.any():
             _keep(starts, index[missed], finer.take(missed), size)
-        return np.where(closed, out["error"][index], np.nan)
+        return np.where(closed, error, np.nan)
 
     with np.errstate(all="ignore"):
         first = first_rung(nodes_wanted(cases, law, rtol))
@@ -76,7 +80,13 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
 def _lifted(out):
     """Cases (B,) in which the share of tension in the load, or the tension in the centre, is more than an error."""
     error = out["error"]
-    return (out["tension"] > np.fmax(10 * error, 1e-9)) | ((out["p0"] < 0) & (error < _SURE))
+    return (out["tension"] > np.fmax(10 * error, _TENSION)) | ((out["p0"] < 0) & (error < _SURE))
+
+
+def _perhaps_lifted(out, index):
+    """Which of the cases `index` have a tension that may be an error, and may be none: a finer mesh will tell."""
+    tension, error = out["tension"][index], out["error"][index]
+    return (tension > _TENSION) & (tension <= 10 * error)
 
 
 def _refuse(out, mask, status):

@@ -214,6 +214,15 @@ def test_only_stiff_plates_of_some_thickness_lift_off(bonding):
         assert np.all(s.status[~np.array(lifted)] == Status.CONVERGED)
 
 
+def test_a_loose_tolerance_does_not_hide_that_a_plate_lifts_off():
+    """A tension that may be an error of the mesh is looked at on a finer one."""
+    a_h, rtol = np.tile(np.linspace(2.5, 8.0, 12), 3), np.repeat([1e-3, 1e-4, 1e-6], 12)
+    s = solve(Problem.of(a=0.01, h=0.01 / a_h, n=1e6, base="layered", micro="smooth", rtol=rtol))
+    lifted = (s.status == Status.LIFT_OFF).reshape(3, 12)
+    assert 0 < lifted[2].sum() < 12
+    assert np.all(lifted == lifted[2])
+
+
 @pytest.mark.parametrize("law", ["disc_cell", "power_law"])
 def test_asperities_keep_the_middle_in_contact_if_coarse_enough(law):
     """On the thinner of these plates: the finer they are, the less they press in the middle; then they lift off."""

@@ -1,10 +1,11 @@
-"""Results of every study of the repository, shrunken so that all of them take seconds."""
+"""Results of every study of the repository, shrunken so that all of them take seconds; fixtures that files share."""
 
 import tomllib
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from line_study import computed, file  # noqa: F401
 
 ROOT = Path(__file__).resolve().parents[1]
 STUDIES = sorted((ROOT / "studies").glob("*.toml"))
@@ -31,9 +32,9 @@ def results(tmp_path_factory) -> Path:
     from study.tradeoff import WAYS, measure
 
     folder = tmp_path_factory.mktemp("project") / "results"
-    for file in STUDIES:
-        text = file.read_text(encoding="utf-8")
-        run(from_tables(shrunken(tomllib.loads(text)), file.stem, text, file.name), folder)
+    for toml in STUDIES:
+        text = toml.read_text(encoding="utf-8")
+        run(from_tables(shrunken(tomllib.loads(text)), toml.stem, text, toml.name), folder)
     write(measure(10, 0, {name: replace(way, settings=way.settings[:1], most=5) for name, way in WAYS.items()}),
           folder / "tradeoff.nc")  # fmt: skip
     return folder

@@ -15,8 +15,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from children import child, computed_in, lines, wait_for
+from line_study import present, store_block
 from same import assert_same
-from test_run import present, store_block
 
 import study
 from study import block_file, join

@@ -5,8 +5,8 @@ import itertools
 import numpy as np
 import pytest
 import xarray as xr
+from line_study import store_block
 from same import assert_same
-from test_run import computed, store_block  # noqa: F401
 
 import study
 from study import definition, reuse, store
@@ -52,7 +52,7 @@ def fresh(opened: study.Study, tmp_path) -> xr.Dataset:
     ids=["value", "values of two axes", "axis", "axis in front", "order of axes", "order of values", "axis of words"],
 )
 @pytest.mark.parametrize("finished", [True, False])
-def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, axes, new, finished):  # noqa: F811
+def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, axes, new, finished):
     monkeypatch.setattr(reuse, "AT_ONCE", 2)
     if finished:
         load().run()

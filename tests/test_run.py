@@ -1,89 +1,26 @@
-"""Running a study: resume, interruption, failures, and that no finished result is lost or silently replaced."""
+"""Running a study: blocks, resume, interruption, failures."""
 
 import os
 import signal
 import subprocess
 import sys
 import tempfile
-import threading
 import time
-import weakref
 from pathlib import Path
-from types import SimpleNamespace
 
-import netCDF4
 import numpy as np
 import pytest
 import xarray as xr
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from line_study import COUNT, leftovers, load, present, store_block
 from same import assert_same_numbers
 
 import study
-from study import blocks, dataset, join, order, reuse
+from study import blocks
 from study import run as running
-from study.blocks import parcel
 from study.definition import from_tables
-from study.store import Store, add, inventory
-
-TEXT = """
-[model]
-micro = "smooth"
-base = "half_space"
-[axes]
-P = {start = 1e-6, stop = 1e-4, num = 23}
-[numerics]
-block = 5
-[output]
-x = 3
-"""
-COUNT = 5  # blocks
-
-
-@pytest.fixture
-def file(tmp_path) -> Path:
-    path = tmp_path / "line.toml"
-    path.write_text(TEXT, encoding="utf-8")
-    return path
-
-
-@pytest.fixture
-def computed(monkeypatch) -> list:
-    """First cases of the blocks that are computed, in the order of their computation."""
-    seen, real = [], blocks.compute
-
-    def compute(wanted):
-        seen.append(wanted.first)
-        return real(wanted)
-
-    monkeypatch.setattr(blocks, "compute", compute)
-    return seen
-
-
-def store_block(opened, start: int, stop: int) -> Path:
-    """Compute and store the cases start <= i < stop, as a run that ends there would have."""
-    store, index = Store(opened.definition, opened.results), np.arange(start, stop)
-    store.folder.mkdir(parents=True, exist_ok=True)
-    known = inventory(store)
-    add(store, known, index, blocks.compute(parcel(opened.definition, index)))
-    return known.files[-1]
-
-
-def present(opened) -> int:
-    """Cases on disk before the results file is written."""
-    return opened.status()["cases"] - opened.status()["counts"].get(127, 0)
-
-
-def load(file, **changes) -> study.Study:
-    text = TEXT
-    for old, new in changes.items():
-        text = text.replace(old, new)
-    file.write_text(text, encoding="utf-8")
-    return study.load(file, file.parent / "results")
-
-
-def leftovers(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.rglob("*") if path.name != "line.nc")
+from study.store import Store
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])
@@ -184,107 +121,6 @@ def test_failing_block_costs_that_block_only(file, monkeypatch):
     assert opened.run().computed == 5
 
 
-def test_results_of_another_definition_are_kept(file):
-    load(file).run()
-    before = (file.parent / "results" / "line.nc").read_bytes()
-    other = load(file, **{"num = 23": "num = 24"})
-    assert other.status()["state"] == "outdated"
-    with pytest.raises(study.StudyError, match="holds results of another definition.*--force replaces them"):
-        other.run()
-    with pytest.raises(study.StudyError, match="holds results of another definition"):
-        other.open()
-    assert (file.parent / "results" / "line.nc").read_bytes() == before
-    assert other.run(force=True).computed == 22, "the two ends are the same cases"
-    assert other.open().sizes["P"] == 24
-
-
-@pytest.mark.parametrize("content", [b"", b"no netCDF"])
-def test_a_file_that_is_no_result_is_kept(file, content):
-    opened = load(file)
-    opened.results.mkdir()
-    (opened.results / "line.nc").write_bytes(content)
-    with pytest.raises(study.StudyError, match="holds results of no study known here"):
-        opened.run()
-    assert (opened.results / "line.nc").read_bytes() == content
-
-
-def test_unwritable_folder_is_found_before_computing(file, computed):
-    (file.parent / "results").write_text("in the way", encoding="utf-8")
-    with pytest.raises(study.StudyError, match="results: cannot be written: File exists"):
-        load(file).run()
-    assert computed == []
-
-
-@pytest.mark.parametrize("failure", [OSError("disk full"), KeyboardInterrupt()])
-def test_failed_write_leaves_the_old_file_and_no_litter(file, monkeypatch, failure):
-    opened = load(file)
-    opened.run()
-    found, path = opened.open(), opened.results / "line.nc"
-    before = path.read_bytes()
-
-    def replace(*_):
-        raise failure
-
-    monkeypatch.setattr(dataset.os, "replace", replace)
-    with pytest.raises(type(failure)):
-        dataset.write(found, path)
-    assert path.read_bytes() == before
-    assert leftovers(opened.results) == []
-
-
-def test_a_reader_keeps_its_file_while_it_is_replaced(file):
-    opened = load(file)
-    opened.run()
-    with xr.open_dataset(opened.results / "line.nc") as reader:
-        load(file, **{"num = 23": "num = 2"}).run(force=True)
-        assert reader.a.load().sizes["P"] == 23
-
-
-def test_netcdf_is_touched_by_the_main_thread_only(file, monkeypatch):
-    threads = set()
-    monkeypatch.setattr(xr, "open_dataset", recorded(xr.open_dataset, threads))
-    for module in (join, reuse):
-        monkeypatch.setattr(module, "netCDF4", SimpleNamespace(Dataset=recorded(netCDF4.Dataset, threads)))
-    load(file).run(workers=3)
-    load(file, **{"num = 23": "num = 45"}).run(workers=3)
-    assert threads == {threading.main_thread()}
-
-
-def test_memory_is_bounded(file, monkeypatch):
-    """A stored block is forgotten: of 60 never more than a few are alive."""
-    alive, most, real = weakref.WeakSet(), [], blocks.compute
-
-    class Arrays(dict):
-        __hash__ = object.__hash__
-
-    def compute(wanted):
-        found = Arrays(real(wanted))
-        alive.add(found)
-        most.append(len(alive))
-        return found
-
-    monkeypatch.setattr(blocks, "compute", compute)
-    load(file, **{"num = 23": "num = 300"}).run(workers=2)
-    assert len(most) == 60
-    assert max(most) <= 8
-
-
-def recorded(function, threads: set):
-    def call(*arguments, **options):
-        threads.add(threading.current_thread())
-        return function(*arguments, **options)
-
-    return call
-
-
-def test_blocks_of_a_killed_run_are_removed_when_the_results_are_there(file):
-    opened = load(file)
-    opened.run()
-    store_block(opened, 0, 5)
-    opened.run()
-    assert leftovers(opened.results) == []
-
-
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
 def test_random_blocks_orders_workers_and_parts_give_the_same_dataset(data):
@@ -354,41 +190,6 @@ def test_a_block_size_of_one_part_does_not_change_which_cases_it_has(file):
     later = np.concatenate(blocks.cut(whole[whole % 2 == 0], 5, (2, 3)))
     assert set(later) == {case for case in shares[1] if case % 2 == 0}
     assert [len(block) for block in blocks.cut(whole, 5)] == [5, 5, 5, 5, 3]
-
-
-def test_a_large_study_asks_first(file, monkeypatch, computed):
-    monkeypatch.setattr(order, "LARGE", 400)
-    opened = load(file)
-    with pytest.raises(
-        study.StudyError, match=r"^line: 23 cases: about \d+ s, at most .* on disk; --yes computes them$"
-    ):
-        opened.run()
-    assert not opened.results.joinpath("line.nc").exists() and computed == [], "nothing but a sample is computed"
-    assert opened.run(yes=True).computed == 23
-
-
-def test_dry_run_says_what_is_there_and_writes_nothing(file):
-    opened = load(file)
-    cost = opened.dry_run()
-    assert (cost.cases, cost.present) == (23, 0) and cost.seconds > 0
-    assert cost.size == 8 * 23 * (16 + 2 * 3) and cost.memory > cost.size
-    assert not opened.results.exists()
-    store_block(opened, 0, 5)
-    assert opened.dry_run().present == 5
-    opened.run()
-    before = sorted(opened.results.rglob("*"))
-    cost = opened.dry_run()
-    assert (cost.present, cost.seconds) == (23, 0.0)
-    assert load(file, **{"num = 23": "num = 45"}).dry_run().present == 23
-    assert sorted(opened.results.rglob("*")) == before
-
-
-def test_estimated_time_is_of_the_order_of_the_run(file):
-    opened = load(file, **{"num = 23": "num = 20000", "block = 5": "block = 2000"})
-    cost = opened.dry_run(workers=1)
-    begun = time.perf_counter()
-    blocks.compute(parcel(opened.definition, np.arange(20000)))
-    assert 0.02 < cost.seconds / (time.perf_counter() - begun) < 50
 
 
 # a test run in the background of a shell ignores SIGINT, and so would its children

@@ -1,0 +1,70 @@
+"""A study of 23 loads in five blocks, the fixtures around it, and what a run of it leaves on disk."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import study
+from study import blocks
+from study.blocks import parcel
+from study.store import Store, add, inventory
+
+TEXT = """
+[model]
+micro = "smooth"
+base = "half_space"
+[axes]
+P = {start = 1e-6, stop = 1e-4, num = 23}
+[numerics]
+block = 5
+[output]
+x = 3
+"""
+COUNT = 5  # blocks
+
+
+@pytest.fixture
+def file(tmp_path) -> Path:
+    path = tmp_path / "line.toml"
+    path.write_text(TEXT, encoding="utf-8")
+    return path
+
+
+@pytest.fixture
+def computed(monkeypatch) -> list:
+    """First cases of the blocks that are computed, in the order of their computation."""
+    seen, real = [], blocks.compute
+
+    def compute(wanted):
+        seen.append(wanted.first)
+        return real(wanted)
+
+    monkeypatch.setattr(blocks, "compute", compute)
+    return seen
+
+
+def store_block(opened, start: int, stop: int) -> Path:
+    """Compute and store the cases start <= i < stop, as a run that ends there would have."""
+    store, index = Store(opened.definition, opened.results), np.arange(start, stop)
+    store.folder.mkdir(parents=True, exist_ok=True)
+    known = inventory(store)
+    add(store, known, index, blocks.compute(parcel(opened.definition, index)))
+    return known.files[-1]
+
+
+def present(opened) -> int:
+    """Cases on disk before the results file is written."""
+    return opened.status()["cases"] - opened.status()["counts"].get(127, 0)
+
+
+def load(file, **changes) -> study.Study:
+    text = TEXT
+    for old, new in changes.items():
+        text = text.replace(old, new)
+    file.write_text(text, encoding="utf-8")
+    return study.load(file, file.parent / "results")
+
+
+def leftovers(folder: Path) -> list[str]:
+    return sorted(path.name for path in folder.rglob("*") if path.name != "line.nc")

@@ -16,6 +16,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 STUDIES = Path("studies")
 INTERRUPTED = 130  # exit code
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 KEPT = "; finished blocks are kept, the same command goes on from there"
 
 
@@ -213,10 +214,16 @@ def _part(text: str) -> tuple[int, int]:
     return int(numbers[0]), int(numbers[1])
 
 
-def _interrupt(number: int, _frame) -> None:
-    """End in good order; a second signal of the kind ends at once, which costs the blocks in work and no more."""
-    signal.signal(number, signal.SIG_DFL)
+def _interrupt(*_) -> None:
+    """End in good order; a second signal ends at once, which costs the blocks in work and no more."""
+    for number in SIGNALS:
+        if signal.getsignal(number) is _interrupt:
+            signal.signal(number, _end)
     raise KeyboardInterrupt
+
+
+def _end(*_) -> None:
+    os._exit(INTERRUPTED)
 
 
 def main(arguments=None) -> int:
@@ -236,7 +243,7 @@ def main(arguments=None) -> int:
 
 
 if __name__ == "__main__":
-    for _number in (signal.SIGINT, signal.SIGTERM):
+    for _number in SIGNALS:
         if signal.getsignal(_number) is not signal.SIG_IGN:
             signal.signal(_number, _interrupt)
     _code = main()

@@ -193,7 +193,7 @@ def _add_film(out, part, tab, q):
         at_edge = ((c @ edge) * q).sum(axis=1)
         edge_q[index] += at_edge
         rows_q[index] -= at_edge[:, None]
-        rows_q[here] += np.matmul(_at_nodes(c, near), q[:, :, None])[..., 0]
+        rows_q[here] += np.matmul(near.of(c), q[:, :, None])[..., 0]
 
 
 def layer_edge(weights, grid):
@@ -205,11 +205,6 @@ def layer_edge(weights, grid):
         if film is not None:
             row[part.index] += film @ tab.film[2]
     return row
-
-
-def _at_nodes(c, near):
-    """The convolution with c (b, T) at the nodes where it is felt: (b, m, n)."""
-    return near.of(c)
 
 
 def layer_matrix(weights, grid):
@@ -226,7 +221,7 @@ def layer_matrix(weights, grid):
         if film is not None:
             nodes, near, edge = tab.film
             rows[index] -= (film @ edge)[:, None]
-            rows[np.ix_(index, nodes)] += _at_nodes(film, near)
+            rows[np.ix_(index, nodes)] += near.of(film)
     return rows
 
 
@@ -252,7 +247,7 @@ def layer_displacement(weights, q, grid, x, half_space):
             near = felt(grid, x)
             rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
             out[index] -= ((film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
-            out[np.ix_(index, near)] += np.matmul(_at_nodes(film, rows), q[index][:, :, None])[..., 0]
+            out[np.ix_(index, near)] += np.matmul(rows.of(film), q[index][:, :, None])[..., 0]
     return half_space_share(weights)[:, None] * half_space + (np.pi / 2) * out
 
 

@@ -196,12 +196,11 @@ def control_gradient(control, ev, mesh):
 
 
 def jacobian(ev, mesh, K=None):
-    """dF/dq (B, n, n) at fixed η, and dF/dη (B, n) at fixed q. In q, not y: the operator is linear in it. K (B or 1,
-    n, n) is the matrix of the operator, if it is at hand."""
-    matrix = ev.X[:, :, None] * (ev.base.matrix(mesh) if K is None else K)
-    diagonal = np.arange(mesh.n)
-    matrix[:, diagonal, diagonal] += ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
-    return matrix, ev.X * (ev.base.d_Kq - ev.base.Kq) - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g)
+    """dF/dq at fixed η, X (K + diag(d)), as K (B or 1, n, n) and d (B, n), and dF/dη at fixed q, over X (B, n). In q,
+    not y: the operator is linear in it. K is the matrix of the operator, if it is at hand."""
+    own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
+    dF_deta = ev.base.d_Kq - ev.base.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X
+    return ev.base.matrix(mesh) if K is None else K, own / ev.X, dF_deta
 
 
 def first_guess(cases, law, mesh):
@@ -217,8 +216,7 @@ def smooth_start(cases, law, mesh):
     X, Y, Z = groups(cases, np.log(cases.value))
     s2 = mesh.s**2
     K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).matrix(mesh)
-    matrix = X[:, :, None] * K + Y[:, :, None] * np.eye(mesh.n)
-    smooth = solve_stack(matrix, np.tile(s2[:, None], (len(X), 1, 1)))[..., 0]
+    smooth = solve_stack(K, Y / X * np.ones(mesh.n), (s2 / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
     alone = law.sparse(s2 / Z, cases.exponent)
     return State(law.guess(1 / (1 / smooth + 1 / alone), cases.exponent), np.log(cases.value))

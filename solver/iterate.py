@@ -75,7 +75,7 @@ def _matrix(lagged, ev, eta, grid):
 
 def _take(lagged, index):
     """The sub-batch at `index` of what :func:`_matrix` returns."""
-    return lagged and (lagged[0][index], lagged[1][index])
+    return lagged and (np.take(lagged[0].transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1), lagged[1][index])
 
 
 def settle(cases, law, grid, state, closed, count, known):

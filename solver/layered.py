@@ -208,21 +208,25 @@ def layer_edge(weights, grid):
 
 
 def layer_matrix(weights, grid):
-    """Λ - Λ(edge) of a batch on a mesh, (B, n, n)."""
-    size = sum(len(part.index) for part in weights)
-    rows = np.empty((size, grid.n, grid.n))
+    """Λ - Λ(edge) of a batch on a mesh, (B, n, n); the cases lie next to each other in memory."""
+    order = np.concatenate([part.index for part in weights])
+    flat, end = np.empty((grid.n**2, len(order))), 0
     for part in weights:
-        index, tab, (W, film) = part.index, table(grid, *part.table), part.moved()
+        tab, (W, film) = table(grid, *part.table), part.moved()
+        own = flat[:, end : end + len(W)]
+        rows, end = own.reshape(grid.n, grid.n, -1).transpose(2, 0, 1), end + len(W)
         if tab.product is not None:
-            rows[index] = (W @ tab.product).reshape(-1, grid.n, grid.n)
+            np.matmul(tab.product.T, W.T, out=own)
         else:
-            for i, w in zip(index, W, strict=True):
-                rows[i] = (tab.J * w[:, None]).T @ tab.phi
+            for row, w in zip(rows, W, strict=True):
+                row[:] = (tab.J * w[:, None]).T @ tab.phi
         if film is not None:
             nodes, near, edge = tab.film
-            rows[index] -= (film @ edge)[:, None]
-            rows[np.ix_(index, nodes)] += near.of(film)
-    return rows
+            rows -= (film @ edge)[:, None]
+            rows[:, nodes] += near.of(film)
+    if np.any(np.diff(order) < 0):
+        flat = np.take(flat, np.argsort(order), axis=1)
+    return flat.reshape(grid.n, grid.n, -1).transpose(2, 0, 1)
 
 
 def half_space_share(weights):

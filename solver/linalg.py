@@ -1,14 +1,65 @@
-"""Stacks of small linear systems."""
+"""Stacks of small linear systems of one operator, or one each, and a diagonal of their own."""
 
 import numpy as np
 
+#: Fewest systems that are eliminated together, and most unknowns of each: else LAPACK, one by one, is faster.
+_FEWEST, _LARGEST = 200, 24
+#: Numbers of the systems eliminated together: they stay in the cache.
+_CACHED = 250_000
 
-def solve_stack(matrix, rhs):
-    """Solve (B, n, n) x = (B, n, k): a singular member cannot spoil the others, its own solution is NaN."""
+
+def solve_stack(K, diagonal, rhs):
+    """Solve (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k); a singular member cannot
+    spoil the others, its own solution is NaN.
+
+    Large stacks are eliminated without exchange of rows, which an elastic base on springs does not need: nothing grows.
+    Where a pivot is not positive, LAPACK has the system.
+    """
+    size, n, _ = rhs.shape
+    if size < _FEWEST or n > _LARGEST:
+        return _one_by_one(K, diagonal, rhs)
+    solution, sound = np.empty_like(rhs), np.empty(size, bool)
+    block = -(-size // -(-size * n * n // _CACHED))
+    for start in range(0, size, block):
+        part = slice(start, start + block)
+        with np.errstate(all="ignore"):
+            solution[part], sound[part] = _eliminate(K if len(K) == 1 else K[part], diagonal[part], rhs[part])
+    if not sound.all():
+        failed = np.flatnonzero(~sound)
+        solution[failed] = _one_by_one(K if len(K) == 1 else K[failed], diagonal[failed], rhs[failed])
+    return solution
+
+
+def _eliminate(K, diagonal, rhs):
+    """Solution (B, n, k) by LU decomposition of all systems at a time, and where all pivots are positive (B,)."""
+    size, n, columns = rhs.shape
+    system = np.empty((n, n + columns, size))
+    system[:, :n], system[:, n:] = K.transpose(1, 2, 0), rhs.transpose(1, 2, 0)
+    pivots, x = np.einsum("kkb->kb", system[:, :n]), system[:, n:]
+    pivots += diagonal.T
+    for k in range(n):
+        above, left = system[:k], system[k:, :k]
+        system[k, k:] -= np.einsum("jb,jmb->mb", left[0], above[:, k:])
+        below = system[k + 1 :, k]
+        below -= np.einsum("mjb,jb->mb", left[1:], above[:, k])
+        below /= pivots[k]
+    for k in reversed(range(n)):
+        x[k] -= np.einsum("jb,jmb->mb", system[k, k + 1 : n], x[k + 1 :])
+        x[k] /= pivots[k]
+    return x.transpose(2, 0, 1), (pivots > 0).all(axis=0)
+
+
+def _one_by_one(K, diagonal, rhs):
+    matrix = np.zeros((*rhs.shape[:2], rhs.shape[1])) + K
+    np.einsum("bii->bi", matrix)[...] += diagonal
+    return _lapack(matrix, rhs)
+
+
+def _lapack(matrix, rhs):
     try:
         return np.linalg.solve(matrix, rhs)
     except np.linalg.LinAlgError:
         if len(matrix) == 1:
             return np.full_like(rhs, np.nan)
         half = len(matrix) // 2
-        return np.concatenate([solve_stack(matrix[:half], rhs[:half]), solve_stack(matrix[half:], rhs[half:])])
+        return np.concatenate([_lapack(matrix[:half], rhs[:half]), _lapack(matrix[half:], rhs[half:])])

@@ -12,8 +12,8 @@ LIMIT = 60
 
 def tangent(ev, mesh):
     """dq/dη (B, n) along the branch of solutions."""
-    matrix, dF_deta = jacobian(ev, mesh)
-    return solve_stack(matrix, -dF_deta[..., None])[..., 0]
+    K, diagonal, dF_deta = jacobian(ev, mesh)
+    return solve_stack(K, diagonal, -dF_deta[..., None])[..., 0]
 
 
 def advance(cases, state, ev, mesh, law, K=None):
@@ -23,8 +23,8 @@ def advance(cases, state, ev, mesh, law, K=None):
     The step is taken in y, in which q is a convex power and g nearly a square, and limited to a factor of five: from
     the first guess of :mod:`equation` it converges without a line search.
     """
-    matrix, dF_deta = jacobian(ev, mesh, K)
-    solution = solve_stack(matrix, np.stack([-dF_deta, -ev.F], axis=-1))
+    K, diagonal, dF_deta = jacobian(ev, mesh, K)
+    solution = solve_stack(K, diagonal, np.stack([-dF_deta, -ev.F / ev.X], axis=-1))
     dq_deta, dq = solution[..., 0], solution[..., 1]
     by_q, by_eta = control_gradient(cases.control, ev, mesh)
     d_eta = -(ev.G + (by_q * dq).sum(axis=1)) / (by_eta + (by_q * dq_deta).sum(axis=1))

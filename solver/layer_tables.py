@@ -1,8 +1,4 @@
-"""Tables of the layered operator: the quadrature in k for each octave of h/a, and Hankel transforms at its nodes.
-
-Its panels follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers
-n^(-1/3)/η and 1/(nη), η = h/a), so that it is as accurate for every h/a and n of the octave; J0 φ is tabulated once.
-"""
+"""Tables of the layered operator: Hankel transforms at the nodes of the quadrature of each octave of h/a."""
 
 from collections import OrderedDict
 from functools import lru_cache
@@ -14,11 +10,9 @@ import numpy as np
 from scipy.special import j0
 
 from . import film
+from .layer_quadrature import CUT, FILM, few, quadrature
 from .quadrature import gauss_legendre, lagrange
 
-#: Octaves of h/a with tables of their own; below is the octave FILM, above nothing of the half-space is left.
-OCTAVES = (-8, 40)
-FILM = OCTAVES[0] - 1
 #: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
 _KEEP = 4e6
 #: Of those between the nodes, of which many are kept.
@@ -29,12 +23,11 @@ _MOST_BYTES = 4e8
 _PHASE = 120.0
 #: Nodes k of a part of the transform that is kept.
 _ROWS = 250
-#: Widest panel in k: wider ones would need Gauss rules that are slow to make.
-_WIDEST = 200.0
-
-
 class Table(NamedTuple):
-    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,); J0 φ (G, n²).
+    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,).
+
+    `nodes` are those (M,), or all, of which w (L - 1) makes the edge and the matrix: times `edge` (M, n) and `product`
+    (M, n²).
 
     `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
     """
@@ -43,54 +36,10 @@ class Table(NamedTuple):
     J: np.ndarray
     phi: np.ndarray
     J_edge: np.ndarray
+    nodes: np.ndarray | slice
+    edge: np.ndarray
     product: np.ndarray | None
     film: tuple | None
-
-
-class Rule(NamedTuple):
-    """Of the quadrature in k: nodes of a panel beside those its oscillation takes, factor of the root of its width,
-    fewest nodes of panels below and above u = 1/2, where u ends, at most and at octave 0; nodes less a digit of e^-2u.
-    """
-
-    more: int
-    root: float
-    least: tuple
-    end: tuple
-    less: float
-
-
-#: To rounding (1e-11 below h/a = 1/64, where it ends), and to COARSE of the larger of L(0) and L(inf) with half the
-#: nodes (tests/test_layered_quadrature.py).
-_RULES = {False: Rule(9, 3.0, (11, 15), (17.0, 15.0), 0.8), True: Rule(4, 2.5, (8, 10), (15.0, 14.5), 1.0)}
-COARSE = 1e-9
-
-
-def _end(octave, coarse=False):
-    """Where the integral over u may end: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1, their product below the error."""
-    most, middle = _RULES[coarse].end
-    return min(most, middle + 0.7 * octave)
-
-
-#: Largest k of the quadrature of films.
-CUT = _end(FILM) * 2.0**-FILM
-
-
-@lru_cache(maxsize=128)
-def quadrature(octave, depth, coarse=False):
-    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
-    rule, scale, cut = _RULES[coarse], 2.0**-octave, _end(octave, coarse)
-    ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
-    k, weight = [], []
-    for low, high in zip(ends[:-1], ends[1:], strict=True):
-        pieces = int(np.ceil((high - low) * scale / _WIDEST))
-        width = (high - low) * scale / pieces
-        order = max(rule.least[int(high >= 0.5)], int(width / 2 + rule.root * np.cbrt(width)) + rule.more)
-        decayed = 2 * (low - np.log1p(low)) / np.log(10)
-        t, w = gauss_legendre(max(7, order - int(rule.less * decayed)))
-        for piece in range(pieces):
-            k.append(low * scale + (piece + t) * width)
-            weight.append(width * w)
-    return np.concatenate(k), np.concatenate(weight)
 
 
 _tables = OrderedDict()
@@ -114,18 +63,24 @@ def table(grid, octave, depth, coarse=False):
 
 def _size(found):
     """Bytes of a table."""
-    return sum(part.nbytes for part in (*found[:5], *(found.film or ())) if part is not None)
+    return sum(getattr(part, "nbytes", 0) for part in (*found[:-1], *(found.film or ())))
 
 
 def _table(grid, octave, depth, coarse):
-    k, _ = quadrature(octave, depth, coarse)
+    k, weight = quadrature(octave, depth, coarse)
     n = grid.n
     J_edge = j0(k)
     J = j0(k[:, None] * grid.x) - J_edge[:, None]
     phi = transform(grid, k)
-    keep = J.shape[0] * n * n <= _KEEP
-    product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n) if keep else None
-    return Table(k, J, phi, J_edge, product, _film_table(grid) if octave == FILM else None)
+    own, at_edge = few(octave, depth, coarse), J_edge[:, None] * phi
+    if own is None:
+        nodes, edge, product = slice(None), at_edge, None
+        if phi.size * n <= _KEEP:
+            product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n)
+    else:
+        nodes, spread = own.nodes, own.spread / weight[own.nodes, None]
+        edge, product = spread @ at_edge, np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
+    return Table(k, J, phi, J_edge, nodes, edge, product, _film_table(grid) if octave == FILM else None)
 
 
 @lru_cache(maxsize=4)

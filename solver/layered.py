@@ -18,7 +18,8 @@ import numpy as np
 
 from . import film
 from .kernel import decaying_part, whole
-from .layer_tables import COARSE, CUT, FILM, OCTAVES, between, felt, quadrature, table
+from .layer_quadrature import COARSE, CUT, FILM, OCTAVES, few, quadrature
+from .layer_tables import between, felt, table
 
 #: Numbers in one block of kernel values.
 _BLOCK = 16384
@@ -69,12 +70,13 @@ class Weights(NamedTuple):
         arrays = (None if v is None else v[rows] for v in self[4:])
         return Weights(index, *self.table, *arrays)
 
-    def moved(self):
-        """W and film `step` farther."""
+    def moved(self, nodes=slice(None)):
+        """W at some nodes, and film, `step` farther."""
         if not self.step.any():
-            return self.W, self.film
+            return self.W[:, nodes], self.film
         step = self.step[:, None]
-        return self.W + step * self.dW, None if self.film is None else self.film + step * self.d_film
+        film = None if self.film is None else self.film + step * self.d_film
+        return self.W[:, nodes] + step * self.dW[:, nodes], film
 
 
 class LayerProducts(NamedTuple):
@@ -200,8 +202,9 @@ def layer_edge(weights, grid):
     """Λ at the edge of a batch on a mesh, (B, n)."""
     row = np.empty((sum(len(part.index) for part in weights), grid.n))
     for part in weights:
-        tab, (W, film) = table(grid, *part.table), part.moved()
-        row[part.index] = (W * tab.J_edge) @ tab.phi
+        tab = table(grid, *part.table)
+        W, film = part.moved(tab.nodes)
+        row[part.index] = W @ tab.edge
         if film is not None:
             row[part.index] += film @ tab.film[2]
     return row
@@ -212,7 +215,8 @@ def layer_matrix(weights, grid):
     order = np.concatenate([part.index for part in weights])
     flat, end = np.empty((grid.n**2, len(order))), 0
     for part in weights:
-        tab, (W, film) = table(grid, *part.table), part.moved()
+        tab = table(grid, *part.table)
+        W, film = part.moved(tab.nodes)
         own = flat[:, end : end + len(W)]
         rows, end = own.reshape(grid.n, grid.n, -1).transpose(2, 0, 1), end + len(W)
         if tab.product is not None:

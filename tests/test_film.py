@@ -8,12 +8,12 @@ from numpy.testing import assert_allclose
 from scipy.special import gamma, jv
 from solver_cases import JUDGED, MAIN, difference
 
-from solver import Problem, Status, film, layer_tables, solve
+from solver import Problem, Status, film, layer_quadrature, layer_tables, solve
 from solver.cases import as_cases, dimensionless
 from solver.equation import first_guess
 from solver.iterate import iterate
 from solver.kernel import decaying_part
-from solver.layer_tables import CUT, FILM
+from solver.layer_quadrature import CUT, FILM
 from solver.layered import Layer, half_space_share, layer_matrix, layer_weights
 from solver.mesh import mesh, panel_mesh
 from solver.thin_layer_error import edge_shift
@@ -94,7 +94,7 @@ def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
     layer = Layer(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded)))
     weights = layer_weights(layer, np.ones(1))
     assert weights[0].octave == FILM
-    k, weight = layer_tables.quadrature(FILM, weights[0].depth)
+    k, weight = layer_quadrature.quadrature(FILM, weights[0].depth)
     W = weight * decaying_part(k * eta, n, nu, 0.3, np.array(bonded))[0]
     table = layer_tables.table(grid, FILM, weights[0].depth)
     whole = (table.J * W[:, None]).T @ table.phi

@@ -5,9 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import j0
 
-from solver import layer_tables
+from solver import layer_quadrature, layer_tables
 from solver.kernel import decaying_part
-from solver.layer_tables import COARSE
+from solver.layer_quadrature import COARSE
 from solver.layered import (
     Layer,
     half_space_share,
@@ -34,7 +34,7 @@ def test_both_rules(octave, n):
     """To 1e-11, and to COARSE, of the larger of L(0) and L(inf), against panels that halve towards k = 0 and go on."""
     grid = mesh(n)
     layer = layers(2.0 ** (octave + np.r_[1e-9, 1 - 1e-9, np.random.default_rng(octave + 9).random(10)]), octave + 9)
-    end = 1.5 * layer_tables.quadrature(octave, 0)[0][-1]
+    end = 1.5 * layer_quadrature.quadrature(octave, 0)[0][-1]
     ends = np.unique(np.r_[0.0, end * 2.0 ** -np.arange(40.0), np.arange(0.0, end, 30.0)])
     t, w = gauss_legendre(48)
     k, w = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
@@ -53,7 +53,7 @@ def test_both_rules(octave, n):
 
 def test_the_coarse_rule_has_half_the_nodes():
     for octave in (-1, 0, 1):
-        fine, coarse = (len(layer_tables.quadrature(octave, 0, rule)[0]) for rule in (False, True))
+        fine, coarse = (len(layer_quadrature.quadrature(octave, 0, rule)[0]) for rule in (False, True))
         assert coarse < 0.66 * fine
 
 

@@ -23,6 +23,8 @@ _MOST_BYTES = 4e8
 _PHASE = 120.0
 #: Nodes k of a part of the transform that is kept.
 _ROWS = 250
+
+
 class Table(NamedTuple):
     """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,).
 

@@ -149,6 +149,10 @@ def _weights(layer, a, octave, depth, coarse, index):
     k, weight = quadrature(octave, depth, coarse)
     radius, part = a[index], layer.take(index)
     eta, key = part.h / radius, (index, octave, depth, coarse, radius, np.zeros(len(index)))
+    own = few(octave, depth, coarse)
+    if own is not None:
+        values = _sampled(part, eta, k[own.nodes], np.ones(len(own.nodes)), 0.0)
+        return Weights(*key, *(v @ own.spread for v in values), None, None, None)
     if octave != FILM:
         return Weights(*key, *_sampled(part, eta, k, weight, 0.0), None, None, None)
     level = whole(CUT * eta / 2, *part[1:])[:, None] - 1

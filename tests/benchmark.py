@@ -3,8 +3,8 @@
     python tests/benchmark.py [bench.json]
 
 The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case, both in
-processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, and at equal
-error the paper's way and, if they are installed (extra `peers`), other codes.
+processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, a study of a
+million cases, and at equal error the paper's way and, if they are installed (extra `peers`), other codes.
 """
 
 import json
@@ -22,6 +22,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np  # noqa: E402
 from benchmark_peers import peers  # noqa: E402
+from benchmark_study import whole_run  # noqa: E402
 
 from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
 from study.problem_sets import SETS  # noqa: E402
@@ -183,6 +184,7 @@ def measure() -> dict:
         "sizes": by_size,
         "flatness": flatness(by_size),
         "threads": threads(),
+        "whole_run": [whole_run()],
         "papers_way": papers_way(),
         "peers": peers(seconds),
     }
@@ -202,7 +204,7 @@ def report(result: dict) -> None:
     flat = result["flatness"]
     word = "flat" if flat["flat"] else "not flat"
     print(f"time per case from {flat['from']} cases on: {word}, within {flat['deviation']:.1%} of its mean")
-    for name in ("sizes", "threads", "papers_way", "peers"):
+    for name in ("sizes", "threads", "whole_run", "papers_way", "peers"):
         print(f"\n{name}")
         for row in result[name]:
             print("  " + ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"

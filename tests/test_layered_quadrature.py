@@ -5,9 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import j0
 
-from solver import layer_quadrature, layer_tables
+from solver import layer_tables
 from solver.kernel import decaying_part
-from solver.layer_quadrature import COARSE
+from solver.layer_quadrature import COARSE, FILM, few, quadrature
 from solver.layered import (
     Layer,
     half_space_share,
@@ -34,7 +34,7 @@ def test_both_rules(octave, n):
     """To 1e-11, and to COARSE, of the larger of L(0) and L(inf), against panels that halve towards k = 0 and go on."""
     grid = mesh(n)
     layer = layers(2.0 ** (octave + np.r_[1e-9, 1 - 1e-9, np.random.default_rng(octave + 9).random(10)]), octave + 9)
-    end = 1.5 * layer_quadrature.quadrature(octave, 0)[0][-1]
+    end = 1.5 * quadrature(octave, 0)[0][-1]
     ends = np.unique(np.r_[0.0, end * 2.0 ** -np.arange(40.0), np.arange(0.0, end, 30.0)])
     t, w = gauss_legendre(48)
     k, w = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
@@ -53,8 +53,29 @@ def test_both_rules(octave, n):
 
 def test_the_coarse_rule_has_half_the_nodes():
     for octave in (-1, 0, 1):
-        fine, coarse = (len(layer_quadrature.quadrature(octave, 0, rule)[0]) for rule in (False, True))
+        fine, coarse = (len(quadrature(octave, 0, rule)[0]) for rule in (False, True))
         assert coarse < 0.66 * fine
+
+
+@pytest.mark.parametrize("octave", [-8, -6, -3, 0, 20])
+def test_few_nodes_determine_the_kernel(octave):
+    """L - 1, and about as well u dL/du, of other soft layers than those by which they were chosen, limits included."""
+    random, size = np.random.default_rng(octave + 100), 2000
+    eta = 2.0 ** (octave + np.r_[0.0, 1.0, random.random(size - 2)])
+    n = np.r_[2.0, 1e-8, 0.0, 2 * random.random(size // 2), 10 ** random.uniform(-8, 0, size // 2 - 3)]
+    nu1, nu2 = random.choice([0.0, 0.5, 0.3, *random.random(5) / 2], (2, size))
+    layer = [v[:, None] for v in (n, nu1, nu2, random.random(size) < 0.5)]
+    for coarse, error, d_error in ((False, 2e-14, 1e-12), (True, 3e-10, 5e-9)):
+        k, weight = quadrature(octave, 0, coarse)
+        own = few(octave, 0, coarse)
+        assert len(own.nodes) < 0.8 * len(k)
+        for values, allowed in zip(decaying_part(k * eta[:, None], *layer), (error, d_error), strict=True):
+            assert np.abs(values[:, own.nodes] @ (own.spread / weight) - values).max() < allowed
+
+
+def test_stiff_layers_and_films_have_no_few_nodes():
+    assert few(-1, 6, True) is None
+    assert few(FILM, 0, False) is None
 
 
 def test_weights_within_reach_are_moved_to_first_order():

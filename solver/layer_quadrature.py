@@ -1,0 +1,97 @@
+"""The quadrature in k of the layered operator for each octave of h/a, and the few nodes that determine L - 1 at all.
+
+Its panels follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers
+n^(-1/3)/η and 1/(nη), η = h/a), so that it is as accurate for every h/a and n of the octave. L - 1 does not oscillate:
+of all soft layers, at all h/a of an octave, it lies within rounding in a space of some 55 dimensions.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from scipy.linalg import qr, solve_triangular
+
+from .kernel import decaying_part
+from .quadrature import gauss_legendre
+
+#: Octaves of h/a with tables of their own; below is the octave FILM, above nothing of the half-space is left.
+OCTAVES = (-8, 40)
+FILM = OCTAVES[0] - 1
+#: Widest panel in k: wider ones would need Gauss rules that are slow to make.
+_WIDEST = 200.0
+#: Random layers from whose L - 1 and u dL/du the few nodes are found, and what is left out of them, over the largest.
+_SAMPLES, _LEFT_OUT = 300, {False: 3e-16, True: 1e-11}
+
+
+class Rule(NamedTuple):
+    """Of the quadrature in k: nodes of a panel beside those its oscillation takes, factor of the root of its width,
+    fewest nodes of panels below and above u = 1/2, where u ends, at most and at octave 0; nodes less a digit of e^-2u.
+    """
+
+    more: int
+    root: float
+    least: tuple
+    end: tuple
+    less: float
+
+
+#: To rounding (1e-11 below h/a = 1/64, where it ends), and to COARSE of the larger of L(0) and L(inf) with half the
+#: nodes (tests/test_layered_quadrature.py).
+_RULES = {False: Rule(9, 3.0, (11, 15), (17.0, 15.0), 0.8), True: Rule(4, 2.5, (8, 10), (15.0, 14.5), 1.0)}
+COARSE = 1e-9
+
+
+def _end(octave, coarse=False):
+    """Where the integral over u may end: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1, their product below the error."""
+    most, middle = _RULES[coarse].end
+    return min(most, middle + 0.7 * octave)
+
+
+#: Largest k of the quadrature of films.
+CUT = _end(FILM) * 2.0**-FILM
+
+
+@lru_cache(maxsize=128)
+def quadrature(octave, depth, coarse=False):
+    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
+    rule, scale, cut = _RULES[coarse], 2.0**-octave, _end(octave, coarse)
+    ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
+    k, weight = [], []
+    for low, high in zip(ends[:-1], ends[1:], strict=True):
+        pieces = int(np.ceil((high - low) * scale / _WIDEST))
+        width = (high - low) * scale / pieces
+        order = max(rule.least[int(high >= 0.5)], int(width / 2 + rule.root * np.cbrt(width)) + rule.more)
+        decayed = 2 * (low - np.log1p(low)) / np.log(10)
+        t, w = gauss_legendre(max(7, order - int(rule.less * decayed)))
+        for piece in range(pieces):
+            k.append(low * scale + (piece + t) * width)
+            weight.append(width * w)
+    return np.concatenate(k), np.concatenate(weight)
+
+
+class Few(NamedTuple):
+    """Indices (M,) of nodes of a quadrature, and (M, G) what makes w (L - 1) at all nodes of L - 1 at those."""
+
+    nodes: np.ndarray
+    spread: np.ndarray
+
+
+@lru_cache(maxsize=64)
+def few(octave, depth, coarse):
+    """The :class:`Few` nodes for n <= 2, by interpolative decomposition of random samples; None for others.
+
+    What is left out is below 1e-14, on the coarse quadrature 2e-10, of L - 1 (tests/test_layered_quadrature.py).
+    """
+    if depth or octave == FILM:
+        return None
+    random, (k, weight) = np.random.default_rng(0), quadrature(octave, depth, coarse)
+    n = np.where(random.random(_SAMPLES) < 0.5, random.uniform(0, 2, _SAMPLES), 10 ** random.uniform(-4, 0, _SAMPLES))
+    eta, bonded = 2.0 ** (octave + random.random(_SAMPLES)), random.random(_SAMPLES) < 0.67
+    nu1, nu2 = random.uniform(0, 0.5, (2, _SAMPLES))
+    samples = decaying_part(k * eta[:, None], *(v[:, None] for v in (n, nu1, nu2, bonded)))
+    R, order = qr(np.concatenate(samples), mode="r", pivoting=True)
+    count = int(np.sum(np.abs(np.diag(R)) > _LEFT_OUT[coarse] * np.abs(R[0, 0])))
+    spread = np.empty((count, len(k)))
+    spread[:, order[:count]] = np.eye(count)
+    spread[:, order[count:]] = solve_triangular(R[:count, :count], R[:count, count:])
+    return Few(order[:count], spread * weight)

@@ -1,0 +1,66 @@
+"""A study of a million thin rough cases with profiles by `python -m study run`, from file to dataset; and what the
+solver alone takes for such cases on two threads."""
+
+import resource
+import subprocess
+import sys
+import time
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+
+from solver import Problem, solve
+from study.blocks import parcel
+from study.definition import read
+
+STUDY = """
+[model]
+micro = "disc_cell"
+base = "thin_layer"
+bonding = "bonded"
+n = 0.5
+
+[axes]
+P = { start = 1e-7, stop = 1e-3, num = 100, spacing = "log" }
+Ra = { start = 5e-4, stop = 1e-2, num = 10, spacing = "log" }
+Nbar = { start = 1e5, stop = 1e6, num = 10, spacing = "log" }
+h = { start = 1e-3, stop = 0.1, num = 10, spacing = "log" }
+nu1 = { start = 0.2, stop = 0.38, num = 10 }
+
+[numerics]
+rtol = 1e-6
+
+[output]
+x = 33
+"""
+WORKERS, BLOCK, DRAWN, REPEATS = 2, 8000, 64_000, 3
+
+
+def whole_run() -> dict:
+    """Wall time and largest memory of the run, of the solver for the same cases (from DRAWN of them), and the share."""
+    with TemporaryDirectory() as folder:
+        path = Path(folder, "million.toml")
+        path.write_text(STUDY, encoding="utf-8")
+        command = [sys.executable, "-m", "study", "run", str(path), "--workers", str(WORKERS), "--yes"]
+        start = time.perf_counter()
+        subprocess.run(command, cwd=folder, check=True, stderr=subprocess.DEVNULL)
+        run = time.perf_counter() - start
+        peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
+        definition = read(path)
+        size = Path(folder, "results", "million.nc").stat().st_size
+    drawn = np.random.default_rng(0).permutation(definition.grid.size)[:DRAWN]
+    blocks = [parcel(definition, drawn[i : i + BLOCK]) for i in range(0, DRAWN, BLOCK)]
+    problems = [Problem.of(**block.parameters) for block in blocks]
+    alone = min(_seconds(problems, definition.x) for _ in range(REPEATS)) * definition.grid.size / DRAWN
+    row = {"cases": definition.grid.size, "profile_points": len(definition.x), "workers": WORKERS}
+    row |= {"seconds": run, "solver_seconds": alone, "share_of_solver_rate": alone / run}
+    return row | {"peak_bytes": peak, "result_bytes": size}
+
+
+def _seconds(problems: list[Problem], x: np.ndarray) -> float:
+    start = time.perf_counter()
+    with ThreadPoolExecutor(WORKERS) as pool:
+        list(pool.map(lambda problem: solve(problem, x), problems))
+    return time.perf_counter() - start

@@ -3,9 +3,7 @@
 import numpy as np
 
 #: Fewest systems that are eliminated together, and most unknowns of each: else LAPACK, one by one, is faster.
-_FEWEST, _LARGEST = 200, 24
-#: Numbers of the systems eliminated together: they stay in the cache.
-_CACHED = 250_000
+_FEWEST, _LARGEST = 200, 32
 
 
 def solve_stack(K, diagonal, rhs):
@@ -18,12 +16,8 @@ def solve_stack(K, diagonal, rhs):
     size, n, _ = rhs.shape
     if size < _FEWEST or n > _LARGEST:
         return _one_by_one(K, diagonal, rhs)
-    solution, sound = np.empty_like(rhs), np.empty(size, bool)
-    block = -(-size // -(-size * n * n // _CACHED))
-    for start in range(0, size, block):
-        part = slice(start, start + block)
-        with np.errstate(all="ignore"):
-            solution[part], sound[part] = _eliminate(K if len(K) == 1 else K[part], diagonal[part], rhs[part])
+    with np.errstate(all="ignore"):
+        solution, sound = _eliminate(K, diagonal, rhs)
     if not sound.all():
         failed = np.flatnonzero(~sound)
         solution[failed] = _one_by_one(K if len(K) == 1 else K[failed], diagonal[failed], rhs[failed])

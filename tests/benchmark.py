@@ -22,7 +22,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 
 import numpy as np  # noqa: E402
 from benchmark_peers import peers  # noqa: E402
-from benchmark_study import whole_run  # noqa: E402
+from benchmark_study import beside_the_solver, whole_run  # noqa: E402
 
 from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
 from study.problem_sets import SETS  # noqa: E402
@@ -115,7 +115,7 @@ def layered_over_thin(rows: list[dict], micro: str, rtol: float = 1e-6) -> float
 
 def sizes(count=SIZES) -> list[dict]:
     """Processor time of one call with ever more thin rough cases, the shortest of several between those of the other
-    sizes, and the largest memory of the process so far (must come first)."""
+    sizes, and the largest memory of the process so far (must come early)."""
     times, peak = {size: [] for size in count}, {}
     for _ in range(REPEATS):
         for size in count:
@@ -172,7 +172,7 @@ def papers_way() -> list[dict]:
 
 def measure() -> dict:
     """All figures of the benchmark."""
-    by_size = sizes()
+    run, by_size = whole_run(), sizes()
     rows = speed()
     return {
         "numerics_version": NUMERICS_VERSION,
@@ -184,7 +184,7 @@ def measure() -> dict:
         "sizes": by_size,
         "flatness": flatness(by_size),
         "threads": threads(),
-        "whole_run": [whole_run()],
+        "whole_run": [beside_the_solver(run)],
         "papers_way": papers_way(),
         "peers": peers(seconds),
     }

@@ -5,6 +5,7 @@ import resource
 import subprocess
 import sys
 import time
+import tomllib
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -13,7 +14,7 @@ import numpy as np
 
 from solver import Problem, solve
 from study.blocks import parcel
-from study.definition import read
+from study.definition import from_tables
 
 STUDY = """
 [model]
@@ -35,28 +36,33 @@ rtol = 1e-6
 [output]
 x = 33
 """
+DEFINITION = from_tables(tomllib.loads(STUDY), "million", STUDY, "million")
 WORKERS, BLOCK, DRAWN, REPEATS = 2, 8000, 64_000, 3
 
 
 def whole_run() -> dict:
-    """Wall time and largest memory of the run, of the solver for the same cases (from DRAWN of them), and the share."""
+    """Wall time and largest memory of the run, and size of the dataset. Must come first: the largest memory of a child
+    begins with what this process has."""
     with TemporaryDirectory() as folder:
         path = Path(folder, "million.toml")
         path.write_text(STUDY, encoding="utf-8")
         command = [sys.executable, "-m", "study", "run", str(path), "--workers", str(WORKERS), "--yes"]
         start = time.perf_counter()
         subprocess.run(command, cwd=folder, check=True, stderr=subprocess.DEVNULL)
-        run = time.perf_counter() - start
+        seconds = time.perf_counter() - start
         peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss * (1 if sys.platform == "darwin" else 1024)
-        definition = read(path)
         size = Path(folder, "results", "million.nc").stat().st_size
-    drawn = np.random.default_rng(0).permutation(definition.grid.size)[:DRAWN]
-    blocks = [parcel(definition, drawn[i : i + BLOCK]) for i in range(0, DRAWN, BLOCK)]
+    row = {"cases": DEFINITION.grid.size, "profile_points": len(DEFINITION.x), "workers": WORKERS}
+    return row | {"seconds": seconds, "peak_bytes": peak, "result_bytes": size}
+
+
+def beside_the_solver(row: dict) -> dict:
+    """The row of a run, with what the solver alone takes for the same cases (from DRAWN of them), and its share."""
+    drawn = np.random.default_rng(0).permutation(row["cases"])[:DRAWN]
+    blocks = [parcel(DEFINITION, drawn[i : i + BLOCK]) for i in range(0, DRAWN, BLOCK)]
     problems = [Problem.of(**block.parameters) for block in blocks]
-    alone = min(_seconds(problems, definition.x) for _ in range(REPEATS)) * definition.grid.size / DRAWN
-    row = {"cases": definition.grid.size, "profile_points": len(definition.x), "workers": WORKERS}
-    row |= {"seconds": run, "solver_seconds": alone, "share_of_solver_rate": alone / run}
-    return row | {"peak_bytes": peak, "result_bytes": size}
+    alone = min(_seconds(problems, DEFINITION.x) for _ in range(REPEATS)) * row["cases"] / DRAWN
+    return row | {"solver_seconds": alone, "share_of_solver_rate": alone / row["seconds"]}
 
 
 def _seconds(problems: list[Problem], x: np.ndarray) -> float:

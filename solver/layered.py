@@ -1,14 +1,15 @@
 """The layered operator: the half-space of E1* plus a Hankel integral over L - 1.
 
-    (E1* π/(4a)) u = H[q] + (π/2) Λ[q],   Λ_ij(η) = ∫₀^∞ (L(kη) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x
-    dx,
+    (E1* π/(4a)) u = H[q] + (π/2) Λ[q],
+    Λ_ij(η) = ∫₀^∞ (L(kη) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
 
 k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity; L - 1 decays
 like e^(-2u), so Λ is a smooth kernel for every η. What depends on k and the mesh alone is tabulated for an
 octave of η (:mod:`.layer_tables`). For a batch, Λ is then one matrix product of the values of L - 1 with that table;
-its products with q, and their derivatives by η from u dL/du, do without it. No interpolation is made, and the octaves
-agree to the error of the quadrature where they meet. Films, below the last octave, all share one quadrature, which ends
-at k = CUT; what lies beyond is in :mod:`.film`.
+its products with q, and their derivatives by η from u dL/du, do without it. L - 1 of soft layers is evaluated at the
+few nodes that determine it (:mod:`.layer_quadrature`). The octaves agree to the error of the quadrature where they
+meet. Films, below the last octave, all share one quadrature, which ends at k = CUT; what lies beyond is in
+:mod:`.film`.
 """
 
 from functools import lru_cache

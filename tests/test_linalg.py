@@ -53,3 +53,12 @@ def test_bad_members_alone_are_bad(count):
     assert_allclose(x[1], rhs[1, ::-1], rtol=0, atol=0)
     good = np.r_[1, 3:count]
     assert_allclose(x[good], np.linalg.solve(K[good], rhs[good]), rtol=1e-11, atol=0)
+
+
+def test_an_indefinite_member_of_a_shared_operator():
+    """Its pivots are not all positive: it gets its solution nevertheless."""
+    random, K = np.random.default_rng(3), mesh(6).K
+    diagonal, rhs = random.random((MANY, 6)), random.standard_normal((MANY, 6, 2))
+    diagonal[5] = -1.0
+    x = solve_stack(K[None], diagonal, rhs)
+    assert_allclose(x, np.linalg.solve(K + diagonal[:, :, None] * np.eye(6), rhs), rtol=1e-11, atol=0)

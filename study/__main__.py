@@ -57,7 +57,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _add_engine(sub: argparse.ArgumentParser) -> None:
     """Options of the commands that compute."""
-    sub.add_argument("--workers", type=_positive, metavar="N", help="threads (default: one per processor)")
+    sub.add_argument("--workers", type=_positive, metavar="N", help="threads or processes (default: one per processor)")
     sub.add_argument("--scheduler", default="", metavar="ADDRESS", help="compute on the workers of this dask scheduler")
     either = sub.add_mutually_exclusive_group()
     either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
@@ -112,7 +112,7 @@ def retry(options) -> int:
 def _compute(study, options, **more) -> int:
     names = ("workers", "scheduler", "fail_fast", "yes")
     chosen = {name: getattr(options, name) for name in names}
-    return _print_report(study.run(**chosen, **more, stream=sys.stderr), study.definition.name)
+    return _print_report(study.run(**chosen, **more, processes=True, stream=sys.stderr), study.definition.name)
 
 
 def status(options) -> int:

@@ -1,24 +1,39 @@
-"""Where blocks are computed: threads of this process, or the workers of a dask cluster. One way to use either."""
+"""Where blocks are computed: threads or processes of this machine, or the workers of a dask cluster. One way to use
+any."""
 
 import logging
 import os
+import signal
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Executor, Future, ThreadPoolExecutor, wait
+from concurrent.futures import (
+    FIRST_COMPLETED,
+    BrokenExecutor,
+    CancelledError,
+    Executor,
+    Future,
+    ProcessPoolExecutor,
+    ThreadPoolExecutor,
+    wait,
+)
 from contextlib import contextmanager
 from dataclasses import dataclass
+from multiprocessing import get_context, parent_process
+from threading import Thread
 
 from .blocks import Failure
 from .definition import StudyError
 
 CONNECT = 10  # seconds
 AHEAD = 4  # blocks submitted for each worker: it goes on while this thread writes
+_KILLED = "a process that computed has been killed, perhaps for want of memory"
+MANY = 8  # blocks from which on it pays to start processes: threads wait for each other's Python
 
 
 class Lost(ConnectionError):
-    """The scheduler is gone."""
+    """The scheduler is gone, or a process that computed."""
 
-    def __init__(self):
-        super().__init__("the scheduler is gone")
+    def __init__(self, what: str = "the scheduler is gone"):
+        super().__init__(what)
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,8 +45,9 @@ class Engine:
 
 
 @contextmanager
-def engine(workers: int | None, scheduler: str) -> Iterator[Engine]:
-    """Threads (default one for each processor), or with the address of a `scheduler` its workers (at most so many).
+def engine(workers: int | None, scheduler: str, processes: bool = False) -> Iterator[Engine]:
+    """Threads or `processes` (default one for each processor), or with the address of a `scheduler` its workers (at
+    most so many).
 
     What has been submitted and not begun is cancelled at the end; what has begun is left to end by itself.
     """
@@ -40,11 +56,32 @@ def engine(workers: int | None, scheduler: str) -> Iterator[Engine]:
             yield found
         return
     count = workers or available_workers()
-    executor = ThreadPoolExecutor(count)
+    executor = _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
     try:
         yield Engine(executor, lambda: AHEAD * count)
     finally:
         executor.shutdown(wait=False, cancel_futures=True)
+
+
+def _processes(count: int) -> Executor:
+    executor = ProcessPoolExecutor(count, get_context("spawn"), _live_with_parent)
+    own = getattr(signal, "pthread_sigmask", lambda *_: ())
+    before = own(signal.SIG_BLOCK, {signal.SIGINT})  # as the workers inherit: Ctrl-C is for this process
+    for _ in range(count):
+        executor.submit(int)  # starts one
+    own(signal.SIG_SETMASK, before)
+    return executor
+
+
+def _live_with_parent() -> None:
+    """Begin a worker process: it ends with the process that runs the study, however that ends."""
+
+    def end() -> None:
+        parent_process().join()
+        os._exit(1)
+
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    Thread(target=end, daemon=True).start()
 
 
 @contextmanager
@@ -84,11 +121,14 @@ def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterato
 
     Raises
     ------
-    Lost : the scheduler is gone
+    Lost : the scheduler is gone, or a process that computed
     """
     pending: dict[Future, int] = {}
     for number, task in enumerate(tasks):
-        pending[engine.executor.submit(function, task)] = number
+        try:
+            pending[engine.executor.submit(function, task)] = number
+        except BrokenExecutor:
+            raise Lost(_KILLED) from None
         while len(pending) >= engine.width():
             yield _next(pending)
     while pending:
@@ -103,5 +143,7 @@ def _next(pending: dict[Future, int]) -> tuple[int, object]:
         return number, future.result()
     except CancelledError:
         raise Lost from None
+    except BrokenExecutor:
+        raise Lost(_KILLED) from None
     except Exception as error:  # of the cluster, such as a block that killed its workers
         return number, Failure(f"{type(error).__name__}: {error}", "")

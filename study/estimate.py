@@ -6,13 +6,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from .blocks import compute, parcel
-from .cluster import AHEAD, available_workers
+from .cluster import AHEAD, MANY, available_workers
 from .definition import Definition
 from .join import AT_ONCE
 from .progress import duration
 
 SAMPLE = 256  # cases
-PROCESS = 250_000_000  # bytes of Python and its packages
+PROCESS, WORKER = 250_000_000, 150_000_000  # bytes of Python and its packages, and of those in a worker process
 PER_CASE = 100  # bytes for the key of a case, and to find it
 WORKING = 5  # memory that solving a block takes, in sizes of its result
 
@@ -35,7 +35,9 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    memory = PROCESS + PER_CASE * cases + 3 * min(size, AT_ONCE) + (AHEAD + WORKING) * count * block
+    processes = count if count > 1 and -(-missing // definition.block) >= MANY else 0
+    memory = PROCESS + WORKER * processes + PER_CASE * cases
+    memory += 3 * min(size, AT_ONCE) + (AHEAD + WORKING) * count * block
     return Estimate(cases, present, seconds, memory, size)
 
 

@@ -41,7 +41,8 @@ class Report:
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `cluster.engine`; part : (i, n), only the i-th of n parts, whichever ends last writes the
+    workers, scheduler : see `cluster.engine`; processes : workers may be processes, which begin by importing the main
+    module of this one; part : (i, n), only the i-th of n parts, whichever ends last writes the
     results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds a
     case that has not converged; force : replace a results file of which cases would be lost; yes : go on however large
     the study is; command : for the history of the results; stream : text stream for progress
@@ -51,6 +52,7 @@ class Order:
     results: Path
     workers: int | None = None
     scheduler: str = ""
+    processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()
     fail_fast: bool = False

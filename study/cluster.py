@@ -45,9 +45,9 @@ class Engine:
 
 
 @contextmanager
-def engine(workers: int | None, scheduler: str, processes: bool = False) -> Iterator[Engine]:
-    """Threads or `processes` (default one for each processor), or with the address of a `scheduler` its workers (at
-    most so many).
+def engine(workers: int | None, scheduler: str, blocks: int = 0) -> Iterator[Engine]:
+    """Threads, for many `blocks` processes (default one for each processor), or with the address of a `scheduler` its
+    workers (at most so many).
 
     What has been submitted and not begun is cancelled at the end; what has begun is left to end by itself.
     """
@@ -56,11 +56,17 @@ def engine(workers: int | None, scheduler: str, processes: bool = False) -> Iter
             yield found
         return
     count = workers or available_workers()
-    executor = _processes(count) if processes and count > 1 else ThreadPoolExecutor(count)
+    own = processes_for(count, blocks)
+    executor = _processes(own) if own else ThreadPoolExecutor(count)
     try:
         yield Engine(executor, lambda: AHEAD * count)
     finally:
         executor.shutdown(wait=False, cancel_futures=True)
+
+
+def processes_for(workers: int, blocks: int) -> int:
+    """How many processes compute so many blocks; 0: as many threads as workers do."""
+    return min(workers, blocks) if workers > 1 and blocks >= MANY else 0
 
 
 def _processes(count: int) -> Executor:

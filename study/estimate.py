@@ -6,7 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .blocks import compute, parcel
-from .cluster import AHEAD, MANY, available_workers
+from .cluster import AHEAD, available_workers, processes_for
 from .definition import Definition
 from .join import AT_ONCE
 from .progress import duration
@@ -35,8 +35,7 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    processes = count if count > 1 and -(-missing // definition.block) >= MANY else 0
-    memory = PROCESS + WORKER * processes + PER_CASE * cases
+    memory = PROCESS + WORKER * processes_for(count, -(-missing // definition.block)) + PER_CASE * cases
     memory += 3 * min(size, AT_ONCE) + (AHEAD + WORKING) * count * block
     return Estimate(cases, present, seconds, memory, size)
 

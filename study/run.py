@@ -12,7 +12,7 @@ import xarray as xr
 from . import micro_law
 from .blocks import Failure, cut, guarded, parcel
 from .case_key import find
-from .cluster import MANY, as_they_come, engine
+from .cluster import as_they_come, engine
 from .dataset import labelled, status_words, write
 from .definition import Definition
 from .estimate import Estimate, estimate
@@ -127,8 +127,8 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
         return failures
     size = order.definition.grid.size
     shown = Progress(order.definition.name, size, order.stream, size - len(known.missing))
-    processes = order.processes and len(blocks) >= MANY
-    with closing(shown) as progress, engine(order.workers, order.scheduler, processes) as workers:
+    many = len(blocks) if order.processes else 0
+    with closing(shown) as progress, engine(order.workers, order.scheduler, many) as workers:
         tasks = (parcel(order.definition, index) for index in blocks)
         for number, result in as_they_come(workers, guarded, tasks):
             if isinstance(result, Failure):

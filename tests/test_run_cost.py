@@ -9,6 +9,7 @@ from line_study import load, store_block
 import study
 from study import blocks, order
 from study.blocks import parcel
+from study.estimate import WORKER
 
 
 def test_a_large_study_asks_first(file, monkeypatch, computed):
@@ -36,6 +37,12 @@ def test_dry_run_says_what_is_there_and_writes_nothing(file):
     assert (cost.present, cost.seconds) == (23, 0.0)
     assert load(file, **{"num = 23": "num = 45"}).dry_run().present == 23
     assert sorted(opened.results.rglob("*")) == before
+
+
+def test_estimated_memory_counts_worker_processes(file):
+    opened = load(file, **{"num = 23": "num = 40"})  # eight blocks
+    alone, two = (opened.dry_run(workers=count).memory for count in (1, 2))
+    assert two - alone > 2 * WORKER
 
 
 def test_estimated_time_is_of_the_order_of_the_run(file):

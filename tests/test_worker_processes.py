@@ -12,6 +12,7 @@ from line_study import present
 from same import assert_same
 
 import study
+from study.cluster import processes_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 
@@ -86,6 +87,11 @@ def test_processes_compute_what_threads_compute(opened, undisturbed):
     _, errors = process.communicate(timeout=60)
     assert process.returncode == 0, errors
     assert_same(opened.open(), undisturbed)
+
+
+def test_how_many_processes():
+    """None for few blocks or a single worker, and never more than there are blocks."""
+    assert [processes_for(*each) for each in ((2, 7), (2, 8), (1, 100), (16, 9))] == [0, 2, 0, 9]
 
 
 def test_one_worker_computes_in_the_process_itself(opened):

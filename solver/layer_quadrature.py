@@ -79,8 +79,8 @@ class Few(NamedTuple):
 def few(octave, depth, coarse):
     """The :class:`Few` nodes for n <= 2, by interpolative decomposition of random samples; None for others.
 
-    What is left out of L - 1 is below 2e-14, on the coarse quadrature 3e-10 (tests/test_layered_quadrature.py). No
-    BLAS: with other rounding on another worker the choice might be another.
+    What is left out of L - 1 is below 2e-14, on the coarse quadrature 3e-10 (tests/test_layered_quadrature.py). They
+    are chosen without BLAS: with its rounding on another worker the choice might be another.
     """
     if depth or octave == FILM:
         return None

@@ -6,6 +6,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from .micro import displacement
+from .threads import one_blas_thread
 
 
 class Fit(NamedTuple):
@@ -22,6 +23,7 @@ def pressures(p_min, p_max, step, mesh):
     return np.linspace(p_min, p_max, count) if mesh == "uniform" else np.geomspace(p_min, p_max, count)
 
 
+@one_blas_thread()
 def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
     """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1).
 

@@ -14,8 +14,10 @@ from .micro import LAWS
 from .model_error import closed_form
 from .problem import Solution
 from .status import Status
+from .threads import one_blas_thread
 
 
+@one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
 def solve(problem, x=(0.0, 1.0)):
     """Solve a batch of cases.

@@ -19,6 +19,7 @@ from scipy.interpolate import CubicSpline
 
 from .base import thin_layer_coefficients
 from .kernel import whole
+from .threads import one_blas_thread
 
 #: Points and step of the trapezoidal rule for κ in ln u, at both ends of which the integrand decays like e^-|ln u|.
 _STEP = 0.5
@@ -36,6 +37,7 @@ class ThinLayerError(NamedTuple):
     a: np.ndarray
 
 
+@one_blas_thread()
 def edge_shift(n, nu1, nu2, bonded):
     """κ: by how many thicknesses the thin-layer contact is wider than the exact one, for h << a.
 

@@ -21,6 +21,7 @@ from .outputs import quantities
 from .problem import Solution
 from .quadrature import gauss_legendre
 from .status import Status
+from .threads import one_blas_thread
 
 #: Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle.
 LIMIT, LIMIT_RELAXED = 200, 40
@@ -91,6 +92,7 @@ def _kernel(x, source):
     return ellipkm1(np.abs(x - source) * (x + source) / outer**2) * source / outer
 
 
+@one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
 def solve_uniform(problem, intervals, k, tolerance, limit=None):
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.

@@ -10,7 +10,8 @@ import signal
 import sys
 from pathlib import Path
 
-# One BLAS thread per worker: the systems are small and the workers would compete. Must come before numpy is imported.
+# The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not even start one
+# for each processor in each worker process.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 

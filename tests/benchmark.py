@@ -4,7 +4,8 @@
 
 The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case, both in
 processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, a study of a
-million cases, and at equal error the paper's way and, if they are installed (extra `peers`), other codes.
+million cases, BLAS left two threads (benchmark_threads.py has more), and at equal error the paper's way and, if they
+are installed (extra `peers`), other codes.
 """
 
 import json
@@ -23,6 +24,7 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
 import numpy as np  # noqa: E402
 from benchmark_peers import peers  # noqa: E402
 from benchmark_study import beside_the_solver, whole_run  # noqa: E402
+from benchmark_threads import blas_threads  # noqa: E402
 
 from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
 from study.problem_sets import SETS  # noqa: E402
@@ -184,6 +186,7 @@ def measure() -> dict:
         "sizes": by_size,
         "flatness": flatness(by_size),
         "threads": threads(),
+        "blas_threads": blas_threads(("random",), (2,)),
         "whole_run": [beside_the_solver(run)],
         "papers_way": papers_way(),
         "peers": peers(seconds),
@@ -204,7 +207,7 @@ def report(result: dict) -> None:
     flat = result["flatness"]
     word = "flat" if flat["flat"] else "not flat"
     print(f"time per case from {flat['from']} cases on: {word}, within {flat['deviation']:.1%} of its mean")
-    for name in ("sizes", "threads", "whole_run", "papers_way", "peers"):
+    for name in ("sizes", "threads", "blas_threads", "whole_run", "papers_way", "peers"):
         print(f"\n{name}")
         for row in result[name]:
             print("  " + ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"

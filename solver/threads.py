@@ -1,0 +1,88 @@
+"""One BLAS thread while the solver computes.
+
+Its matrix products and linear systems are small. A BLAS library that shares them among threads gains nothing, and
+where other processes keep the processors busy its threads spin while they wait for each other (docs/threads.md).
+"""
+
+import os
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
+from functools import lru_cache
+from threading import Lock
+
+from threadpoolctl import LibController, ThreadpoolController
+
+
+class _OfTheProcess:
+    """The number of threads of libraries that have one for the whole process: 1 from the first enter to the last exit.
+
+    Calls overlap when they come from several threads. Each of them saving and restoring for itself would leave the
+    number at 1 for good: the second call would save the 1 of the first one and restore it after the first has ended.
+    """
+
+    def __init__(self, libraries: list[LibController]):
+        self._libraries, self._lock, self._inside, self._before = libraries, Lock(), 0, {}
+        if hasattr(os, "register_at_fork"):
+            os.register_at_fork(after_in_child=self._forked)
+
+    def __enter__(self) -> None:
+        with self._lock:
+            self._inside += 1
+            for library in self._libraries:
+                if library.num_threads != 1:  # the first call, or the user has just set it
+                    self._before[library] = library.num_threads
+                    _set(library, 1)
+
+    def __exit__(self, *_) -> None:
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                self._restore()
+
+    def _restore(self) -> None:
+        for library, count in self._before.items():
+            if library.num_threads == 1:  # else the user has set it meanwhile
+                _set(library, count)
+        self._before.clear()
+
+    def _forked(self) -> None:
+        """A forked process has none of the threads that were computing."""
+        self._lock, self._inside = Lock(), 0
+        self._restore()
+
+
+def _set(library: LibController, count: int) -> None:
+    """Set the number of threads of a library, from whichever thread.
+
+    From version 3.8 on threadpoolctl lets one thread at a time set the number of a whole process, the first that did,
+    and what the others set does nothing. Here a lock and a count of the calls see to the order.
+    """
+    let_go = getattr(library, "clear_controlling_thread", lambda force: None)
+    let_go(force=True)
+    library.set_num_threads(count)
+    let_go(force=True)
+
+
+@lru_cache(maxsize=1)
+def _blas() -> tuple[_OfTheProcess, ThreadpoolController]:
+    """The loaded BLAS libraries: those with one number of threads for the process, and those with one a thread."""
+    with warnings.catch_warnings():  # about OpenMP libraries that the program has loaded: not our affair
+        warnings.simplefilter("ignore")
+        blas = ThreadpoolController().select(user_api="blas")
+    of_threads = blas.select(threading_layer="openmp")
+    of_process = [library for library in blas.lib_controllers if library not in of_threads.lib_controllers]
+    return _OfTheProcess(of_process), of_threads
+
+
+@contextmanager
+def one_blas_thread() -> Iterator[None]:
+    """BLAS on one thread inside a ``with`` block or a decorated function; then as before, whatever happened inside.
+
+    Blocks may be nested, and may overlap in several threads. BLAS libraries keep one number of threads for the whole
+    process, so what other threads of the program compute meanwhile has one BLAS thread as well. A number that the
+    program sets meanwhile stays.
+    """
+    of_process, of_threads = _blas()
+    with of_process, of_threads.limit(limits=1):
+        yield

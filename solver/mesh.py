@@ -18,6 +18,9 @@ from .quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
 HERTZ = np.pi**2 / 16
 
 WHOLE = (0.0, 1.0)
+#: Points times nodes of a panel for which the singular rule is formed together: some MB, in which the calls of numpy
+#: no longer count.
+_TOGETHER = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -149,8 +152,9 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
             there = far & (sign == side)
             if there.any():
                 rows[there, columns] = _far(nodes[columns], s_out[there, None], side, low, high)
-        for j in np.flatnonzero(~far):
-            rows[j, columns] = _near(nodes[columns], s_out[j], low, high)
+        near = np.flatnonzero(~far)
+        for part in np.array_split(near, 1 + len(near) * order // _TOGETHER):
+            rows[part, columns] = _near(nodes[columns], s_out[part, None], low, high)
     return rows
 
 
@@ -170,11 +174,14 @@ def _far(nodes, s, sign, low, high):
 
 
 def _near(nodes, s, low, high):
-    """Integral over a panel that contains the target or is near: (order,)."""
+    """Integral over a panel that contains the targets s (m, 1) or is near: (m, order)."""
     distance, weight = log_rule(14 + len(nodes) // 2)
-    row = np.zeros(len(nodes))
-    for sign, start, stop in ((-1, max(s - high, 0.0), s - low), (1, max(low - s, 0.0), high - s)):
-        if stop > start:
-            gap = start + (stop - start) * distance
-            row += ((stop - start) * weight * _kernel(s, gap, sign)) @ lagrange(nodes, s + sign * gap)
-    return row
+    rows = np.zeros((len(s), len(nodes)))
+    for sign, start, stop in ((-1, np.maximum(s - high, 0.0), s - low), (1, np.maximum(low - s, 0.0), high - s)):
+        there = (stop > start)[:, 0]
+        begin, length = start[there], (stop - start)[there]
+        gap = begin + length * distance
+        values = length * weight * _kernel(s[there], gap, sign)
+        basis = lagrange(nodes, (s[there] + sign * gap).ravel()).reshape(*gap.shape, len(nodes))
+        rows[there] += (values[:, None] @ basis)[:, 0]
+    return rows

@@ -32,24 +32,31 @@ def radau_nodes(n):
 def barycentric_weights(nodes):
     """Barycentric weights (n,) of `nodes` (n,), scaled by the capacity of [0, 1] so that they neither over- nor
     underflow."""
+    return _weights_kept(np.ascontiguousarray(nodes, dtype=float).tobytes())
+
+
+@lru_cache(maxsize=256)
+def _weights_kept(nodes_bytes):
+    nodes = np.frombuffer(nodes_bytes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
     scale = np.log(np.abs(difference) * 4.0)
     np.fill_diagonal(scale, 0.0)
     exponent = -scale.sum(axis=1)
-    return np.prod(np.sign(difference), axis=1) * np.exp(exponent - exponent.max())
+    return _frozen(np.prod(np.sign(difference), axis=1) * np.exp(exponent - exponent.max()))
 
 
 def lagrange(nodes, points):
     """Values (m, n) at `points` (m,) of the Lagrange polynomials of `nodes` (n,)."""
-    points = np.asarray(points, dtype=float)
-    difference = points[:, None] - nodes[None, :]
-    hit = difference == 0.0
-    difference[hit] = 1.0
-    terms = barycentric_weights(nodes) / difference
-    values = terms / terms.sum(axis=1, keepdims=True)
-    on_node = hit.any(axis=1)
-    values[on_node] = hit[on_node]
+    values = np.asarray(points, dtype=float)[:, None] - nodes[None, :]  # in place from here on
+    hit = None if values.all() else values == 0.0
+    if hit is not None:
+        values[hit] = 1.0
+    np.divide(barycentric_weights(nodes), values, out=values)
+    values /= values.sum(axis=1, keepdims=True)
+    if hit is not None:
+        on_node = hit.any(axis=1)
+        values[on_node] = hit[on_node]
     return values
 
 

@@ -12,13 +12,16 @@ APART := extremes picard_domain tradeoff
 DRAWN := table1 main_case load_sweep spot_density validity validity_load coatings
 TABLES := table1 paper_numbers validity extremes tradeoff
 
+# Kernels of OpenBLAS for `make kernels`: one that every x86-64 processor runs. On another, all that it runs:
+# make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
+KERNELS ?= Nehalem
 VENV := .venv
 READY := $(VENV)/.ready
 RUN := $(VENV)/bin/python -m study
 SOURCES := $(wildcard solver/*.py study/*.py)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test bench lint clean
+.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels bench lint clean
 .NOTPARALLEL:
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -54,6 +57,10 @@ picard_domain: figures/picard_domain.pdf ## where the paper's successive approxi
 
 test: $(READY) ## all tests
 	$(VENV)/bin/python -m pytest -q
+
+kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of other processors
+	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
+	  OPENBLAS_CORETYPE=$$kernel $(VENV)/bin/python -m pytest -q $$(grep -l '^from solver' tests/test_*.py) || exit 1; done
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json

@@ -10,8 +10,8 @@ import signal
 import sys
 from pathlib import Path
 
-# The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not even start the
-# others, of which each worker process would have one for each processor.
+# The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
+# others at all, of which each worker process would have one for each processor.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 

@@ -38,6 +38,15 @@ def test_solver_imports_numpy_and_scipy_only(path):
     assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "solver"}
 
 
+@pytest.mark.parametrize("path", SOLVER, ids=lambda path: path.name)
+def test_importing_the_solver_does_nothing_to_the_process(path):
+    """A library defines names: no call whose effect stays, such as one that makes malloc keep freed memory."""
+    docstring, *statements = ast.parse(path.read_text(encoding="utf-8")).body
+    defining = ast.Import | ast.ImportFrom | ast.FunctionDef | ast.ClassDef | ast.Assign | ast.AnnAssign
+    assert ast.get_docstring(ast.Module([docstring], []))
+    assert all(isinstance(statement, defining) for statement in statements)
+
+
 @pytest.mark.parametrize("path", STUDY, ids=lambda path: path.name)
 def test_study_imports_what_is_declared(path):
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "solver", "study"}

@@ -3,7 +3,8 @@ scipy only."""
 
 from . import closed_forms, micro
 from .fit import Fit, fit_power_law
-from .problem import Model, Problem, Solution
+from .problem import Problem
+from .solution import Model, Solution
 from .solve import solve
 from .status import Status
 

@@ -18,8 +18,8 @@ from .kernel import layered_kernel
 from .mesh import mesh
 from .micro import contact_fraction, largest_pressure
 from .model_error import MARGIN, TRUSTED, closed_form, first_order, nodes_for
-from .problem import Model, Solution
 from .quadrature import gauss_legendre
+from .solution import Model, Solution
 from .status import Status
 
 #: A rung that is bound to fail is cheaper left out: the error of leaving out the asperities is about this times

@@ -71,8 +71,8 @@ class State(NamedTuple):
 
 
 class Operator(NamedTuple):
-    """The base at a state: the products K q (B, n) and edge q (B,) and their derivatives by η; of the exact layer the
-    weights as well."""
+    """The base at a state: the products K q (B, n) and edge q (B,) and their derivatives by η, all with a row for each
+    case; of the exact layer the weights as well. Other bases have one matrix for all cases."""
 
     Kq: np.ndarray
     edge_q: np.ndarray
@@ -82,7 +82,7 @@ class Operator(NamedTuple):
 
     def take(self, index):
         """The sub-batch at `index`."""
-        return Operator(*(v if len(v) == 1 else v[index] for v in self[:-1]), take_weights(self.weights, index))
+        return Operator(*(v[index] for v in self[:-1]), take_weights(self.weights, index))
 
     def edge(self, mesh):
         """The row (B or 1, n) of the edge."""
@@ -148,7 +148,7 @@ def operate(cases, eta, q, mesh, known=()):
     """:class:`Operator` of the base of `cases` at η = ln a (B,) and q (B, n); `known` weights of the layer of the same
     cases near this η."""
     if cases.layer is None:
-        none = np.zeros((1, mesh.n))
+        none = np.broadcast_to(0.0, q.shape)  # no case depends on η; takes no memory
         return Operator(q @ mesh.K.T, q @ mesh.edge, none, none[:, 0], [])
     weights = layer_weights(cases.layer, np.exp(eta), known, cases.reach, cases.coarse)
     share, products = half_space_share(weights), layer_products(weights, q, mesh)

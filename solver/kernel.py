@@ -90,7 +90,8 @@ class _Frictionless(NamedTuple):
 
 
 def _frictionless_terms(u, n):
-    """The terms at u > 0."""
+    """The terms at u > 0, an array of any order in memory."""
+    u = np.ascontiguousarray(u)  # of another order, reshape(-1) below is a copy and the series written there are lost
     e, rest = np.exp(-2 * u), -np.expm1(-2 * u)
     e4 = 4 * e
     ue4 = u * e4

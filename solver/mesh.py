@@ -27,6 +27,9 @@ _TOGETHER = 256
 class Mesh:
     """Discretisation of the contact radius with n nodes.
 
+    Number and panels determine all the rest, so that two meshes are equal when these are: what is kept for a mesh (see
+    :mod:`.layer_tables`) serves one that has been built anew.
+
     Attributes
     ----------
     breaks : tuple of float
@@ -48,6 +51,12 @@ class Mesh:
     w: np.ndarray
     K: np.ndarray
     edge: np.ndarray
+
+    def __eq__(self, other):
+        return self is other or (isinstance(other, Mesh) and self.n == other.n and self.breaks == other.breaks)
+
+    def __hash__(self):
+        return hash((self.n, self.breaks))
 
     @property
     def n(self):

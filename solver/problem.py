@@ -1,67 +1,58 @@
-"""What is asked and what is answered: arrays over a batch of cases."""
+"""What is asked: arrays over a batch of cases."""
 
 from dataclasses import dataclass, fields
-from enum import IntEnum
 
 import numpy as np
 
-from .base import BONDINGS
 from .equation import CONTROLS
-from .micro import MICROS
-
-BASES = ("half_space", "thin_layer", "layered", "auto")
-SCHEMES = ("newton", "picard")
-#: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
-MODEL_CHECKS = ("closed_form", "first_order")
-
-_TEXT = {"bonding": BONDINGS, "base": BASES, "micro": MICROS, "scheme": SCHEMES, "model_check": MODEL_CHECKS}
-_WHOLE = ("nodes", "max_iterations")
-
-#: Value of each parameter that is not given, in the order of the fields of :class:`Problem`.
-DEFAULTS = {
-    "h": 1.0,
-    "n": 1.0,
-    "nu1": 0.3,
-    "nu2": 0.3,
-    "bonding": "frictionless",
-    "Nbar": 1.0,
-    "Ra": 1.0,
-    "base": "thin_layer",
-    "accuracy": 1e-2,
-    "model_check": "closed_form",
-    "micro": "disc_cell",
-    "B": 1.0,
-    "beta": 0.5,
-    "scheme": "newton",
-    "k": 1.0,
-    "rtol": 1e-6,
-    "nodes": 0,
-    "max_iterations": 0,
-    "R": 1.0,
-    "E2": 1.0,
-}
-
-
-class Model(IntEnum):
-    """What a case was solved with; smooth models get their asperities afterwards, from the nominal pressure."""
-
-    NONE = 0
-    HALF_SPACE = 1
-    SMOOTH_HALF_SPACE = 2
-    LAYER_ALONE = 3
-    SMOOTH_LAYER_ALONE = 4
-    THIN_LAYER = 5
-    SMOOTH_THIN_LAYER = 6
-    LAYERED = 7
-    SMOOTH_LAYERED = 8
+from .parameters import FITTED, LAYERED, PARAMETERS, ROUGH, Parameter
 
 
 @dataclass(frozen=True)
 class Problem:
-    """A batch of B cases; every field but `control` an array (B,). Build it with :meth:`of`.
+    """A batch of B cases; every field but `control` is an array (B,). Build it with :meth:`of`.
 
-    `value` is the controlled quantity (`control`: "P", "a" or "D"). Lengths in the unit of `R`, moduli and pressures
-    in the unit of `E2` (E2*), loads in E2 R²; with R = E2 = 1 these are the units of the paper.
+    Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
+    1 these are the units of the paper. Behind each name stand the values allowed and the default. What has no default
+    must be given where a case needs it.
+
+    Attributes
+    ----------
+    control : "P", "a" or "D"
+        The quantity that is given.
+    value : > 0
+        Its value: load, radius of the nominal contact area or indentation depth.
+    h, n : > 0; needed by every base but "half_space"
+        Thickness of the layer, and ratio of the reduced moduli E1*/E2*.
+    nu1, nu2 : in (-1, 0.5]; 0.3
+        Poisson ratios of layer and half-space. Without friction between them these change nothing.
+    bonding : "frictionless" (default) or "bonded"
+        The interface of layer and half-space.
+    Nbar, Ra : > 0; needed by every micro law but "smooth"
+        Asperities per unit area, and their radius.
+    base : "half_space", "thin_layer", "layered" (default) or "auto"
+        The half-space alone, with the thin layer of Eq. (3), with the exact layer, or the cheapest that is accurate
+        enough.
+    accuracy : in (0, 1); 0.01
+        Allowed relative model error of the base "auto".
+    model_check : "closed_form" (default) or "first_order"
+        How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
+    micro : "smooth", "disc_cell" (default) or "power_law"
+        No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer).
+    B, beta : > 0, in (0, 1]; needed by the micro law "power_law"
+        Coefficient, without unit, and exponent.
+    scheme : "newton" (default) or "picard"
+        Newton's method, or the paper's successive approximations, Eqs (8) and (10).
+    k : >= 0; 1
+        Relaxation of the successive approximations.
+    rtol : in (0, 1); 1e-6
+        Wanted relative error of a, P, D, p0, p_max, Ar_An.
+    nodes : in [4, 256], or 0 (default)
+        Number of nodes; 0: chosen by `rtol`.
+    max_iterations : >= 0; 0
+        Most steps on a mesh, or approximations at one radius; 0: the limit of the scheme.
+    R, E2 : > 0; 1
+        Radius of the punch, and reduced modulus E2* of the half-space; any units.
     """
 
     control: str
@@ -91,30 +82,42 @@ class Problem:
     def of(cls, *, P=None, a=None, D=None, **parameters):
         """Broadcast scalars and (B,) arrays to a batch.
 
-        Exactly one of P, a, D is given; the other parameters as in DEFAULTS. `nodes` = 0 chooses the mesh by `rtol`;
-        `max_iterations` = 0 is the scheme's own limit.
+        Exactly one of P, a, D is given; the other parameters are fields of :class:`Problem`. One that is not given has
+        its default, or is NaN where no case needs it.
 
         Raises
         ------
         TypeError
             A parameter that does not exist.
         ValueError
-            Not exactly one control; shapes that do not broadcast to (B,); a text argument outside its choices. A
-            number out of bounds is not an error: that case gets ``Status.INVALID_INPUT``.
+            Not exactly one control; a parameter missing that some case needs; shapes that do not broadcast to (B,); a
+            text outside its choices. A number out of bounds, or NaN, is not an error: that case gets
+            ``Status.INVALID_INPUT``.
+
+        Examples
+        --------
+        >>> Problem.of(P=[1e-5, 2e-5], Nbar=250000, Ra=0.004, base="half_space").h
+        array([nan, nan])
+        >>> Problem.of(P=1e-5, n=0.5, Nbar=250000, Ra=0.004)
+        Traceback (most recent call last):
+        ValueError: h is missing: base = "layered" needs it
         """
         given = {name: v for name, v in zip(CONTROLS, (P, a, D), strict=True) if v is not None}
         if len(given) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()
-        unknown = sorted(set(parameters) - set(DEFAULTS))
+        unknown = sorted(set(parameters) - set(PARAMETERS))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")
-        values = {"value": value} | DEFAULTS | parameters
-        arrays = [_array(name, v) for name, v in values.items()]
-        shape = np.broadcast_shapes((1,), *(v.shape for v in arrays))
+        defaults = {name: np.nan if own.default is None else own.default for name, own in PARAMETERS.items()}
+        arrays = {name: _array(name, v) for name, v in ({"value": value} | defaults | parameters).items()}
+        shape = np.broadcast_shapes((1,), *(v.shape for v in arrays.values()))
         if len(shape) != 1:
             raise ValueError(f"parameters broadcast to shape {shape}: give scalars and one-dimensional arrays")
-        return cls(control, *(np.broadcast_to(v, shape) for v in arrays))
+        missing = [message for name in PARAMETERS if name not in parameters for message in _missing(name, arrays)]
+        if missing:
+            raise ValueError("; ".join(missing))
+        return cls(control, **{name: np.broadcast_to(v, shape) for name, v in arrays.items()})
 
     def __len__(self):
         return len(self.value)
@@ -123,10 +126,14 @@ class Problem:
         """The sub-batch at `index`."""
         return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:]))
 
+    def _among(self, name, words):
+        """(B,) bool: a text is one of `words`; found by the other choices, of which there are fewer."""
+        others = [word for word in PARAMETERS[name].choices if word not in words]
+        return np.all([getattr(self, name) != word for word in others], axis=0)
+
     def invalid(self):
         """(B,) bool: a number that the case needs is not finite or outside its bounds."""
-        rough, layered = self.micro != "smooth", self.base != "half_space"
-        power = self.micro == "power_law"
+        rough, layered, power = (self._among(*needing) for needing in (ROUGH, LAYERED, FITTED))
         bad = _not_positive(self.value) | _not_positive(self.R) | _not_positive(self.E2)
         bad |= layered & (_not_positive(self.h) | _not_positive(self.n))
         bad |= layered & ~((self.nu1 > -1) & (self.nu1 <= 0.5) & (self.nu2 > -1) & (self.nu2 <= 0.5))
@@ -142,59 +149,18 @@ def _not_positive(v):
 
 
 def _array(name, value):
-    if name in _TEXT:
+    own = PARAMETERS.get(name, Parameter())
+    if own.choices:
         array = np.asarray(value, dtype=str)
-        unknown = sorted(set(array.ravel()) - set(_TEXT[name]))
+        unknown = sorted(set(array.ravel()) - set(own.choices))
         if unknown:
-            raise ValueError(f'{name} = "{unknown[0]}": must be one of {", ".join(_TEXT[name])}')
+            raise ValueError(f'{name} = "{unknown[0]}": must be one of {", ".join(own.choices)}')
         return array
-    return np.asarray(value, dtype=int if name in _WHOLE else float)
+    return np.asarray(value, dtype=int if own.whole else float)
 
 
-@dataclass(frozen=True)
-class Solution:
-    """The answers, arrays (B,) and, for the profiles over the m radii asked for, (B, m).
-
-    a, D in R; P in E2 R²; p0 = p(0), p_max (13), p in E2; A0 = A[p(0)] in R; Ar_An (12) and lam = λ(r/a) (11)
-    without unit; dP_dD in E2 R. `status` is a :class:`~solver.status.Status`; `residual` the largest residual of the
-    equation relative to its right-hand side; `error` the estimated relative error, the largest over a, P, D, p0,
-    p_max, Ar_An (the profiles between the nodes are not in it); `iterations`; `nodes` used (0: closed form);
-    `model_error` the same for the model used against the exact layered rough one (0 for that one, and for a half-space
-    asked for by name); `model_used` a :class:`Model`. A case without numbers holds NaN everywhere but in the controlled
-    quantity.
-    """
-
-    a: np.ndarray
-    P: np.ndarray
-    D: np.ndarray
-    p0: np.ndarray
-    p_max: np.ndarray
-    Ar_An: np.ndarray
-    A0: np.ndarray
-    dP_dD: np.ndarray
-    residual: np.ndarray
-    error: np.ndarray
-    model_error: np.ndarray
-    status: np.ndarray
-    model_used: np.ndarray
-    iterations: np.ndarray
-    nodes: np.ndarray
-    p: np.ndarray
-    lam: np.ndarray
-
-    @classmethod
-    def empty(cls, size, points):
-        """`size` cases without numbers, with profiles of `points` radii."""
-        values = {f.name: np.full(size, np.nan) for f in fields(cls)}
-        for name in ("status", "model_used"):
-            values[name] = np.zeros(size, dtype=np.int8)
-        for name in ("iterations", "nodes"):
-            values[name] = np.zeros(size, dtype=np.int32)
-        for name in ("p", "lam"):
-            values[name] = np.full((size, points), np.nan)
-        return cls(**values)
-
-    def put(self, index, part):
-        """Write the values of the dict `part` (name -> array) into the cases `index`, in place."""
-        for name, value in part.items():
-            getattr(self, name)[index] = value
+def _missing(name, arrays):
+    """A message if some case needs a parameter that is not given, as a list."""
+    selector, needing = PARAMETERS[name].needed_by
+    found = [f'"{word}"' for word in needing if word in arrays[selector]] if selector else []
+    return [f"{name} is missing: {selector} = {' or '.join(found)} needs it"] if found else []

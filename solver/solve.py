@@ -12,7 +12,7 @@ from .ladder import start_nodes
 from .mesh import mesh
 from .micro import LAWS
 from .model_error import closed_form
-from .problem import Solution
+from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
 
@@ -47,7 +47,8 @@ def solve(problem, x=(0.0, 1.0)):
     Examples
     --------
     >>> from solver import Problem
-    >>> case = Problem.of(a=0.04, h=0.02, n=0.5, Nbar=250000, Ra=0.004, micro="power_law", B=0.1, beta=0.5)
+    >>> layer, asperities = {"h": 0.02, "n": 0.5, "base": "thin_layer"}, {"Nbar": 250000, "Ra": 0.004}
+    >>> case = Problem.of(a=0.04, **layer, **asperities, micro="power_law", B=0.1, beta=0.5)
     >>> print(f"{solve(case).P[0]:.5e}")
     2.70408e-05
     """

@@ -18,8 +18,8 @@ from .bracket import bisection
 from .cases import as_cases, dimensionless, restore
 from .equation import evaluate
 from .outputs import quantities
-from .problem import Solution
 from .quadrature import gauss_legendre
+from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
 
@@ -125,7 +125,8 @@ def solve_uniform(problem, intervals, k, tolerance, limit=None):
     Examples
     --------
     >>> from solver import Problem
-    >>> case = Problem.of(a=0.04, h=0.02, n=0.5, Nbar=250000, Ra=0.004, micro="power_law", B=0.1, beta=0.5)
+    >>> layer, asperities = {"h": 0.02, "n": 0.5, "base": "thin_layer"}, {"Nbar": 250000, "Ra": 0.004}
+    >>> case = Problem.of(a=0.04, **layer, **asperities, micro="power_law", B=0.1, beta=0.5)
     >>> print(f"{solve_uniform(case, 40, 10.0, 1e-4).P[0]:.3e}")
     2.704e-05
     """

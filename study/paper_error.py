@@ -13,7 +13,8 @@ from solver.uniform import solve_uniform
 
 from . import paper
 
-MAIN = {"h": 0.02, "n": 0.5, "Nbar": 250_000, "Ra": 0.004, "micro": "power_law", "B": 0.1, "beta": 0.5}
+MAIN = {"base": "thin_layer", "h": 0.02, "n": 0.5, "Nbar": 250_000, "Ra": 0.004}
+MAIN |= {"micro": "power_law", "B": 0.1, "beta": 0.5}
 RADIUS = 0.04
 INTERVALS = (20, 40, 80, 160)
 STEPS = 40
@@ -56,8 +57,8 @@ def explained(found: xr.Dataset) -> list[tuple[str, float, float, float]]:
 
 def contacts(load: float) -> dict[str, float]:
     """The numbers of Section 5 by converged solutions under one load, keys of `paper.NUMBERS`."""
-    layered, bare = (solve(Problem.of(P=load, base=base, **MAIN, rtol=1e-9)) for base in ("thin_layer", "half_space"))
-    smooth = solve(Problem.of(P=load, **MAIN | {"micro": "smooth"}, rtol=1e-9))
+    changes = {}, {"base": "half_space"}, {"micro": "smooth"}
+    layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
     return {
         **{name: float(getattr(layered, name)[0]) for name in SHARED},
         "An_ratio": float(bare.a[0] / RADIUS) ** 2,

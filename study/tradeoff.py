@@ -18,7 +18,7 @@ import numpy as np
 import xarray as xr
 
 from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
-from solver.problem import BASES
+from solver.parameters import BASES
 from solver.uniform import solve_uniform, uniform_mesh
 
 from . import paper_error

@@ -3,7 +3,9 @@
 import difflib
 import math
 import numbers
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
@@ -18,8 +20,9 @@ class Entry:
 
     `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity, printed in `unit`
     (name, size in SI). `interval` is the allowed range in mathematical notation, `also` lists single values allowed
-    outside it. `default` None means that the parameter has no default; it is then required wherever the parameter
-    called `needed_by[0]` has one of the values `needed_by[1]`.
+    outside it. The solver knows what its parameters default to, the `choices` of a text, and which are `whole` numbers;
+    `default` None means that a parameter has none: it is then required wherever the parameter called `needed_by[0]` has
+    one of the values `needed_by[1]`.
     """
 
     name: str
@@ -44,43 +47,32 @@ class Entry:
 
 
 POSITIVE = "(0, inf)"
-LAYERED = ("base", ("thin_layer", "layered", "auto"))
-ROUGH = ("micro", ("disc_cell", "power_law"))
-POWER = ("micro", ("power_law",))
 
 # fmt: off
 _ENTRIES = (
     Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)", POSITIVE),
     Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)", POSITIVE),
     Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)", POSITIVE),
-    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON, "", POSITIVE, needed_by=LAYERED),
-    Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material", interval=POSITIVE,
-          needed_by=LAYERED),
-    Entry("nu1", "ν1", "Poisson ratio of the layer", "material", interval="(-1, 0.5]", default=0.3),
-    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material", interval="(-1, 0.5]", default=0.3),
-    Entry("bonding", "", "interface of layer and half-space", "material", choices=("frictionless", "bonded"),
-          default="frictionless"),
-    Entry("base", "", "elastic base", "material",
-          choices=("half_space", "thin_layer", "layered", "auto"), default="layered"),
-    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY, "", POSITIVE,
-          needed_by=ROUGH),
-    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON, "", POSITIVE, needed_by=ROUGH),
-    Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)",
-          choices=("smooth", "disc_cell", "power_law"), default="disc_cell"),
-    Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness", interval=POSITIVE,
-          needed_by=POWER),
-    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness", interval="(0, 1]", needed_by=POWER),
-    Entry("scheme", "", "scheme of solution", "numerics", choices=("newton", "picard"), default="newton"),
+    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON, "", POSITIVE),
+    Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material", interval=POSITIVE),
+    Entry("nu1", "ν1", "Poisson ratio of the layer", "material", interval="(-1, 0.5]"),
+    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material", interval="(-1, 0.5]"),
+    Entry("bonding", "", "interface of layer and half-space", "material"),
+    Entry("base", "", "elastic base", "material"),
+    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY, "", POSITIVE),
+    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON, "", POSITIVE),
+    Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)"),
+    Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness", interval=POSITIVE),
+    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness", interval="(0, 1]"),
+    Entry("scheme", "", "scheme of solution", "numerics"),
     Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)",
-          interval="[0, inf)", default=1.0),
-    Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]", default=1e-6),
-    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics", interval="(0, 1)", default=1e-2),
-    Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics",
-          choices=("closed_form", "first_order"), default="closed_form"),
-    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics", interval="[4, 256]", also=(0,), default=0,
-          whole=True),
+          interval="[0, inf)"),
+    Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]"),
+    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics", interval="(0, 1)"),
+    Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics"),
+    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics", interval="[4, 256]", also=(0,)),
     Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics",
-          interval="[1, 100000]", also=(0,), default=0, whole=True),
+          interval="[1, 100000]", also=(0,)),
     Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), PRESSURE, "(3)"),
     Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), PRESSURE,
           "(13)"),
@@ -117,7 +109,10 @@ _ENTRIES = (
     Entry("max_error", "", "largest relative error of the fit over the interval `check`", "law"),
 )
 # fmt: on
-VOCABULARY = {entry.name: entry for entry in _ENTRIES}
+VOCABULARY = {
+    entry.name: replace(entry, **OF_THE_SOLVER[entry.name]._asdict()) if entry.name in OF_THE_SOLVER else entry
+    for entry in _ENTRIES
+}
 
 
 def names(*roles: str) -> tuple[str, ...]:

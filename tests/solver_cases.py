@@ -4,7 +4,7 @@ import numpy as np
 
 from solver import Problem, solve
 
-#: The paper's main case without its control; layered at a = 0.04.
+#: The paper's main case, a = 0.04 on a thin layer, without its control and its base.
 MAIN = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004, "B": 0.1, "beta": 0.5}
 #: The load that belongs to a = 0.04 with the power law, to eight digits.
 LOAD = 2.7040777e-5
@@ -40,8 +40,8 @@ def random_cases(size, seed, ranges=RANGES):
 
 
 def one(x=(0.0, 1.0), **case):
-    """Solution of the main case with changes."""
-    return solve(Problem.of(**(MAIN | case)), np.asarray(x))
+    """Solution of the main case, which is on a thin layer, with changes."""
+    return solve(Problem.of(**({"base": "thin_layer"} | MAIN | case)), np.asarray(x))
 
 
 def difference(first, second, names=JUDGED):

@@ -34,6 +34,18 @@ def test_one_interface_at_a_time_is_the_same():
             assert_allclose(one, both[kind], rtol=1e-14, atol=0)
 
 
+def test_the_order_in_memory_does_not_matter():
+    """Rows beside columns, every other element: the table's numbers, stiff layers at small u among them."""
+    for kind in (INPUTS[-1], ~INPUTS[-1]):
+        rows = np.flatnonzero(kind)[: kind.sum() // 6 * 6]
+        L, L1 = TABLE["L"][rows].reshape(-1, 6), TABLE["L1"][rows].reshape(-1, 6)
+        inputs = [v[rows].reshape(-1, 6) for v in INPUTS]
+        for arranged in (np.asfortranarray, lambda v: np.repeat(v, 2, axis=1)[:, ::2]):
+            found = layered_kernel(*(arranged(v) for v in inputs))
+            assert_allclose(found.L, L, rtol=1e-13, atol=0)  # what layered_kernel promises
+            assert_allclose(found.L1, L1, rtol=1e-13, atol=0)
+
+
 # ---- the boundary-value problem, lengths in 1/k, z downwards, displacements U J1 and W J0, stresses over 2 k
 # ---------------------------------------------------------------
 

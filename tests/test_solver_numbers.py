@@ -95,7 +95,7 @@ def test_tolerance_chooses_the_nodes(micro):
 
 
 def test_unreachable_tolerance_is_said():
-    s = solve(Problem.of(P=LOAD, h=0.02, n=0.5, Nbar=250000, Ra=0.004, rtol=1e-15))
+    s = solve(Problem.of(P=LOAD, h=0.02, n=0.5, Nbar=250000, Ra=0.004, base="thin_layer", rtol=1e-15))
     assert s.status[0] == 5
     assert s.error[0] > 1e-15
     assert s.nodes[0] >= 96

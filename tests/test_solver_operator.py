@@ -5,6 +5,9 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import beta, ellipe, factorial, hyp2f1
 
+from solver import Problem
+from solver.cases import as_cases, dimensionless
+from solver.equation import operate
 from solver.mesh import HERTZ, half_space_rows, mesh
 from solver.quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
 
@@ -87,6 +90,23 @@ def test_algebraic_singularity_converges_algebraically():
     error = [np.abs(u - expected).max() for u in found]
     rate = np.log2(np.array(error[:-1]) / error[1:])
     assert np.all((rate > 3) & (rate < 8))
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
+@pytest.mark.parametrize("size", [1, 3])
+def test_part_of_a_batch(base, size):
+    """The operator at a state has a row for each case: no case of one leaves no row, whatever the batch shares."""
+    problem = Problem.of(a=np.linspace(0.02, 0.04, size), h=0.02, n=0.5, Nbar=250000, Ra=0.004, base=base)
+    cases, _ = as_cases(*dimensionless(problem))
+    grid, eta = mesh(6), np.log(cases.value)
+    q = np.linspace(1, 2, size)[:, None] * grid.s
+    whole = operate(cases, eta, q, grid)
+    for index in (np.arange(0), np.array([size - 1])):
+        part, alone = whole.take(index), operate(cases.take(index), eta[index], q[index], grid)
+        for name in ("Kq", "edge_q", "d_Kq", "d_edge_q"):
+            found, expected = getattr(part, name), getattr(alone, name)
+            assert found.shape == expected.shape == (len(index), *(6,) * (found.ndim - 1)), name
+            assert_allclose(found, expected, rtol=0, atol=1e-14)  # rounding of products of order 1
 
 
 def test_quadrature():

@@ -63,7 +63,7 @@ def test_mixed_batches_are_single_cases():
 
 
 def test_empty_batch():
-    s = solve(Problem.of(P=np.zeros(0), **MAIN))
+    s = solve(Problem.of(P=np.zeros(0), **MAIN, base="thin_layer"))
     assert s.a.shape == (0,)
     assert s.p.shape == (0, 2)
 
@@ -128,7 +128,7 @@ def test_poison_is_flagged_and_harmless(base, law):
     ],
 )
 def test_bounds(name, values):
-    s = solve(Problem.of(P=LOAD, **(MAIN | {"micro": "power_law", name: values})))
+    s = solve(Problem.of(P=LOAD, **(MAIN | {"base": "thin_layer", "micro": "power_law", name: values})))
     assert_array_equal(s.status, Status.INVALID_INPUT)
 
 
@@ -195,9 +195,10 @@ def test_converged_is_within_rtol_in_999_of_1000():
 
 def test_the_estimate_follows_the_error_where_asperities_saturate():
     """λ(0) = 0.78 and 1: 32 nodes are right to 1e-12 and 1e-4; the estimate must see it, and a tolerance be met."""
-    case = {"P": 9.15142e-4, "Ra": 6.480e-3, "Nbar": 0.3781 / 6.48e-3**2, "n": 0.1074, "h": 1.093e-3}
+    thin = {"base": "thin_layer"}
+    case = thin | {"P": 9.15142e-4, "Ra": 6.480e-3, "Nbar": 0.3781 / 6.48e-3**2, "n": 0.1074, "h": 1.093e-3}
     assert solve(Problem.of(**case, nodes=32, rtol=1e-9)).error[0] < 1e-11
-    case = {"P": 4.687e-2, "Ra": 1.334e-2, "Nbar": 0.1254 / 1.334e-2**2, "n": 5.914e-5, "h": 3.326e-7}
+    case = thin | {"P": 4.687e-2, "Ra": 1.334e-2, "Nbar": 0.1254 / 1.334e-2**2, "n": 5.914e-5, "h": 3.326e-7}
     assert solve(Problem.of(**case, rtol=1e-2)).status[0] == Status.CONVERGED
 
 
@@ -215,7 +216,8 @@ def test_absurd_numbers_are_a_status():
     for name in good:
         for value in (1e-300, 1e300):
             for law in ("disc_cell", "power_law", "smooth"):
-                s = solve(Problem.of(**(good | {name: np.array([good[name], value]), "micro": law})))
+                changed = {name: np.array([good[name], value]), "base": "thin_layer", "micro": law}
+                s = solve(Problem.of(**(good | changed)))
                 assert s.status[0] == Status.CONVERGED, (name, value)
 
 
@@ -240,7 +242,7 @@ def test_wrong_calls(arguments, message):
 @pytest.mark.parametrize("x", [0.5, [[0.0]], [-0.1], [1.1], [np.nan]])
 def test_wrong_radii(x):
     with pytest.raises(ValueError, match="x must be one-dimensional"):
-        solve(Problem.of(P=LOAD, **MAIN), x)
+        solve(Problem.of(P=LOAD, **MAIN, base="thin_layer"), x)
 
 
 def test_every_status_has_its_sentence():

@@ -14,7 +14,8 @@ from solver.uniform import solve_uniform, uniform_mesh
 
 
 def paper(intervals=40, k=2.0, tolerance=1e-5, **case):
-    return solve_uniform(Problem.of(**(MAIN | {"micro": "power_law"} | case)), intervals, k, tolerance)
+    problem = Problem.of(**(MAIN | {"base": "thin_layer", "micro": "power_law"} | case))
+    return solve_uniform(problem, intervals, k, tolerance)
 
 
 def test_the_operator_on_hertz_converges_as_piecewise_linear_must():

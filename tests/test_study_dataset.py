@@ -255,6 +255,6 @@ def test_the_exact_layer_is_the_default_and_has_no_assumption_of_thinness():
 
 def test_vocabulary_names_every_parameter_of_the_solver():
     from solver.equation import CONTROLS
-    from solver.problem import DEFAULTS
+    from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
-    assert set(CONTROLS) | (set(DEFAULTS) - {"R", "E2"}) == set(PARAMETERS)
+    assert set(CONTROLS) | (set(OF_THE_SOLVER) - {"R", "E2"}) == set(PARAMETERS)

@@ -1,0 +1,96 @@
+"""What is answered: arrays over a batch of cases."""
+
+from dataclasses import dataclass, fields
+from enum import IntEnum
+
+import numpy as np
+
+
+class Model(IntEnum):
+    """What a case was solved with; smooth models get their asperities afterwards, from the nominal pressure."""
+
+    NONE = 0
+    HALF_SPACE = 1
+    SMOOTH_HALF_SPACE = 2
+    LAYER_ALONE = 3
+    SMOOTH_LAYER_ALONE = 4
+    THIN_LAYER = 5
+    SMOOTH_THIN_LAYER = 6
+    LAYERED = 7
+    SMOOTH_LAYERED = 8
+
+
+@dataclass(frozen=True)
+class Solution:
+    """The answers: arrays (B,), and profiles (B, m) at the m radii asked for. Units are those of the problem: of its R
+    and E2.
+
+    A case that fails is no error: `status` says why, and whether the last numbers are kept. One without numbers has NaN
+    everywhere but in the controlled quantity. The bounds below are those of a converged case.
+
+    Attributes
+    ----------
+    a, P, D : > 0
+        Radius of the nominal contact area (unit R), load (E2 R²), indentation depth (14) (R).
+    p0, p_max : > 0
+        Nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a smooth punch
+        (E2).
+    Ar_An : in (0, 1]
+        Real over nominal contact area (12); 1 for a smooth punch.
+    A0 : >= 0
+        Additional displacement A[p(0)] of the asperities (6) (R).
+    dP_dD : > 0
+        Contact stiffness (E2 R).
+    residual : >= 0
+        Largest residual of the discrete equation, relative to its right-hand side.
+    error : in [0, rtol]
+        Estimated relative error: the largest over a, P, D, p0, p_max, Ar_An. Profiles between the nodes are not in it.
+    model_error : >= 0
+        The same for the model used against the exact layered rough one; 0 for that one, and for a half-space that was
+        asked for by name. Of the base "auto" it is within `accuracy`.
+    status : int8
+        A :class:`~solver.status.Status`.
+    model_used : int8
+        A :class:`Model`.
+    iterations, nodes : int32
+        Iterations in all, and nodes of the last mesh; 0 nodes: a closed form.
+    p : (B, m)
+        Nominal pressure at the radii (E2).
+    lam : (B, m), in [0, 1]
+        Relative contact area λ (11) at the radii; 1 inside the contact of a smooth punch.
+    """
+
+    a: np.ndarray
+    P: np.ndarray
+    D: np.ndarray
+    p0: np.ndarray
+    p_max: np.ndarray
+    Ar_An: np.ndarray
+    A0: np.ndarray
+    dP_dD: np.ndarray
+    residual: np.ndarray
+    error: np.ndarray
+    model_error: np.ndarray
+    status: np.ndarray
+    model_used: np.ndarray
+    iterations: np.ndarray
+    nodes: np.ndarray
+    p: np.ndarray
+    lam: np.ndarray
+
+    @classmethod
+    def empty(cls, size, points):
+        """`size` cases without numbers, with profiles of `points` radii."""
+        values = {f.name: np.full(size, np.nan) for f in fields(cls)}
+        for name in ("status", "model_used"):
+            values[name] = np.zeros(size, dtype=np.int8)
+        for name in ("iterations", "nodes"):
+            values[name] = np.zeros(size, dtype=np.int32)
+        for name in ("p", "lam"):
+            values[name] = np.full((size, points), np.nan)
+        return cls(**values)
+
+    def put(self, index, part):
+        """Write the values of the dict `part` (name -> array) into the cases `index`, in place."""
+        for name, value in part.items():
+            getattr(self, name)[index] = value

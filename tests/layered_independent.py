@@ -24,9 +24,10 @@ which is the half-space by two smooth integrals without an elliptic one, and the
 from functools import cache, lru_cache
 
 import numpy as np
-from scipy.special import j0, sici
+from scipy.special import factorial, j0, sici
 
-from solver.kernel import layered_kernel
+#: What :func:`rough` computes.
+NAMES = ("P", "D", "p0", "p_max", "Ar_An")
 
 _rule = lru_cache(maxsize=None)(np.polynomial.legendre.leggauss)
 
@@ -37,17 +38,32 @@ def legendre(count, low=0.0, high=1.0):
     return low + (high - low) * (t + 1) / 2, (high - low) / 2 * w
 
 
-def printed_kernel(u, n, nu1, nu2, bonded):
-    """L(u) - 1 from the closed forms as printed; beyond n = 100, where they cancel, from the (tested) kernel."""
-    if n > 100:
-        return layered_kernel(u, n, nu1, nu2, bonded).L1
-    if not bonded:
-        s, c = np.sinh(u), np.cosh(u)
-        return ((n - 1) * (s * c + u - s * s) + n * u * u) / (s * c + u + n * (s * s - u * u))
+def kernel(u, n, nu1, nu2, bonded):
+    """L(u) - 1 at u (m,) from the closed forms, regrouped so that nothing cancels; for a check of this see
+    test_layered.py."""
+    if bonded:
+        return bonded_kernel(u, n, nu1, nu2)
+    s = np.sinh(u)  # above the line (n - 1)(sc + u - s²) + nu² with c - s = e^-u
+    return ((n - 1) * (s * np.exp(-u) + u) + n * u * u) / (s * np.cosh(u) + u + n * gap(u))
+
+
+def bonded_kernel(u, n, nu1, nu2):
+    """As printed; beyond n = 100, where a and b near 1 cancel, in A = 1 - a and B = 1 - b and over e = e^-2u."""
     alpha, g1, g2, e = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2, np.exp(-2 * u)
-    a, b = (alpha * g2 - g1) / (1 + alpha * g2), (alpha - 1) / (alpha + g1)
-    below = 1 - (a + b + 4 * b * u * u) * e + a * b * e * e
-    return e * (4 * b * u * (1 + u) + a + b - 2 * a * b * e) / below
+    if n <= 100:
+        a, b = (alpha * g2 - g1) / (1 + alpha * g2), (alpha - 1) / (alpha + g1)
+        below = 1 - (a + b + 4 * b * u * u) * e + a * b * e * e
+        return e * (4 * b * u * (1 + u) + a + b - 2 * a * b * e) / below
+    A, B, E = (1 + g1) / (1 + alpha * g2), (1 + g1) / (alpha + g1), -np.expm1(-2 * u)
+    above = 4 * (1 - B) * u * (1 + u) + A + B - 2 * A * B + 2 * (1 - A) * (1 - B) * E
+    return above / (4 * gap(u) + (A + B) * E + A * B * e + 4 * B * u * u)
+
+
+def gap(u):
+    """sinh² u - u² as a product; sinh u - u from its series below u = 2, where the difference cancels."""
+    j = np.arange(1, 14)
+    series = (np.minimum(u, 2.0)[:, None] ** (2 * j + 1) / factorial(2 * j + 1)).sum(axis=1)
+    return np.where(u < 2, series, np.sinh(u) - u) * (np.sinh(u) + u)
 
 
 def wave_rule(eta, n, reach=2.0):
@@ -65,7 +81,7 @@ def fredholm(eta, n, nu1, nu2, bonded, count=None):
     """P R/(E1* a³), D R/a², p(0) R/(E1* a), (dP/dD)/(E1* a) of a smooth sphere at h/a = η."""
     t, w = legendre(count or 48 + int(6 / eta))
     k, kw = wave_rule(eta, n)
-    weight = kw * printed_kernel(k * eta, n, nu1, nu2, bonded)
+    weight = kw * kernel(k * eta, n, nu1, nu2, bonded)
     wave = np.cos(np.outer(k, t))
     system = np.eye(len(t)) + (2 / np.pi) * (wave.T * weight) @ wave * w
     f1, f2 = np.linalg.solve(system, np.stack([np.ones_like(t), t * t], axis=1)).T
@@ -115,18 +131,28 @@ def collocation(count):
 def spot(v, E, Nbar, Ra):
     """p, A of Eqs (7), (6), v = b/B̄ of any number type."""
     cell = 1 / np.sqrt(np.pi * Nbar)
-    b, gap = cell * v, cell * np.sqrt(1 - v * v)
-    p = 2 * E * b**3 / (3 * Ra) / (cell**2 * np.arccos(v) + b * gap)
-    return p, b**2 / Ra - 2 * p / E * gap
+    b, rest = cell * v, cell * np.sqrt(1 - v * v)
+    p = 2 * E * b**3 / (3 * Ra) / (cell**2 * np.arccos(v) + b * rest)
+    return p, b**2 / Ra - 2 * p / E * rest
+
+
+def spot_radius(p, E, Nbar, Ra):
+    """b/B̄ (m,) at the pressures p (m,), Eq. (7), by halving; 0 where there is no pressure."""
+    low, high = np.zeros_like(p), np.ones_like(p)
+    for _ in range(80):
+        middle = (low + high) / 2
+        below = spot(middle, E, Nbar, Ra)[0] < p
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.where(p > 0, (low + high) / 2, 0.0)
 
 
 def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5, base="layered"):
-    """P, D, p(0) of a rough sphere at the contact radius a, R = E2* = 1, on `count` nodes."""
+    """The NAMES of a rough sphere at the contact radius a, R = E2* = 1, on `count` nodes."""
     s, w, x, centre, t, tw, potential, H = collocation(count)
     if base == "layered":
         k, kw = wave_rule(h / a, n)
         transform = (np.cos(np.outer(k, t)) * tw) @ potential
-        layer = (j0(np.outer(x, k)) * (kw * printed_kernel(k * h / a, n, nu1, nu2, bonded))) @ transform
+        layer = (j0(np.outer(x, k)) * (kw * kernel(k * h / a, n, nu1, nu2, bonded))) @ transform
         u, springs = 4 * a / (np.pi * n) * (H + layer), 0.0
     else:  # (3) with A1 = n: a half-space of E2* and springs
         n = 1.0 if base == "half_space" else n
@@ -147,5 +173,14 @@ def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5, ba
         v = np.where(new <= 0, 0.2 * v, np.where((new >= 1) & (micro != "power_law"), 0.5 * (1 + v), new))
         if np.abs(step / v).max() < 1e-11:
             break
-    p, _ = law(v)
-    return np.array([2 * np.pi * a**2 * (w * s) @ p, a**2 / 2 + edge @ p, centre @ p])
+    p = np.append(law(v)[0], 0.0)
+    p[-1] = centre @ p[:-1]
+    b = spot_radius(p, n, Nbar, Ra)
+    p_max = 2 * n * b[-1] / (np.pi * Ra * np.sqrt(np.pi * Nbar)) + 2 * p[-1] / np.pi * np.arcsin(b[-1])  # (13)
+    Ar_An = 2 * (w * s) @ b[:-1] ** 2  # (12)
+    return np.array([2 * np.pi * a**2 * (w * s) @ p[:-1], a**2 / 2 + edge @ p[:-1], p[-1], p_max, Ar_An])
+
+
+def answers(solution, i):
+    """The NAMES of the case i of a solution."""
+    return np.array([getattr(solution, name)[i] for name in NAMES])

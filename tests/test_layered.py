@@ -1,8 +1,10 @@
 """The exact layered base against two formulations that share nothing with it (:mod:`layered_independent`)."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
-from layered_independent import fredholm, rough
+from layered_independent import answers, fredholm, kernel, rough
 from numpy.testing import assert_allclose
 from solver_cases import LOAD, MAIN, difference
 
@@ -102,7 +104,7 @@ def test_table1(micro, bonded):
     assert difference(s, finer).max() < 1e-8
     for i, (Ra, Nbar, B, beta) in enumerate(TABLE1):
         expected = rough(40, micro, s.a[i], 0.02, 0.5, 0.3, 0.3, bonded, Nbar, Ra, B, beta)
-        assert_allclose([s.P[i], s.D[i], s.p0[i]], expected, rtol=1e-8, atol=0)
+        assert_allclose(answers(s, i), expected, rtol=1e-8, atol=0)
 
 
 @pytest.mark.parametrize("micro", ["disc_cell", "power_law"])
@@ -122,7 +124,14 @@ def test_rough_on_other_layers(micro):
     assert np.all(s.status == Status.CONVERGED)
     for i, layer in enumerate(layers):
         expected = rough(48, micro, 0.03, *layer, MAIN["Nbar"], MAIN["Ra"])
-        assert_allclose([s.P[i], s.D[i], s.p0[i]], expected, rtol=1e-8, atol=0, err_msg=str(layer))
+        assert_allclose(answers(s, i), expected, rtol=1e-8, atol=0, err_msg=str(layer))
+
+
+def test_the_kernel_of_the_references():
+    """Against 25 digits: rounding of L - 1, or of L where that changes sign, is all there is."""
+    table = np.genfromtxt(Path(__file__).parent / "data" / "kernel_reference.csv", delimiter=",", names=True)
+    found = [kernel(row["u"][None], row["n"], row["nu1"], row["nu2"], row["bonded"] == 1)[0] for row in table]
+    assert_allclose(found, table["L1"], rtol=1e-12, atol=1e-15)
 
 
 def test_references_close_on_themselves():

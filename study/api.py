@@ -27,12 +27,14 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     Parameters
     ----------
     **parameters : exactly one of P, a, D, and any of h, n, nu1, nu2, bonding, base, Nbar, Ra, micro, B, beta, scheme,
-        k, rtol, nodes, max_iterations, all dimensionless (see study.vocabulary). Each a scalar, a 1-D sequence (which
-        makes a dimension of that name, in the order given) or a DataArray over dimensions of its own.
+        k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see study.vocabulary). Each a scalar,
+        a 1-D sequence (which makes a dimension of that name, in the order given) or a DataArray over dimensions of its
+        own.
     cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
         which comes first
     x : number of points r/a of the profiles, or the points, from 0 to 1
     profiles : whether the dataset holds p and lam, or a list of those that it shall hold
+    title : of the dataset
 
     Returns
     -------

@@ -13,10 +13,9 @@ from .draft import Draft
 from .estimate import Estimate
 from .grid import LONGEST_AXIS
 from .order import Report, results_path
-from .reuse import statuses
+from .reuse import at_hand, earlier, statuses
 from .run import dry_run, partial_dataset, run
 from .store import Store, count_statuses, inventory
-from .vocabulary import NOT_RUN
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
@@ -78,15 +77,22 @@ class Study:
         return dry_run(self.definition, self.results, workers=workers)
 
     def status(self) -> dict:
-        """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results."""
-        path, counts = results_path(self.definition, self.results), {}
+        """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results.
+
+        Cases of an outdated results file that a run would use again count as computed; so do those in blocks.
+        """
+        path, kind = results_path(self.definition, self.results), self.definition.kind
         state = "new" if not path.exists() else "outdated"
         if digest_in(path) == self.definition.digest:
             state = "done"
-        if self.definition.kind == "contact":
-            found = statuses(path) if state == "done" else inventory(Store(self.definition, self.results)).status
-            counts = count_statuses(found)
-            state = "partial" if state == "new" and counts != {NOT_RUN: self.definition.grid.size} else state
+        if kind != "contact":
+            counts = {}
+        elif state == "done":
+            counts = count_statuses(statuses(path))
+        else:
+            known = inventory(Store(self.definition, self.results))
+            counts = count_statuses(at_hand(known, earlier(self.definition, path)))
+            state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         return {"state": state, "cases": self.definition.grid.size, "counts": counts, "path": path}
 
     def open(self, partial: bool = False) -> xr.Dataset:

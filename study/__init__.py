@@ -1,7 +1,8 @@
 """Parameter studies of rough coated contacts: labelled grids, results that resume, figures and tables.
 
-`solve` and `load` are the entrance; `python -m study` is the same from a shell. Names are imported when they are
-first used, so that `python -m study --help` and complaints about a study file answer at once.
+`solve` and `load` are the entrance; `python -m study` is the same from a shell. `study.derived`, `study.units` and
+`study.vocabulary` are there without an import of their own. Names are imported when they are first used, so that
+`python -m study --help` and complaints about a study file answer at once.
 """
 
 from importlib import import_module
@@ -16,10 +17,13 @@ _HOME = {
     "from_physical": "units",
     "reduced_modulus": "units",
 }
+_ROOMS = ("derived", "units", "vocabulary")
 __all__ = list(_HOME)
 
 
 def __getattr__(name: str):
+    if name in _ROOMS:
+        return import_module(f".{name}", __name__)
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     found = getattr(import_module(f".{_HOME[name]}", __name__), name)
@@ -28,4 +32,4 @@ def __getattr__(name: str):
 
 
 def __dir__() -> list[str]:
-    return sorted([*globals(), *__all__])
+    return sorted({*globals(), *__all__, *_ROOMS})

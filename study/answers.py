@@ -9,7 +9,8 @@ from .vocabulary import NOT_RUN
 def state_line(definition: Definition, state: dict) -> str:
     """ "fig04      2000 cases  partial (500 of 2000 cases)  title"."""
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
-    done = f" ({cases - missing} of {cases} cases)" if state["state"] == "partial" else ""
+    text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
+    done = text.format(cases - missing, cases) if state["counts"] else ""
     return f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {definition.title}"
 
 

@@ -13,10 +13,9 @@ from .draft import Draft
 from .estimate import Estimate
 from .grid import LONGEST_AXIS
 from .order import Report, results_path
-from .reuse import statuses
+from .reuse import at_hand, earlier, statuses
 from .run import dry_run, partial_dataset, run
 from .store import Store, count_statuses, inventory
-from .vocabulary import NOT_RUN
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
@@ -27,12 +26,14 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     Parameters
     ----------
     **parameters : exactly one of P, a, D, and any of h, n, nu1, nu2, bonding, base, Nbar, Ra, micro, B, beta, scheme,
-        k, rtol, nodes, max_iterations, all dimensionless (see study.vocabulary). Each a scalar, a 1-D sequence (which
-        makes a dimension of that name, in the order given) or a DataArray over dimensions of its own.
+        k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see study.vocabulary). Each a scalar,
+        a 1-D sequence (which makes a dimension of that name, in the order given) or a DataArray over dimensions of its
+        own.
     cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
         which comes first
     x : number of points r/a of the profiles, or the points, from 0 to 1
     profiles : whether the dataset holds p and lam, or a list of those that it shall hold
+    title : of the dataset
 
     Returns
     -------
@@ -76,15 +77,22 @@ class Study:
         return dry_run(self.definition, self.results, workers=workers)
 
     def status(self) -> dict:
-        """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results."""
-        path, counts = results_path(self.definition, self.results), {}
+        """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results.
+
+        Cases of an outdated results file that a run would use again count as computed; so do those in blocks.
+        """
+        path, kind = results_path(self.definition, self.results), self.definition.kind
         state = "new" if not path.exists() else "outdated"
         if digest_in(path) == self.definition.digest:
             state = "done"
-        if self.definition.kind == "contact":
-            found = statuses(path) if state == "done" else inventory(Store(self.definition, self.results)).status
-            counts = count_statuses(found)
-            state = "partial" if state == "new" and counts != {NOT_RUN: self.definition.grid.size} else state
+        if kind != "contact":
+            counts = {}
+        elif state == "done":
+            counts = count_statuses(statuses(path))
+        else:
+            known = inventory(Store(self.definition, self.results))
+            counts = count_statuses(at_hand(known, earlier(self.definition, path)))
+            state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         return {"state": state, "cases": self.definition.grid.size, "counts": counts, "path": path}
 
     def open(self, partial: bool = False) -> xr.Dataset:

@@ -75,7 +75,14 @@ def assembled(
         for name, flat in arrays.items()
         if name not in grid.values
     }
-    return xr.Dataset(variables, coordinates, provenance(definition, command))
+    return plainly_written(xr.Dataset(variables, coordinates, provenance(definition, command)))
+
+
+def plainly_written(dataset: xr.Dataset) -> xr.Dataset:
+    """The same dataset, marked so that a user's `to_netcdf` gives coordinates no _FillValue, which CF forbids there."""
+    for name in dataset.coords:
+        dataset.variables[name].encoding["_FillValue"] = None
+    return dataset
 
 
 def status_words() -> dict[int, str]:
@@ -211,13 +218,13 @@ def write(dataset: xr.Dataset, path: Path) -> None:
 def open_results(path) -> xr.Dataset:
     """A results file, read into memory and closed. Raises OSError when it does not exist or is no netCDF file."""
     with interrupts_wait(), xr.open_dataset(path, engine="netcdf4") as dataset:
-        return dataset.load()
+        return plainly_written(dataset.load())
 
 
 def open_lazily(path) -> xr.Dataset:
     """A results file as dask arrays in its chunks: numbers are read when they are asked for."""
     with interrupts_wait():
-        return xr.open_dataset(path, engine="netcdf4", chunks={})
+        return plainly_written(xr.open_dataset(path, engine="netcdf4", chunks={}))
 
 
 def digest_in(path: Path) -> str:

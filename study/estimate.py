@@ -5,6 +5,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from solver.ladder import LADDER, STACK
+
 from .blocks import compute, parcel
 from .cluster import AHEAD, available_workers, processes_for
 from .definition import Definition
@@ -14,7 +16,11 @@ from .progress import duration
 SAMPLE = 256  # cases
 PROCESS, WORKER = 250_000_000, 150_000_000  # bytes of Python and its packages, and of those in a worker process
 PER_CASE = 100  # bytes for the key of a case, and to find it
-WORKING = 5  # memory that solving a block takes, in sizes of its result
+WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, in sizes of its result
+# What solving takes besides, as it was measured: peaks of runs on 17 to 256 nodes, and of 300 cases of
+# studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
+SOLVING, MATRICES = 80_000_000, 3  # bytes for each worker, and matrices (B, n, n) of a stack of cases
+TABLES = 600_000_000  # bytes that each process keeps of the exact layer: 0.4 GB of tables, and what they are made from
 
 
 @dataclass(frozen=True)
@@ -35,9 +41,26 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    memory = PROCESS + WORKER * processes_for(count, -(-missing // definition.block)) + PER_CASE * cases
-    memory += 3 * min(size, AT_ONCE) + (AHEAD + WORKING) * count * block
+    processes = processes_for(count, -(-missing // definition.block))
+    memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
+    memory += (AHEAD + WORKING) * count * block
+    if definition.kind == "contact":
+        memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
     return Estimate(cases, present, seconds, memory, size)
+
+
+def _matrices(definition: Definition) -> int:
+    """Bytes of the matrices that a worker has at a time, on the largest mesh."""
+    nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
+    stack = 3 * STACK if _on_exact_layer(definition) else STACK
+    return 8 * MATRICES * nodes * min(nodes * min(definition.block, definition.grid.size), stack)
+
+
+def _on_exact_layer(definition: Definition) -> bool:
+    """Whether some case may need the operator of the exact layer, be it for the error of the thin layer."""
+    base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
+    judged = np.any(base == "thin_layer") and np.any(judged == "first_order")
+    return bool(judged or np.isin(base, ("layered", "auto")).any())
 
 
 def seconds_per_case(definition: Definition) -> float:

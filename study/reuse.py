@@ -59,6 +59,14 @@ def statuses(path: Path) -> np.ndarray:
         return np.ma.getdata(file["status"][...])
 
 
+def at_hand(known: Inventory, found: Earlier | None) -> np.ndarray:
+    """Status (B,) of every case that a run would not compute, in blocks or an earlier results file; else NOT_RUN."""
+    if not found or found.keys is None:
+        return known.status
+    where = find(known.keys, found.keys, np.zeros(len(found.keys)))
+    return np.where((known.file < 0) & (where >= 0), statuses(found.path).ravel()[where], known.status)
+
+
 def check_replaceable(store: Store, found: Earlier, keys: np.ndarray) -> None:
     """Raise StudyError when a results file holds cases that those of `keys` (B, 2), written in its place, are not."""
     digest, choice = store.definition.digest, "--force replaces them, --results DIR writes elsewhere"

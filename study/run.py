@@ -11,7 +11,6 @@ import xarray as xr
 
 from . import micro_law
 from .blocks import Failure, cut, guarded, parcel
-from .case_key import find
 from .cluster import as_they_come, engine
 from .dataset import labelled, status_words, write
 from .definition import Definition
@@ -20,8 +19,9 @@ from .join import writing
 from .lock import held
 from .order import Order, Report, check_size, check_writable
 from .progress import Progress
-from .reuse import adopt, check_replaceable, earlier
+from .reuse import adopt, at_hand, check_replaceable, earlier
 from .store import Inventory, Store, add, discard, gather, inventory, remove_litter
+from .vocabulary import NOT_RUN
 
 log = logging.getLogger(__name__)
 
@@ -152,11 +152,8 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
     order = Order(definition, Path(results))
     if definition.kind == "micro_law" or order.done:
         return estimate(definition, workers, definition.grid.size)
-    known, found = inventory(order.store), earlier(definition, order.path)
-    present = known.file >= 0
-    if found and found.keys is not None:
-        present |= find(known.keys, found.keys, np.zeros(len(found.keys))) >= 0
-    return estimate(definition, workers, int(np.count_nonzero(present)))
+    status = at_hand(inventory(order.store), earlier(definition, order.path))
+    return estimate(definition, workers, int(np.count_nonzero(status != NOT_RUN)))
 
 
 def partial_dataset(definition: Definition, results) -> xr.Dataset:

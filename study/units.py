@@ -41,10 +41,10 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     changed = {}
     for name, array in dataset.variables.items():
         if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
-            attributes = {key: text for key, text in array.attrs.items() if key != "scale"} | {
-                "units": VOCABULARY[name].unit[0]
-            }
-            changed[name] = (array.dims, array.values * factor(name, R, E2_star), attributes)
+            attributes = {key: text for key, text in array.attrs.items() if key != "scale"}
+            attributes["units"] = VOCABULARY[name].unit[0]
+            fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
+            changed[name] = array.dims, array.data * factor(name, R, E2_star), attributes, fill
     physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})
     physical = physical.assign({name: made for name, made in changed.items() if name in dataset.data_vars})
     return physical.assign_attrs({DONE: f"R = {R!r} m, E2* = {E2_star!r} Pa"})

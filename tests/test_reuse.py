@@ -60,7 +60,9 @@ def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, axes
         for start in range(0, 6, 2):
             store_block(load(), start, start + 2)
     extended = load(axes)
-    assert extended.dry_run().present == extended.definition.grid.size - new
+    size = extended.definition.grid.size
+    assert extended.dry_run().present == size - new
+    assert extended.status()["counts"] == {0: size - new} | ({127: new} if new else {})
     computed.clear()
     assert extended.run().computed == new
     assert len(computed) == -(-new // 2)

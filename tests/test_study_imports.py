@@ -2,6 +2,8 @@
 
 import ast
 import graphlib
+import inspect
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -71,17 +73,44 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     assert not any(users[name] for name in ("grid", "draft", "run", "api", "units", "derived", "progress"))
 
 
-@pytest.mark.parametrize("module", ["study", "study.vocabulary", "study.grid", "study.draft", "study.definition"])
-def test_light_modules_stay_light(module):
-    script = f"import sys, {module}; assert not {{'xarray', 'dask', 'netCDF4', 'matplotlib'}} & set(sys.modules)"
+def alone(script: str) -> None:
+    """Run a script in a Python of its own."""
     path = [entry or str(ROOT) for entry in sys.path]
     subprocess.run([sys.executable, "-c", f"import sys; sys.path[:] = {path!r}; {script}"], check=True)
+
+
+NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.modules)"
+
+
+def test_light_modules_stay_light():
+    alone(f"import study.vocabulary, study.grid, study.draft, study.definition; {NOT_HEAVY}")
+
+
+def test_rooms_are_there_after_import_of_the_package_alone():
+    """And the package itself imports nothing: neither numpy nor a room."""
+    alone(
+        "import study; assert not {'numpy', 'xarray', 'study.vocabulary', 'study.derived'} & set(sys.modules);"
+        f"assert study.vocabulary.VOCABULARY; {NOT_HEAVY};"
+        "assert study.derived.peak_pressure and study.units.factor; assert 'xarray' in sys.modules"
+    )
 
 
 def test_public_names():
     import study
 
+    assert {"derived", "units", "vocabulary"} <= set(dir(study))
+
     assert {"solve", "load", "open_results", "Study", "StudyError", "to_physical", "from_physical"} <= set(dir(study))
     assert all(callable(getattr(study, name)) for name in study.__all__)
     with pytest.raises(AttributeError, match="no attribute 'sovle'"):
         study.sovle  # noqa: B018
+
+
+def test_solve_names_every_parameter():
+    import study
+    from study.vocabulary import PARAMETERS
+
+    listed = study.solve.__doc__.split("**parameters :")[1].split("all dimensionless")[0]
+    assert set(PARAMETERS) - set(re.findall(r"\w+", listed)) == set()
+    arguments = re.findall(r"^    [*]{0,2}(\w+) : ", study.solve.__doc__, flags=re.MULTILINE)
+    assert set(arguments) - {"StudyError"} == set(inspect.signature(study.solve).parameters)

@@ -1,14 +1,12 @@
 """What a run would cost: asked before, and near the truth."""
 
-import time
-
 import numpy as np
 import pytest
 from line_study import load, store_block
 
 import study
-from study import blocks, order
-from study.blocks import parcel
+from study import blocks, estimate, order
+from study.cluster import available_workers
 from study.estimate import WORKER
 
 
@@ -45,9 +43,32 @@ def test_estimated_memory_counts_worker_processes(file):
     assert two - alone > 2 * WORKER
 
 
-def test_estimated_time_is_of_the_order_of_the_run(file):
-    opened = load(file, **{"num = 23": "num = 20000", "block = 5": "block = 2000"})
-    cost = opened.dry_run(workers=1)
-    begun = time.perf_counter()
-    blocks.compute(parcel(opened.definition, np.arange(20000)))
-    assert 0.02 < cost.seconds / (time.perf_counter() - begun) < 50
+@pytest.fixture
+def clock(monkeypatch) -> list[float]:
+    """A clock on which a case takes 2 ms, and whatever is done for the first time 50 s more."""
+    now, real = [0.0], blocks.compute
+
+    def compute(wanted):
+        now[0] += 0.002 * (wanted.last - wanted.first + 1) if now[0] else 50
+        return real(wanted)
+
+    monkeypatch.setattr(estimate, "compute", compute)
+    monkeypatch.setattr(estimate.time, "perf_counter", lambda: now[0])
+    return now
+
+
+@pytest.mark.parametrize(("workers", "seconds"), [(1, 0.036), (3, 0.012)])
+def test_estimated_time_is_that_of_the_missing_cases_on_all_workers(file, clock, workers, seconds):
+    opened = load(file)
+    store_block(opened, 0, 5)
+    assert opened.dry_run(workers=workers).seconds == pytest.approx(seconds, rel=1e-12)
+    assert opened.dry_run().seconds == pytest.approx(0.036 / available_workers(), rel=1e-12)
+
+
+def test_the_sample_is_spread_over_the_study(file, monkeypatch):
+    taken, real = [], blocks.compute
+    monkeypatch.setattr(estimate, "compute", lambda wanted: taken.append(wanted) or real(wanted))
+    load(file, **{"num = 23": "num = 20000", "block = 5": "block = 2000"}).dry_run()
+    for wanted in taken:
+        assert (wanted.first, wanted.last, len(wanted.parameters["P"])) == (0, 19999, 256)
+        assert np.median(wanted.parameters["P"]) == pytest.approx(5.05e-5, rel=0.01)  # of the range 1e-6 to 1e-4

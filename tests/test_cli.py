@@ -1,6 +1,5 @@
 """The command line: exit codes, messages, and that nothing heavy is imported before it is needed."""
 
-import io
 import os
 import subprocess
 import sys
@@ -12,7 +11,6 @@ import study
 from study import blocks
 from study import run as running
 from study.__main__ import main
-from study.progress import Progress, describe, duration
 
 GOOD = """
 title = "a line"
@@ -188,47 +186,3 @@ def test_answers_without_heavy_imports(arguments, code):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
     done = subprocess.run([sys.executable, "-c", script, *arguments], env=environment, capture_output=True, text=True)
     assert done.returncode == code, done.stderr
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_progress_on_a_terminal_is_one_line():
-    screen = Terminal()
-    progress = Progress("fig04", 10, screen, done=4)
-    progress.written -= 1
-    progress.update(3, failed=1)
-    progress.update(3, failed=0)
-    progress.close()
-    lines = screen.getvalue().split("\r\x1b[K")
-    assert lines[1].startswith("fig04: 7 of 10 cases, 1 failed, ")
-    assert lines[1].endswith(" left")
-    assert lines[2].startswith("fig04: 10 of 10 cases, 1 failed, ")
-    assert lines[2].endswith("/s\n")
-
-
-def test_progress_elsewhere_is_plain_and_rare():
-    log = io.StringIO()
-    progress = Progress("fig04", 100, log)
-    for _ in range(100):
-        progress.update(1, failed=0)
-    progress.close()
-    assert log.getvalue().count("\n") == 1
-    assert "\r" not in log.getvalue()
-
-
-def test_rate_and_time_left_count_only_what_is_computed_now():
-    assert (
-        describe("s", done=600, total=1000, failed=3, computed=100, seconds=10)
-        == "s: 600 of 1000 cases, 3 failed, 10/s, 40 s left"
-    )
-    assert describe("s", done=500, total=1000, failed=0, computed=0, seconds=0) == "s: 500 of 1000 cases, 0 failed, 0/s"
-    assert [duration(seconds) for seconds in (0.4, 59.4, 59.6, 3599.4, 7500)] == [
-        "0 s",
-        "59 s",
-        "1 min 0 s",
-        "59 min 59 s",
-        "2 h 5 min",
-    ]

@@ -108,7 +108,7 @@ def provenance(definition: Definition, command: str) -> dict:
     return {
         "Conventions": "CF-1.11",
         "title": definition.title or definition.name,
-        "source": f"roughcoat {_version('roughcoat')}",
+        "source": f"roughcoat {package_version('roughcoat')}",
         "references": REFERENCE,
         "history": f"{created} {command}",
         "study": definition.text,
@@ -119,7 +119,7 @@ def provenance(definition: Definition, command: str) -> dict:
         "git_commit": git_commit(),
         "versions": json.dumps(
             {"python": platform.python_version()}
-            | {p: _version(p) for p in ("numpy", "scipy", "xarray", "dask", "netCDF4")}
+            | {p: package_version(p) for p in ("numpy", "scipy", "xarray", "dask", "netCDF4")}
         ),
         "cpu": cpu(),
         "blas": blas(),
@@ -162,7 +162,8 @@ def blas() -> str:
     return f"{found.get('name', 'unknown')} {found.get('version', '')}".strip()
 
 
-def _version(package: str) -> str:
+def package_version(package: str) -> str:
+    """Of an installed package; "unknown" without one."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

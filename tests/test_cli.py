@@ -3,9 +3,11 @@
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 import study
 from study import blocks
@@ -47,6 +49,47 @@ def test_bad_file_does_not_keep_the_good_one_from_its_turn(studies, capsys):
     assert "studies/bad.toml: P[1] = -1: must be > 0\n" in printed.err
     assert "results/good.nc: 3 cases, 3 computed now\n" in printed.out
     assert not Path("results/bad.nc").exists()
+
+
+@pytest.mark.parametrize("command", ["check", "run", "status", "retry --status diverged", "run --dry-run"])
+def test_a_study_that_is_not_there(studies, command, capsys):
+    (studies / "par_maps.toml").write_text("", encoding="utf-8")
+    command, *options = command.split()
+    assert main([command, "par_map", "q", "studies/par_map.toml", "good.toml", "a/b", *options]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.splitlines() == [
+        'par_map: not found (looked for par_map and studies/par_map.toml); did you mean "par_maps"?',
+        "q: not found (looked for q and studies/q.toml); known: good, par_maps",
+        'studies/par_map.toml: not found; did you mean "studies/par_maps.toml"?',
+        'good.toml: not found; did you mean "studies/good.toml"?',
+        "a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps",
+    ]
+    assert not Path("results").exists()
+
+
+def test_where_there_are_no_studies_none_is_suggested(studies, monkeypatch, capsys):
+    monkeypatch.chdir(studies)
+    assert main(["status", "goood", "goood.toml"]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "goood: not found (looked for goood and studies/goood.toml)",
+        'goood.toml: not found; did you mean "good.toml"?',
+    ]
+
+
+def test_a_path_goes_before_a_name(studies, capsys):
+    Path("good").mkdir()
+    assert main(["check", "good"]) == 2
+    assert capsys.readouterr().err.startswith("good: a study file is called NAME.toml")
+
+
+def test_version(capsys):
+    from solver import NUMERICS_VERSION
+
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert capsys.readouterr().out == f"roughcoat {version}, numerics {NUMERICS_VERSION}\n"
 
 
 def test_run_twice_and_by_name(capsys):

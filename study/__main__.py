@@ -1,6 +1,7 @@
 """Command line of roughcoat: python -m study list | check | run | retry | status | plot | table | tradeoff.
 
-Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted.
+Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted (also a
+`run` or `retry` whose reader has left before the end).
 """
 
 import argparse
@@ -10,12 +11,13 @@ import signal
 import sys
 from pathlib import Path
 
+from .arguments import STUDIES, part, positive, study_file
+
 # The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
 # others at all, of which each worker process would have one for each processor.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-STUDIES = Path("studies")
 INTERRUPTED = 130  # exit code
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 KEPT = "; finished blocks are kept, the same command goes on from there"
@@ -25,6 +27,7 @@ def parser() -> argparse.ArgumentParser:
     """All subcommands and their options."""
     top = argparse.ArgumentParser(prog="python -m study", description="Parameter studies of rough coated contacts.")
     top.add_argument("-v", "--verbose", action="store_true", help="show the log")
+    top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
     def command(function, text: str, *arguments: str) -> argparse.ArgumentParser:
@@ -39,7 +42,7 @@ def parser() -> argparse.ArgumentParser:
     command(check, "check study files without computing", "files")
     sub = command(run, "compute what is missing and write the results", "files")
     _add_engine(sub)
-    sub.add_argument("--part", type=_part, default=(1, 1), metavar="I/N", help="compute the I-th of N parts only")
+    sub.add_argument("--part", type=part, default=(1, 1), metavar="I/N", help="compute the I-th of N parts only")
     sub.add_argument("--force", action="store_true", help="replace results of which cases would be lost")
     sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
     sub = command(retry, "compute cases of some status again", "files")
@@ -56,9 +59,20 @@ def parser() -> argparse.ArgumentParser:
     return top
 
 
+class Version(argparse.Action):
+    """Print the versions of the program and of its numerics, and end."""
+
+    def __call__(self, parser, *_) -> None:
+        from .dataset import package_version
+        from .definition import NUMERICS_VERSION
+
+        print(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}")
+        parser.exit()
+
+
 def _add_engine(sub: argparse.ArgumentParser) -> None:
     """Options of the commands that compute."""
-    sub.add_argument("--workers", type=_positive, metavar="N", help="threads or processes (default: one per processor)")
+    sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
     sub.add_argument("--scheduler", default="", metavar="ADDRESS", help="compute on the workers of this dask scheduler")
     either = sub.add_mutually_exclusive_group()
     either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
@@ -79,7 +93,7 @@ def check(options) -> int:
     from .definition import read
 
     def one(file):
-        definition = read(_file(file))
+        definition = read(study_file(file))
         dims = " x ".join(f"{name} {size}" for name, size in definition.grid.sizes.items()) or "one case"
         print(f"{file}: {definition.grid.size} cases ({dims}), digest {definition.digest[:16]}")
         return 0
@@ -92,7 +106,7 @@ def run(options) -> int:
     from .api import load
 
     def one(file):
-        study = load(_file(file), options.results)
+        study = load(study_file(file), options.results)
         if options.dry_run:
             return _print_lines([cost_line(study.definition.name, study.dry_run(options.workers))])
         return _compute(study, options, part=options.part, force=options.force)
@@ -105,7 +119,7 @@ def retry(options) -> int:
     from .order import status_values
 
     def one(file):
-        return _compute(load(_file(file), options.results), options, retry=status_values(options.status))
+        return _compute(load(study_file(file), options.results), options, retry=status_values(options.status))
 
     return _each(options.files, one, KEPT)
 
@@ -121,7 +135,7 @@ def status(options) -> int:
     from .dataset import status_words
 
     def one(file):
-        study = load(_file(file), options.results)
+        study = load(study_file(file), options.results)
         state = study.status()
         _print_state(study, state)
         for value, count in state["counts"].items():
@@ -169,6 +183,8 @@ def _attempt(action, item, hint: str) -> int:
     except StudyError as error:
         print(error, file=sys.stderr)
         return error.code
+    except BrokenPipeError:  # no fault of the item: nobody reads
+        raise
     except OSError as error:  # a full disk, say, or a scheduler that is gone
         print(f"{item}: {error}{hint}", file=sys.stderr)
         return 1
@@ -196,25 +212,6 @@ def _print_lines(lines) -> int:
     return 0
 
 
-def _file(text: str) -> Path:
-    """A path as given, or the name of a study in studies/."""
-    short = STUDIES / f"{text}.toml"
-    return short if not Path(text).exists() and short.exists() else Path(text)
-
-
-def _positive(text: str) -> int:
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be a whole number > 0")
-    return int(text)
-
-
-def _part(text: str) -> tuple[int, int]:
-    numbers = text.split("/")
-    if len(numbers) != 2 or not all(map(str.isdecimal, numbers)) or not 1 <= int(numbers[0]) <= int(numbers[1]):
-        raise argparse.ArgumentTypeError(f"{text}: must be I/N, whole numbers with 1 <= I <= N")
-    return int(numbers[0]), int(numbers[1])
-
-
 def _interrupt(*_) -> None:
     """End in good order; a second signal ends at once, which costs the blocks in work and no more."""
     for number in SIGNALS:
@@ -229,18 +226,24 @@ def _end(*_) -> None:
 
 def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
-    options = parser().parse_args(arguments)
-    logging.basicConfig(
-        level=logging.DEBUG if options.verbose else logging.WARNING, format="%(levelname)s %(name)s: %(message)s"
-    )
+    code = 0
     try:
-        return options.function(options)
+        try:
+            options = parser().parse_args(arguments)
+            level = logging.DEBUG if options.verbose else logging.WARNING
+            logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
+            code = INTERRUPTED if options.function in (run, retry) else 0  # should the reader leave half-way
+            code = options.function(options)
+        finally:
+            sys.stdout.flush()  # here, where it is no fault that the reader has left
     except KeyboardInterrupt:
         print(f"\ninterrupted{KEPT}", file=sys.stderr)
-        return INTERRUPTED
+        code = INTERRUPTED
     except BrokenPipeError:  # the reader, `head` say, has enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return 0
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(nowhere, stream.fileno())
+    return code
 
 
 if __name__ == "__main__":
@@ -248,7 +251,6 @@ if __name__ == "__main__":
         if signal.getsignal(_number) is not signal.SIG_IGN:
             signal.signal(_number, _interrupt)
     _code = main()
-    sys.stdout.flush()
     if _code == INTERRUPTED:
         os._exit(_code)  # does not wait for the blocks in work
     sys.exit(_code)

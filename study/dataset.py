@@ -30,6 +30,8 @@ from .grid import unflatten
 from .vocabulary import CONTROLS, NOT_RUN, PARAMETERS, attributes, names
 
 INTEGERS = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes_used": np.int16}
+NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
+"""Statuses of cases whose equations have no solution that the model means: no failure of the solver."""
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
 
@@ -113,7 +115,7 @@ def provenance(definition: Definition, command: str) -> dict:
     return {
         "Conventions": "CF-1.11",
         "title": definition.title or definition.name,
-        "source": f"roughcoat {_version('roughcoat')}",
+        "source": f"roughcoat {package_version('roughcoat')}",
         "references": REFERENCE,
         "history": f"{created} {command}",
         "study": definition.text,
@@ -124,7 +126,7 @@ def provenance(definition: Definition, command: str) -> dict:
         "git_commit": git_commit(),
         "versions": json.dumps(
             {"python": platform.python_version()}
-            | {p: _version(p) for p in ("numpy", "scipy", "xarray", "dask", "netCDF4")}
+            | {p: package_version(p) for p in ("numpy", "scipy", "xarray", "dask", "netCDF4")}
         ),
         "cpu": cpu(),
         "blas": blas(),
@@ -167,7 +169,8 @@ def blas() -> str:
     return f"{found.get('name', 'unknown')} {found.get('version', '')}".strip()
 
 
-def _version(package: str) -> str:
+def package_version(package: str) -> str:
+    """Of an installed package; "unknown" without one."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

@@ -1,5 +1,6 @@
 """Progress of a run: one line that is rewritten on a terminal, a plain line now and then elsewhere."""
 
+import os
 import time
 from dataclasses import dataclass, field
 from typing import TextIO
@@ -10,7 +11,10 @@ BLINK = 0.1  # seconds between rewritten lines
 
 @dataclass
 class Progress:
-    """Counts cases; `done` begins with those found on disk, the rate counts only what is computed now."""
+    """Counts cases; `done` begins with those found on disk, the rate counts only what is computed now.
+
+    A case without a solution has not `failed`.
+    """
 
     name: str
     total: int
@@ -39,16 +43,36 @@ class Progress:
             self.stream.write("\n")
 
     def _write(self, now: float) -> None:
-        line = describe(self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
-        self.stream.write(f"\r\x1b[K{line}" if self.stream.isatty() else f"{line}\n")
+        counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
+        if self.stream.isatty():
+            self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")  # the last one may wrap
+        else:
+            self.stream.write(f"{describe(*counts)}\n")
         self.stream.flush()
 
 
-def describe(name: str, done: int, total: int, failed: int, computed: int, seconds: float) -> str:
-    """The line: "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left"."""
+def columns(terminal: TextIO) -> int:
+    """Width of a terminal; 80 when it does not say."""
+    try:
+        return os.get_terminal_size(terminal.fileno()).columns or 80
+    except OSError:
+        return 80
+
+
+def describe(
+    name: str, done: int, total: int, failed: int, computed: int, seconds: float, *, width: int | None = None
+) -> str:
+    """The line: "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left"; so much of it as `width` characters hold."""
     rate = computed / seconds if seconds > 0 else 0.0
     left = f", {duration((total - done) / rate)} left" if rate and done < total else ""
-    return f"{name}: {done} of {total} cases, {failed} failed, {rate:.3g}/s{left}"
+    lines = (
+        f"{name}: {done} of {total} cases, {failed} failed, {rate:.3g}/s{left}",
+        f"{name}: {done} of {total} cases, {failed} failed{left}",
+        f"{name}: {100 * done // total} %, {failed} failed{left}",
+        f"{name}: {100 * done // total} %{left}",
+        f"{name}: {100 * done // total} %",
+    )
+    return next((line for line in lines if width is None or len(line) <= width), lines[-1][:width])
 
 
 def duration(seconds: float) -> str:

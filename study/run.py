@@ -12,7 +12,7 @@ import xarray as xr
 from . import micro_law
 from .blocks import Failure, cut, guarded, parcel
 from .cluster import as_they_come, engine
-from .dataset import labelled, status_words, write
+from .dataset import NO_SOLUTION, labelled, status_words, write
 from .definition import Definition
 from .estimate import Estimate, estimate
 from .join import writing
@@ -137,10 +137,10 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
             else:
                 add(order.store, known, blocks[number], result)
                 next(steps, None)
-                unsolved = np.flatnonzero(result["status"])
-                progress.update(len(result["status"]), len(unsolved))
-                if order.fail_fast and len(unsolved):
-                    case, value = blocks[number][unsolved[0]], int(result["status"][unsolved[0]])
+                failed = np.flatnonzero(~np.isin(result["status"], (0, *NO_SOLUTION)))
+                progress.update(len(result["status"]), len(failed))
+                if order.fail_fast and len(failed):
+                    case, value = blocks[number][failed[0]], int(result["status"][failed[0]])
                     failures[number] = f"case {case}: {status_words()[value]}"
             if order.fail_fast and failures:
                 break

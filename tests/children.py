@@ -2,12 +2,15 @@
 
 import multiprocessing
 import os
+import runpy
 import signal
+import sys
 import time
 from pathlib import Path
 
 PROCESSES = multiprocessing.get_context("forkserver")  # forks from a process that has imported everything
 PROCESSES.set_forkserver_preload(["study.api"])
+PATIENCE = 300  # seconds for what takes one or two: a busy machine makes a test slow, not red
 SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 
 
@@ -17,7 +20,11 @@ def child(file: Path, log: Path, at: str = "", locks: bool = True, **options) ->
     at : "module.name" of a function of `study` at whose first call the process kills itself; locks : whether the file
         system has them; options : of `Study.run`
     """
-    process = PROCESSES.Process(target=_run, args=(file, log, at, locks, options))
+    return started(_run, file, log, at, locks, options)
+
+
+def started(function, *arguments) -> multiprocessing.Process:
+    process = PROCESSES.Process(target=function, args=arguments)
     process.start()
     return process
 
@@ -44,6 +51,47 @@ def _run(file: Path, log: Path, at: str, locks: bool, options: dict) -> None:
     note(log, "ended" if report.counts else "nothing to do")
 
 
+def holding(folder: Path, first: int) -> dict[str, str]:
+    """Environment of a process that holds its blocks from case `first` on until folder/go is there, see `hold`."""
+    path = os.pathsep.join(path or os.getcwd() for path in sys.path)
+    hold = {"HOLD_FROM": str(first), "HOLD_UNTIL": str(folder / "go")}
+    return os.environ | hold | {"PYTHONPATH": path, "OPENBLAS_NUM_THREADS": "1"}
+
+
+def held(folder: Path) -> set[str]:
+    """Ids of the processes that wait for folder/go."""
+    return set(lines(folder / "go.log"))
+
+
+def command(folder: Path, first: int, *arguments: str, ignoring=(), stuck: bool = False) -> multiprocessing.Process:
+    """A started process that does in `folder` what `python -m study ...` does, stderr to folder/errors, and holds its
+    blocks from case `first` on.
+
+    ignoring : signals that its parent ignores; stuck : an interrupted run writes folder/ending and does not end
+    """
+    return started(_command, folder, first, arguments, ignoring, stuck)
+
+
+def _command(folder: Path, first: int, arguments, ignoring, stuck: bool) -> None:
+    os.chdir(folder)
+    os.dup2(os.open("errors", os.O_WRONLY | os.O_CREAT), sys.stderr.fileno())
+    for number, handler in {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}.items():
+        signal.signal(number, signal.SIG_IGN if number in ignoring else handler)
+    os.environ |= holding(folder, first)
+    import hold  # noqa: F401
+
+    if stuck:
+        from study.progress import Progress
+
+        def close(_):
+            note(folder / "ending", "")
+            time.sleep(PATIENCE)
+
+        Progress.close = close
+    sys.argv = ["study", *arguments]
+    runpy.run_module("study", run_name="__main__", alter_sys=True)
+
+
 def note(log: Path, line: str) -> None:
     """Append a line at once: the process may be killed in the next moment."""
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND)
@@ -61,7 +109,12 @@ def computed_in(log: Path) -> list[int]:
     return [case for first, last in blocks for case in range(int(first), int(last) + 1)]
 
 
-def wait_for(condition, seconds: float = 60) -> None:
+def stored(folder: Path) -> int:
+    """How many blocks are on disk."""
+    return len(list(folder.rglob("*.block")))
+
+
+def wait_for(condition, seconds: float = PATIENCE) -> None:
     """Wait until the condition holds; fail after `seconds`."""
     deadline = time.monotonic() + seconds
     while not condition():

@@ -1,5 +1,7 @@
 """A study of 23 loads in five blocks, the fixtures around it, and what a run of it leaves on disk."""
 
+import threading
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -42,6 +44,28 @@ def computed(monkeypatch) -> list:
 
     monkeypatch.setattr(blocks, "compute", compute)
     return seen
+
+
+@pytest.fixture
+def quiet() -> Callable[[], bool]:
+    """Whether the threads that the test has started have ended."""
+    before = set(threading.enumerate())
+    return lambda: set(threading.enumerate()) <= before
+
+
+def ending(monkeypatch, statuses: dict[int, int]) -> None:
+    """Make cases end with a status, and without a contact radius."""
+    real = blocks.compute
+
+    def compute(wanted):
+        found = real(wanted)
+        for case, status in statuses.items():
+            if wanted.first <= case <= wanted.last:
+                found["status"][case - wanted.first] = status
+                found["a"][case - wanted.first] = np.nan
+        return found
+
+    monkeypatch.setattr(blocks, "compute", compute)
 
 
 def store_block(opened, start: int, stop: int) -> Path:

@@ -1,18 +1,18 @@
 """The command line: exit codes, messages, and that nothing heavy is imported before it is needed."""
 
-import io
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+from conftest import ROOT
 
 import study
 from study import blocks
 from study import run as running
 from study.__main__ import main
-from study.progress import Progress, describe, duration
 
 GOOD = """
 title = "a line"
@@ -49,6 +49,47 @@ def test_bad_file_does_not_keep_the_good_one_from_its_turn(studies, capsys):
     assert "studies/bad.toml: P[1] = -1: must be > 0\n" in printed.err
     assert "results/good.nc: 3 cases, 3 computed now\n" in printed.out
     assert not Path("results/bad.nc").exists()
+
+
+@pytest.mark.parametrize("command", ["check", "run", "status", "retry --status diverged", "run --dry-run"])
+def test_a_study_that_is_not_there(studies, command, capsys):
+    (studies / "par_maps.toml").write_text("", encoding="utf-8")
+    command, *options = command.split()
+    assert main([command, "par_map", "q", "studies/par_map.toml", "good.toml", "a/b", *options]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.splitlines() == [
+        'par_map: not found (looked for par_map and studies/par_map.toml); did you mean "par_maps"?',
+        "q: not found (looked for q and studies/q.toml); known: good, par_maps",
+        'studies/par_map.toml: not found; did you mean "studies/par_maps.toml"?',
+        'good.toml: not found; did you mean "studies/good.toml"?',
+        "a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps",
+    ]
+    assert not Path("results").exists()
+
+
+def test_where_there_are_no_studies_none_is_suggested(studies, monkeypatch, capsys):
+    monkeypatch.chdir(studies)
+    assert main(["status", "goood", "goood.toml"]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "goood: not found (looked for goood and studies/goood.toml)",
+        'goood.toml: not found; did you mean "good.toml"?',
+    ]
+
+
+def test_a_path_goes_before_a_name(studies, capsys):
+    Path("good").mkdir()
+    assert main(["check", "good"]) == 2
+    assert capsys.readouterr().err.startswith("good: a study file is called NAME.toml")
+
+
+def test_version(capsys):
+    from solver import NUMERICS_VERSION
+
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert capsys.readouterr().out == f"roughcoat {version}, numerics {NUMERICS_VERSION}\n"
 
 
 def test_run_twice_and_by_name(capsys):
@@ -188,47 +229,3 @@ def test_answers_without_heavy_imports(arguments, code):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
     done = subprocess.run([sys.executable, "-c", script, *arguments], env=environment, capture_output=True, text=True)
     assert done.returncode == code, done.stderr
-
-
-class Terminal(io.StringIO):
-    def isatty(self) -> bool:
-        return True
-
-
-def test_progress_on_a_terminal_is_one_line():
-    screen = Terminal()
-    progress = Progress("fig04", 10, screen, done=4)
-    progress.written -= 1
-    progress.update(3, failed=1)
-    progress.update(3, failed=0)
-    progress.close()
-    lines = screen.getvalue().split("\r\x1b[K")
-    assert lines[1].startswith("fig04: 7 of 10 cases, 1 failed, ")
-    assert lines[1].endswith(" left")
-    assert lines[2].startswith("fig04: 10 of 10 cases, 1 failed, ")
-    assert lines[2].endswith("/s\n")
-
-
-def test_progress_elsewhere_is_plain_and_rare():
-    log = io.StringIO()
-    progress = Progress("fig04", 100, log)
-    for _ in range(100):
-        progress.update(1, failed=0)
-    progress.close()
-    assert log.getvalue().count("\n") == 1
-    assert "\r" not in log.getvalue()
-
-
-def test_rate_and_time_left_count_only_what_is_computed_now():
-    assert (
-        describe("s", done=600, total=1000, failed=3, computed=100, seconds=10)
-        == "s: 600 of 1000 cases, 3 failed, 10/s, 40 s left"
-    )
-    assert describe("s", done=500, total=1000, failed=0, computed=0, seconds=0) == "s: 500 of 1000 cases, 0 failed, 0/s"
-    assert [duration(seconds) for seconds in (0.4, 59.4, 59.6, 3599.4, 7500)] == [
-        "0 s",
-        "59 s",
-        "1 min 0 s",
-        "59 min 59 s",
-        "2 h 5 min",
-    ]

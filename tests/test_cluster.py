@@ -11,7 +11,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from children import PROCESSES, wait_for
+from children import PATIENCE, PROCESSES, held, holding, stored, wait_for
 from same import assert_same, assert_same_numbers
 from test_faults import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, undisturbed, written  # noqa: F401
 
@@ -33,20 +33,23 @@ class Cluster:
     """A scheduler and workers, processes of this machine."""
 
     def __init__(self, folder: Path):
+        self.folder = folder
         self.log = (folder / "cluster.log").open("w")
         self.file = folder / "scheduler.json"
         self.processes = []
         self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(self.file))
 
-    def start(self, *command: str) -> subprocess.Popen:
+    def start(self, *command: str, **environment: str) -> subprocess.Popen:
         command = [sys.executable, "-m", "dask", *command, "--no-dashboard"]
-        self.processes.append(subprocess.Popen(command, env=ENVIRONMENT, stdout=self.log, stderr=self.log))
+        environment = ENVIRONMENT | environment
+        self.processes.append(subprocess.Popen(command, env=environment, stdout=self.log, stderr=self.log))
         return self.processes[-1]
 
-    def worker(self) -> subprocess.Popen:
+    def worker(self, first: int = CASES) -> subprocess.Popen:
+        """Start a worker that holds its blocks from case `first` on until folder/go is there."""
         wait_for(self.known)
-        options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1")
-        return self.start("worker", "--scheduler-file", str(self.file), *options)
+        options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1", "--preload", str(ROOT / "tests" / "hold.py"))
+        return self.start("worker", "--scheduler-file", str(self.file), *options, **holding(self.folder, first))
 
     def known(self) -> bool:
         """Whether the scheduler has written its address: the file exists before."""
@@ -78,6 +81,7 @@ def run_on(address: str, file: Path, results: Path, answers) -> None:
 
     from study.__main__ import main
 
+    engines.CONNECT = PATIENCE
     with contextlib.redirect_stderr(io.StringIO()) as errors:
         code = main(["run", str(file), "--results", str(results), "--scheduler", address])
     answers.put((code, errors.getvalue()))
@@ -92,15 +96,11 @@ def started(cluster: Cluster, opened: study.Study, tmp_path: Path):
     return process, answers
 
 
-def stored(opened: study.Study) -> int:
-    return len(list(opened.results.rglob("*.block")))
-
-
 def test_walk_through_of_the_documentation(tmp_path):
     walk, slurm = re.findall(r"```sh\n(.*?)```", WALK, flags=re.DOTALL)
     script = "set -eu\nexport PYTHONPATH\n" + walk
     ran = subprocess.run(
-        ["sh", "-c", script], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, timeout=120
+        ["sh", "-c", script], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, timeout=PATIENCE
     )
     assert ran.returncode == 0, ran.stderr
     assert "results/walk.nc: 600 cases, 600 computed now" in ran.stdout and "converged: 600" in ran.stdout
@@ -113,30 +113,30 @@ def test_walk_through_of_the_documentation(tmp_path):
 
 def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):  # noqa: F811
     opened = written(tmp_path)
-    workers = [cluster.worker(), cluster.worker()]
+    workers = [cluster.worker(50), cluster.worker(50)]
     process, answers = started(cluster, opened, tmp_path)
-    wait_for(lambda: stored(opened) >= 3)
+    wait_for(lambda: len(held(tmp_path)) == 2)
     workers[0].send_signal(signal.SIGKILL)
-    process.join(90)
-    code, errors = answers.get(timeout=5)
+    (tmp_path / "go").touch()
+    process.join(PATIENCE)
+    code, errors = answers.get(timeout=PATIENCE)
     assert code == 0, errors
     assert_ends_well(opened, undisturbed, 0)
 
 
 def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):  # noqa: F811
     opened = written(tmp_path)
-    cluster.worker()
+    cluster.worker(3 * BLOCK)
     process, answers = started(cluster, opened, tmp_path)
-    wait_for(lambda: stored(opened) >= 3)
+    wait_for(lambda: stored(tmp_path) == 3)
     cluster.processes[0].kill()
-    process.join(60)
-    code, errors = answers.get(timeout=5)
+    process.join(PATIENCE)
+    code, errors = answers.get(timeout=PATIENCE)
     assert code == 1
     said = "line.toml: the scheduler is gone; finished blocks are kept, the same command goes on from there\n"
     assert errors.endswith(said)
-    done = len(cases_on_disk(opened))
-    assert 3 * BLOCK <= done < CASES
-    assert_ends_well(opened, undisturbed, CASES - done)
+    assert cases_on_disk(opened) == set(range(3 * BLOCK))
+    assert_ends_well(opened, undisturbed, CASES - 3 * BLOCK)
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
@@ -150,13 +150,17 @@ def test_a_scheduler_that_is_not_there(tmp_path, address, monkeypatch, undisturb
 
 def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):  # noqa: F811
     """Blocks of random size, axes in another order; the second worker comes while the run is on."""
-    cluster.worker()
+    cluster.worker(60)
     text = TEXT.replace("[0.001, 0.002, 0.003]", "[0.003, 0.001, 0.002]")
     opened = written(tmp_path, text.replace(f"block = {BLOCK}", f"block = {random.randint(3, 60)}"))
     process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: held(tmp_path))
     cluster.worker()
-    process.join(90)
-    assert answers.get(timeout=5)[0] == 0
+    with distributed.Client(cluster.address, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=PATIENCE)
+    (tmp_path / "go").touch()
+    process.join(PATIENCE)
+    assert answers.get(timeout=PATIENCE)[0] == 0
     assert_same_numbers(opened.open().sel(h=undisturbed.h), undisturbed)
 
 

@@ -6,20 +6,18 @@ import os
 import random
 import resource
 import signal
-import subprocess
-import sys
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
-from children import child, computed_in, lines, wait_for
+from children import PATIENCE, child, computed_in, lines, wait_for
 from line_study import present, store_block
 from same import assert_same
 
 import study
-from study import block_file, join
+from study import block_file, join, progress
 from study.__main__ import main
 from study.block_file import read_block
 
@@ -73,13 +71,13 @@ def cases_on_disk(opened: study.Study) -> set[int]:
 
 
 def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
-    file, before, least = tmp_path / "line.toml", set(), BLOCK
-    for attempt in range(10):
+    """From before the first block to when so many have been begun that some must have been stored."""
+    file, before = tmp_path / "line.toml", set()
+    for attempt, begun in enumerate(random.sample((0, 0, 1, 1, 2, 3, 4, 6, 9, 12), 10)):
         log = tmp_path / f"log{attempt}"
         process = child(file, log, workers=2)
-        sign = computed_in if attempt % 2 else lines  # every other time it has begun to compute
-        wait_for(lambda log=log, process=process, sign=sign: sign(log) or not process.is_alive())
-        process.join(random.uniform(0, 0.15))
+        wait_for(lambda: len(computed_in(log)) >= begun * BLOCK or not process.is_alive())  # noqa: B023
+        process.join(random.uniform(0, 0.02))
         process.kill()
         process.join()
         after, computed = cases_on_disk(opened), computed_in(log)
@@ -87,36 +85,16 @@ def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
         assert not before & set(computed) and len(set(computed)) == len(computed), "nothing is computed twice"
         assert len(set(computed) - after) <= IN_FLIGHT, "a kill costs the blocks in flight"
         before = after
-    assert least <= len(before), "the moments were all too early to test anything"
-    assert_ends_well(opened, undisturbed, None if opened.status()["state"] == "done" else CASES - len(before))
+    assert before, "of twelve begun blocks at most eight are in flight"
+    assert_ends_well(opened, undisturbed, CASES - len(before))
 
 
 @pytest.mark.parametrize("at", ["run._finish", "join.create", "run.discard"])
 def test_killed_while_the_results_are_written(opened, undisturbed, tmp_path, at):
     process = child(tmp_path / "line.toml", tmp_path / "log", at=at, workers=2)
-    process.join(60)
+    process.join(PATIENCE)
     assert process.exitcode == -signal.SIGKILL
     assert_ends_well(opened, undisturbed, 0)
-
-
-@pytest.mark.parametrize("signals", [[signal.SIGINT] * 2, [signal.SIGTERM], [signal.SIGTERM, signal.SIGINT]], ids=str)
-def test_interrupted_by_signals(undisturbed, tmp_path, signals):
-    opened = written(tmp_path, TEXT.replace(f"block = {BLOCK}", "block = 1"))
-    command = [sys.executable, "-m", "study", "run", "line.toml", "--workers", "2"]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
-    listening = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}  # ignored in background jobs
-    process = subprocess.Popen(command, cwd=tmp_path, env=environment, stderr=subprocess.PIPE, text=True, **listening)
-    wait_for(lambda: any(opened.results.rglob("*.block")))
-    for number in signals:
-        process.send_signal(number)
-    _, errors = process.communicate(timeout=60)
-    if len(signals) == 1:
-        assert "interrupted; finished blocks are kept, the same command" in errors
-    assert process.returncode == 130
-    assert "Traceback" not in errors
-    assert 0 < present(opened) < CASES
-    assert not list(tmp_path.glob("results/*.tmp"))
-    assert_ends_well(written(tmp_path), undisturbed, CASES - present(opened))
 
 
 def spoil(path: Path, how: str) -> None:
@@ -175,7 +153,7 @@ def full_disk(limit: int):
 
 @pytest.mark.parametrize(("limit", "kept"), [(500, 0), (8000, CASES)], ids=["of a block", "of the results"])
 def test_full_disk(opened, undisturbed, capsys, tmp_path, limit, kept):
-    command = ["run", str(tmp_path / "line.toml"), "--results", str(opened.results)]
+    command = ["run", str(tmp_path / "line.toml"), "--results", str(opened.results), "--workers", "1"]
     try:
         full_disk(limit)
         code = main(command)
@@ -221,7 +199,7 @@ def test_folder_becomes_read_only(opened, undisturbed, tmp_path, capsys, monkeyp
         raise OSError(errno.EROFS, "Read-only file system")
 
     monkeypatch.setattr(os, "replace", replace)
-    assert main(["run", str(tmp_path / "line.toml"), "--results", str(opened.results)]) == 1
+    assert main(["run", str(tmp_path / "line.toml"), "--results", str(opened.results), "--workers", "1"]) == 1
     assert "Read-only file system" in capsys.readouterr().err
     monkeypatch.undo()
     assert_ends_well(opened, undisturbed, CASES - BLOCK)
@@ -232,7 +210,7 @@ def test_two_runs_at_once(opened, undisturbed, tmp_path, locks):
     logs = [tmp_path / "one", tmp_path / "two"]
     runs = [child(tmp_path / "line.toml", log, locks=locks, workers=2) for log in logs]
     for process in runs:
-        process.join(60)
+        process.join(PATIENCE)
     assert [process.exitcode for process in runs] == [0, 0]
     computed = [case for log in logs for case in computed_in(log)]
     assert set(computed) == set(range(CASES))
@@ -247,7 +225,7 @@ def test_parts_at_once(opened, undisturbed, tmp_path):
     logs = [tmp_path / f"part{i}" for i in range(3)]
     runs = [child(tmp_path / "line.toml", log, part=(i + 1, 3), workers=1) for i, log in enumerate(logs)]
     for process in runs:
-        process.join(60)
+        process.join(PATIENCE)
     assert [process.exitcode for process in runs] == [0, 0, 0]
     assert sorted(case for log in logs for case in computed_in(log)) == list(range(CASES))
     assert opened.status()["state"] == "done", "the last one has written the results"
@@ -270,6 +248,7 @@ def test_a_clock_that_jumps(opened, undisturbed, monkeypatch, tmp_path):
     os.utime(later, (1, 1))
     random_time = random.Random(1)
     monkeypatch.setattr(time, "time", lambda: random_time.uniform(0, 4e9))
+    monkeypatch.setattr(progress, "EVERY", float("inf"))
     shown = io.StringIO()
     opened.run(workers=2, stream=shown)
     assert shown.getvalue().startswith(f"line: {CASES} of {CASES} cases, 0 failed, ") and "-" not in shown.getvalue()
@@ -277,7 +256,9 @@ def test_a_clock_that_jumps(opened, undisturbed, monkeypatch, tmp_path):
     assert_ends_well(opened, undisturbed, 0)
 
 
-@pytest.mark.parametrize("name", ["..", "../up", "a/b", ".hidden", "a b", "-x", "nul\0"])
-def test_names_of_studies_cannot_leave_the_folder(tmp_path, name, capsys):
+@pytest.mark.parametrize("name", ["..", ".hidden", "a b", "-x", "ü"])
+def test_names_that_would_be_trouble_in_the_results_folder_are_refused(tmp_path, name, capsys):
+    (tmp_path / f"{name}.toml").write_text(TEXT, encoding="utf-8")
     assert main(["run", str(tmp_path / f"{name}.toml"), "--results", str(tmp_path / "results")]) == 2
-    assert [path.name for path in tmp_path.iterdir()] == []
+    assert "a study file is called NAME.toml, NAME of letters, digits" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [f"{name}.toml"]

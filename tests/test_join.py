@@ -6,7 +6,7 @@ import sys
 import numpy as np
 import pytest
 import xarray as xr
-from children import PROCESSES
+from children import PATIENCE, PROCESSES
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 from same import assert_same
@@ -114,7 +114,7 @@ def test_memory_does_not_grow_with_the_study(tmp_path):
     for points in (50, 300):
         process = PROCESSES.Process(target=peak_of_a_run, args=(tmp_path / str(points), points, answers))
         process.start()
-        found.append(answers.get(timeout=60))
+        found.append(answers.get(timeout=PATIENCE))
         process.join()
     (small, of_small), (large, of_large) = found
     assert of_large - of_small > 49e6

@@ -5,7 +5,7 @@ import signal
 import threading
 
 import pytest
-from children import PROCESSES
+from children import PATIENCE, PROCESSES
 
 from study import lock
 from study.lock import held
@@ -40,7 +40,7 @@ def test_the_lock_of_a_killed_process_is_free(path):
     ready = PROCESSES.Event()
     process = PROCESSES.Process(target=hold, args=(path, ready))
     process.start()
-    assert ready.wait(60)
+    assert ready.wait(PATIENCE)
     with held(path, wait=False) as mine:
         assert not mine
     process.kill()
@@ -56,14 +56,14 @@ def test_who_waited_for_a_lock_that_was_removed_holds_the_one_that_is_there(path
         with held(path, waiting=waiting.set) as mine:
             assert mine
             acquired.set()
-            release.wait(60)
+            release.wait(PATIENCE)
 
     with held(path):
         thread = threading.Thread(target=second)
         thread.start()
-        assert waiting.wait(60)
+        assert waiting.wait(PATIENCE)
         shutil.rmtree(path.parent)
-    assert acquired.wait(60)
+    assert acquired.wait(PATIENCE)
     with held(path, wait=False) as third:
         assert not third
     release.set()

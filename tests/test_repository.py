@@ -135,7 +135,7 @@ def test_python_of_the_readme_runs(results):
     script = "\n".join(blocks("python"))
     environment = os.environ | {"MPLBACKEND": "agg", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error::FutureWarning"}
     command = [sys.executable, "-c", script]
-    ran = subprocess.run(command, cwd=results.parent, capture_output=True, text=True, env=environment, timeout=120)
+    ran = subprocess.run(command, cwd=results.parent, capture_output=True, text=True, env=environment, timeout=600)
     assert ran.returncode == 0, ran.stderr
     assert "frictionless" in ran.stdout
     assert (results.parent / "coating.png").stat().st_size > 5000

@@ -1,19 +1,15 @@
 """Running a study: blocks, resume, interruption, failures."""
 
-import os
-import signal
-import subprocess
-import sys
 import tempfile
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from children import wait_for
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from line_study import COUNT, leftovers, load, present, store_block
+from line_study import COUNT, ending, leftovers, load, store_block
 from same import assert_same_numbers
 
 import study
@@ -45,7 +41,7 @@ def test_rerun_computes_nothing(file, computed):
 
 
 @pytest.mark.parametrize("workers", [1, 2])
-def test_interrupted_run_computes_only_the_missing_blocks(file, computed, monkeypatch, workers):
+def test_interrupted_run_computes_only_the_missing_blocks(file, computed, monkeypatch, quiet, workers):
     opened = load(file)
     real, stored = running.add, []
 
@@ -61,7 +57,7 @@ def test_interrupted_run_computes_only_the_missing_blocks(file, computed, monkey
     done = sum(len(range(i * 5, min(i * 5 + 5, 23))) for i in stored)
     expected = {"state": "partial", "cases": 23, "counts": {0: done, 127: 23 - done}, "path": None}
     assert opened.status() | {"path": None} == expected
-    wait_for_quiet(computed)
+    wait_for(quiet)
     part = opened.open(partial=True)
     assert int((part.status == 127).sum()) == 23 - done
     assert (part.status.values == 127).tolist() == part.a.isnull().values.tolist()
@@ -72,14 +68,6 @@ def test_interrupted_run_computes_only_the_missing_blocks(file, computed, monkey
     assert report.computed == 23 - int((part.status != 127).sum())
     assert opened.status()["state"] == "done"
     assert (opened.open().status == 0).all()
-
-
-def wait_for_quiet(seen: list) -> None:
-    """Wait until workers that an interruption left behind have ended their block."""
-    count = -1
-    while count != len(seen):
-        count = len(seen)
-        time.sleep(0.05)
 
 
 def test_blocks_on_disk_serve_another_block_size(file, computed):
@@ -140,36 +128,11 @@ def test_random_blocks_orders_workers_and_parts_give_the_same_dataset(data):
     assert_same_numbers(found.sel({name: whole[name] for name in axes}).transpose(*whole.dims), whole)
 
 
-def failing(monkeypatch, first: int) -> None:
-    """The second case of the block that begins with `first` ends with status 3, diverged, without numbers."""
-    real = blocks.compute
-
-    def compute(wanted):
-        found = real(wanted)
-        if wanted.first == first:
-            found["status"][1] = 3
-            found["a"][1] = np.nan
-        return found
-
-    monkeypatch.setattr(blocks, "compute", compute)
-
-
-def test_a_failed_case_does_not_stop_the_others_unless_asked(file, monkeypatch, computed):
-    failing(monkeypatch, 5)
-    report = load(file).run(workers=1, fail_fast=True)
-    assert report.failures == {1: "case 6: diverged"}
-    assert not report.complete and report.computed < 23
-    report = load(file).run(workers=1)
-    assert report.complete and report.counts == {0: 22, 3: 1}
-    assert set(computed) == {0, 5, 10, 15, 20}
-    assert computed.count(0) == computed.count(5) == 1, "what was stored before the stop is kept, the failed case too"
-
-
 @pytest.mark.parametrize("ended", [True, False])
 def test_retry_computes_the_cases_of_a_status_again(file, monkeypatch, ended):
     opened = load(file)
     with monkeypatch.context() as patched:
-        failing(patched, 5)
+        ending(patched, {6: 3})
         opened.run(workers=1, fail_fast=not ended)
     assert opened.status()["state"] == ("done" if ended else "partial")
     assert opened.status()["counts"][3] == 1
@@ -190,43 +153,3 @@ def test_a_block_size_of_one_part_does_not_change_which_cases_it_has(file):
     later = np.concatenate(blocks.cut(whole[whole % 2 == 0], 5, (2, 3)))
     assert set(later) == {case for case in shares[1] if case % 2 == 0}
     assert [len(block) for block in blocks.cut(whole, 5)] == [5, 5, 5, 5, 3]
-
-
-# a test run in the background of a shell ignores SIGINT, and so would its children
-LISTENING = """
-import signal, sys
-signal.signal(signal.SIGINT, signal.default_int_handler)
-from study.__main__ import main
-sys.exit(main(sys.argv[1:]))
-"""
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_interrupt_from_the_keyboard(file):
-    load(file, **{"num = 23": "num = 600"})
-    command = [
-        sys.executable,
-        "-c",
-        LISTENING,
-        "run",
-        str(file),
-        "--results",
-        str(file.parent / "results"),
-        "--workers",
-        "2",
-    ]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, env=environment)
-    opened = study.load(file, file.parent / "results")
-    deadline = time.monotonic() + 30
-    while not present(opened) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    process.send_signal(signal.SIGINT)
-    _, errors = process.communicate(timeout=30)
-    assert process.returncode == 130
-    assert "the same command goes on from there" in errors
-    assert "Traceback" not in errors
-    done = present(opened)
-    assert 0 < done < 600
-    assert not [name for name in leftovers(opened.results) if name.endswith(".tmp")]
-    assert opened.run().computed == 600 - done

@@ -1,7 +1,6 @@
 """What a run would cost: asked before, and near the truth."""
 
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -10,9 +9,8 @@ from line_study import load, store_block
 
 import study
 from solver import layer_tables
-from study import blocks, order
+from study import order
 from study import estimate as estimates
-from study.blocks import parcel
 from study.definition import from_tables
 
 
@@ -25,6 +23,29 @@ def test_a_large_study_asks_first(file, monkeypatch, computed):
         opened.run()
     assert not opened.results.joinpath("line.nc").exists() and computed == [], "nothing but a sample is computed"
     assert opened.run(yes=True).computed == 23
+
+
+def test_what_is_large_is_more_than_so_many_numbers(file, monkeypatch):
+    opened = load(file)
+    monkeypatch.setattr(order, "LARGE", opened.definition.numbers - 1)
+    with pytest.raises(study.StudyError, match="--yes computes them"):
+        opened.run()
+    monkeypatch.setattr(order, "LARGE", opened.definition.numbers)
+    assert opened.run().complete
+
+
+def test_a_large_study_is_told_the_cost_with_its_workers(file, monkeypatch):
+    asked, real = [], order.estimate
+    monkeypatch.setattr(order, "LARGE", 1)
+    monkeypatch.setattr(order, "estimate", lambda *given: asked.append(given[1]) or real(*given))
+    with pytest.raises(study.StudyError):
+        load(file).run(workers=7)
+    assert asked == [7]
+
+
+def test_cost_in_words():
+    cost = estimates.Estimate(cases=9, present=1, seconds=125.4, memory=5.1e8, size=6.66e8)
+    assert estimates.describe(cost) == "about 2 min 5 s, at most 0.51 GB of memory, 0.67 GB on disk"
 
 
 def test_dry_run_says_what_is_there_and_writes_nothing(file):
@@ -47,14 +68,6 @@ def test_estimated_memory_counts_worker_processes(file):
     opened = load(file, **{"num = 23": "num = 40"})  # eight blocks
     alone, two = (opened.dry_run(workers=count).memory for count in (1, 2))
     assert two - alone > 2 * estimates.WORKER
-
-
-def test_estimated_time_is_of_the_order_of_the_run(file):
-    opened = load(file, **{"num = 23": "num = 20000", "block = 5": "block = 2000"})
-    cost = opened.dry_run(workers=1)
-    begun = time.perf_counter()
-    blocks.compute(parcel(opened.definition, np.arange(20000)))
-    assert 0.02 < cost.seconds / (time.perf_counter() - begun) < 50
 
 
 MODELS = {

@@ -4,56 +4,33 @@ import os
 import signal
 import subprocess
 import sys
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from children import wait_for
-from line_study import present
+from children import PATIENCE, held, holding, stored, wait_for
+from conftest import ROOT
+from line_study import load, present
 from same import assert_same
 
-import study
-from study.cluster import processes_for
+from study import cluster
+from study.cluster import engine, processes_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
-
-CASES = 200
-TEXT = f"""
-[model]
-micro = "disc_cell"
-Nbar = 250000
-Ra = 0.004
-n = 0.5
-h = 0.02
-[axes]
-P = {{start = 1e-6, stop = 1e-4, num = {CASES}}}
-[numerics]
-block = 1
-[output]
-x = 3
-"""
+BEFORE, CASES = 5, 40  # cases in blocks of one; those from BEFORE on are held
 
 
 @pytest.fixture
-def opened(tmp_path) -> study.Study:
-    (tmp_path / "line.toml").write_text(TEXT, encoding="utf-8")
-    return study.load(tmp_path / "line.toml", tmp_path / "results")
+def opened(file):
+    return load(file, **{"num = 23": f"num = {CASES}", "block = 5": "block = 1"})
 
 
-@pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("undisturbed")
-    (folder / "line.toml").write_text(TEXT, encoding="utf-8")
-    opened = study.load(folder / "line.toml", folder / "results")
-    opened.run()
-    return opened.open()
-
-
-def started(opened, *options) -> subprocess.Popen:
+def started(opened, *options: str) -> subprocess.Popen:
     """A run from the command line in a session of its own."""
-    command = [sys.executable, "-m", "study", "run", "line.toml", "--workers", "2", *options]
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+    folder = opened.results.parent
+    command = [sys.executable, ROOT / "tests" / "hold.py", "run", "line.toml", "--workers", "2", *options]
     listening = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}  # ignored in background jobs
-    where = {"cwd": opened.results.parent, "env": environment, "start_new_session": True}
+    where = {"cwd": folder, "env": holding(folder, BEFORE), "start_new_session": True}
     return subprocess.Popen(command, **where, **listening, stderr=subprocess.PIPE, text=True)
 
 
@@ -70,23 +47,30 @@ def workers_of(process: subprocess.Popen) -> list[int]:
     return found
 
 
-def some_blocks(opened) -> bool:
-    return any(opened.results.rglob("*.block"))
+def at_work(opened) -> bool:
+    """Whether what is before the held cases is on disk, and both workers hold one."""
+    folder = opened.results.parent
+    return stored(folder) == BEFORE and len(held(folder)) == 2
 
 
-def assert_ends_well(opened, undisturbed) -> None:
-    computed = CASES - present(opened)
+def assert_ends_well(opened, done: int) -> None:
+    """So many cases are on disk, and the next run computes the others."""
+    assert present(opened) == done
     report = opened.run()
-    assert report.complete and report.computed == computed
-    assert_same(opened.open(), undisturbed)
+    assert report.complete and report.computed == CASES - done
 
 
-def test_processes_compute_what_threads_compute(opened, undisturbed):
+def test_processes_compute_what_threads_compute(opened, tmp_path):
     process = started(opened)
-    wait_for(lambda: len(workers_of(process)) == 2)
-    _, errors = process.communicate(timeout=60)
+    wait_for(lambda: at_work(opened))
+    assert {*map(str, workers_of(process))} == held(tmp_path)
+    (tmp_path / "go").touch()
+    _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 0, errors
-    assert_same(opened.open(), undisturbed)
+    (tmp_path / "threads").mkdir()
+    threads = load(tmp_path / "threads" / "line.toml", **{"num = 23": f"num = {CASES}", "block = 5": "block = 1"})
+    threads.run()
+    assert_same(opened.open(), threads.open())
 
 
 def test_how_many_processes():
@@ -94,44 +78,44 @@ def test_how_many_processes():
     assert [processes_for(*each) for each in ((2, 7), (2, 8), (1, 100), (16, 9))] == [0, 2, 0, 9]
 
 
-def test_one_worker_computes_in_the_process_itself(opened):
-    process = started(opened, "--workers", "1")
-    wait_for(lambda: some_blocks(opened))
-    assert not workers_of(process)
-    process.kill()
-    process.communicate()
+@pytest.mark.parametrize(("blocks", "kind"), [(100, ProcessPoolExecutor), (7, ThreadPoolExecutor)])
+def test_which_executor(monkeypatch, blocks, kind):
+    asked = []
+    monkeypatch.setattr(cluster, "_processes", lambda count: asked.append(count) or ProcessPoolExecutor(count))
+    with engine(3, "", blocks) as found:
+        assert isinstance(found.executor, kind) and found.width() == 12
+        assert asked == ([3] if kind is ProcessPoolExecutor else [])
 
 
-def test_a_killed_worker_ends_the_run_and_costs_the_blocks_in_work(opened, undisturbed):
+def test_a_killed_worker_ends_the_run_and_costs_the_blocks_in_work(opened):
     process = started(opened)
-    wait_for(lambda: some_blocks(opened))
+    wait_for(lambda: at_work(opened))
     os.kill(workers_of(process)[0], signal.SIGKILL)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 1
     assert "a process that computed has been killed, perhaps for want of memory; finished blocks are kept" in errors
     assert "Traceback" not in errors
-    assert 0 < present(opened) < CASES
-    assert_ends_well(opened, undisturbed)
+    assert_ends_well(opened, BEFORE)
 
 
-def test_workers_end_with_a_killed_run(opened, undisturbed):
+def test_workers_end_with_a_killed_run(opened):
     process = started(opened)
-    wait_for(lambda: some_blocks(opened))
+    wait_for(lambda: at_work(opened))
     process.kill()
     process.communicate()
-    wait_for(lambda: not workers_of(process), 10)
-    assert_ends_well(opened, undisturbed)
+    wait_for(lambda: not workers_of(process))
+    assert_ends_well(opened, BEFORE)
 
 
 @pytest.mark.parametrize("moment", ["as they start", "at work"])
-def test_an_interrupt_of_all_processes_is_the_runs_alone(opened, undisturbed, moment):
+def test_an_interrupt_of_all_processes_is_the_runs_alone(opened, moment):
     """As Ctrl-C in a terminal."""
     process = started(opened)
-    wait_for(lambda: workers_of(process) if moment == "as they start" else some_blocks(opened))
+    wait_for(lambda: workers_of(process) if moment == "as they start" else at_work(opened))
     os.killpg(process.pid, signal.SIGINT)
-    _, errors = process.communicate(timeout=60)
+    _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == 130
     assert "Traceback" not in errors
     assert "finished blocks are kept" in errors
-    wait_for(lambda: not workers_of(process), 10)
-    assert_ends_well(opened, undisturbed)
+    wait_for(lambda: not workers_of(process))
+    assert_ends_well(opened, BEFORE if moment == "at work" else present(opened))

@@ -1,0 +1,30 @@
+"""Runs that do not end before a test has done its thing: the blocks of case HOLD_FROM (an environment variable) and of
+later ones are computed when the file HOLD_UNTIL exists. Who waits writes a line with its process id to HOLD_UNTIL.log.
+
+Importing this module makes it so, as the main module of a run whose worker processes import it too, or as the
+`--preload` of a dask worker; `python hold.py ...` is `python -m study ...`.
+"""
+
+import os
+import runpy
+import time
+
+from study import blocks
+
+FROM, UNTIL = int(os.environ["HOLD_FROM"]), os.environ["HOLD_UNTIL"]
+blocks.unheld = getattr(blocks, "unheld", blocks.compute)  # dask loads this file twice
+
+
+def compute(wanted):
+    if wanted.first >= FROM:
+        with open(f"{UNTIL}.log", "a", encoding="utf-8") as log:
+            log.write(f"{os.getpid()}\n")
+        while not os.path.exists(UNTIL):
+            time.sleep(0.005)
+    return blocks.unheld(wanted)
+
+
+blocks.compute = compute
+
+if __name__ == "__main__":
+    runpy.run_module("study", run_name="__main__")

@@ -30,6 +30,8 @@ from .grid import unflatten
 from .vocabulary import CONTROLS, NOT_RUN, PARAMETERS, attributes, names
 
 INTEGERS = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes_used": np.int16}
+NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
+"""Statuses of cases whose equations have no solution that the model means: no failure of the solver."""
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
 

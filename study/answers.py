@@ -1,5 +1,6 @@
 """What the commands answer, as text."""
 
+from .dataset import NO_SOLUTION, status_words
 from .definition import Definition
 from .estimate import Estimate, describe
 from .order import Report
@@ -30,6 +31,16 @@ def report_line(report: Report, name: str) -> str:
     if not report.complete:
         missing = report.counts.get(NOT_RUN, 0)
         return f"{name}: {report.computed} cases computed now, {missing} of {report.cases} are missing: other parts"
-    unsolved = sum(count for value, count in report.counts.items() if value)
-    remark = f", {unsolved} of them not converged: see `status` in the file" if unsolved else ""
-    return f"{report.path}: {report.cases} cases, {report.computed} computed now{remark}"
+    refused = {value: count for value, count in report.counts.items() if value in NO_SOLUTION}
+    failed = {value: count for value, count in report.counts.items() if value and value not in NO_SOLUTION}
+    remarks = [f"{report.path}: {report.cases} cases", f"{report.computed} computed now"]
+    if refused:
+        remarks.append(f"{by_status(refused)}: no solution exists, which is no failure")
+    if failed:
+        remarks.append(f"{sum(failed.values())} of them not converged ({by_status(failed)}): see `status` in the file")
+    return ", ".join(remarks)
+
+
+def by_status(counts: dict[int, int]) -> str:
+    """ "896 thin_layer_not_applicable, 5 lift_off"."""
+    return ", ".join(f"{count} {status_words()[value]}" for value, count in sorted(counts.items()))

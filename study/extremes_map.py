@@ -9,6 +9,8 @@ from matplotlib.lines import Line2D
 
 from solver import Status
 
+from .dataset import NO_SOLUTION
+
 BASES = {"half_space": "half-space", "thin_layer": "thin layer", "layered": "exact layer"}
 LAWS = ("smooth", "disc_cell", "power_law")
 AXES = {
@@ -22,11 +24,9 @@ ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_lay
 BINS = 24
 #: Cases in a map from which on the points of those that converged are the smallest.
 _MANY = 10_000
-NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE: "0.4", Status.LIFT_OFF: "#56b4e9"}
-"""The equations have none that the model means: no failure of the solver."""
 _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
-COLOURS = {Status.CONVERGED: "0.85"} | NO_SOLUTION | FAILED
+COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"), strict=True)) | FAILED
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 Columns = dict[str, np.ndarray]
 

@@ -1,6 +1,7 @@
-"""All figures by name: which studies each needs, who draws it, its size; and `draw`, which writes it to files."""
+"""All figures by name: which studies each needs, who draws it, its size; `draw` writes the files of one."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 from importlib.resources import as_file, files
@@ -8,7 +9,6 @@ from pathlib import Path
 
 import matplotlib.style
 import numpy as np
-from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from .coatings import master_curves
@@ -60,25 +60,42 @@ for _name, _draw in PAPERS_FIGURES.items():
     RECIPES[f"{_name}_layered"] = Recipe(PAPERS_STUDIES[_name], partial(_draw, exact=True), _size)
 
 
-def draw(name: str, results="results", figures="figures") -> list[Path]:
-    """Draw a figure as figures/NAME.pdf and .png, and its numbers as .csv; returns the three paths.
-
-    The same datasets give the same bytes: no file carries a date.
+def compose(name: str, results="results") -> tuple[Figure, dict[str, np.ndarray], str]:
+    """A figure as it will be written, the columns of numbers that it shows, and the title that its files carry.
 
     Raises
     ------
     StudyError : there is no such figure, or a study it needs has no results
     """
     recipe, datasets = open_studies(name, RECIPES, results)
-    stem = Path(figures) / name
-    with as_file(files(__package__) / "roughcoat.mplstyle") as style, matplotlib.style.context(style):
+    digests = " ".join(dataset.attrs["study_digest"][:16] for dataset in datasets)
+    with style():
         figure = Figure(figsize=recipe.size, layout="constrained")
-        FigureCanvasAgg(figure)
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
-        rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-        paths = [write_text(stem.with_suffix(".csv"), csv_text(columns, rows))]
-        for suffix, dated in ((".pdf", {"CreationDate": None}), (".png", {})):
-            paths.append(stem.with_suffix(suffix))
-            digests = " ".join(dataset.attrs["study_digest"][:16] for dataset in datasets)
-            figure.savefig(paths[-1], metadata={"Title": f"{name}, studies {digests}"} | dated)
+    return figure, columns, f"{name}, studies {digests}"
+
+
+@contextmanager
+def style() -> Iterator[None]:
+    """Draw, and write, in the style of all figures."""
+    with as_file(files(__package__) / "roughcoat.mplstyle") as sheet, matplotlib.style.context(sheet):
+        yield
+
+
+def draw(name: str, results="results", figures="figures") -> list[Path]:
+    """Write a figure as figures/NAME.pdf and .png, and its numbers as .csv; returns the three paths.
+
+    The same datasets give the same bytes: no file carries a date. Raises what `compose` raises.
+    """
+    return save(Path(figures) / name, *compose(name, results))
+
+
+def save(stem: Path, figure: Figure, columns: dict[str, np.ndarray], title: str) -> list[Path]:
+    """Write what `compose` gives as STEM.csv, .pdf and .png."""
+    rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
+    paths = [write_text(stem.with_suffix(".csv"), csv_text(columns, rows))]
+    for suffix, dated in ((".pdf", {"CreationDate": None}), (".png", {})):
+        paths.append(stem.with_suffix(suffix))
+        with style():
+            figure.savefig(paths[-1], metadata={"Title": title} | dated)
     return paths

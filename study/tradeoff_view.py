@@ -113,9 +113,8 @@ def rows(found: xr.Dataset) -> list[tuple]:
 
 def columns(found: xr.Dataset) -> Columns:
     """What the figure shows, as numbers: set and way by their place."""
-    known = np.isfinite(found["time"].transpose("set", "way", "step").values)
+    known = np.isfinite(found["time"].values)
     i, j, _ = np.nonzero(known)
     return {"set": i, "way": j, "cases": found["cases"].values[i, j]} | {
-        name: found[name].transpose("set", "way", "step").values[known]
-        for name in ("setting", "time", "median", "most", "worst", "ended")
+        name: found[name].values[known] for name in ("setting", "time", "median", "most", "worst", "ended")
     }

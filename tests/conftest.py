@@ -1,7 +1,9 @@
 """Results of every study of the repository, shrunken so that all of them take seconds; fixtures that files share."""
 
 import tomllib
+from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import pytest
@@ -38,3 +40,11 @@ def results(tmp_path_factory) -> Path:
     write(measure(10, 0, {name: replace(way, settings=way.settings[:1], most=5) for name, way in WAYS.items()}),
           folder / "tradeoff.nc")  # fmt: skip
     return folder
+
+
+@pytest.fixture(scope="session")
+def drawing(results) -> Callable:
+    """A figure by its name, from the shrunken results: what `study.recipes.compose` gives; composed once."""
+    from study.recipes import compose
+
+    return cache(lambda name: compose(name, results))

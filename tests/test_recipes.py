@@ -13,15 +13,15 @@ from study.curves import CURVES, EXACT_LAYER, PAPERS_FIGURES
 from study.derived import ASSUMPTIONS, effective_modulus, from_layered, peak_pressure
 from study.marks import bands, shade_violations, violated
 from study.outputs import pick
-from study.recipes import RECIPES, draw
+from study.recipes import RECIPES, draw, save
 from study.schemes import spot_displacement, sunk
 
 
 @pytest.fixture(scope="module")
-def figures(results, tmp_path_factory):
+def figures(drawing, tmp_path_factory):
     folder = tmp_path_factory.mktemp("figures")
     for name in RECIPES:
-        draw(name, results, folder)
+        save(folder / name, *drawing(name))
     return folder
 
 

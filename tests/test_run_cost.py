@@ -9,8 +9,8 @@ from line_study import load, store_block
 
 import study
 from solver import layer_tables
-from study import order
 from study import estimate as estimates
+from study import order
 from study.definition import from_tables
 
 

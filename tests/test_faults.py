@@ -107,10 +107,11 @@ def spoil(path: Path, how: str) -> None:
 
 
 @pytest.mark.parametrize("how", ["truncated", "emptied", *["bit flipped"] * 5])
-def test_a_damaged_block_is_computed_again(opened, undisturbed, how):
+def test_a_damaged_block_is_computed_again(opened, undisturbed, caplog, how):
     paths = [store_block(opened, start, start + BLOCK) for start in range(0, CASES, 50)]
     spoil(paths[3], how)
     assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK)
+    assert f"{paths[3]}: is no whole block; the same command computes its cases again" in caplog.text
 
 
 def test_a_block_damaged_after_the_inventory_stops_the_results(opened, undisturbed, monkeypatch):

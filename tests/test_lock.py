@@ -50,10 +50,14 @@ def test_the_lock_of_a_killed_process_is_free(path):
 
 
 def test_who_waited_for_a_lock_that_was_removed_holds_the_one_that_is_there(path):
-    waiting, acquired, release = threading.Event(), threading.Event(), threading.Event()
+    waiting, acquired, release, said = threading.Event(), threading.Event(), threading.Event(), []
+
+    def wait() -> None:
+        said.append("waiting")
+        waiting.set()
 
     def second():
-        with held(path, waiting=waiting.set) as mine:
+        with held(path, waiting=wait) as mine:
             assert mine
             acquired.set()
             release.wait(PATIENCE)
@@ -68,6 +72,9 @@ def test_who_waited_for_a_lock_that_was_removed_holds_the_one_that_is_there(path
         assert not third
     release.set()
     thread.join()
+    assert said == ["waiting"]
+    with held(path, waiting=wait) as mine:
+        assert mine and said == ["waiting"], "there is nothing to wait for"
 
 
 def test_a_file_system_without_locks_counts_as_free(path, monkeypatch):

@@ -82,7 +82,8 @@ def test_blocks_on_disk_serve_another_block_size(file, computed):
     assert opened.status()["state"] == "done"
 
 
-def test_failing_block_costs_that_block_only(file, monkeypatch):
+def test_failing_block_costs_that_block_only(file, monkeypatch, caplog):
+    caplog.set_level("DEBUG", "study.run")
     real = blocks.compute
 
     def compute(wanted):
@@ -98,6 +99,7 @@ def test_failing_block_costs_that_block_only(file, monkeypatch):
     report = opened.run(workers=2)
     assert not litter.exists()
     assert report.failures == {2: "cases 10 to 14: ZeroDivisionError: on purpose"}
+    assert "block 2: Traceback" in caplog.text and 'raise ZeroDivisionError("on purpose")' in caplog.text
     assert report.computed == 18
     assert report.counts == {0: 18, 127: 5}
     assert not report.path.exists()

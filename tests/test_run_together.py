@@ -6,7 +6,7 @@ import shutil
 import pytest
 from line_study import leftovers, load, store_block
 
-from study import blocks, lock
+from study import blocks, lock, store
 from study import run as running
 from study.block_file import read_block
 from study.lock import held
@@ -118,6 +118,14 @@ def test_blocks_removed_by_somebody_else_end_the_run(opened, monkeypatch):
     with pytest.raises(FileNotFoundError):
         opened.run(workers=1)
     assert opened.run().complete
+
+
+def test_a_block_that_vanishes_while_it_is_looked_for_is_missing(opened, monkeypatch):
+    store_block(opened, 0, 5)
+    with monkeypatch.context() as patched:
+        patched.setattr(store, "read_block", lambda path: path.with_name("gone").read_bytes())
+        assert opened.status()["counts"] == {127: 23}
+    assert opened.status()["counts"] == {0: 5, 127: 18}
 
 
 def test_a_block_written_twice_is_one_file(opened):

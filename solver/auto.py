@@ -100,7 +100,9 @@ def _on_rung(rung, part, n, x, solve):
     s, weight = _area_rule()
     points = [x, mesh(n).x, np.sqrt((1 - s) * (1 + s))]
     problem = rung.problem(part)
-    found = vars(solve(_with(problem, micro="smooth") if asperities else problem, np.concatenate(points)))
+    if asperities:
+        problem = _with(problem, micro="smooth", scheme="newton")
+    found = vars(solve(problem, np.concatenate(points)))
     _, at_nodes, at_area = np.split(found["p"], np.cumsum([len(v) for v in points[:-1]]), axis=1)
     if asperities:
         found = found | _asperities(part, found, at_area, weight)

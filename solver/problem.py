@@ -42,7 +42,8 @@ class Problem:
     B, beta : > 0, in (0, 1]; needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
     scheme : "newton" (default) or "picard"
-        Newton's method, or the paper's successive approximations, Eqs (8) and (10).
+        Newton's method, or the paper's successive approximations, Eqs (8) and (10). These are for asperities: a smooth
+        case that asks for them is not solved.
     k : >= 0; 1
         Relaxation of the successive approximations.
     rtol : in (0, 1); 1e-6
@@ -91,8 +92,8 @@ class Problem:
             A parameter that does not exist.
         ValueError
             Not exactly one control; a parameter missing that some case needs; shapes that do not broadcast to (B,); a
-            text outside its choices. A number out of bounds, or NaN, is not an error: that case gets
-            ``Status.INVALID_INPUT``.
+            text outside its choices. A number out of bounds, NaN, and the scheme "picard" of a smooth case are no
+            errors: that case gets ``Status.INVALID_INPUT``.
 
         Examples
         --------
@@ -130,6 +131,10 @@ class Problem:
         """(B,) bool: a text is one of `words`; found by the other choices, of which there are fewer."""
         others = [word for word in PARAMETERS[name].choices if word not in words]
         return np.all([getattr(self, name) != word for word in others], axis=0)
+
+    def without_scheme(self):
+        """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""
+        return (self.scheme == "picard") & (self.micro == "smooth")
 
     def invalid(self):
         """(B,) bool: a number that the case needs is not finite or outside its bounds."""

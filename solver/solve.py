@@ -41,8 +41,10 @@ def solve(problem, x=(0.0, 1.0)):
 
     Notes
     -----
-    Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases iterate. The
-    base "auto" is the cheapest of :mod:`.auto` that meets `accuracy`.
+    Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
+    exact layer, iterate by their scheme. Successive approximations are for asperities: a smooth case with the scheme
+    "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest of :mod:`.auto` that meets `accuracy`; where
+    that is a smooth punch, to which the asperities are added, there is nothing to approximate either.
 
     Examples
     --------
@@ -56,7 +58,7 @@ def solve(problem, x=(0.0, 1.0)):
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
     solution = Solution.empty(len(problem), len(x))
-    invalid = problem.invalid()
+    invalid = problem.invalid() | problem.without_scheme()
     solution.status[invalid] = Status.INVALID_INPUT
     with np.errstate(all="ignore"):
         scaled, C = dimensionless(problem)
@@ -75,7 +77,7 @@ def _routes(problem, solvable):
     yield from _route(solvable & judged, _judged)
     yield from _route(solvable & (problem.base == "auto"), _auto)
     solvable = solvable & ~judged & (problem.base != "auto")
-    is_smooth, by_picard = problem.micro == "smooth", (problem.scheme == "picard") & (problem.micro != "smooth")
+    is_smooth, by_picard = problem.micro == "smooth", problem.scheme == "picard"
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
     layered = problem.base == "layered"

@@ -29,5 +29,5 @@ _MEANINGS = {
     Status.THIN_LAYER_NOT_APPLICABLE: "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers",
     Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
     Status.LIFT_OFF: "the punch lifts off inside the contact, or the pressure is tensile there; no numbers",
-    Status.INVALID_INPUT: "a parameter is not finite or outside its bounds; no numbers",
+    Status.INVALID_INPUT: "a parameter is not finite or out of bounds, or a smooth case asks for picard; no numbers",
 }

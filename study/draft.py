@@ -98,7 +98,7 @@ class Draft:
                 self.values[name] = (), np.array(default)
         grid = Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
         if not self.errors:
-            self.errors += missing_parameters(grid, self.known)
+            self.errors += missing_parameters(grid, self.known) + lost_scheme(grid)
         return grid
 
     def _accept(self, name: str, section: str) -> bool:
@@ -176,3 +176,18 @@ def missing_parameters(grid: Grid, known: tuple[str, ...]) -> list[str]:
         if gaps.any():
             messages.append(f"{name} is missing{f' in case {int(np.argmax(gaps))}' if dims else ''}{reason}")
     return messages
+
+
+def lost_scheme(grid: Grid) -> list[str]:
+    """A message if successive approximations are asked for, and for smooth cases only.
+
+    In a grid that has them for asperities too, the smooth cases are refused one by one, by their status.
+    """
+    if "scheme" not in grid.values:  # a micro law
+        return []
+    (scheme_dims, scheme), (micro_dims, micro) = grid.values["scheme"], grid.values["micro"]
+    asked, rough = scheme == "picard", micro != "smooth"
+    served = (asked & rough).any() if scheme_dims == micro_dims else asked.any() and rough.any()
+    if served or not asked.any():
+        return []
+    return ['scheme = "picard" has no case to solve: micro must be "disc_cell" or "power_law" there, not "smooth"']

@@ -5,7 +5,8 @@ import pytest
 from numpy.testing import assert_allclose
 from solver_cases import LOAD, difference, one, random_cases
 
-from solver import Problem, Status, solve
+import study
+from solver import Model, Problem, Status, solve
 from solver.picard import LIMIT
 
 
@@ -115,3 +116,51 @@ def test_a_coarse_mesh_is_not_within_rtol():
     s = picard(a=0.04, k=10.0, nodes=8, rtol=1e-8)
     assert s.status[0] == Status.TOLERANCE_NOT_MET
     assert s.error[0] > 1e-8
+
+
+# ---- smooth cases, for which there are no successive approximations
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered", "auto"])
+def test_a_smooth_case_is_refused_and_its_neighbours_are_not(base):
+    """It was solved by another method, and nothing said so."""
+    laws = ["smooth", "power_law", "smooth"]
+    s = picard(P=LOAD, base=base, micro=laws, scheme=["picard", "picard", "newton"], k=20.0, rtol=1e-3, accuracy=1e-3)
+    assert s.status.tolist() == [Status.INVALID_INPUT, Status.CONVERGED, Status.CONVERGED]
+    assert np.isnan([s.a[0], s.D[0], s.p0[0]]).all()
+    assert_allclose(s.a[1:], one(P=LOAD, base=base, micro=laws[1:], accuracy=1e-3).a, rtol=1e-2)
+
+
+def test_auto_may_still_add_asperities_to_a_smooth_punch():
+    """Asperities far too fine to matter: of a smooth rung nothing is iterated, whatever the scheme."""
+    case = {"P": 1e-4, "Ra": 1e-6, "Nbar": 1e12, "h": 1e-4, "n": 0.9, "base": "auto", "accuracy": 0.1}
+    by_picard, by_newton = (solve(Problem.of(**case, scheme=scheme)) for scheme in ("picard", "newton"))
+    assert by_picard.model_used == by_newton.model_used == Model.SMOOTH_HALF_SPACE
+    assert_allclose(by_picard.a, by_newton.a, rtol=1e-11)
+
+
+@pytest.mark.parametrize(
+    "asked",
+    [
+        {"micro": "smooth", "scheme": "picard"},
+        {"micro": ["smooth"], "scheme": ["newton", "picard"]},
+        {"cases": [{"micro": "smooth", "scheme": "picard"}, {"micro": "disc_cell", "Nbar": 250000, "Ra": 0.004}]},
+    ],
+    ids=str,
+)
+def test_a_study_of_which_no_case_can_be_approximated_is_refused(asked):
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(P=LOAD, h=0.02, n=0.5, **asked)
+    assert caught.value.messages == (
+        'solve: scheme = "picard" has no case to solve: micro must be "disc_cell" or "power_law" there, not "smooth"',
+    )
+    assert caught.value.code == 2
+
+
+def test_a_study_that_has_asperities_as_well_flags_its_smooth_cases():
+    found = study.solve(
+        a=0.04, h=0.02, n=0.5, Nbar=250000, Ra=0.004, B=0.1, beta=0.5, base="thin_layer",
+        micro=["smooth", "power_law"], scheme=["newton", "picard"], k=10.0, nodes=16, rtol=1e-3, x=2,
+    )  # fmt: skip
+    assert found.status.sel(scheme="picard").values.tolist() == [Status.INVALID_INPUT, Status.CONVERGED]
+    assert found.status.sel(scheme="newton").values.tolist() == [Status.CONVERGED] * 2

@@ -21,27 +21,18 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from solver import NUMERICS_VERSION, Model, Solution, Status
+from solver import NUMERICS_VERSION, Model, Status
 
 from .atomic import replacing
+from .blocks import INTEGERS
 from .definition import Definition
 from .derived import validity
 from .grid import unflatten
 from .vocabulary import CONTROLS, NOT_RUN, PARAMETERS, attributes, names
 
-INTEGERS = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes_used": np.int16}
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
 """Statuses of cases whose equations have no solution that the model means: no failure of the solver."""
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
-
-
-def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The columns that are stored: vocabulary name -> (B,), and the wanted profiles (B, m)."""
-    special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
-    kept = (*CONTROLS, *names("result"), *INTEGERS)
-    found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
-    found |= {name: getattr(solution, name) for name in profiles}
-    return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}
 
 
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:

@@ -14,7 +14,7 @@ from .join import AT_ONCE
 from .progress import duration
 
 SAMPLE = 256  # cases
-PROCESS, WORKER = 250_000_000, 150_000_000  # bytes of Python and its packages, and of those in a worker process
+PROCESS, WORKER = 250_000_000, 110_000_000  # bytes of Python and its packages, and of those in a worker process
 PER_CASE = 100  # bytes for the key of a case, and to find it
 WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, in sizes of its result
 # What solving takes besides, as it was measured: peaks of runs on 17 to 256 nodes, and of 300 cases of

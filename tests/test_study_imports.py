@@ -83,7 +83,9 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 
 
 def test_light_modules_stay_light():
+    """Complaints about a study file come at once, and worker processes, which import `blocks`, start soon."""
     alone(f"import study.vocabulary, study.grid, study.draft, study.definition; {NOT_HEAVY}")
+    alone(f"import study.arguments, study.blocks; {NOT_HEAVY}")
 
 
 def test_rooms_are_there_after_import_of_the_package_alone():

@@ -179,3 +179,17 @@ def test_pick_wants_exactly_one_case(results):
     laws = open_results(results / "table1.nc")
     with pytest.raises(StudyError, match="table1: 3 cases have Ra = 0.004: needs one"):
         pick(laws, Ra=0.004)
+    with pytest.raises(StudyError, match="table1: 0 cases have Ra = 0.004, Nbar = 250000.001: needs one"):
+        pick(laws, Ra=0.004, Nbar=250_000.001)
+    assert float(pick(laws, Ra=0.004 * (1 - 5e-10), Nbar=62_500)["B"]) == float(laws["B"][1])
+
+
+def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
+    from PIL import Image
+
+    studies = (open_results(results / f"{name}.nc") for name in ("load_sweep", "main_case"))
+    title = "fig04, studies " + " ".join(found.attrs["study_digest"][:16] for found in studies)
+    assert Image.open(figures / "fig04.png").text["Title"] == title
+    assert title.encode() in (figures / "fig04.pdf").read_bytes()
+    assert {recipe.size[0] for recipe in RECIPES.values()} == {3.35, 5.2, 6.9}  # inches: column, figure 1, two columns
+    assert max(recipe.size[1] for recipe in RECIPES.values()) < 9.5

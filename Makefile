@@ -21,7 +21,7 @@ RUN := $(VENV)/bin/python -m study
 SOURCES := $(wildcard solver/*.py study/*.py)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels bench lint clean
+.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels mutants bench lint clean
 .NOTPARALLEL:
 .SECONDARY:
 .DELETE_ON_ERROR:

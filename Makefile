@@ -62,6 +62,9 @@ kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
 	  OPENBLAS_CORETYPE=$$kernel $(VENV)/bin/python -m pytest -q $$(grep -l '^from solver' tests/test_*.py) || exit 1; done
 
+mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
+	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
+
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json
 

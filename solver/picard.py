@@ -94,7 +94,7 @@ def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
 
 def _operator(cases, eta, mesh):
     """K (B or 1, n, n) and the row (B or 1, n) of the edge; of layers one by one."""
-    if cases.layer is None:
+    if cases.layer is None or not len(eta):
         return mesh.K[None], mesh.edge[None]
     none = np.zeros((1, mesh.n))
     alone = [operate(cases.take([i]), eta[i : i + 1], none, mesh) for i in range(len(eta))]

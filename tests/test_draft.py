@@ -94,7 +94,8 @@ def test_a_law_takes_only_roughness_and_a_contact_no_fit():
 def test_numerics_reach_the_grid():
     given = {"scheme": "picard", "k": 2.0, "rtol": 1e-4, "accuracy": 0.1, "model_check": "first_order", "nodes": 16,
              "max_iterations": 7}  # fmt: skip
-    found = defined(model=SMOOTH | {"P": 1}, numerics=given | {"block": 3})
+    rough = SMOOTH | {"micro": "disc_cell", "Nbar": 1e5, "Ra": 0.004}
+    found = defined(model=rough | {"P": 1}, numerics=given | {"block": 3})
     assert {name: found.grid.values[name][1].item() for name in given} == given and found.block == 3
 
 

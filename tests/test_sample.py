@@ -116,6 +116,7 @@ BAD = [
     ("stop = 0.5", "stop = 0.5, num = 3", '[sample] nu1: "num" is not allowed; a range is {start, stop, spacing'),
     ("stop = 0.5", "stop = 0.0", "[sample] nu1: stop = 0.0: must be > start"),
     ("stop = 0.5", "stop = 0.9", "[sample] nu1: stop = 0.9: must be in (-1, 0.5]"),
+    ("start = 0,", "start = -1.5,", "[sample] nu1: start = -1.5: must be in (-1, 0.5]"),
     ("start = 0,", "", "[sample] nu1: start = nothing: must be a finite number"),
     ("start = 1e-12", "start = 0", "[sample] P: start = 0: must be a finite number, > 0 for spacing log"),
     ('stop = 0.1, spacing = "log" }\nN', 'stop = 0.1, spacing = "cubic" }\nN', '[sample] P: spacing = "cubic": must'),

@@ -41,6 +41,15 @@ def test_a_box_is_not_needlessly_small(shape, most):
     assert math.prod(lengths) == math.prod(shape) or 4 * math.prod(lengths) >= most
 
 
+@pytest.mark.parametrize(
+    ("shape", "most", "lengths"),
+    [((7,), 7, [7]), ((7,), 5, [4]), ((7,), 3, [3]), ((3, 7), 5, [1, 4]), ((4, 5), 10, [2, 5]), ((5, 3), 9, [3, 3])],
+)
+def test_boxes_are_few_and_alike(shape, most, lengths):
+    """Two boxes of 4 and 3 rather than 5 and 2, or three."""
+    assert box(shape, most) == lengths
+
+
 def tables(**output) -> dict:
     return {
         "model": {"n": 0.5, "Ra": 0.004, "base": "thin_layer"},

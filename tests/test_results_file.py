@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+import solver
 import study
 from study import dataset, derived
 from study.definition import from_tables
@@ -14,6 +15,7 @@ TABLES = {
     "axes": {"P": [1e-5, 2e-5, 4e-5], "nu1": [0.2, 0.3]},
     "output": {"x": 5},
 }
+FLOATS = {"a", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "lam0", "error", "model_error", "residual", "p", "lam"}
 SCALE = {"R": 5e-3, "E2_star": 2e11}
 
 
@@ -49,6 +51,29 @@ def test_profiles_have_checksums_and_the_rest_is_compressed(path):
         assert filters[name]["zlib"] and filters[name]["shuffle"] and filters[name]["complevel"] == 1, name
 
 
+def test_fill_values_and_types_in_the_file(path):
+    with netCDF4.Dataset(path) as file:
+        fills = {name: getattr(variable, "_FillValue", None) for name, variable in file.variables.items()}
+        types = {name: variable.dtype for name, variable in file.variables.items()}
+    assert {name for name, fill in fills.items() if fill is not None} == FLOATS
+    assert all(np.isnan(fills[name]) and types[name] == "f8" for name in FLOATS)
+    whole = {"status": "i1", "model_used": "i1", "nodes_used": "i2", "iterations": "i4", "validity": "i4"}
+    assert {name: types[name].str[1:] for name in whole} == whole
+
+
+def test_what_is_stored_is_what_the_solver_gave(solved, path):
+    found = study.open_results(path)
+    given = {name: found[name].values.ravel() for name in ("P", "nu1")}
+    shape = {"P": np.repeat(given["P"], 2), "nu1": np.tile(given["nu1"], 3)}
+    answer = solver.solve(solver.Problem.of(**TABLES["model"], **shape), found.x.values)
+    for name in (*FLOATS - {"lam0", "residual"}, "status", "model_used", "iterations"):
+        expected = getattr(answer, name)
+        # cases in company, up to the order of their sums; errors are differences of such
+        np.testing.assert_allclose(found[name].values.reshape(expected.shape), expected, rtol=1e-11, atol=1e-13)
+    np.testing.assert_array_equal(found.nodes_used.values.ravel(), answer.nodes)
+    np.testing.assert_array_equal(found.lam0, found.lam.sel(x=0))
+
+
 @pytest.mark.parametrize("place", [0, 0.5, 1], ids=["first", "middle", "last"])
 def test_a_flipped_byte_of_a_profile_is_noticed(path, place):
     raw = study.open_results(path).p.values.astype("<f8").tobytes()
@@ -66,9 +91,6 @@ def filled(found: xr.Dataset | xr.DataArray, path) -> tuple[set, set]:
     with netCDF4.Dataset(path) as file:
         names = {name for name, variable in file.variables.items() if "_FillValue" in variable.ncattrs()}
     return names & set(found.coords), names - set(found.coords)
-
-
-FLOATS = {"a", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "lam0", "error", "model_error", "residual", "p", "lam"}
 
 
 def test_a_user_writes_no_fill_value_on_coordinates(solved, tmp_path):

@@ -73,6 +73,8 @@ def test_the_draws_are_the_same_on_every_machine():
         expected.append(((word >> turn | word << (64 - turn)) % 2**64 >> 11) / 2**53)
     assert uniform(3, 7, "P").tolist() == expected
     assert column("P")[:3].tolist() == [1.31297e-05, 3.61967e-06, 2.43105e-12]
+    assert column("nu1")[:3].tolist() == [float(f"{u / 2:.5e}") for u in uniform(3, 7, "nu1")]
+    assert column("n")[:3].tolist() == [0.1 if u < 0.5 else 0.5 for u in uniform(3, 7, "n")]
     assert column("Nbar")[:3].tolist() == [884046.0, 14526900000.0, 3607970.0]
 
 
@@ -116,6 +118,7 @@ BAD = [
     ("stop = 0.5", "stop = 0.5, num = 3", '[sample] nu1: "num" is not allowed; a range is {start, stop, spacing'),
     ("stop = 0.5", "stop = 0.0", "[sample] nu1: stop = 0.0: must be > start"),
     ("stop = 0.5", "stop = 0.9", "[sample] nu1: stop = 0.9: must be in (-1, 0.5]"),
+    ("start = 0,", "start = -1.5,", "[sample] nu1: start = -1.5: must be in (-1, 0.5]"),
     ("start = 0,", "", "[sample] nu1: start = nothing: must be a finite number"),
     ("start = 1e-12", "start = 0", "[sample] P: start = 0: must be a finite number, > 0 for spacing log"),
     ('stop = 0.1, spacing = "log" }\nN', 'stop = 0.1, spacing = "cubic" }\nN', '[sample] P: spacing = "cubic": must'),

@@ -81,6 +81,12 @@ def test_dataarray_over_its_own_dimension():
     np.testing.assert_allclose(found.nu2, [0.3, 0.4], rtol=1e-14, atol=0)
 
 
+def test_values_over_their_own_dimension_are_its_coordinate():
+    """Twice the loads of a result, say, which carry those as their coordinate."""
+    found = study.solve(P=2 * study.solve(P=[1e-5, 2e-5], **SMOOTH).P, **SMOOTH)
+    assert found.indexes["P"].tolist() == [2e-5, 4e-5]
+
+
 @pytest.mark.parametrize("first", ["P", "Ra"])
 def test_dataarray_over_the_axis_of_another_parameter(first):
     both = {"P": [1e-5, 2e-5], "Ra": xr.DataArray([0.1, 0.2], dims="P", coords={"P": [1e-5, 2e-5]})}

@@ -131,20 +131,22 @@ def validity(folder) -> list[list]:
     for punch, micro, names in (("smooth", "smooth", ("P", "a", "p0", "D")), ("rough", "disc_cell", symbols)):
         for name in names:
             found = (radius if name == "P" else load).sel(micro=micro)
-            limits = [crossing(found.isel(case=i), name, level) for i in range(4) for level in (0.01, 0.1)]
+            limits = [limit for i in range(4) for limit in crossings(found.isel(case=i), name)]
             rows.append([punch, symbols[name], "a" if name == "P" else "P", *limits])
     return rows
 
 
-def crossing(case, name: str, level: float) -> float:
-    first = []
-    for n in case.n.values:
-        thin, exact = (case.sel(n=n, base=base) for base in ("thin_layer", "layered"))
-        x, error = np.log(case.h / exact.a).values, (thin[name] / exact[name] - 1).values
+def crossings(case, name: str) -> list[float]:
+    """Smallest h/a over all n at which the error exceeds 1 % and 10 %."""
+    thin, exact = (case[name].sel(base=base).transpose("n", "h").values for base in ("thin_layer", "layered"))
+    a = case.a.sel(base="layered").transpose("n", "h").values if case.a.ndim else case.a.values
+    first = {0.01: [], 0.1: []}
+    for x, error in zip(np.log(case.h.values / np.broadcast_to(a, thin.shape)), thin / exact - 1, strict=True):
         fine = np.linspace(x[0], x[-1], 100_001)
-        beyond = np.abs(np.interp(fine, x, error)) > level
-        first += [np.exp(fine[np.argmax(beyond)])] if beyond.any() else []
-    return min(first)
+        between = np.abs(np.interp(fine, x, error))
+        for level, found in first.items():
+            found += [np.exp(fine[np.argmax(between > level)])] if (between > level).any() else []
+    return [min(found) for found in first.values()]
 
 
 def extremes(folder) -> list[list]:

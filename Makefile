@@ -18,10 +18,12 @@ KERNELS ?= Nehalem
 VENV := .venv
 READY := $(VENV)/.ready
 RUN := $(VENV)/bin/python -m study
+# As many processes as processors, but no more than pays; one that is done takes tests from another.
+PYTEST := $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py study/*.py)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels bench lint clean
+.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels mutants bench lint clean
 .NOTPARALLEL:
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -56,11 +58,14 @@ tradeoff: figures/tradeoff.pdf tables/tradeoff.txt docs/tradeoff.md ## error aga
 picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
 
 test: $(READY) ## all tests
-	$(VENV)/bin/python -m pytest -q
+	$(PYTEST)
 
 kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
-	  OPENBLAS_CORETYPE=$$kernel $(VENV)/bin/python -m pytest -q $$(grep -l '^from solver' tests/test_*.py) || exit 1; done
+	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $$(grep -l '^from solver' tests/test_*.py) || exit 1; done
+
+mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
+	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json

@@ -1,5 +1,5 @@
 """Batched solver of the two-scale model of a rough punch on a coated body (Goryacheva & Yakovenko 2024): numpy and
-scipy only."""
+scipy only, and threadpoolctl, which keeps BLAS on one thread."""
 
 from . import closed_forms, micro
 from .fit import Fit, fit_power_law
@@ -9,7 +9,7 @@ from .solve import solve
 from .status import Status
 
 #: Changes whenever the numbers may change: part of the digest of every study.
-NUMERICS_VERSION = "6"
+NUMERICS_VERSION = "7"
 
 __all__ = [
     "NUMERICS_VERSION",

@@ -180,7 +180,8 @@ def control_residual(cases, eta, X, q, edge_q, mesh):
     if cases.control == "a":
         return eta - np.log(cases.value)
     if cases.control == "P":
-        return np.log(2 * np.pi * cases.p_star * (q @ mesh.w) / cases.value) + 2 * eta
+        load = np.einsum("bj,j->b", q, mesh.w)  # not BLAS, whose rounding would depend on the number of cases
+        return np.log(2 * np.pi * cases.p_star * load / cases.value) + 2 * eta
     return np.log((1 + X[:, 0] * edge_q) / (2 * cases.value)) + 2 * eta
 
 

@@ -25,13 +25,14 @@ _TINY = np.finfo(float).tiny
 
 
 class Fixed(NamedTuple):
-    """At given radii: q (B, n); last |p̂ - p|, change of the load, count, |p̂ - p| half-way to the limit, all (B,)."""
+    """At given radii: q (B, n); last |p̂ - p|, change of the load, count, |p̂ - p| half-way, and edge q, all (B,)."""
 
     q: np.ndarray
     change: np.ndarray
     load_change: np.ndarray
     count: np.ndarray
     earlier: np.ndarray
+    edge_q: np.ndarray
 
 
 def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False):
@@ -47,7 +48,7 @@ def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False)
     if cases.control != "a":
         eta = _search(search, cases, law, mesh, k, rtol, limit or LIMIT, count, q)
     fixed = approximate(cases, eta, law, mesh, k, rtol, limit or LIMIT, q)
-    missed = np.abs(_control(cases, eta, fixed.q, mesh))
+    missed = np.abs(_control(cases, eta, fixed, mesh))
     with np.errstate(invalid="ignore"):
         status = np.select(
             [
@@ -64,13 +65,16 @@ def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False)
 
 def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
     """Successive approximations at the radii exp(eta) (B,) from `start` (B, n), or from p = 0: finished cases leave
-    the batch."""
+    the batch.
+
+    They amplify rounding where they do not settle quickly, so that all of a case is computed as if it were alone.
+    """
     size = len(eta)
     q = np.zeros((size, mesh.n)) if start is None else start.copy()
     change, load_change = np.full(size, np.inf), np.full(size, np.inf)
     count, earlier = np.zeros(size, dtype=int), np.full(size, np.inf)
     active = np.arange(size)
-    XYZ, K = groups(cases, eta), operate(cases, eta, q, mesh).matrix(mesh)
+    XYZ, K, edge = groups(cases, eta), *_operator(cases, eta, mesh)
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for step in range(limit):
             if step == limit // 2:
@@ -85,7 +89,16 @@ def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
             active = active[change[active] >= 0.1 * rtol[active]]  # NaN leaves as well: it has diverged
             if not len(active):
                 break
-    return Fixed(q, change, load_change, count, earlier)
+    return Fixed(q, change, load_change, count, earlier, np.einsum("bj,bj->b", edge + 0 * q, q))
+
+
+def _operator(cases, eta, mesh):
+    """K (B or 1, n, n) and the row (B or 1, n) of the edge; of layers one by one."""
+    if cases.layer is None or not len(eta):
+        return mesh.K[None], mesh.edge[None]
+    none = np.zeros((1, mesh.n))
+    alone = [operate(cases.take([i]), eta[i : i + 1], none, mesh) for i in range(len(eta))]
+    return np.concatenate([base.matrix(mesh) for base in alone]), np.concatenate([base.edge(mesh) for base in alone])
 
 
 def _each(K, q):
@@ -114,14 +127,13 @@ def _search(search, cases, law, mesh, k, rtol, limit, count, q):
         count[index] += fixed.count
         if q is not None:
             q[index] = np.where((fixed.change < 0.1 * rtol[index])[:, None], fixed.q, 0.0)  # no cycle is handed on
-        return _control(part, eta, fixed.q, mesh)
+        return _control(part, eta, fixed, mesh)
 
     with np.errstate(all="ignore"):
         return search(evaluate, np.log(guess_radius(cases, law)), 0.1 * rtol)[0]
 
 
-def _control(cases, eta, q, mesh):
+def _control(cases, eta, fixed, mesh):
     """Logarithm of (load or depth/given value) (B,)."""
-    edge_q = operate(cases, eta, q, mesh).edge_q
     with np.errstate(invalid="ignore", divide="ignore"):
-        return control_residual(cases, eta, groups(cases, eta)[0], q, edge_q, mesh)
+        return control_residual(cases, eta, groups(cases, eta)[0], fixed.q, fixed.edge_q, mesh)

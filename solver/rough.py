@@ -121,7 +121,7 @@ def _rung(cases, law, n, limit, start, known, x, out, index, enough):
     if not (closed.all() or limit):
         rescue(cases, law, grid, state, closed, count)
     ev = settle(cases, law, grid, state, closed, count, known)
-    values, finer = finish(cases, law, grid, state, x, ev, enough)
+    values, finer = finish(cases, law, grid, state, x, ev, np.where(closed, enough, np.inf))  # the others end here
     opened = ev.gap.max(axis=1) > _GAP  # perhaps by the mesh
     values["error"][opened] = np.maximum(values["error"][opened], 1.0)
     for name, value in values.items():

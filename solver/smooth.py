@@ -60,10 +60,11 @@ def half_space(control, value, x):
 
 def thin_layer(control, value, C, rtol, nodes, x):
     """Smooth punch on a thin layer: dict of output arrays in units R = E2* = 1; value, C, rtol, nodes (B,), x (m,)."""
-    out = {}
+    out, steps = {}, np.zeros(len(value), dtype=int)
 
     def solve_on(index, n):
         part = _on_mesh(control, value[index], C[index], n, x)
+        steps[index] += part["iterations"]
         for name, v in part.items():
             out.setdefault(name, np.full((len(value), *v.shape[1:]), np.nan))[index] = v
         return part["error"]
@@ -71,7 +72,8 @@ def thin_layer(control, value, C, rtol, nodes, x):
     unmet = climb(rtol, nodes, solve_on)
     status = np.where(unmet, Status.TOLERANCE_NOT_MET, Status.CONVERGED)
     status[~np.isfinite(out["error"])] = Status.DIVERGED
-    return out | _smooth_extras(out["p"], out["p0"] * 0) | {"status": status.astype(np.int8), control: value}
+    ended = {"status": status.astype(np.int8), "iterations": steps, control: value}
+    return out | _smooth_extras(out["p"], out["p0"] * 0) | ended
 
 
 @np.errstate(all="ignore")
@@ -98,7 +100,7 @@ def _on_mesh(control, value, C, n, x):
         "residual": residual,
         "p": p.T,
         "nodes": np.full(len(a), n),
-        "iterations": np.full(len(a), steps),
+        "iterations": steps,
     }
 
 
@@ -129,18 +131,21 @@ def _unseen(control, t, s1):
 
 
 def _radius(control, value, C, modal):
-    """a (B,) for the given load or depth by Newton on logarithms, and the number of steps of the batch."""
+    """a (B,) for the given load or depth by Newton on logarithms, and the number of steps (B,)."""
     if control == "a":
-        return value, 0
+        return value, np.zeros(len(value), dtype=int)
     if control == "P":
         a = (np.cbrt(0.75 * value) ** _BLEND + (4 / np.pi * C * value) ** (_BLEND / 4)) ** (1 / _BLEND)
     else:
         a = np.sqrt(1.5 * value)  # a² is between D, Hertz, and 2 D, layer alone
-    row, steps, change = _ROWS[control], 0, np.inf
-    while steps < _STEPS and np.nanmax(np.abs(change), initial=0) > _LAST:
-        steps += 1
+    row, steps, change = _ROWS[control], np.zeros(len(a), dtype=int), np.full(len(a), np.inf)
+    for _ in range(_STEPS):
+        going = np.abs(change) > _LAST  # each case by itself: it has the same steps in any batch
+        if not going.any():
+            break
+        steps += going
         _, S, slopes, _ = _sums(a, C, modal)
-        change = np.log(_OF_SUMS[control](a, S) / value) / slopes[row]
+        change = np.where(going, np.log(_OF_SUMS[control](a, S) / value) / slopes[row], 0.0)
         a = a * np.exp(-change)
     return a, steps
 

@@ -59,6 +59,9 @@ def _computed(order: Order) -> Report:
         discard(order.store)
         return order.report()
     if order.definition.kind == "micro_law":
+        found = earlier(order.definition, order.path)
+        if found and not order.force and (found.cases or not found.digest):  # another law is made again in a moment
+            check_replaceable(order.store, found, np.empty((0, 2), dtype=np.uint64))
         write(micro_law.compute(order.definition, order.command), order.path)
         discard(order.store)
         return order.report(computed=order.definition.grid.size)

@@ -89,7 +89,7 @@ def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.Dat
     drawn = np.isfinite(error.values).any(axis=1)
     if not drawn.all():
         axes.axhspan(float(case["n"][drawn].max()), 1, facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0)
-    grid = h_a.values[drawn], n.values[drawn], np.clip(error.values[drawn], -9, 9)
+    grid = h_a.values[drawn], n.values[drawn], error.values[drawn]
     axes.contourf(*grid, LEVELS, colors=COLOURS)
     axes.contour(*grid, LEVELS[1:-1], colors="0.25", linewidths=[0.9, 0.5, 0.5, 0.9], linestyles="solid")
     axes.set(xscale="log", yscale="log", xlim=(0.01, 20), ylim=(0.01, 0.95))

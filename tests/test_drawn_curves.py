@@ -4,11 +4,9 @@ import numpy as np
 import pytest
 import xarray as xr
 from drawn import bands, frame, legend, lines, texts
-from matplotlib.figure import Figure
 
 from study import open_results
 from study.curves import PAPERS_FIGURES
-from study.marks import ASSUMPTION_TEXT, GREYS, name_curve, shade_violations
 
 CASES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
@@ -178,31 +176,6 @@ def test_the_name_of_a_curve_stands_at_the_curve(drawing, name, exact):
         heights = [np.interp(at, line.x, line.y) for line in its]
         assert min(abs(y - max(heights)), abs(y - min(heights))) <= 1e-12 * y
         assert colours[curve].lower() == its[0].look.colour
-
-
-def test_a_name_stands_above_or_below_and_to_the_side_that_is_asked():
-    axes = Figure().subplots()
-    own = axes.plot([0, 2], [0, 2]) + axes.plot([0, 2], [2, 6])
-    name_curve(axes, own, "over", 1.0)
-    name_curve(axes, own, "under", 0.5, side="below", align="right")
-    over, under = axes.texts
-    assert over.xy == (1, 4) and under.xy == (0.5, 0.5)
-    assert (over.get_va(), over.get_ha(), over.xyann) == ("bottom", "center", (0, 2))
-    assert (under.get_va(), under.get_ha(), under.xyann) == ("top", "right", (0, -2))
-
-
-@pytest.mark.parametrize("mask", WORDS)
-def test_each_assumption_has_its_words_and_its_grey(mask):
-    axes = Figure().subplots()
-    words = "layer_not_thin few_spots spot_not_small_against_h n_not_below_one spots_merging strain_not_small"
-    attributes = {"flag_masks": np.array(list(WORDS)), "flag_meanings": words}
-    flags = xr.DataArray([0, mask, 0], dims="P", attrs=attributes)
-    shade_violations(axes, np.array([1e-5, 2e-5, 4e-5]), {"7": flags})
-    assert bands(axes) == [(pytest.approx(1.5), pytest.approx(3.0), bands(axes)[0][2])]
-    axes.legend()
-    assert list(legend(axes.get_legend())) == [f"not valid: {WORDS[mask]} (7)"]
-    assert axes.patches[0].get_zorder() < 0, "under the curves"
-    assert list(ASSUMPTION_TEXT) == words.split() and len(set(GREYS)) == len(WORDS)
 
 
 def test_figure_9_shows_the_exact_law_and_its_fit(drawing, results):

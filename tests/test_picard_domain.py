@@ -161,7 +161,8 @@ def test_two_iterates_are_drawn_about_the_solution(drawing):
     for line, count in ((first, 1000), (second, 1001)):
         assert line.label == f"iterate {count}"
         assert_allclose(line.x, grid.x, rtol=1e-14)
-        assert_allclose(line.y, 1e3 * CASE["n"] * approximations(0.0, count, nodes=64).q[0], rtol=1e-12)  # the same steps
+        iterate = CASE["n"] * approximations(0.0, count, nodes=64).q[0]
+        assert_allclose(line.y, 1e3 * iterate, rtol=1e-12)  # the same arithmetic
     exact = solve(Problem.of(**CASE, beta=0.5, h=0.02, rtol=1e-9, nodes=64), solution.x)
     assert solution.label == "solution" and solution.x[0] < 0.985 and solution.x[-1] == 1
     assert_allclose(solution.y, 1e3 * exact.p[0], rtol=1e-9, atol=1e-9)

@@ -4,14 +4,12 @@ import csv
 
 import numpy as np
 import pytest
-import xarray as xr
 from conftest import STUDIES
 from scipy.integrate import simpson
 
 from study import StudyError, open_results
 from study.curves import CURVES, EXACT_LAYER, PAPERS_FIGURES
-from study.derived import ASSUMPTIONS, effective_modulus, from_layered, peak_pressure
-from study.marks import bands, shade_violations, violated
+from study.derived import effective_modulus, from_layered, peak_pressure
 from study.outputs import pick
 from study.recipes import RECIPES, draw, save
 from study.schemes import spot_displacement, sunk
@@ -149,29 +147,6 @@ def test_figure_9_fits_the_exact_law(figures):
             np.testing.assert_allclose(found[name.replace("exact", "fit")][where], values[where], rtol=0.05)
 
 
-def test_bands_begin_at_zero_and_end_halfway():
-    P = np.array([1.0, 2.0, 4.0, 6.0])
-    assert bands(P, np.array([True, False, False, True])) == [(0.0, 1.5), (5.0, 6.0)]
-    assert bands(P, np.zeros(4, dtype=bool)) == []
-
-
-def test_shading_names_the_assumption_and_its_curves():
-    from matplotlib.figure import Figure
-
-    axes = Figure().subplots()
-    attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
-    first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
-    thick, few = "layer not thin", r"$\bar N A_n < 100$"
-    assert axes.get_legend_handles_labels()[1] == [f"not valid: {thick} (1)", f"not valid: {few} (1)"]
-    assert violated(first[1]) == [thick]
-    bands_so_far = len(axes.patches)
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": first * 0 + 1})
-    assert [text.get_text() for text in axes.texts] == [f"nowhere valid:\n{thick} (3)"]
-    assert len(axes.get_legend_handles_labels()[1]) == 2
-    assert len(axes.patches) == bands_so_far
-
-
 def test_scheme_of_the_contact_draws_the_solution(results):
     """Inside the contact the drawn surface must be D - f(r) - A[p(r)]: Eq. (3) closes."""
     case = pick(open_results(results / "main_case.nc"), label=CURVES["1"])
@@ -204,3 +179,17 @@ def test_pick_wants_exactly_one_case(results):
     laws = open_results(results / "table1.nc")
     with pytest.raises(StudyError, match="table1: 3 cases have Ra = 0.004: needs one"):
         pick(laws, Ra=0.004)
+    with pytest.raises(StudyError, match="table1: 0 cases have Ra = 0.004, Nbar = 250000.001: needs one"):
+        pick(laws, Ra=0.004, Nbar=250_000.001)
+    assert float(pick(laws, Ra=0.004 * (1 - 5e-10), Nbar=62_500)["B"]) == float(laws["B"][1])
+
+
+def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
+    from PIL import Image
+
+    studies = (open_results(results / f"{name}.nc") for name in ("load_sweep", "main_case"))
+    title = "fig04, studies " + " ".join(found.attrs["study_digest"][:16] for found in studies)
+    assert Image.open(figures / "fig04.png").text["Title"] == title
+    assert title.encode() in (figures / "fig04.pdf").read_bytes()
+    assert {recipe.size[0] for recipe in RECIPES.values()} == {3.35, 5.2, 6.9}  # inches: column, figure 1, two columns
+    assert max(recipe.size[1] for recipe in RECIPES.values()) < 9.5

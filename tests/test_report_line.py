@@ -1,10 +1,12 @@
-"""The line at the end of a run tells cases that have no solution from cases that the solver failed on."""
+"""Lines that the commands print: of a run, where cases without a solution are no failures, of blocks, of states."""
 
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
-from study.answers import report_line
+from study.answers import cost_line, failure_lines, report_line, state_line
+from study.estimate import Estimate
 from study.order import Report
 
 
@@ -28,3 +30,33 @@ def line(counts: dict[int, int], cases: int = 24_320) -> str:
 )
 def test_cases_without_a_solution_are_no_failures(counts, remark):
     assert line(counts) == f"results/validity.nc: 24320 cases, 7 computed now{remark}"
+
+
+def test_a_run_with_nothing_to_do_or_only_a_part_says_so():
+    done = Report(Path("results/a.nc"), 9, 0, {}, {}, complete=True)
+    assert report_line(done, "a") == "results/a.nc is up to date (9 cases), nothing to do"
+    part = Report(Path("results/a.nc"), 9, 4, {}, {0: 6, 127: 3}, complete=False)
+    assert report_line(part, "a") == "a: 4 cases computed now, 3 of 9 are missing: other parts"
+
+
+def test_failed_blocks_stand_in_their_order():
+    report = Report(Path("results/a.nc"), 9, 4, {10: "full disk", 2: "MemoryError"}, {}, complete=False)
+    assert failure_lines(report, "a") == [
+        "a: block 2 failed: MemoryError",
+        "a: block 10 failed: full disk",
+        "a: 2 blocks failed; the others are kept, the same command tries again",
+    ]
+
+
+def test_the_state_of_a_study_counts_what_is_done():
+    definition = SimpleNamespace(name="fig04", title="Loads")
+    state = {"cases": 2000, "counts": {0: 480, 1: 20, 127: 1500}, "state": "partial"}
+    assert state_line(definition, state) == "fig04                2000 cases  partial (500 of 2000 cases)  Loads"
+    assert state_line(definition, state | {"state": "done"}) == "fig04                2000 cases  done  Loads"
+
+
+def test_the_cost_of_a_study_counts_what_is_computed():
+    text = cost_line("fig04", Estimate(2000, 500, 125.0, 5e8, 7e8))
+    assert text == (
+        "fig04: 2000 cases, 500 of them computed; the others: about 2 min 5 s, at most 0.5 GB of memory, 0.7 GB on disk"
+    )

@@ -45,7 +45,11 @@ def mixed(size, seed):
 
 
 def test_mixed_batches_are_single_cases():
-    """Each case of a batch has the numbers it has alone, and in any other order and company."""
+    """Each case of a batch has the numbers it has alone, and in any other order and company.
+
+    To rounding: BLAS rounds a product of more rows otherwise, and where that decides whether a residual is below 1e-13
+    the iteration takes a step more or less, of that size, which a pressure may feel a hundred times.
+    """
     size, x = 120, np.array([0.0, 0.5, 1.0])
     case = mixed(size, 4)
     together = solve(Problem.of(**case), x)
@@ -59,7 +63,7 @@ def test_mixed_batches_are_single_cases():
             assert other.nodes[j] == alone.nodes[0]
             for name in ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "p", "lam"):
                 value, expected = getattr(other, name)[j], getattr(alone, name)[0]
-                assert_allclose(value, expected, rtol=1e-13, atol=0, err_msg=f"{name} of case {i}")
+                assert_allclose(value, expected, rtol=1e-11, atol=0, err_msg=f"{name} of case {i}")
 
 
 def test_empty_batch():
@@ -206,8 +210,9 @@ def test_a_low_limit_is_reported():
     s = one(P=LOAD, max_iterations=1, rtol=1e-9)
     assert s.status[0] == Status.ITERATION_LIMIT
     assert s.iterations[0] == 1
-    assert np.isfinite(s.a[0])
     assert s.residual[0] > 1e-12
+    for name in NUMBERS:
+        assert np.all(np.isfinite(getattr(s, name))), f"the last numbers are kept, {name} as well"
 
 
 def test_absurd_numbers_are_a_status():

@@ -1,11 +1,14 @@
 """Studies of the micro law alone (Table 1 of the paper)."""
 
+import tomllib
+
 import numpy as np
 import pytest
 import xarray as xr
 
 import study
 from solver import fit_power_law, micro
+from study.definition import from_tables
 
 TEXT = """
 kind = "micro_law"
@@ -59,3 +62,21 @@ def test_it_is_a_results_file_like_the_others(opened):
 def test_there_are_no_partial_results_of_a_law(opened, tmp_path):
     with pytest.raises(study.StudyError, match="does not exist; run the study first"):
         study.load(opened.results.parent / "table1.toml", tmp_path).open(partial=True)
+
+
+def test_a_law_replaces_another_but_no_contacts_nor_what_is_not_ours(opened, tmp_path):
+    results = tmp_path / "results"
+    contacts = study.Study(
+        from_tables({"model": {"micro": "smooth", "base": "half_space", "P": 1e-6}}, "table1", "", "t"), results
+    )
+    contacts.run()
+    law = study.Study(opened.definition, results)
+    with pytest.raises(study.StudyError, match="another definition .* 1 of its 1 cases are not in this one: --force"):
+        law.run()
+    assert contacts.status()["state"] == "done"
+    (results / "table1.nc").write_bytes(b"no results")
+    with pytest.raises(study.StudyError, match="holds results of no study known here: --force replaces them"):
+        law.run()
+    assert law.run(force=True).computed == 2
+    coarser = study.Study(from_tables(tomllib.loads(TEXT.replace("1e-3", "5e-3")), "table1", "", "t"), results)
+    assert coarser.run().computed == 2 and coarser.open().sizes["p"] == 6

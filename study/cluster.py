@@ -71,12 +71,21 @@ def processes_for(workers: int, blocks: int) -> int:
 
 def _processes(count: int) -> Executor:
     executor = ProcessPoolExecutor(count, get_context("spawn"), _live_with_parent)
-    own = getattr(signal, "pthread_sigmask", lambda *_: ())
-    before = own(signal.SIG_BLOCK, {signal.SIGINT})  # as the workers inherit: Ctrl-C is for this process
-    for _ in range(count):
-        executor.submit(int)  # starts one
-    own(signal.SIG_SETMASK, before)
+    with _interrupt_blocked():
+        for _ in range(count):
+            executor.submit(int)  # starts one
     return executor
+
+
+@contextmanager
+def _interrupt_blocked() -> Iterator[None]:
+    """Processes that start here inherit this: Ctrl-C is for the one that runs the study."""
+    if not hasattr(signal, "pthread_sigmask"):  # not POSIX
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    yield
+    signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 def _live_with_parent() -> None:
@@ -86,7 +95,7 @@ def _live_with_parent() -> None:
         parent_process().join()
         os._exit(1)
 
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # where it cannot be blocked
     Thread(target=end, daemon=True).start()
 
 

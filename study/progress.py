@@ -65,14 +65,15 @@ def describe(
     """The line: "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left"; so much of it as `width` characters hold."""
     rate = computed / seconds if seconds > 0 else 0.0
     left = f", {duration((total - done) / rate)} left" if rate and done < total else ""
+    share = f"{100 * done // total} %"
     lines = (
         f"{name}: {done} of {total} cases, {failed} failed, {rate:.3g}/s{left}",
         f"{name}: {done} of {total} cases, {failed} failed{left}",
-        f"{name}: {100 * done // total} %, {failed} failed{left}",
-        f"{name}: {100 * done // total} %{left}",
-        f"{name}: {100 * done // total} %",
+        f"{name}: {share}, {failed} failed{left}",
+        f"{name}: {share}{left}",
+        f"{name[: (width or 0) - len(share) - 2]}: {share}",
     )
-    return next((line for line in lines if width is None or len(line) <= width), lines[-1][:width])
+    return next((line for line in lines if width is None or len(line) <= width), share)
 
 
 def duration(seconds: float) -> str:

@@ -8,6 +8,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from children import PATIENCE, started
 from line_study import load
 
 from study import StudyError, cluster
@@ -100,6 +101,25 @@ def test_processes_are_started_with_the_interrupt_blocked(monkeypatch):
     with engine(2, "", 8):
         assert blocked == [True, True], "each is started at once"
         assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
+
+
+def test_where_signals_cannot_be_blocked_processes_are_started_all_the_same(monkeypatch):
+    for name in ("pthread_sigmask", "SIG_BLOCK", "SIG_SETMASK"):
+        monkeypatch.delattr(signal, name, raising=False)
+    monkeypatch.setattr(cluster, "ProcessPoolExecutor", lambda *_: AtOnce())
+    with engine(2, "", 8) as found:
+        assert found.width() == 2 * AHEAD
+
+
+def interrupted_worker() -> None:
+    cluster._live_with_parent()
+    signal.raise_signal(signal.SIGINT)
+
+
+def test_a_worker_does_not_hear_the_interrupt():
+    process = started(interrupted_worker)
+    process.join(PATIENCE)
+    assert process.exitcode == 0
 
 
 @pytest.fixture

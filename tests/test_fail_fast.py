@@ -60,7 +60,8 @@ def test_progress_counts_what_failed_and_begins_with_what_is_on_disk(file, monke
     ending(monkeypatch, {6: DIVERGED, 7: DIVERGED, 10: THIN_LAYER_NOT_APPLICABLE, 11: LIFT_OFF})
     monkeypatch.setattr(progress, "EVERY", 0)
     shown = io.StringIO()
-    assert load(file).run(workers=1, stream=shown).complete
+    report = load(file).run(workers=1, stream=shown)
+    assert report.complete and report.failures == {}
     assert [line.rpartition(" failed, ")[0] for line in shown.getvalue().splitlines()] == [
         "line: 10 of 23 cases, 2",
         "line: 15 of 23 cases, 2",

@@ -42,10 +42,11 @@ def once(monkeypatch, name: str, before) -> None:
 
 @pytest.mark.parametrize("other", ["ends the work", "is killed"])
 def test_who_waited_goes_on_with_what_is_there(opened, monkeypatch, computed, other):
-    first = held(Store(opened.definition, opened.results).lock)
+    first, raw, said = held(Store(opened.definition, opened.results).lock), io.BytesIO(), []
     first.__enter__()
 
     def end(_):
+        said.append(raw.getvalue())
         first.__exit__(None, None, None)
         store_block(opened, 0, 5)
         if other == "ends the work":
@@ -54,11 +55,10 @@ def test_who_waited_goes_on_with_what_is_there(opened, monkeypatch, computed, ot
 
     real = running.say_waiting
     monkeypatch.setattr(running, "say_waiting", lambda order: real(order) or end(order))
-    shown = io.StringIO()
-    report = opened.run(workers=1, stream=shown)
-    assert shown.getvalue().startswith("line: waiting for another run of this study to end\n")
+    report = opened.run(workers=1, stream=io.TextIOWrapper(raw, write_through=False))
+    assert said == [b"line: waiting for another run of this study to end\n"], "at once"
     assert report.complete and state(opened) == WHOLE
-    assert report.computed == (0 if other == "ends the work" else 18)
+    assert (report.computed, report.counts) == ((0, {}) if other == "ends the work" else (18, {0: 23}))
     assert 0 not in computed and leftovers(opened.results) == []
 
 

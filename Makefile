@@ -18,7 +18,7 @@ RUN := $(VENV)/bin/python -m study
 SOURCES := $(wildcard solver/*.py study/*.py)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test bench lint clean
+.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test mutants bench lint clean
 .NOTPARALLEL:
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -54,6 +54,9 @@ picard_domain: figures/picard_domain.pdf ## where the paper's successive approxi
 
 test: $(READY) ## all tests
 	$(VENV)/bin/python -m pytest -q
+
+mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
+	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json

@@ -1,0 +1,255 @@
+"""Would the tests notice? `make mutants`; the mutants are in tests/mutants.toml.
+
+Each mutant runs in a copy of the tree, in a process forked from this one, which has imported the libraries but nothing
+of the project. Tests that fail on the code as it is prove nothing: their mutants count as survived.
+
+Exit code: 0 when at least 95 % of the mutants of the solver and of those of the study are killed, otherwise 1.
+"""
+
+import argparse
+import compileall
+import json
+import os
+import resource
+import shutil
+import signal
+import sys
+import tempfile
+import time
+import traceback
+from collections import defaultdict
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from datetime import UTC, datetime
+from fnmatch import fnmatch
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+from mutants import ROOT, WANTED, Mutant, Verdict, read, table, totals
+
+LIBRARIES = (
+    "numpy", "scipy.special", "scipy.optimize", "scipy.interpolate", "scipy.sparse", "scipy.integrate", "dask.array",
+    "xarray", "netCDF4", "matplotlib.pyplot", "matplotlib.backends.backend_pdf", "mpmath", "hypothesis", "pytest",
+)  # fmt: skip
+# Not the repository either: in a worktree it is a pointer, and a test that ends in the middle would lock the real one.
+NOT_COPIED = {"results", "figures", "tables", "build", "dist", ".git", ".venv", ".hypothesis", ".pytest_cache"}
+PATIENCE, SLOWER = 60.0, 10.0  # seconds that a mutant gets, and times of what its tests take without it
+NIGHT = 40_000.0  # seconds for what has no measure
+MEMORY = 8_000_000_000  # bytes: a mutant may ask for all there are
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a child does: `action(folder)` gives its answer (JSON). `change`: a file and its text while it runs."""
+
+    key: object
+    action: Callable[[Path], object]
+    seconds: float = NIGHT
+    change: tuple[str, str] | None = None
+
+
+def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, object]]:
+    """Tasks and their answers as they come, one child in each folder at a time; a text when a child gave none."""
+    free, running, left = list(folders), {}, tasks[::-1]
+    try:
+        while left or running:
+            while left and free:
+                task, folder = left.pop(), free.pop()
+                running[_begun(task, folder)] = task, folder, time.monotonic() + task.seconds
+            time.sleep(0.01)
+            for child, (task, folder, end) in list(running.items()):
+                late = time.monotonic() > end
+                if late or os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+                    _swept(child)
+                    del running[child]
+                    yield task, "takes too long" if late else _answer(folder)
+                    if task.change:
+                        os.replace(folder / f"{task.change[0]}.kept", folder / task.change[0])
+                    free.append(folder)
+    finally:
+        for child in running:
+            _swept(child)
+
+
+def _begun(task: Task, folder: Path) -> int:
+    """Fork the child of a task; returns its process id."""
+    answer = folder.with_suffix(".json")
+    answer.unlink(missing_ok=True)
+    if task.change:
+        path, text = folder / task.change[0], task.change[1]
+        shutil.copy2(path, f"{path}.kept")
+        path.write_text(text, encoding="utf-8")
+        os.utime(path, (1, 1))  # else its compiled form of the same second may count
+    child = os.fork()
+    if child:
+        return child
+    try:
+        os.setsid()
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        log = os.open(folder.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(log, 1), os.dup2(log, 2)
+        os.chdir(folder)
+        sys.path[:] = [str(folder), str(folder / "tests"), *sys.path[1:]]  # the first was the folder of this file
+        sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
+        del sys.modules["mutants"]
+        sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size
+        os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+        answer.write_text(json.dumps(task.action(folder)))
+    except BaseException:
+        answer.write_text(json.dumps(traceback.format_exc()))
+    finally:
+        os._exit(0)
+
+
+def _swept(child: int) -> None:
+    """End a child and what it has begun."""
+    for kill in (os.killpg, os.kill):  # it may not lead its group yet
+        with suppress(ProcessLookupError):
+            kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+
+
+def _answer(folder: Path) -> object:
+    try:
+        return json.loads(folder.with_suffix(".json").read_text())
+    except (OSError, ValueError):
+        return "ends the process of the tests"
+
+
+class Watch:
+    """Plugin of pytest: which tests fail, and the seconds of each."""
+
+    def __init__(self):
+        self.failed, self.seconds = [], defaultdict(float)
+
+    def pytest_runtest_logreport(self, report):
+        self.seconds[report.nodeid] += report.duration
+        self.failed += [report.nodeid] if report.failed else []
+
+    def pytest_collectreport(self, report):
+        self.failed += [report.nodeid] if report.failed else []
+
+
+def tested(folder: Path, tests: list[str], results: Path | None, *options: str) -> dict:
+    """Run tests: exit code, those that failed, seconds of each. results: of the studies, if they are as always."""
+    import hypothesis
+    import pytest
+
+    hypothesis.settings.register_profile("mutants", derandomize=True, database=None)
+    hypothesis.settings.load_profile("mutants")
+    os.environ |= {"ROUGHCOAT_RESULTS": str(results)} if results else {}
+    watch, chosen = Watch(), [f"tests/{test}" for test in tests]
+    always = ["-q", "-p", "no:cacheprovider", f"--rootdir={folder}", f"--basetemp={folder.with_suffix('.tmp')}"]
+    always += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # hypothesis is imported already
+    code = pytest.main([*always, *options, *chosen], plugins=[watch])
+    return {"code": int(code), "failed": watch.failed, "seconds": watch.seconds}
+
+
+def results_in(folder: Path) -> list[str]:
+    """Compute the studies of the tests into a folder; returns the modules that it takes: their mutants do so again."""
+    from conftest import compute_results
+
+    compute_results(folder)
+    return [name for name in sys.modules if name.startswith(("solver.", "study."))]
+
+
+def judged(mutants: list[Mutant], folders: list[Path], everything: bool) -> Iterator[Verdict]:
+    """Verdicts as they come. everything: all tests there are for mutants that their own do not kill."""
+    results = folders[0].with_name("kept-results")
+    ((_, computing),) = answers([Task("results", lambda _: results_in(results))], folders)
+    seconds, failed = undisturbed(mutants, folders, results)
+
+    def task(mutant, tests, limit):
+        text = mutant.applied((folders[0] / mutant.file).read_text(encoding="utf-8"))
+        kept = None if mutant.id.rpartition(".")[0] in computing else results
+        return Task(mutant, lambda folder: tested(folder, tests, kept, "-x"), limit, (mutant.file, text))
+
+    tasks, again = [], []
+    for mutant in mutants:
+        broken, own = [node for node in failed if covered(node, mutant.tests)], defaultdict(float)
+        for node in (node for node in seconds if covered(node, mutant.tests)):
+            own[node.removeprefix("tests/").partition("[")[0]] += seconds[node]
+        if broken or not own:
+            yield Verdict(mutant, False, f"but {broken[0]} fails without it" if broken else "but has no tests")
+        else:
+            quickest_first = sorted(own, key=own.get)
+            tasks.append(task(mutant, quickest_first, PATIENCE + SLOWER * sum(own.values())))
+    for done, found in answers(tasks, folders):
+        verdict = judge(done.key, found)
+        if everything and not verdict.killed:
+            again.append(task(done.key, ["."], NIGHT))
+        else:
+            yield verdict
+    for done, found in answers(again, folders):
+        yield judge(done.key, found)
+
+
+def undisturbed(mutants: list[Mutant], folders: list[Path], results: Path) -> tuple[dict[str, float], list[str]]:
+    """Seconds of each test on the code as it is, and those that fail."""
+    seconds, failed, files = {}, [], defaultdict(set)
+    for test in (test for mutant in mutants for test in mutant.tests):
+        files[test.partition("::")[0]].add(test)
+    tasks = [Task(file, lambda folder, file=file: tested(folder, sorted(files[file]), results)) for file in files]
+    for task, found in answers(tasks, folders):
+        whole = isinstance(found, dict) and found["code"] in (0, 1)
+        if not whole:
+            print(f"{task.key}: {found}", file=sys.stderr)
+        failed += found["failed"] if whole else [f"tests/{test}" for test in sorted(files[task.key])]
+        seconds |= found["seconds"] if whole else {}
+    print(f"{len(seconds)} tests of the code as it is: {sum(seconds.values()):.0f} s, failed: {failed}", flush=True)
+    return seconds, failed
+
+
+def covered(node: str, tests: list[str]) -> bool:
+    """Whether a test (as pytest names it) is one of `tests`, or in one of these files."""
+    return any(f"{node}[".startswith((f"tests/{test}::", f"tests/{test}[")) for test in tests)
+
+
+def judge(mutant: Mutant, found) -> Verdict:
+    if isinstance(found, str):
+        return Verdict(mutant, True, found.strip().splitlines()[-1])
+    by = [node.removeprefix("tests/") for node in found["failed"]] or [f"pytest, which ends with {found['code']}"]
+    return Verdict(mutant, True, by[0]) if found["code"] else Verdict(mutant, False)
+
+
+def _copy(root: Path, folder: Path) -> None:
+    """Copy what the tests need of a tree."""
+    shutil.copytree(root, folder, ignore=lambda at, names: NOT_COPIED & set(names) if Path(at) == root else [])
+    for package in ("solver", "study"):
+        compileall.compile_dir(folder / package, quiet=1)
+
+
+def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
+    """Run the mutants and print their table; returns the exit code."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--only", nargs="+", metavar="ID", default=["*"], help="these alone, say solver.kernel.*")
+    parser.add_argument("--jobs", type=int, default=2, metavar="N", help="how many at a time (default: 2)")
+    parser.add_argument("--all", action="store_true", help="try what survives with all the tests there are")
+    parser.add_argument("--table", type=Path, metavar="FILE", help="write the table to a file")
+    options = parser.parse_args(arguments)
+    mutants = [mutant for mutant in read(root) if any(fnmatch(mutant.id, pattern) for pattern in options.only)]
+    os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")}
+    for library in libraries:
+        import_module(library)
+    begun, verdicts = time.monotonic(), {}
+    with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as temporary:
+        folders = [Path(temporary) / f"tree{i}" for i in range(options.jobs)]
+        for folder in folders:
+            _copy(root, folder)
+        for verdict in judged(mutants, folders, options.all):
+            verdicts[verdict.mutant.id] = verdict
+            print(f"{len(verdicts)} of {len(mutants)}: {verdict.mutant.id} {verdict}", flush=True)
+    found = [verdicts[mutant.id] for mutant in mutants]
+    remark = f"{datetime.now(UTC):%Y-%m-%d}, {(time.monotonic() - begun) / 60:.0f} min with {options.jobs} processes:"
+    text = table(found, root, remark)
+    print(text)
+    if options.table:
+        options.table.write_text(text, encoding="utf-8")
+    return 0 if all(killed >= WANTED * size for killed, size in totals(found).values()) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

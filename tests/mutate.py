@@ -52,15 +52,17 @@ class Task:
 
 def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, object]]:
     """Tasks and their answers as they come, one child in each folder at a time; a text when a child gave none."""
-    free, running, left = list(folders), {}, tasks[::-1]
+    free, running, left, clock, last = list(folders), {}, tasks[::-1], 0.0, time.monotonic()
     try:
         while left or running:
             while left and free:
                 task, folder = left.pop(), free.pop()
-                running[_begun(task, folder)] = task, folder, time.monotonic() + task.seconds
+                running[_begun(task, folder)] = task, folder, clock + task.seconds
             time.sleep(0.01)
+            last, before = time.monotonic(), last
+            clock += min(last - before, 1.0)  # it stands while this process is stopped or the machine asleep
             for child, (task, folder, end) in list(running.items()):
-                late = time.monotonic() > end
+                late = clock > end
                 if late or os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
                     _swept(child)
                     del running[child]

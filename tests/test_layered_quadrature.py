@@ -92,7 +92,8 @@ def test_weights_within_reach_are_moved_to_first_order():
 
     scale = 1 / np.maximum(1.0, layer.n)
     found, first = (np.abs(displacement(w) - displacement(anew)).max(axis=1) * scale for w in (moved, known))
-    assert np.all(found[step > 1e-4] < 1e-15)
+    # formed anew, in other company: rounding of sums over some 120 nodes, of which BLAS kernels choose the order
+    assert np.all(found[step > 1e-4] < 1e-14)
     assert 0 < found[step < 1e-4].max() < 1e-9
     assert first[step < 1e-4].max() > 1e-7, "else nothing had to be moved"
 

@@ -1,0 +1,65 @@
+"""`error` is not below the truth, in cases that each take one part of the estimate for that.
+
+Found by random search: without the part named the error bar lies below the distance to a finer answer. How good the
+estimate is on the average is in test_accuracy.py.
+"""
+
+import numpy as np
+import pytest
+from solver_cases import ALL_KINDS, LOAD, MAIN, difference, one
+
+from solver import Problem, Status, solve
+
+#: Case, nodes, and the largest part of the truth that the error bar may be.
+CASES = {
+    # neither mesh sees the ring at the edge in which asperities yield more than the base: _BLIND times as much
+    "blind": (
+        {"base": "half_space", "micro": "disc_cell", "P": 3.3475e-10, "Ra": 3.36056e-5, "Nbar": 3.30048e14},
+        12, 2,
+    ),
+    "blind, power law": (
+        {"base": "half_space", "micro": "power_law", "P": 8.107e-4, "Ra": 6.197e-4, "Nbar": 2692336.0, "beta": 0.58935},
+        6, 2,
+    ),
+    # the finer mesh has an error too: MARGIN times as much
+    "margin": (
+        {"base": "thin_layer", "micro": "disc_cell", "P": 2.76712e-6, "Ra": 4.4813e-3, "Nbar": 3736084.0,
+         "h": 4.8048e-4, "n": 0.020863},
+        6, 2,
+    ),
+    # nearly all is in contact outside the first node as well: _UNSEEN areas of that ring
+    "ring": (
+        {"base": "thin_layer", "micro": "disc_cell", "P": 9.5121e-9, "Ra": 4.35751e-4, "Nbar": 8.93755e11,
+         "h": 3.7334e-8, "n": 2.30066e-6},
+        6, 300,
+    ),
+    # asperities saturate inside the contact, between the nodes of both meshes: from _SATURATED on another rule looks
+    "saturated": (
+        {"base": "thin_layer", "micro": "power_law", "P": 2.929241e-3, "Ra": 0.02036508, "Nbar": 1.4454193,
+         "h": 7.54902e-8, "n": 1.249559e-5, "B": 0.229085, "beta": 0.565},
+        6, 3,
+    ),
+    "saturated, finer": (
+        {"base": "thin_layer", "micro": "power_law", "P": 0.085309074, "Ra": 0.015685585, "Nbar": 66.589338,
+         "h": 3.5544e-7, "n": 1.269864e-5, "B": 0.280858, "beta": 0.555622},
+        22, 10,
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("case", "nodes", "most"), CASES.values(), ids=CASES)
+def test_the_error_bar_covers_the_truth(case, nodes, most):
+    """The truth: the same case on 96 nodes, whose own error is less than a tenth of what is judged."""
+    case = MAIN | {"B": 0.0915} | case
+    found, fine = solve(Problem.of(**case, nodes=nodes)), solve(Problem.of(**case, nodes=96))
+    truth = difference(found, fine)[0]
+    assert fine.error[0] < 0.1 * truth
+    assert truth <= found.error[0] <= most * truth
+
+
+@pytest.mark.parametrize(("base", "law"), ALL_KINDS)
+def test_no_error_bar_is_below_rounding(base, law):
+    """A sum over n nodes is known to some n roundings, whatever two meshes agree to."""
+    s = one(P=LOAD, base=base, micro=law, nodes=80, rtol=0.5)
+    assert s.status[0] == Status.CONVERGED
+    assert s.error[0] >= 4 * max(1, s.nodes[0]) * np.finfo(float).eps

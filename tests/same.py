@@ -7,7 +7,7 @@ OF_THE_RUN = ("history", "created", "command", "git_commit")
 
 
 def assert_same_numbers(found: xr.Dataset, expected: xr.Dataset) -> None:
-    """The same numbers to 1e-12 at the same coordinates."""
+    """The same numbers at the same coordinates, to 1e-12: in other company a case has its sums in another order."""
     xr.testing.assert_allclose(found.drop_vars(OF_ROUNDING), expected.drop_vars(OF_ROUNDING), rtol=1e-12, atol=0)
     xr.testing.assert_allclose(found[[*OF_ROUNDING]], expected[[*OF_ROUNDING]], rtol=1e-12, atol=1e-12)
 

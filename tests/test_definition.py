@@ -62,6 +62,7 @@ def test_a_byte_order_mark_and_crlf_are_read(tmp_path):
 
 def test_log_axis(tmp_path):
     text = GOOD.replace("P = [1e-5, 2e-5]", 'P = {start = 1e-6, stop = 1e-4, num = 3, spacing = "log"}')
+    # a few roundings
     np.testing.assert_allclose(read(tmp_path, text).grid.values["P"][1], [1e-6, 1e-5, 1e-4], rtol=1e-14, atol=0)
 
 

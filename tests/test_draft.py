@@ -79,7 +79,7 @@ def test_a_fit_is_what_is_given_and_else_the_default():
     }
     given = {"p_min": 1e-3, "p_max": 0.01, "step": 1e-3, "mesh": "graded", "check": [0.002, 0.009]}
     assert defined(**LAW, fit=given).fit == given
-    np.testing.assert_allclose(defined(**LAW, fit=given).x, np.arange(1, 11) * 1e-3, rtol=1e-14, atol=0)
+    np.testing.assert_allclose(defined(**LAW, fit=given).x, np.arange(1, 11) * 1e-3, rtol=1e-14, atol=0)  # a product
 
 
 def test_a_law_takes_only_roughness_and_a_contact_no_fit():

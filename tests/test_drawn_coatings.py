@@ -55,7 +55,8 @@ def test_curves_are_the_datasets(drawing, found):
         row, bonding = divmod(i, 2)[0], INTERFACES[i % 2]
         shown = [c for c in curves(found, bonding) if row == 0 or c[0].micro == "disc_cell"]
         for line, (case, bare, many) in zip(lines(axes), shown, strict=True):
-            np.testing.assert_allclose(line.x, (case.a / found.h).values[many], rtol=1e-14)
+            np.testing.assert_allclose(line.x, (case.a / found.h).values[many], rtol=1e-14)  # one division
+            # the same arithmetic
             np.testing.assert_allclose(line.y, quantities(case, bare)[row].values[many], rtol=1e-13)
 
 
@@ -68,9 +69,9 @@ def test_the_csv_holds_the_curves_of_both_punches(drawing, found):
             at = (columns["bonded"] == (bonding == "bonded")) & (columns["n"] == float(case.n))
             at &= columns["rough"] == (case.micro == "disc_cell").item()
             np.testing.assert_array_equal(columns["P/(E2* R^2)"][at], found.P.values[many])
-            np.testing.assert_allclose(columns["a/h"][at], (case.a / 0.005).values[many], rtol=1e-14)
+            np.testing.assert_allclose(columns["a/h"][at], (case.a / 0.005).values[many], rtol=1e-14)  # one division
             for (_, _, name), values in zip(ROWS, quantities(case, bare), strict=True):
-                np.testing.assert_allclose(columns[name][at], values.values[many], rtol=1e-13)
+                np.testing.assert_allclose(columns[name][at], values.values[many], rtol=1e-13)  # the same arithmetic
             count += at.sum()
     assert all(len(column) == count for column in columns.values())
 

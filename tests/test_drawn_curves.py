@@ -174,7 +174,7 @@ def test_the_name_of_a_curve_stands_at_the_curve(drawing, name, exact):
         x, y = texts(axes)[curve]
         assert x == pytest.approx(at)
         heights = [np.interp(at, line.x, line.y) for line in its]
-        assert min(abs(y - max(heights)), abs(y - min(heights))) <= 1e-12 * y
+        assert min(abs(y - max(heights)), abs(y - min(heights))) <= 1e-12 * y  # that point itself
         assert colours[curve].lower() == its[0].look.colour
 
 

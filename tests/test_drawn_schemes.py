@@ -6,7 +6,7 @@ from drawn import arrows, fills, lines, texts
 
 from study import open_results
 
-NARROW = 1e-12
+NARROW = 1e-12  # rounding of coordinates of order 1
 
 
 @pytest.fixture(scope="module")
@@ -34,10 +34,10 @@ def test_the_contact_is_drawn_as_the_csv_says(drawing, case):
     (h,) = numbers(case, "h")
     interface, surface, punch, *_ = lines(axes)
     r = columns["r/R"]
-    np.testing.assert_allclose(interface.y, 10 * columns["interface + h/R"] - h, rtol=1e-12)
-    np.testing.assert_allclose(surface.y, 10 * columns["surface/R"], rtol=1e-12)
+    np.testing.assert_allclose(interface.y, 10 * columns["interface + h/R"] - h, rtol=1e-12)  # rounding of a difference
+    np.testing.assert_allclose(surface.y, 10 * columns["surface/R"], rtol=1e-12)  # one product
     seen = np.isfinite(punch.y)
-    np.testing.assert_allclose(punch.y[seen], 10 * columns["punch/R"][seen], rtol=1e-12)
+    np.testing.assert_allclose(punch.y[seen], 10 * columns["punch/R"][seen], rtol=1e-12)  # one product
     np.testing.assert_array_equal(seen, 10 * columns["punch/R"] < 1.75 * h)
     assert all((line.x == r).all() for line in (interface, surface, punch))
     assert axes.get_title() == "$r$ and $h$ to scale; heights of punch, asperities and deflections $\\times$ 10"
@@ -108,16 +108,17 @@ def test_the_spot_is_drawn_as_the_csv_says(drawing, case):
     np.testing.assert_allclose(A, case.A0, rtol=0.1)  # of the power law, which the dataset has in its place
     r = columns["r/R"]
     assert (r[0], r[-1]) == (pytest.approx(-2.2 * cell), pytest.approx(2.2 * cell))
+    # rounding of heights of 1e-3
     np.testing.assert_allclose(columns["asperity/R"], r**2 / (2 * Ra) - A, rtol=0, atol=1e-15)
     touching = np.abs(r) < 0.95 * b
     np.testing.assert_allclose(columns["surface/R"][touching], columns["asperity/R"][touching], rtol=2e-3)
     apart = np.abs(r) > 1.05 * b
     assert (columns["surface/R"][apart] < columns["asperity/R"][apart]).all()
     asperity, surface, *_ = lines(axes)
-    np.testing.assert_allclose(surface.y, 3 * columns["surface/R"], rtol=1e-12)
+    np.testing.assert_allclose(surface.y, 3 * columns["surface/R"], rtol=1e-12)  # one product
     seen = np.isfinite(asperity.y)
     np.testing.assert_array_equal(seen, 3 * columns["asperity/R"] < 1.3 * cell)
-    np.testing.assert_allclose(asperity.y[seen], 3 * columns["asperity/R"][seen], rtol=1e-12)
+    np.testing.assert_allclose(asperity.y[seen], 3 * columns["asperity/R"][seen], rtol=1e-12)  # one product
     assert axes.get_title() == "along $r$ to scale; heights $\\times$ 3" and axes.get_aspect() == 1
     (body, light), (above, dark) = fills(axes)
     assert dark < light

@@ -159,6 +159,7 @@ def test_the_csv_holds_the_errors(drawing, results, name):
         at = (columns["row"] == i) & (columns["material"] == j)
         values = shown(case, ROWS[name][i][2])
         for head, expected in zip(("h/a", "n", "error"), values, strict=True):
+            # the same arithmetic
             np.testing.assert_allclose(columns[head][at], expected[np.isfinite(values[2])], rtol=1e-13)
         count += at.sum()
     assert count == len(columns["error"])

@@ -115,6 +115,7 @@ def test_points_are_the_cases_by_their_status(figure, datasets):
                 for a, b in zip(line.x, line.y, strict=True)
             ]
             expected = [(case[x], case[y]) for case in cases if case["status"] == value]
+            # as drawn
             np.testing.assert_allclose(sorted(points), sorted(expected), rtol=1e-14, err_msg=f"{base}, {word}")
         assert sum(len(line.x) for line in drawn) == len(cases)
         assert drawn[0].look.colour == entries["converged"].colour, "the others are drawn over them"
@@ -134,12 +135,13 @@ def test_cells_are_coloured_by_median_error_and_most_iterations(figure, datasets
             image = mesh(axes).get_array().reshape(BINS, BINS)
             assert set(zip(*np.nonzero(~np.ma.getmaskarray(image)), strict=True)) == set(cells)
             for cell, held in cells.items():
+                # as drawn
                 assert image[cell] == pytest.approx(max(reduce([case[name] for case in held]), least), rel=1e-12)
             corners = mesh(axes).get_coordinates()
             for k, parameter in enumerate((x, y)):
                 values = [case[parameter] for case in cases]
                 edges = np.exp(np.linspace(np.log(min(values)), np.log(max(values)), BINS + 1))
-                np.testing.assert_allclose(
+                np.testing.assert_allclose(  # exponentials of logarithms down to -28
                     corners[:, :, k], [edges] * (BINS + 1) if k == 0 else edges[:, None].repeat(BINS + 1, 1), rtol=1e-12
                 )
 

@@ -115,8 +115,8 @@ def test_maps_show_the_size_of_the_cycle(drawing, results):
         np.testing.assert_array_equal(np.ma.getmaskarray(drawn), (size >= 0.1) | ~np.isfinite(size))
         known = ~np.ma.getmaskarray(drawn)
         assert known.any()
-        assert_allclose(drawn[known], np.maximum(size[known], 1e-8), rtol=1e-12)
-        assert_allclose(image.norm.boundaries, 10.0 ** np.arange(-8, 0), rtol=1e-12)
+        assert_allclose(drawn[known], np.maximum(size[known], 1e-8), rtol=1e-12)  # as drawn
+        assert_allclose(image.norm.boundaries, 10.0 ** np.arange(-8, 0), rtol=1e-12)  # powers of ten
         corners = image.get_coordinates()
         assert all((corners[0, i, 0] < C[i] < corners[0, i + 1, 0]) for i in range(len(C)))
         assert all((corners[i, 0, 1] < 1 + 2 * k[i] < corners[i + 1, 0, 1]) for i in range(len(k)))
@@ -130,7 +130,7 @@ def test_maps_show_the_size_of_the_cycle(drawing, results):
     expected = [np.concatenate(column) for column in zip(*parts, strict=True)]
     assert list(columns) == ["beta", "nodes", "C", "k", "cycle/p(0)", "status"]
     for values, column in zip(expected, columns.values(), strict=True):
-        assert_allclose(column, values, rtol=1e-12)
+        assert_allclose(column, values, rtol=1e-12)  # as drawn, written with all digits
 
 
 def status_of(found, beta: float, nodes: int) -> np.ndarray:
@@ -145,13 +145,13 @@ def test_lines_of_the_maps_are_those_of_the_theory(drawing, results):
     for axes, (beta, nodes) in zip(figure.axes, MAPPED.values(), strict=False):
         whole, edges = theory(CASE, h, beta, nodes)
         for line, values, words in zip(lines(axes), (whole, *edges), (WORDS[0], *SLOPES), strict=True):
-            assert_allclose(line.x, 2 * h, rtol=1e-14)
+            assert_allclose(line.x, 2 * h, rtol=1e-14)  # one product
             assert_allclose(line.y, values, rtol=1e-9)  # eigenvalues of a matrix, found twice
             assert line.look == entries[words]
     assert len({line.look.dashes for line in lines(figure.axes[0])}) == 3
     bar = figure.axes[6]
     assert bar.get_ylabel() == r"largest $|\hat p - p|\,/\,p(0)$ after 2000 approximations"
-    assert_allclose(bar.get_yticks(), [1e-8, 1e-6, 1e-4, 1e-2], rtol=1e-12)
+    assert_allclose(bar.get_yticks(), [1e-8, 1e-6, 1e-4, 1e-2], rtol=1e-12)  # powers of ten
 
 
 def test_two_iterates_are_drawn_about_the_solution(drawing):
@@ -160,7 +160,7 @@ def test_two_iterates_are_drawn_about_the_solution(drawing):
     first, second, solution = lines(axes)
     for line, count in ((first, 1000), (second, 1001)):
         assert line.label == f"iterate {count}"
-        assert_allclose(line.x, grid.x, rtol=1e-14)
+        assert_allclose(line.x, grid.x, rtol=1e-14)  # as drawn
         iterate = CASE["n"] * approximations(0.0, count, nodes=64).q[0]
         assert_allclose(line.y, 1e3 * iterate, rtol=1e-12)  # the same arithmetic
     exact = solve(Problem.of(**CASE, beta=0.5, h=0.02, rtol=1e-9, nodes=64), solution.x)

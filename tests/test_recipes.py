@@ -72,7 +72,7 @@ def test_profiles_of_figures_3_7_and_10_carry_the_load(figures, results):
         for r, p in zip(columns[::2], columns[1::2], strict=True):
             load = 2 * np.pi * a0**2 * simpson(p * r, x=r)
             assert load == pytest.approx(P0, rel=2e-3), name  # Hertz has a vertical tangent at its edge
-    assert numbers(figures, "fig03")["r/a0 (1)"][-1] == pytest.approx(1, rel=1e-12)
+    assert numbers(figures, "fig03")["r/a0 (1)"][-1] == pytest.approx(1, rel=1e-12)  # a product with the same factor
 
 
 def test_a_layer_spreads_the_contact_and_lowers_the_pressure(figures):
@@ -110,7 +110,8 @@ def test_validity_maps_show_the_error_and_leave_out_what_does_not_apply(figures,
     a = found.a.sel(micro="disc_cell", case=0).transpose("base", "n", "h")
     first = (shown["row"] == 0) & (shown["material"] == 0)
     expected = a.sel(base="thin_layer") / a.sel(base="layered") - 1
-    np.testing.assert_allclose(shown["error"][first], expected.values.ravel(), rtol=1e-12)
+    np.testing.assert_allclose(shown["error"][first], expected.values.ravel(), rtol=1e-12)  # the same arithmetic
+    # the same arithmetic
     np.testing.assert_allclose(shown["h/a"][first], (found.h / a.sel(base="layered")).T.values.ravel(), rtol=1e-12)
     assert shown["n"][shown["material"] == 4].max() < 0.25 / (0.55 / 0.7), "there C <= 0"
     assert set(shown["row"]) == set(range(5)) and set(shown["material"]) == set(range(5))

@@ -26,7 +26,7 @@ def test_blocks_and_workers_do_not_change_the_answer(file, block, workers):
     report = opened.run(workers=workers)
     assert (report.cases, report.computed, report.failures, report.counts) == (23, 23, {}, {0: 23})
     whole = study.solve(P=np.linspace(1e-6, 1e-4, 23), micro="smooth", base="half_space", x=3)
-    xr.testing.assert_allclose(opened.open(), whole, rtol=1e-12, atol=0)
+    xr.testing.assert_allclose(opened.open(), whole, rtol=1e-12, atol=0)  # closed forms
     assert leftovers(opened.results) == []
 
 

@@ -127,6 +127,7 @@ def test_estimated_memory_is_the_sum_of_its_parts(monkeypatch, points, block, dt
     axes = {name: {"start": 0.1, "stop": 0.4, "num": num} for name, num in zip(("P", "nu1"), points, strict=True)}
     model, output = {"base": "half_space", "micro": "smooth"}, {"dtype": dtype}
     tables = {"model": model, "axes": axes, "numerics": {"block": block}, "output": output}
+    # a sum in another order
     assert estimates.estimate(from_tables(tables, "s", "", "s"), 1).memory == pytest.approx(sum(parts), rel=1e-12)
 
 

@@ -44,7 +44,7 @@ def test_one_case_has_no_dimension_but_x():
     found = study.solve(a=0.04, **SMOOTH)
     assert dict(found.sizes) == {"x": 33}
     assert found.a.ndim == 0
-    np.testing.assert_allclose(found.D, 0.04**2, rtol=1e-12, atol=0)
+    np.testing.assert_allclose(found.D, 0.04**2, rtol=1e-12, atol=0)  # closed form
 
 
 def test_profiles_can_be_left_out():
@@ -78,7 +78,7 @@ def test_dataarray_over_its_own_dimension():
     found = study.solve(P=P, nu2=0.2 + P * 1e4, **SMOOTH)
     assert found.a.dims == ("sample",)
     assert found.sel(sample="v").P.item() == 2e-5
-    np.testing.assert_allclose(found.nu2, [0.3, 0.4], rtol=1e-14, atol=0)
+    np.testing.assert_allclose(found.nu2, [0.3, 0.4], rtol=1e-14, atol=0)  # a rounding
 
 
 def test_values_over_their_own_dimension_are_its_coordinate():
@@ -100,7 +100,7 @@ def test_dataarray_of_two_dimensions_in_any_order():
     nu2 = xr.DataArray(np.linspace(0, 0.4, 3), dims="v")
     found = study.solve(nu2=nu2, P=P, **SMOOTH)
     assert found.a.dims == ("v", "u")
-    np.testing.assert_allclose(found.a.transpose("u", "v"), (0.75 * P) ** (1 / 3), rtol=1e-12, atol=0)
+    np.testing.assert_allclose(found.a.transpose("u", "v"), (0.75 * P) ** (1 / 3), rtol=1e-12, atol=0)  # Hertz
 
 
 def array(values, *dims, **coords):

@@ -41,11 +41,13 @@ def test_exact_law_and_fit(opened):
     p = found.p.values
     for i, Ra in enumerate((0.004, 0.002)):
         fit = fit_power_law(250000 * Ra**2, step=1e-3, mesh="graded")
+        # the same function
         np.testing.assert_allclose(found.A_exact[i], micro.displacement(p, 1.0, 250000, Ra), rtol=1e-14, atol=0)
+        # a power and two products
         np.testing.assert_allclose(found.A_fit[i], fit.B * Ra * p**fit.beta, rtol=1e-14, atol=0)
         assert (found.B[i], found.beta[i], found.max_error[i]) == (fit.B, fit.beta, fit.max_error)
     relative = abs(found.A_fit / found.A_exact - 1).where((found.p >= 0.0025) & (found.p <= 0.025))
-    assert (relative.max("p") <= found.max_error + 1e-12).all()
+    assert (relative.max("p") <= found.max_error + 1e-12).all()  # a rounding of a ratio
     assert (found.max_error < 0.1).all()
 
 

@@ -207,7 +207,7 @@ def test_every_table_is_checked():
 def test_csv_holds_the_numbers_of_the_datasets(written, results, name):
     head, *rows = rows_of(written / f"{name}.csv")
     assert head == [text for text, _, _ in HEADS[name]]
-    close = TOLERANCE.get(name, {"rel": 1e-12, "abs": 1e-15})
+    close = TOLERANCE.get(name, {"rel": 1e-12, "abs": 1e-15})  # the same arithmetic, written with all digits
     for row, expected in zip(rows, EXPECTED[name](results), strict=True):
         for cell, value in zip(row, expected, strict=True):
             if isinstance(value, str):

@@ -56,6 +56,7 @@ def test_paper_numbers_are_the_converged_ones(written):
     ours = {key: float(row[2]) for key, row in zip(paper.NUMBERS, rows, strict=True)}
     for key, value in CONVERGED.items():
         digits = DIGITS.get(key, 6)
+        # both are the same decimal number
         assert float(f"{ours[key]:.{digits - 1}e}") == pytest.approx(value, rel=1e-12), key
     for row in rows:
         assert float(row[3]) == pytest.approx(float(row[2]) / float(row[1]) - 1)
@@ -98,7 +99,7 @@ def test_the_error_counts_both_ends_of_the_interval_and_nothing_beyond():
     p = np.array([0.0024, 0.0025, 0.01, 0.025, 0.0251])
     for errors, largest in (([9, 0.2, 0.1, 0.3, 9], 0.3), ([9, 0.4, -0.1, 0.3, 9], 0.4), ([9, 0.1, -0.5, 0.3, 9], 0.5)):
         law = xr.Dataset({"A_exact": ("p", 2 * p**0.5 / (1 + np.array(errors)))}, {"p": p})
-        assert largest_error(law, 2.0, 0.5) == pytest.approx(largest, rel=1e-12)
+        assert largest_error(law, 2.0, 0.5) == pytest.approx(largest, rel=1e-12)  # rounding of a ratio
 
 
 @pytest.mark.parametrize(
@@ -122,6 +123,7 @@ def test_the_largest_thickness_is_where_the_error_first_exceeds_the_level(errors
     a = xr.DataArray([7.0, radius], dims="base") if given == "P" else xr.DataArray(radius)
     coordinates = {"base": ["thin_layer", "layered"], "n": 0.1 * np.arange(1, len(errors) + 1), "h": h}
     case = xr.Dataset({"p0": (("h", "base", "n"), np.array([thin, exact]).transpose(2, 0, 1)), "a": a}, coordinates)
+    # interpolation between two numbers
     assert largest_thickness(case, "p0", 0.1) == pytest.approx(thickness, rel=1e-12)
 
 

@@ -21,6 +21,7 @@ def test_the_papers_sets_are_its_roughnesses_under_the_loads_of_its_figures(name
     expected = [(*row, P) for row in table for P in loads]
     cases = SETS[name](15, 1)
     found = zip(*(cases[key] for key in ("Ra", "Nbar", "B", "beta", "P")), strict=True)
+    # a power and a product
     np.testing.assert_allclose([(Ra, N, B * Ra, beta, P) for Ra, N, B, beta, P in found], expected, rtol=1e-12)
     assert (cases["h"], cases["n"]) == (0.02, 0.5)
     assert set(cases["base"]) == {base} and set(cases["micro"]) == {"power_law"}

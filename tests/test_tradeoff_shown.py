@@ -83,18 +83,18 @@ def test_every_way_is_a_curve_of_error_against_time(figure, found):
             if not len(time):
                 continue
             curve, error = next(drawn), np.maximum(error, 1e-12)
-            np.testing.assert_allclose(curve.x, 1e6 * time, rtol=1e-14)
-            np.testing.assert_allclose(curve.y, error, rtol=1e-14)
+            np.testing.assert_allclose(curve.x, 1e6 * time, rtol=1e-14)  # one product
+            np.testing.assert_allclose(curve.y, error, rtol=1e-14)  # as drawn
             assert (curve.look.colour, curve.look.dashes) == (entries[label].colour, ("solid",))
             for where, face in ((ended >= 0.99, curve.look.colour), (ended < 0.99, "#ffffff")):
                 if where.any():
                     marks = next(drawn)
-                    np.testing.assert_allclose(marks.x, 1e6 * time[where], rtol=1e-14)
-                    np.testing.assert_allclose(marks.y, error[where], rtol=1e-14)
+                    np.testing.assert_allclose(marks.x, 1e6 * time[where], rtol=1e-14)  # one product
+                    np.testing.assert_allclose(marks.y, error[where], rtol=1e-14)  # as drawn
                     assert (marks.look.marker, marks.look.colour) == (entries[label].marker, curve.look.colour)
                     assert (marks.look.face, marks.look.dashes) == (face, ())
         for line, way in zip(drawn, MODELS, strict=True):
-            np.testing.assert_allclose(line.y, found["median"].sel(set=name, way=way)[0], rtol=1e-14)
+            np.testing.assert_allclose(line.y, found["median"].sel(set=name, way=way)[0], rtol=1e-14)  # as drawn
             assert line.look == entries["a simpler model: error of half the cases"]
 
 

@@ -50,7 +50,7 @@ def test_rough_contact_in_physical_units():
     physical = study.to_physical(more, **SCALE)
     size = {"N": 1.0, "um": 1e-6, "MPa": 1e6, "mm-2": 1e6, "N m-1": 1.0, "mm2": 1e-6, "1": 1.0}
     si = {name: physical[name].values * size[physical[name].units] for name in (*FACTORS, "lam0") if name in physical}
-    assert si["P"] == pytest.approx(10, rel=1e-14) and si["Nbar"] == pytest.approx(1e10, rel=1e-14)
+    assert si["P"] == pytest.approx(10, rel=1e-14) and si["Nbar"] == pytest.approx(1e10, rel=1e-14)  # a few roundings
     E, Ra, p0, lam = 2e11, 20e-6, si["p0"], si["lam0"]
     b, cell = np.sqrt(lam / (np.pi * 1e10)), np.sqrt(1 / (np.pi * 1e10))
     exact = {"rel": 1e-10}  # identities of one state; A0 is a difference of numbers some times larger
@@ -67,10 +67,10 @@ def test_hertz_in_physical_units():
     given = study.from_physical(**SCALE, P=10.0, micro="smooth", base="half_space")
     found = study.to_physical(study.solve(**given), **SCALE)
     a = (3 * 10 * 5e-3 / (4 * 2e11)) ** (1 / 3)
-    assert found.P.item() == pytest.approx(10, rel=1e-14)
-    assert found.a.item() == pytest.approx(a * 1e6, rel=1e-12)
-    assert found.D.item() == pytest.approx(a**2 / 5e-3 * 1e6, rel=1e-12)
-    assert found.p0.item() == pytest.approx(1.5 * 10 / (np.pi * a**2) / 1e6, rel=1e-12)
+    assert found.P.item() == pytest.approx(10, rel=1e-14)  # a few roundings
+    assert found.a.item() == pytest.approx(a * 1e6, rel=1e-12)  # closed form
+    assert found.D.item() == pytest.approx(a**2 / 5e-3 * 1e6, rel=1e-12)  # closed form
+    assert found.p0.item() == pytest.approx(1.5 * 10 / (np.pi * a**2) / 1e6, rel=1e-12)  # closed form
     assert found.dP_dD.item() == pytest.approx(2 * 2e11 * a, rel=1e-9)
     modulus = study.to_physical(derived.effective_modulus(study.solve(**given)).to_dataset(), **SCALE).E_eff
     assert (modulus.item(), modulus.units) == (pytest.approx(2e5, rel=1e-9), "MPa")
@@ -81,22 +81,22 @@ def test_hertz_in_physical_units():
 
 def test_axes_are_converted_and_stay_selectable():
     found = study.to_physical(study.solve(P=[1e-6, 2e-6], micro="smooth", base="half_space"), **SCALE)
-    np.testing.assert_allclose(found.indexes["P"], [5.0, 10.0], rtol=1e-14, atol=0)
+    np.testing.assert_allclose(found.indexes["P"], [5.0, 10.0], rtol=1e-14, atol=0)  # a few roundings
     assert found.sel(P=10, method="nearest").a.notnull()
 
 
 def test_there_and_back():
     parameters = {name: 0.25 for name in PARAMETERS if not VOCABULARY[name].choices}
     physical = {name: value * factor(name, **SCALE) for name, value in parameters.items()}
-    assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-15)
+    assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-15)  # one rounding
 
 
 def test_forms_are_kept():
     array = xr.DataArray([5e3, 1e4], dims="sample")
     found = study.from_physical(**SCALE, h=array, Ra=[5e3, 1e4], a=5e3, bonding=["bonded"])
     assert found["h"].dims == ("sample",)
-    np.testing.assert_allclose(found["h"], [1, 2], rtol=1e-15, atol=0)
-    np.testing.assert_allclose(found["Ra"], [1, 2], rtol=1e-15, atol=0)
+    np.testing.assert_allclose(found["h"], [1, 2], rtol=1e-15, atol=0)  # one rounding
+    np.testing.assert_allclose(found["Ra"], [1, 2], rtol=1e-15, atol=0)  # one rounding
     assert found["a"] == 1
     assert found["bonding"] == ["bonded"]
 

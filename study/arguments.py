@@ -1,9 +1,40 @@
 """What the words of a command line stand for: study files, numbers, parts."""
 
 import argparse
+import sys
 from pathlib import Path
 
+from .terminal import say
+
 STUDIES = Path("studies")
+
+
+class Parser(argparse.ArgumentParser):
+    """Nothing is the matter when nobody reads its help."""
+
+    def _print_message(self, message, file=None) -> None:
+        say(message.removesuffix("\n"), file or sys.stderr)
+
+
+class Version(argparse.Action):
+    """Print the versions of the program and of its numerics, and end."""
+
+    def __call__(self, parser, *_) -> None:
+        from .dataset import package_version
+        from .definition import NUMERICS_VERSION
+
+        say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}", sys.stdout)
+        parser.exit()
+
+
+def add_engine(sub: argparse.ArgumentParser) -> None:
+    """Options of the commands that compute."""
+    sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
+    sub.add_argument("--scheduler", default="", metavar="ADDRESS", help="compute on the workers of this dask scheduler")
+    either = sub.add_mutually_exclusive_group()
+    either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
+    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
+    sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
 def study_file(text: str) -> Path:

@@ -21,6 +21,7 @@ from .order import Order, Report, check_size, check_writable
 from .progress import Progress
 from .reuse import adopt, at_hand, check_replaceable, earlier
 from .store import Inventory, Store, add, discard, gather, inventory, remove_litter
+from .terminal import say
 from .vocabulary import NOT_RUN
 
 log = logging.getLogger(__name__)
@@ -102,9 +103,7 @@ def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> None:
 
 
 def say_waiting(order: Order) -> None:
-    if order.stream:
-        order.stream.write(f"{order.definition.name}: waiting for another run of this study to end\n")
-        order.stream.flush()
+    say(f"{order.definition.name}: waiting for another run of this study to end", order.stream)
 
 
 def prepared(order: Order) -> Inventory:

@@ -210,12 +210,10 @@ def main(arguments=None) -> int:
     except SystemExit as ended:  # of the parser
         ending.now.code = ended.code
         raise
-    except KeyboardInterrupt:
-        say(f"\ninterrupted{kept}", sys.stderr)
-        code = INTERRUPTED
-    except Exception:
-        if not ending.now.came:
+    except (KeyboardInterrupt, Exception) as error:
+        if not (ending.now.came or isinstance(error, KeyboardInterrupt)):  # libraries make other errors of an interrupt
             raise
+        say(f"\ninterrupted{kept}", sys.stderr)
         code = INTERRUPTED
     finally:
         empty_buffers()

@@ -70,20 +70,45 @@ def processes_for(workers: int, blocks: int) -> int:
 
 
 def _processes(count: int) -> Executor:
-    executor = ProcessPoolExecutor(count, get_context("spawn"), _live_with_parent)
-    with _interrupt_blocked():
+    _start_tracker()
+    with _blocked():
+        executor = ProcessPoolExecutor(count, get_context("spawn"), _live_with_parent)
         for _ in range(count):
             executor.submit(int)  # starts one
     return executor
 
 
+def _start_tracker() -> None:
+    """Start the process that removes the semaphores of the others from /dev/shm, should the run not come to it.
+
+    It must outlive an interrupt, and says nothing then: that an interrupted run has left them is no news.
+    """
+    if os.name == "nt":  # needs none
+        return
+    from multiprocessing.resource_tracker import ensure_running
+
+    before = os.environ.get("PYTHONWARNINGS")
+    quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
+    os.environ["PYTHONWARNINGS"] = f"{before},{quiet}" if before else quiet
+    try:
+        with _blocked():
+            ensure_running()  # before others start: it lets the interrupt through again
+    finally:
+        os.environ.pop("PYTHONWARNINGS")
+        if before is not None:
+            os.environ["PYTHONWARNINGS"] = before
+
+
 @contextmanager
-def _interrupt_blocked() -> Iterator[None]:
-    """Processes that start here inherit this: Ctrl-C is for the one that runs the study."""
+def _blocked() -> Iterator[None]:
+    """Processes that start here inherit this: Ctrl-C, and the end of the terminal, are for the one that runs the study.
+
+    The workers end when that ends.
+    """
     if not hasattr(signal, "pthread_sigmask"):  # not POSIX
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     yield
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
 

@@ -87,8 +87,18 @@ def test_processors_that_may_be_used(monkeypatch):
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_processes_are_started_with_the_interrupt_blocked(monkeypatch):
-    """Between its start and its first line a worker would otherwise end with a traceback at Ctrl-C."""
-    blocked = []
+    """Between its start and its first line a worker would otherwise end with a traceback at Ctrl-C.
+
+    So is what removes their semaphores, and with the end of the terminal blocked.
+    """
+    blocked, masks, quiet = [], [], "ignore::UserWarning:multiprocessing.resource_tracker"
+
+    def ensure_running():
+        masks.append((signal.pthread_sigmask(signal.SIG_BLOCK, ()), os.environ["PYTHONWARNINGS"]))
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # as that of multiprocessing does
+
+    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", ensure_running)
+    monkeypatch.setenv("PYTHONWARNINGS", "error")
 
     class Pool(AtOnce):
         def __init__(self, count, context, begin):
@@ -100,12 +110,17 @@ def test_processes_are_started_with_the_interrupt_blocked(monkeypatch):
     monkeypatch.setattr(cluster, "ProcessPoolExecutor", Pool)
     with engine(2, "", 8):
         assert blocked == [True, True], "each is started at once"
+        assert [({signal.SIGINT, signal.SIGHUP} <= mask, filters) for mask, filters in masks] == [
+            (True, f"error,{quiet}")
+        ]
+        assert os.environ["PYTHONWARNINGS"] == "error"
         assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_where_signals_cannot_be_blocked_processes_are_started_all_the_same(monkeypatch):
     for name in ("pthread_sigmask", "SIG_BLOCK", "SIG_SETMASK"):
         monkeypatch.delattr(signal, name, raising=False)
+    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", lambda: None)
     monkeypatch.setattr(cluster, "ProcessPoolExecutor", lambda *_: AtOnce())
     with engine(2, "", 8) as found:
         assert found.width() == 2 * AHEAD

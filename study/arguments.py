@@ -4,6 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from .scheduler import address_error
 from .terminal import say
 
 STUDIES = Path("studies")
@@ -30,7 +31,7 @@ class Version(argparse.Action):
 def add_engine(sub: argparse.ArgumentParser) -> None:
     """Options of the commands that compute."""
     sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
-    sub.add_argument("--scheduler", default="", metavar="ADDRESS", help="compute on the workers of this dask scheduler")
+    sub.add_argument("--scheduler", type=address, metavar="ADDRESS", help="compute on workers of this dask scheduler")
     either = sub.add_mutually_exclusive_group()
     either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
     either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
@@ -58,6 +59,13 @@ def positive(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text}: must be a whole number > 0")
     return int(text)
+
+
+def address(text: str) -> str:
+    """The address of a scheduler."""
+    if address_error(text):
+        raise argparse.ArgumentTypeError(f'"{text}": {address_error(text)}')
+    return text
 
 
 def part(text: str) -> tuple[int, int]:

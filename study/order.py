@@ -51,7 +51,7 @@ class Order:
     definition: Definition
     results: Path
     workers: int | None = None
-    scheduler: str = ""
+    scheduler: str | None = None
     processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()

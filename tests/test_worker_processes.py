@@ -83,7 +83,7 @@ def test_how_many_processes():
 def test_which_executor(monkeypatch, blocks, kind):
     asked = []
     monkeypatch.setattr(cluster, "_processes", lambda count: asked.append(count) or ProcessPoolExecutor(count))
-    with engine(3, "", blocks) as found:
+    with engine(3, None, blocks) as found:
         assert isinstance(found.executor, kind) and found.width() == 12
         assert asked == ([3] if kind is ProcessPoolExecutor else [])
 

@@ -49,7 +49,8 @@ def parser() -> argparse.ArgumentParser:
     sub = command(retry, "compute cases of some status again", "files")
     add_engine(sub)
     sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
-    command(status, "say what has been computed", "files")
+    sub = command(status, "say what has been computed", "files")
+    sub.add_argument("--yes", action="store_true", help="count however many cases there are")
     sub = command(plot, "draw figures from results", "names")
     sub.add_argument("--figures", default="figures", metavar="DIR", help="folder of the figures (default: figures)")
     sub = command(table, "write tables from results", "names")
@@ -93,7 +94,7 @@ def run(options) -> int:
     def one(file):
         study = load(study_file(file), options.results)
         if options.dry_run:
-            return _answer(cost_line(study.definition.name, study.dry_run(options.workers)))
+            return _answer(cost_line(study.definition.name, study.dry_run(options.workers, options.yes)))
         return _compute(study, options, part=options.part, force=options.force)
 
     return _each(options.files, one, KEPT)
@@ -121,7 +122,7 @@ def status(options) -> int:
 
     def one(file):
         study = load(study_file(file), options.results)
-        state = study.status()
+        state = study.status(options.yes)
         return _answer(state_line(study.definition, state), *count_lines(state["counts"]))
 
     return _each(options.files, one)

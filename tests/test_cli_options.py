@@ -65,9 +65,9 @@ def test_yes_computes_what_is_large(monkeypatch, capsys):
 
 def test_dry_run_is_told_the_workers_and_computes_nothing(asked, monkeypatch, capsys):
     seen, real = [], api.Study.dry_run
-    monkeypatch.setattr(api.Study, "dry_run", lambda self, workers: seen.append(workers) or real(self, workers))
+    monkeypatch.setattr(api.Study, "dry_run", lambda self, *given: seen.append(given) or real(self, *given))
     assert main(["run", "good", "--dry-run", "--workers", "7"]) == 0
-    assert seen == [7] and asked == [] and tree() == []
+    assert seen == [(7, False)] and asked == [] and tree() == []
     assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; ")
 
 

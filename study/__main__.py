@@ -12,7 +12,7 @@ import sys
 from pathlib import Path
 
 from . import ending
-from .arguments import STUDIES, Parser, Version, add_engine, part, study_file
+from .arguments import STUDIES, Parser, Version, add_engine, folder, part, study_file
 from .ending import INTERRUPTED
 from .terminal import FULL, empty_buffers, open_the_closed, say
 
@@ -21,6 +21,7 @@ from .terminal import FULL, empty_buffers, open_the_closed, say
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
+DIR = {"type": folder, "metavar": "DIR"}
 KEPT = "; finished blocks are kept, the same command goes on from there"
 
 
@@ -36,10 +37,11 @@ def parser() -> argparse.ArgumentParser:
         sub.set_defaults(function=function)
         for argument in arguments:
             sub.add_argument(argument, nargs="+", metavar=argument.upper().removesuffix("S"))
-        sub.add_argument("--results", default="results", metavar="DIR", help="folder of the results (default: results)")
+        sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
-    command(list_, "list the study files, their size and state").add_argument("folder", nargs="?", default=STUDIES)
+    sub = command(list_, "list the study files, their size and state")
+    sub.add_argument("folder", type=folder, nargs="?", default=STUDIES)
     command(check, "check study files without computing", "files")
     sub = command(run, "compute what is missing and write the results", "files")
     add_engine(sub)
@@ -52,11 +54,11 @@ def parser() -> argparse.ArgumentParser:
     sub = command(status, "say what has been computed", "files")
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
     sub = command(plot, "draw figures from results", "names")
-    sub.add_argument("--figures", default="figures", metavar="DIR", help="folder of the figures (default: figures)")
+    sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
     sub = command(table, "write tables from results", "names")
-    sub.add_argument("--tables", default="tables", metavar="DIR", help="folder of the tables (default: tables)")
+    sub.add_argument("--tables", default="tables", **DIR, help="folder of the tables (default: tables)")
     sub = command(tradeoff, "measure error against time of every way to solve, and write the page about it")
-    sub.add_argument("--docs", default="docs", metavar="DIR", help="folder of the page (default: docs)")
+    sub.add_argument("--docs", default="docs", **DIR, help="folder of the page (default: docs)")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 

@@ -4,6 +4,7 @@ from .dataset import NO_SOLUTION, status_words
 from .definition import Definition
 from .estimate import Estimate, describe
 from .order import Report
+from .terminal import on_one_line
 from .vocabulary import NOT_RUN
 
 
@@ -12,7 +13,7 @@ def state_line(definition: Definition, state: dict) -> str:
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
     text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
     done = text.format(cases - missing, cases) if state["counts"] else ""
-    return f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {definition.title}"
+    return f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
 
 
 def count_lines(counts: dict[int, int]) -> list[str]:

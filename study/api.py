@@ -1,5 +1,6 @@
 """The public functions: `solve` for a grid given in Python, `load` for a study file."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -121,7 +122,7 @@ class Study:
 
 def load(path, results="results") -> Study:
     """Read and check a study file. Raises StudyError with all that is wrong with it."""
-    return Study(read(path), Path(results))
+    return Study(read(os.path.expanduser(path)), Path(os.path.expanduser(results)))
 
 
 def _add(draft: Draft, name: str, given) -> None:

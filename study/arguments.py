@@ -1,13 +1,15 @@
 """What the words of a command line stand for: study files, numbers, parts."""
 
 import argparse
+import os
 import sys
 from pathlib import Path
 
 from .scheduler import address_error
-from .terminal import say
+from .terminal import on_one_line, say
 
 STUDIES = Path("studies")
+MOST_DIGITS = 9  # Python itself refuses to read 4301
 
 
 class Parser(argparse.ArgumentParser):
@@ -43,7 +45,7 @@ def study_file(text: str) -> Path:
     from .definition import StudyError
     from .vocabulary import suggest
 
-    given, short = Path(text), STUDIES / f"{text}.toml"
+    given, short = Path(os.path.expanduser(text)), STUDIES / f"{text}.toml"
     by_path = given.suffix == ".toml"
     for path in (given,) if by_path else (given, short):
         if path.exists():
@@ -54,10 +56,18 @@ def study_file(text: str) -> Path:
     raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
 
 
+def folder(text: str) -> str:
+    """A folder, with ~ as the shell has it (which leaves that of --results=~/there alone)."""
+    path = os.path.expanduser(text)
+    if not path or path.startswith("~"):
+        raise argparse.ArgumentTypeError(f'"{text}": must be a folder; ./{text} is one that is called so')
+    return path
+
+
 def positive(text: str) -> int:
     """A whole number > 0."""
-    if not text.isdecimal() or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{text}: must be a whole number > 0")
+    if not text.isdecimal() or len(text) > MOST_DIGITS or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{on_one_line(text, 60)}: must be a whole number > 0, at most 9 digits")
     return int(text)
 
 
@@ -71,6 +81,7 @@ def address(text: str) -> str:
 def part(text: str) -> tuple[int, int]:
     """I/N, the I-th of N parts."""
     numbers = text.split("/")
-    if len(numbers) != 2 or not all(map(str.isdecimal, numbers)) or not 1 <= int(numbers[0]) <= int(numbers[1]):
-        raise argparse.ArgumentTypeError(f"{text}: must be I/N, whole numbers with 1 <= I <= N")
+    whole = all(each.isdecimal() and len(each) <= MOST_DIGITS for each in numbers)
+    if len(numbers) != 2 or not whole or not 1 <= int(numbers[0]) <= int(numbers[1]):
+        raise argparse.ArgumentTypeError(f"{on_one_line(text, 60)}: must be I/N, whole numbers with 1 <= I <= N")
     return int(numbers[0]), int(numbers[1])

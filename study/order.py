@@ -1,5 +1,6 @@
 """What a run is asked for, what it reports, and what it checks before it begins."""
 
+import os
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -102,13 +103,25 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 
 def check_writable(path: Path) -> None:
-    """Raise CannotWrite when the folder of the results cannot be made or written."""
+    """Raise CannotWrite when the folder of the results cannot be made or written, or that which a link leads to."""
+    if not _is_utf8(str(path.absolute())):
+        raise StudyError([f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"])
+    folder = path.parent
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=path.parent):  # has no name that a kill could leave behind
+        folder.mkdir(parents=True, exist_ok=True)
+        if path.is_symlink():
+            folder = Path(os.path.realpath(path)).parent
+        with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
             pass
     except OSError as error:
-        raise CannotWrite([f"{path.parent}: cannot be written: {error.strerror}"]) from None
+        raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        return bool(text.encode())
+    except UnicodeEncodeError:  # Python keeps other bytes of a path as lone surrogates
+        return False
 
 
 def check_countable(store: Store, path: Path, yes: bool) -> bool:

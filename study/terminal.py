@@ -11,6 +11,16 @@ OBEYED = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u206
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # somebody wants the text and does not get it
 
 
+def on_one_line(text: str, most: int) -> str:
+    """At most so many characters of a text, what a terminal would obey and the ends of lines written out."""
+    cut = text if len(text) <= most else text[: most - 3] + "..."
+    return OBEYED.sub(_written_out, cut).replace("\n", "\\n").replace("\t", "\\t")
+
+
+def _written_out(found: re.Match) -> str:
+    return found[0].encode("unicode_escape").decode()
+
+
 def say(text: str, stream: TextIO | None) -> OSError | None:
     """Write a line at once. Returns why it is lost: its reader has left, say, or its disk is full.
 
@@ -18,7 +28,7 @@ def say(text: str, stream: TextIO | None) -> OSError | None:
     """
     if stream is None:
         return None
-    plain = OBEYED.sub(lambda found: found[0].encode("unicode_escape").decode(), text)
+    plain = OBEYED.sub(_written_out, text)
     encoding = stream.encoding or "utf-8"
     try:
         stream.write(plain.encode(encoding, "backslashreplace").decode(encoding) + "\n")

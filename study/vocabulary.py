@@ -47,6 +47,7 @@ class Entry:
 
 
 POSITIVE = "(0, inf)"
+LISTED = 40  # names in a message
 
 # fmt: off
 _ENTRIES = (
@@ -171,7 +172,8 @@ def finite(value) -> bool:
 def suggest(word: str, known) -> str:
     """ "; did you mean "Nbar"?" when a known word is near, otherwise the list of what is known."""
     lower = {name.lower(): name for name in known}
-    near = difflib.get_close_matches(str(word).lower(), lower, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(str(word).lower()[:100], lower, n=1, cutoff=0.6)
     if near:
         return f'; did you mean "{lower[near[0]]}"?'
-    return "; known: " + ", ".join(known)
+    listed = list(known)
+    return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))

@@ -53,6 +53,7 @@ class Draft:
         if not rows:
             self.errors.append("cases is empty: must have at least one case")
             return
+        before = len(self.errors)
         self._number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
@@ -61,6 +62,8 @@ class Draft:
                 default = VOCABULARY[name].default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
                 self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
+        if len(self.errors) > before:  # values of any size and kind
+            return
         points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
         self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]
 

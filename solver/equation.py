@@ -24,12 +24,13 @@ from .layered import (
     layer_weights,
     take_weights,
 )
+from .linalg import solve_stack
 from .mesh import HERTZ
 from .micro import Curve
 
 CONTROLS = ("P", "a", "D")
-#: Pressure, over the largest, that counts as none.
-_NOTHING = 1e-16
+#: Pressure, over the largest, that counts as none, and the least to begin with.
+_NOTHING, _LEAST = 1e-16, 1e-12
 
 
 class Cases(NamedTuple):
@@ -209,6 +210,17 @@ def first_guess(cases, law, mesh):
     X, Y, Z = groups(cases, np.log(a))
     q = guess_pressure(cases, law, X * softness(cases, a)[:, None], Y, Z, mesh.s)
     return State(law.guess(q, cases.exponent), np.log(a))
+
+
+def smooth_start(cases, law, mesh):
+    """State at given radii (control a) from the smooth contact there and the asperities alone, added as compliances."""
+    X, Y, Z = groups(cases, np.log(cases.value))
+    s2 = mesh.s**2
+    K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).matrix(mesh)
+    smooth = solve_stack(K, Y / X * np.ones(mesh.n), (s2 / X)[..., None])[..., 0]
+    smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
+    alone = law.sparse(s2 / Z, cases.exponent)
+    return State(law.guess(1 / (1 / smooth + 1 / alone), cases.exponent), np.log(cases.value))
 
 
 def guess_pressure(cases, law, X, Y, Z, s):

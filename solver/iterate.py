@@ -1,9 +1,10 @@
-"""The batched Newton loop: finished cases leave it."""
+"""The batched Newton loop: finished cases leave it; and a second way in for those that do not finish."""
 
 import numpy as np
 
 from . import newton
-from .equation import State, evaluate, softness
+from .bracket import false_position
+from .equation import State, control_residual, evaluate, groups, guess_radius, operate, smooth_start, softness
 from .estimate import error_floor
 from .layered import place_weights, take_weights
 
@@ -97,3 +98,33 @@ def _tolerance(cases, state, grid):
     a = np.exp(state.eta)
     floor = np.maximum(_CLOSING * error_floor(cases, a, grid.n, closing=True), _ROUNDING / softness(cases, a))
     return np.maximum(newton.TOLERANCE, floor)
+
+
+def rescue(cases, law, grid, state, closed, count):
+    """Second attempt at cases that did not close, in place: search the radius, start each from the smooth contact.
+
+    The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
+    """
+    failed = np.flatnonzero(~closed)
+    part = cases.take(failed)
+
+    def at_radius(eta, index):
+        fixed = part.take(index)._replace(control="a", value=np.exp(eta))
+        found, done, steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid)
+        count[failed[index]] += steps
+        return found, done
+
+    def control_at(eta, index):
+        found, closed = at_radius(eta, index)
+        q, here = law.evaluate(found.y, part.exponent[index]).q, part.take(index)
+        edge_q = operate(here, eta, q, grid).edge_q
+        return np.where(closed, control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid), np.nan)
+
+    eta = np.log(guess_radius(part, law))
+    if cases.control != "a":
+        eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
+    found, done = at_radius(eta, np.arange(len(failed)))
+    if cases.control != "a":
+        found, done, steps = iterate(part, found, law, grid)
+        count[failed] += steps
+    state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done

@@ -9,7 +9,7 @@ import numpy as np
 from . import newton
 from .equation import evaluate, guess_radius
 from .estimate import JUDGED, finish
-from .iterate import NEAR, iterate, settle
+from .iterate import NEAR, iterate, rescue, settle
 from .ladder import LADDER, STACK, climb, first_rung
 from .layered import octave_of
 from .mesh import mesh
@@ -118,6 +118,8 @@ def _rung(cases, law, n, limit, start, known, x, out, index, enough):
     """Solve on n nodes, write everything to `out` at `index`; returns the state on the next finer mesh."""
     grid = mesh(n)
     state, closed, count = iterate(cases, start, law, grid, limit or newton.LIMIT, 0.0 if limit else NEAR, known)
+    if not (closed.all() or limit):
+        rescue(cases, law, grid, state, closed, count)
     ev = settle(cases, law, grid, state, closed, count, known)
     values, finer = finish(cases, law, grid, state, x, ev, np.where(closed, enough, np.inf))  # the others end here
     opened = ev.gap.max(axis=1) > _GAP  # perhaps by the mesh
@@ -137,7 +139,7 @@ def _on_panels(case, law, rtol, x, out, i):
     """
     lifts, case = None, case._replace(coarse=np.zeros(1, dtype=bool), reach=np.zeros(1))
     for goal in (rtol, _FINER * rtol):  # the last coefficients on the panels may be small where the error is not
-        grid, state, closed, count = solve_on_panels(case, law, goal, iterate)
+        grid, state, closed, count = solve_on_panels(case, law, goal, _close)
         ev = evaluate(case, state, law, grid)
         values, _ = finish(case, law, grid, state, x, ev)
         out["iterations"][i] += count[0]
@@ -157,3 +159,11 @@ def _on_panels(case, law, rtol, x, out, i):
     if lifts:
         out["tension"][i] = np.inf
     return not lifts and out["status"][i] == Status.CONVERGED
+
+
+def _close(case, state, law, grid):
+    """As :func:`iterate`, with a second attempt."""
+    state, closed, count = iterate(case, state, law, grid)
+    if not closed[0]:
+        rescue(case, law, grid, state, closed, count)
+    return state, closed, count

@@ -142,7 +142,7 @@ def solve_uniform(problem, intervals, k, tolerance, limit=None):
     if len(index):
         cases, law = as_cases(scaled.take(index), C[index])
         solution.put(index, _solve(cases, law, uniform_mesh(intervals), k, tolerance, limit))
-    restore(solution, problem)
+    restore(solution, problem, without=("dP_dD", "error"))
     return solution
 
 

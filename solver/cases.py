@@ -9,6 +9,7 @@ from .base import local_compliance
 from .equation import Cases
 from .layered import Layer
 from .micro import LAWS, scales
+from .parameters import PARAMETERS, allowed
 from .status import Status
 
 #: Power of R and of E2* in the unit of each quantity.
@@ -35,6 +36,12 @@ def dimensionless(problem):
     C = np.where(problem.base == "thin_layer", springs, 0.0)
     one = np.ones(len(problem))
     return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
+
+
+def refused(problem, scaled):
+    """(B,) bool: cases that cannot be solved as they are given; `scaled` is the problem in units R = E2* = 1."""
+    units = [~allowed(PARAMETERS[name], getattr(problem, name)) for name in ("R", "E2")]
+    return scaled.invalid() | units[0] | units[1]
 
 
 def as_cases(part, C):

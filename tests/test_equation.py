@@ -1,9 +1,12 @@
-"""The residual of the discrete equation, and the gaps that are not asked of it, on states written by hand."""
+"""The residual of the discrete equation, gaps, of which none is asked, and its matrix, on states written by hand."""
 
 import numpy as np
 import pytest
 
-from solver.equation import Evaluation, Operator
+from solver import Problem, iterate
+from solver.cases import as_cases, dimensionless
+from solver.equation import Evaluation, Operator, State, evaluate
+from solver.mesh import mesh
 from solver.micro import Curve
 
 
@@ -32,3 +35,19 @@ def test_of_a_gap_no_residual_is_asked_under_a_plate():
     assert evaluation([1.0, 0.0], [1e-3, 0.5], 0.0, layer).residual.item() == 1e-3
     assert evaluation([1.0, -0.1], [1e-3, 0.5], 0.0, layer).residual.item() == 0.5
     assert evaluation([1.0, 0.0], [1e-3, 0.5], 0.0).residual.item() == 0.5
+
+
+def test_the_matrix_of_a_layer_follows_the_radius():
+    """It is formed anew for the case whose radius has moved by more than a thousandth; the other keeps its own."""
+    grid = mesh(8)
+    problem = Problem.of(a=[0.04, 0.04], h=0.02, n=0.5, micro="smooth")
+    cases, law = as_cases(*dimensionless(problem))
+    at = np.log([0.04, 0.04])
+    first, moved = (evaluate(cases, State(np.ones((2, 8)), eta), law, grid) for eta in (at, at + [1e-2, 1e-5]))
+    lagged = iterate._matrix(None, first, at, grid)
+    np.testing.assert_array_equal(lagged[0], first.base.matrix(grid))
+    K, of = iterate._matrix(lagged, moved, at + [1e-2, 1e-5], grid)
+    expected = [moved.base.matrix(grid)[0], first.base.matrix(grid)[1]]
+    np.testing.assert_allclose(K, expected, rtol=0, atol=1e-13 * np.abs(K).max())  # sums in another company
+    np.testing.assert_array_equal(of, at + [1e-2, 0])
+    assert np.abs(K[0] / first.base.matrix(grid)[0] - 1).max() > 1e-4

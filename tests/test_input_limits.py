@@ -41,9 +41,9 @@ NUMBER = "a number of more than 4300 digits"
     ("text", "message"),
     [
         (f"P = {'9' * 4301}", "is not valid TOML: a whole number has more than 4300 digits"),
-        (f"[model]\nP = 0x{'f' * 4300}", f"P = {NUMBER}: must be a finite number, > 0"),
+        (f"[model]\nP = 0x{'f' * 4300}", f"P = {NUMBER}: must be a finite number, "),
         (f"[model]\nP = [0x{'f' * 4300}]", "[model] P has several values: these belong in [axes]"),
-        (f"[[cases]]\nP = 0x{'f' * 4300}", f"P = {NUMBER}: must be a finite number, > 0"),
+        (f"[[cases]]\nP = 0x{'f' * 4300}", f"P = {NUMBER}: must be a finite number, "),
         (f"[axes]\nP = {{start = 0x{'f' * 4300}, stop = 1, num = 2}}", f"P: start = {NUMBER}: must be a finite number"),
         (f"\n{DEEP} = 1", "is not valid TOML: a key has more than 50 parts (at line 2)"),
         (f"\n\n[{DEEP}]", "is not valid TOML: a key has more than 50 parts (at line 3)"),

@@ -143,7 +143,7 @@ def _plain_rule(s, low, high, order):
 
 def _near_rule(s, low, high, order):
     """The same over a panel that contains s, or is near: for a singularity at s, no weight on a side not there."""
-    distance, weight = log_rule(14 + order // 2)
+    distance, weight = log_rule(14 + order // 2, everywhere=True)
     parts = []
     for sign, start, stop in ((-1, np.maximum(s - high, 0.0), s - low), (1, np.maximum(low - s, 0.0), high - s)):
         length = np.maximum(stop - start, 0.0)

@@ -63,14 +63,15 @@ def lagrange(nodes, points):
 
 
 @lru_cache(maxsize=16)
-def log_rule(n):
+def log_rule(n, everywhere=False):
     """Rule on [0, 1] for a logarithm or a root at 0 times a polynomial of degree 2 (n - _LEAST): distances from 0 and
     weights.
 
     Each panel is a quarter as long as the one before, and on it the polynomial, whose zeros lie densest at an end,
-    changes its sign half as often. Relative error below 3^(-2 _LEAST).
+    changes its sign half as often. Relative error below 3^(-2 _LEAST). Where another factor of the integrand is as
+    narrow as a film, `everywhere` gives all panels `n` points.
     """
-    upper, least = 4.0 ** -np.arange(_PANELS), min(n, _LEAST)
+    upper, least = 4.0 ** -np.arange(_PANELS), n if everywhere else min(n, _LEAST)
     distance, weight = [], []
     for j, end in enumerate(upper):
         nodes, weights = gauss_legendre(least + -(-(n - least) // 2**j))

@@ -15,6 +15,11 @@ def state_line(definition: Definition, state: dict) -> str:
     return f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {definition.title}"
 
 
+def count_lines(counts: dict[int, int]) -> list[str]:
+    """How many cases ended with which status, a line each."""
+    return [f"    {status_words()[value]}: {count}" for value, count in counts.items()]
+
+
 def cost_line(name: str, cost: Estimate) -> str:
     return f"{name}: {cost.cases} cases, {cost.present} of them computed; the others: {describe(cost)}"
 

@@ -12,10 +12,11 @@ from .definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .draft import Draft
 from .estimate import Estimate
 from .grid import LONGEST_AXIS
-from .order import Report, results_path
+from .order import Report, check_countable, results_path
 from .reuse import at_hand, earlier, statuses
 from .run import dry_run, partial_dataset, run
 from .store import Store, count_statuses, inventory
+from .vocabulary import NOT_RUN
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
@@ -72,14 +73,18 @@ class Study:
         """Compute what is missing and write the results file; options as of `study.order.Order`."""
         return run(self.definition, self.results, command=command_line(), **options)
 
-    def dry_run(self, workers: int | None = None) -> Estimate:
-        """What `run` would cost, and how many cases it would find computed. Computes a sample, writes nothing."""
-        return dry_run(self.definition, self.results, workers=workers)
+    def dry_run(self, workers: int | None = None, yes: bool = False) -> Estimate:
+        """What `run` would cost, and how many cases it would find computed. Computes a sample, writes nothing.
 
-    def status(self) -> dict:
+        Raises StudyError for a very large study of which something is on disk, unless `yes`: looking takes memory.
+        """
+        return dry_run(self.definition, self.results, workers=workers, yes=yes)
+
+    def status(self, yes: bool = False) -> dict:
         """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results.
 
-        Cases of an outdated results file that a run would use again count as computed; so do those in blocks.
+        Cases of an outdated results file that a run would use again count as computed; so do those in blocks. Raises
+        StudyError for a very large study that is neither new nor done, unless `yes`: counting takes memory.
         """
         path, kind = results_path(self.definition, self.results), self.definition.kind
         state = "new" if not path.exists() else "outdated"
@@ -89,6 +94,8 @@ class Study:
             counts = {}
         elif state == "done":
             counts = count_statuses(statuses(path))
+        elif not check_countable(Store(self.definition, self.results), path, yes):
+            counts = {NOT_RUN: self.definition.grid.size}
         else:
             known = inventory(Store(self.definition, self.results))
             counts = count_statuses(at_hand(known, earlier(self.definition, path)))

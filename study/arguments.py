@@ -1,9 +1,41 @@
 """What the words of a command line stand for: study files, numbers, parts."""
 
 import argparse
+import sys
 from pathlib import Path
 
+from .scheduler import address_error
+from .terminal import say
+
 STUDIES = Path("studies")
+
+
+class Parser(argparse.ArgumentParser):
+    """Nothing is the matter when nobody reads its help."""
+
+    def _print_message(self, message, file=None) -> None:
+        say(message.removesuffix("\n"), file or sys.stderr)
+
+
+class Version(argparse.Action):
+    """Print the versions of the program and of its numerics, and end."""
+
+    def __call__(self, parser, *_) -> None:
+        from .dataset import package_version
+        from .definition import NUMERICS_VERSION
+
+        say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}", sys.stdout)
+        parser.exit()
+
+
+def add_engine(sub: argparse.ArgumentParser) -> None:
+    """Options of the commands that compute."""
+    sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
+    sub.add_argument("--scheduler", type=address, metavar="ADDRESS", help="compute on workers of this dask scheduler")
+    either = sub.add_mutually_exclusive_group()
+    either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
+    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
+    sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
 def study_file(text: str) -> Path:
@@ -27,6 +59,13 @@ def positive(text: str) -> int:
     if not text.isdecimal() or int(text) < 1:
         raise argparse.ArgumentTypeError(f"{text}: must be a whole number > 0")
     return int(text)
+
+
+def address(text: str) -> str:
+    """The address of a scheduler."""
+    if address_error(text):
+        raise argparse.ArgumentTypeError(f'"{text}": {address_error(text)}')
+    return text
 
 
 def part(text: str) -> tuple[int, int]:

@@ -9,7 +9,7 @@ import numpy as np
 
 from .dataset import digest_in, status_words
 from .definition import LARGE, Definition, StudyError
-from .estimate import describe, estimate
+from .estimate import PER_CASE, describe, estimate
 from .reuse import statuses
 from .store import Inventory, Store, count_statuses
 from .vocabulary import NOT_RUN, suggest
@@ -51,7 +51,7 @@ class Order:
     definition: Definition
     results: Path
     workers: int | None = None
-    scheduler: str = ""
+    scheduler: str | None = None
     processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()
@@ -109,6 +109,18 @@ def check_writable(path: Path) -> None:
             pass
     except OSError as error:
         raise CannotWrite([f"{path.parent}: cannot be written: {error.strerror}"]) from None
+
+
+def check_countable(store: Store, path: Path, yes: bool) -> bool:
+    """Whether there may be cases on disk. Raises StudyError when looking for them would take very much memory."""
+    definition = store.definition
+    if not path.exists() and not any(store.folder.glob("*.block")):
+        return False
+    if definition.numbers > LARGE and not yes:
+        needed = f"{PER_CASE * definition.grid.size / 1e9:.2g} GB of memory"
+        found = f"{definition.grid.size} cases: to find which of them are computed takes up to {needed}"
+        raise StudyError([f"{definition.name}: {found}; --yes does it"])
+    return True
 
 
 def check_size(order: Order) -> None:

@@ -67,7 +67,8 @@ kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of
 mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
 
-fuzz: $(READY) ## mutated study files through the command line
+fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
+	$(VENV)/bin/python tests/fuzz_solver.py
 	$(VENV)/bin/python tests/fuzz_studies.py
 
 bench: $(READY) ## speed of the solver: bench.json

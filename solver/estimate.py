@@ -26,7 +26,8 @@ JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 def finish(cases, law, grid, state, x, ev, enough=np.inf):
     """Output arrays of a state (dict; NaN for a case without finite numbers), and the state on the next finer mesh.
 
-    `ev` is the equation at the state. A case whose error exceeds `enough` (B,) is not done: it gets no profiles.
+    `ev` is the equation at the state. A case whose error exceeds `enough` (B,), and the least that it can be, is not
+    done: it gets no profiles.
     """
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
     finer, better, slope = _refine(cases, state, ev, law, grid)
@@ -39,8 +40,9 @@ def finish(cases, law, grid, state, x, ev, enough=np.inf):
         own, part = ev.take(last), {name: values[name][last] for name in ("P", "D")}
         slope[last] = stiffness(own, newton.tangent(own, grid), part, grid)
     values |= {"dP_dD": slope, "residual": ev.residual}
-    error = np.maximum(_margin(law, ev, grid) * error, error_floor(cases, values["a"], grid.n))
-    done = np.flatnonzero(finite & (error <= enough))
+    floor = error_floor(cases, values["a"], grid.n)
+    error = np.maximum(_margin(law, ev, grid) * error, floor)
+    done = np.flatnonzero(finite & (error <= np.maximum(enough, floor)))
     error[done] = np.maximum(error[done], _area_error(cases, law, state, ev, grid, values["Ar_An"], done))
     values["p"], values["lam"] = np.full((2, len(error), len(x)), np.nan)
     values["p"][done], values["lam"][done] = profiles(cases, ev, grid, law, x, done)

@@ -4,6 +4,7 @@ import numpy as np
 
 from . import newton
 from .bracket import false_position
+from .budget import newton_steps
 from .equation import State, control_residual, evaluate, groups, guess_radius, operate, smooth_start, softness
 from .estimate import error_floor
 from .layered import place_weights, take_weights
@@ -118,6 +119,7 @@ def rescue(cases, law, grid, state, closed, count):
         found, closed = at_radius(eta, index)
         q, here = law.evaluate(found.y, part.exponent[index]).q, part.take(index)
         edge_q = operate(here, eta, q, grid).edge_q
+        closed &= count[failed[index]] < newton_steps(grid.n)  # else its budget is spent
         return np.where(closed, control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid), np.nan)
 
     eta = np.log(guess_radius(part, law))

@@ -8,7 +8,10 @@ contact area on each panel, and enclosed by halving.
 import numpy as np
 
 from .base import local_compliance
+from .budget import panel_work
 from .equation import State, evaluate, first_guess, guess_radius
+from .layer_quadrature import FILM
+from .layered import octave_of
 from .mesh import on_panels, panel_mesh
 from .outputs import interpolate, spot_area
 from .quadrature import radau_nodes
@@ -29,23 +32,24 @@ _SHARE = 0.3
 _FLOOR = 1e-12
 
 
-def solve_on_panels(case, law, rtol, iterate):
-    """Solve one case (a batch of one) on panels that resolve it.
+def solve_on_panels(case, law, rtol, iterate, budget):
+    """Solve one case (a batch of one) on panels that resolve it, or as far as the budget goes.
 
     iterate(case, state, law, grid) -> state, closed (1,), count (1,).
 
     Returns
     -------
-    grid, state, closed, count
+    grid, state, closed, count, work (more than the budget: it was spent before all was resolved)
     """
-    breaks, state, total = START, None, 0
+    breaks, state, total, work = START, None, 0, 0.0
     if case.layer is not None and case.layer.h[0] < _THIN * guess_radius(case, law)[0]:
         alike = _on_thin_layer(case)
         if alike.C[0] > 0:  # nearly the same solution, far cheaper
-            grid, found, closed, total = solve_on_panels(alike, law, rtol, iterate)
+            grid, found, closed, total, work = solve_on_panels(alike, law, rtol, iterate, budget)
             if closed[0]:
                 breaks, state = grid.breaks, found
     goals = np.maximum(rtol, _GOALS)
+    film = case.layer is not None and octave_of(case.layer, guess_radius(case, law))[0][0] == FILM
     for i, goal in enumerate(goals):
         grid = panel_mesh(ORDER, breaks)
         state, closed, count = iterate(case, state or first_guess(case, law, grid), law, grid)
@@ -58,9 +62,12 @@ def solve_on_panels(case, law, rtol, iterate):
             if goal == rtol:
                 break
             continue
+        work += panel_work(ORDER * (len(better) - 1), film)
+        if work > budget:
+            break
         nodes = on_panels(radau_nodes(ORDER), better)
         state, breaks = State(interpolate(case, ev, law, grid, nodes), state.eta), better
-    return grid, state, closed, total
+    return grid, state, closed, total, work
 
 
 def _on_thin_layer(case):

@@ -12,6 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from .bracket import false_position
+from .budget import APPROXIMATIONS
 from .equation import State, control_residual, groups, guess_radius, operate
 from .status import Status
 
@@ -35,19 +36,22 @@ class Fixed(NamedTuple):
     edge_q: np.ndarray
 
 
-def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False):
+def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False, budget=0):
     """State, status (B,) and total number of approximations (B,) of :class:`~solver.equation.Cases` by the paper's
     scheme.
 
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT); search : of :mod:`.bracket`;
     follow : begin at each radius with the pressure found at the one before, not with p = 0, and multiply all cases at
-    once (their rounding then depends on their number).
+    once (their rounding then depends on their number); budget : most approximations of a case at all radii but
+    the last (0: APPROXIMATIONS).
     """
     eta, count = np.log(cases.value), np.zeros(len(cases.value), dtype=int)
     q = np.zeros((len(eta), mesh.n)) if follow else None
+    budget = budget or APPROXIMATIONS
+    limit = min(limit or LIMIT, budget)
     if cases.control != "a":
-        eta = _search(search, cases, law, mesh, k, rtol, limit or LIMIT, count, q)
-    fixed = approximate(cases, eta, law, mesh, k, rtol, limit or LIMIT, q)
+        eta = _search(search, cases, law, mesh, k, rtol, limit, count, q, budget)
+    fixed = approximate(cases, eta, law, mesh, k, rtol, limit, q)
     missed = np.abs(_control(cases, eta, fixed, mesh))
     with np.errstate(invalid="ignore"):
         status = np.select(
@@ -57,7 +61,7 @@ def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False)
                 (fixed.change > 0.1 * fixed.earlier) & (fixed.load_change < _SETTLED) & (missed < _SETTLED),
             ],
             [Status.DIVERGED, Status.CONVERGED, Status.LIMIT_CYCLE],
-            Status.ITERATION_LIMIT,
+            np.where(count + fixed.count >= budget, Status.BUDGET_SPENT, Status.ITERATION_LIMIT),
         )
     y = law.from_pressure(fixed.q, cases.exponent)
     return State(np.maximum(y, _TINY), eta), status, count + fixed.count
@@ -109,17 +113,20 @@ def _each(K, q):
 def _next(q, Kq, cases, XYZ, law, mesh, k):
     X, Y, Z = XYZ
     left = mesh.s**2 - X * Kq
-    y = law.from_pressure(q, cases.exponent)
-    by_layer = np.maximum((left - Z * law.evaluate(y, cases.exponent).g) / Y, 0.0)
-    y_spots = law.from_displacement(np.maximum(left / Z, 0.0), cases.exponent)
-    by_spots = law.evaluate(y_spots, cases.exponent).q
-    target = np.where((cases.C > 0)[:, None], by_layer, by_spots)
+    springs, by_layer, by_spots = (cases.C > 0)[:, None], 0.0, 0.0
+    if springs.any():
+        y = law.from_pressure(q, cases.exponent)
+        by_layer = np.maximum((left - Z * law.evaluate(y, cases.exponent).g) / Y, 0.0)
+    if not springs.all():
+        y = law.from_displacement(np.maximum(left / Z, 0.0), cases.exponent)
+        by_spots = law.evaluate(y, cases.exponent).q
+    target = np.where(springs, by_layer, by_spots)
     return (target + k[:, None] * q) / (1 + k[:, None])
 
 
-def _search(search, cases, law, mesh, k, rtol, limit, count, q):
+def _search(search, cases, law, mesh, k, rtol, limit, count, q, budget):
     """ln a (B,) for the load or depth; adds the approximations to `count` (B,), and keeps the last ones in q (B, n),
-    where the next radius begins, if it is given."""
+    where the next radius begins, if it is given. A case that has spent its budget is given up where it is."""
 
     def evaluate(eta, index):
         part = cases.take(index)
@@ -127,7 +134,7 @@ def _search(search, cases, law, mesh, k, rtol, limit, count, q):
         count[index] += fixed.count
         if q is not None:
             q[index] = np.where((fixed.change < 0.1 * rtol[index])[:, None], fixed.q, 0.0)  # no cycle is handed on
-        return _control(part, eta, fixed, mesh)
+        return np.where(count[index] < budget, _control(part, eta, fixed, mesh), np.nan)
 
     with np.errstate(all="ignore"):
         return search(evaluate, np.log(guess_radius(cases, law)), 0.1 * rtol)[0]

@@ -7,8 +7,9 @@ the finest mesh does not resolve, to panels of its own.
 import numpy as np
 
 from . import newton
+from .budget import PANELS, newton_steps
 from .equation import evaluate, guess_radius
-from .estimate import JUDGED, finish
+from .estimate import JUDGED, error_floor, finish
 from .iterate import NEAR, iterate, rescue, settle
 from .ladder import LADDER, STACK, climb, first_rung
 from .layered import octave_of
@@ -43,6 +44,7 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
     if cases.layer is not None and limit == 0:
         with np.errstate(all="ignore"):
             cases = only_as_wanted(cases, law, np.where(nodes == 0, rtol, 0.0))
+    hopeless, spent = np.zeros((2, size), dtype=bool)
     starts = {}  # n -> which cases (B,) have a state on n nodes to begin with, and those
 
     def solve_on(index, n):
@@ -56,6 +58,9 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         closed = out["status"][index] == Status.CONVERGED
         unsure = (nodes[index] == 0) & _perhaps_lifted(out, index)
         error = np.where(unsure, np.inf, out["error"][index])
+        floor = error_floor(part._replace(coarse=np.zeros(len(index), dtype=bool)), out["a"][index], n)
+        hopeless[index] = closed & goes_on & (floor > rtol[index]) & (error <= floor)
+        closed &= ~hopeless[index]
         missed = closed & goes_on & (error > rtol[index])
         if missed.any():
             _keep(starts, index[missed], finer.take(missed), size)
@@ -66,11 +71,15 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
     stack = STACK if cases.layer is None else 3 * STACK  # there the calls are more
     unmet = climb(rtol, nodes, solve_on, first, _neighbours(cases, law), stack)
     lifted = _lifted(out)  # perhaps by the polynomial: panels must confirm it
-    open_end = (unmet | lifted | (out["status"] != Status.CONVERGED)) & (nodes == 0) & (limit == 0)
+    hopeless &= ~lifted
+    open_end = (unmet | lifted | (out["status"] != Status.CONVERGED)) & (nodes == 0) & (limit == 0) & ~hopeless
     for i in np.flatnonzero(open_end):
         with np.errstate(all="ignore"):
-            unmet[i] = _on_panels(cases.take([i]), law, rtol[i], x, out, i)
-    out["status"][unmet] = Status.TOLERANCE_NOT_MET
+            unmet[i], spent[i] = _on_panels(cases.take([i]), law, rtol[i], x, out, i)
+    out["status"][unmet | hopeless] = Status.TOLERANCE_NOT_MET
+    spent &= out["status"] == Status.TOLERANCE_NOT_MET
+    spent |= (out["status"] == Status.ITERATION_LIMIT) & (out["iterations"] >= newton_steps(out["nodes"]))
+    out["status"][spent] = Status.BUDGET_SPENT
     lifted = _lifted(out)
     del out["tension"]
     _refuse(out, lifted, Status.LIFT_OFF)
@@ -117,7 +126,8 @@ def _keep(starts, index, state, size):
 def _rung(cases, law, n, limit, start, known, x, out, index, enough):
     """Solve on n nodes, write everything to `out` at `index`; returns the state on the next finer mesh."""
     grid = mesh(n)
-    state, closed, count = iterate(cases, start, law, grid, limit or newton.LIMIT, 0.0 if limit else NEAR, known)
+    most = min(limit, newton_steps(n)) or newton.LIMIT
+    state, closed, count = iterate(cases, start, law, grid, most, 0.0 if limit else NEAR, known)
     if not (closed.all() or limit):
         rescue(cases, law, grid, state, closed, count)
     ev = settle(cases, law, grid, state, closed, count, known)
@@ -133,13 +143,17 @@ def _rung(cases, law, n, limit, start, known, x, out, index, enough):
 
 
 def _on_panels(case, law, rtol, x, out, i):
-    """Solve case `i` on panels of its own and write it to `out` if that is better; returns whether it misses rtol.
+    """Solve case `i` on panels of its own and write it to `out` if that is better; returns whether it misses rtol, and
+    whether its budget is spent.
 
     Tension and gaps there count if they are on finer panels as well: what panels do not resolve may look like them.
     """
-    lifts, case = None, case._replace(coarse=np.zeros(1, dtype=bool), reach=np.zeros(1))
+    lifts, left, case = None, PANELS, case._replace(coarse=np.zeros(1, dtype=bool), reach=np.zeros(1))
     for goal in (rtol, _FINER * rtol):  # the last coefficients on the panels may be small where the error is not
-        grid, state, closed, count = solve_on_panels(case, law, goal, _close)
+        if left <= 0:
+            break
+        grid, state, closed, count, work = solve_on_panels(case, law, goal, _close, left)
+        left -= work
         ev = evaluate(case, state, law, grid)
         values, _ = finish(case, law, grid, state, x, ev)
         out["iterations"][i] += count[0]
@@ -155,10 +169,10 @@ def _on_panels(case, law, rtol, x, out, i):
                 out[name][i] = value[0]
             out["status"][i] = Status.CONVERGED
         if out["status"][i] == Status.CONVERGED and out["error"][i] <= rtol:
-            return False
+            return False, False
     if lifts:
         out["tension"][i] = np.inf
-    return not lifts and out["status"][i] == Status.CONVERGED
+    return not lifts and out["status"][i] == Status.CONVERGED, left <= 0
 
 
 def _close(case, state, law, grid):

@@ -150,7 +150,8 @@ def _solve(cases, law, grid, k, tolerance, limit):
     """Output arrays (dict) of :class:`~solver.equation.Cases`."""
     one = np.ones(len(cases.value))
     limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
-    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, limit, bisection, follow=True)
+    way = {"search": bisection, "follow": True, "budget": np.iinfo(int).max}  # for comparison: at any cost
+    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, limit, **way)
     ev = evaluate(cases, state, law, grid)
     values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
     line = np.append(np.ones(grid.n - 1), 0.5) / grid.n

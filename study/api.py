@@ -9,7 +9,7 @@ import xarray as xr
 
 from .blocks import compute, parcel
 from .dataset import command_line, digest_in, labelled, open_lazily, open_results
-from .definition import BLOCK, LARGE, POINTS, Definition, StudyError, complete, read
+from .definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .draft import Draft
 from .estimate import Estimate
 from .grid import LONGEST_AXIS
@@ -58,7 +58,7 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         draft.cases(cases)
     for name, given in parameters.items():
         _add(draft, name, given)
-    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "block": BLOCK, "most": LARGE}
+    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "most": LARGE}
     definition = complete(draft, "solve", x=x, profiles=profiles, **whole)
     return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
 

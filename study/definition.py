@@ -12,13 +12,13 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 
+from .block_size import usual_block
 from .draft import MOST_MESSAGES, Draft
 from .grid import Grid, shown
 from .study_text import text_in
 from .terminal import on_one_line
 from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
 
-BLOCK = 8000
 POINTS = 33
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
 MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
@@ -120,17 +120,20 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     whole = {"name": name, "kind": kind, "title": tables.get("title", ""), "text": text, "fit": fit}
     whole |= {"x": output.get("x", POINTS), "profiles": output.get("profiles", True)}
     whole |= {"dtype": output.get("dtype", DTYPES[0])}
-    return complete(draft, where, block=numerics.get("block", BLOCK), **whole)
+    return complete(draft, where, block=numerics.get("block"), **whole)
 
 
 def complete(
-    draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, block, dtype=DTYPES[0], most=MOST_VALUES
-) -> Definition:
+    draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, dtype=DTYPES[0], block=None,
+    most=MOST_VALUES,
+) -> Definition:  # fmt: skip
     """Finish a draft: the checks of the whole, and the digest. Raises StudyError with every message collected."""
     grid = draft.finish()
     x = profile_points(x, draft.errors) if kind == "contact" else law_points(fit, draft.errors)
     if not isinstance(title, str):
         draft.errors.append(f"title = {shown(title)}: must be text")
+    if block is None:  # not said
+        block = 1 if draft.errors else usual_block(grid)
     if type(block) is not int or not 1 <= block <= 1_000_000:
         draft.errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     profiles = profile_names(profiles, draft.errors)

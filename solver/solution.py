@@ -105,6 +105,8 @@ class Solution:
         `without`: names of the numbers that this way to solve does not give; `model_error` may always be NaN.
         """
         names = [name for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES) if name not in without]
+        if all(np.isfinite(getattr(self, name).sum()) for name in names):  # as in most batches, and quick to see
+            return np.zeros(len(self.a), dtype=bool)
         finite = np.all([np.isfinite(_ends(getattr(self, name))).all(axis=0) for name in names], axis=0)
         return ~finite & np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
 
@@ -113,6 +115,10 @@ class Solution:
 
         In units R = E2* = 1, where no number is rounded to nought by its unit.
         """
+        least = {name: getattr(self, name).min(initial=1.0) for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)}
+        most = max(getattr(self, name).max(initial=0.0) for name in _SHARES)
+        if most <= 1 + _ROUNDING and all(v > 0 if name in _POSITIVE else v >= 0 for name, v in least.items()):
+            return np.zeros(len(self.a), dtype=bool)
         ends = {name: _ends(getattr(self, name)) for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)}
         wrong = [~(low > 0) for name, (low, _) in ends.items() if name in _POSITIVE and name not in without]
         wrong += [low < 0 for low, _ in ends.values()]

@@ -23,7 +23,7 @@ PYTEST := $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 
 SOURCES := $(wildcard solver/*.py study/*.py)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels mutants bench lint clean
+.PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels mutants fuzz bench lint clean
 .NOTPARALLEL:
 .SECONDARY:
 .DELETE_ON_ERROR:
@@ -66,6 +66,9 @@ kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of
 
 mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
+
+fuzz: $(READY) ## thousands of random bit flips in results and blocks: none may go unnoticed
+	$(VENV)/bin/python tests/fuzz_files.py
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json

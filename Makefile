@@ -67,8 +67,9 @@ kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of
 mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
 
-fuzz: $(READY) ## thousands of random bit flips in results and blocks: none may go unnoticed
+fuzz: $(READY) ## random bit flips in results and blocks, mutated study files: none may do harm
 	$(VENV)/bin/python tests/fuzz_files.py
+	$(VENV)/bin/python tests/fuzz_studies.py
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json

@@ -9,6 +9,8 @@ from .base import local_compliance
 from .equation import Cases
 from .layered import Layer
 from .micro import LAWS, scales
+from .parameters import PARAMETERS, allowed
+from .status import Status
 
 #: Power of R and of E2* in the unit of each quantity.
 _UNITS = {
@@ -36,6 +38,12 @@ def dimensionless(problem):
     return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
 
 
+def refused(problem, scaled):
+    """(B,) bool: cases that cannot be solved as they are given; `scaled` is the problem in units R = E2* = 1."""
+    units = [~allowed(PARAMETERS[name], getattr(problem, name)) for name in ("R", "E2")]
+    return scaled.invalid() | units[0] | units[1]
+
+
 def as_cases(part, C):
     """:class:`~solver.equation.Cases` of one law on one base, and the law."""
     micro = str(part.micro[0])
@@ -53,10 +61,16 @@ def as_cases(part, C):
     return Cases(*fields, reach=none, coarse=none > 0), LAWS[micro]
 
 
-def restore(solution, problem):
-    """Back to the units of the problem; the controlled quantity exactly as given."""
+def restore(solution, problem, without=()):
+    """The end of every way to solve: back to the units of the problem, the controlled quantity exactly as given.
+
+    A case with a number that cannot be is not converged, nor is one with a number that its unit makes infinite.
+    `without`: names of the numbers that this way to solve does not give.
+    """
+    solution.refuse(solution.out_of_range(without), Status.DIVERGED)
     for name, (of_R, of_E2) in _UNITS.items():
         array = getattr(solution, name)
         factor = problem.R**of_R * problem.E2**of_E2
         array *= factor.reshape(-1, *[1] * (array.ndim - 1))
+    solution.refuse(solution.not_finite(without), Status.DIVERGED)
     getattr(solution, problem.control)[:] = problem.value

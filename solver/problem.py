@@ -5,7 +5,7 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from .equation import CONTROLS
-from .parameters import FITTED, LAYERED, PARAMETERS, ROUGH, Parameter
+from .parameters import CONTROL, LOOKED_AT_BY, PARAMETERS, Parameter, allowed
 
 
 @dataclass(frozen=True)
@@ -13,44 +13,44 @@ class Problem:
     """A batch of B cases; every field but `control` is an array (B,). Build it with :meth:`of`.
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
-    1 these are the units of the paper. Behind each name stand the values allowed and the default. What has no default
-    must be given where a case needs it.
+    1 these are the units of the paper, and in these the bounds of every number are (solver/parameters.py). Behind some
+    names stands the default. What has no default must be given where a case needs it.
 
     Attributes
     ----------
     control : "P", "a" or "D"
         The quantity that is given.
-    value : > 0
+    value
         Its value: load, radius of the nominal contact area or indentation depth.
-    h, n : > 0; needed by every base but "half_space"
+    h, n : needed by every base but "half_space"
         Thickness of the layer, and ratio of the reduced moduli E1*/E2*.
-    nu1, nu2 : in (-1, 0.5]; 0.3
+    nu1, nu2 : 0.3
         Poisson ratios of layer and half-space. Without friction between them these change nothing.
     bonding : "frictionless" (default) or "bonded"
         The interface of layer and half-space.
-    Nbar, Ra : > 0; needed by every micro law but "smooth"
+    Nbar, Ra : needed by every micro law but "smooth"
         Asperities per unit area, and their radius.
     base : "half_space", "thin_layer", "layered" (default) or "auto"
         The half-space alone, with the thin layer of Eq. (3), with the exact layer, or the cheapest that is accurate
         enough.
-    accuracy : in (0, 1); 0.01
+    accuracy : 0.01
         Allowed relative model error of the base "auto".
     model_check : "closed_form" (default) or "first_order"
         How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
     micro : "smooth", "disc_cell" (default) or "power_law"
         No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer).
-    B, beta : > 0, in (0, 1]; needed by the micro law "power_law"
+    B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
     scheme : "newton" (default) or "picard"
         Newton's method, or the paper's successive approximations, Eqs (8) and (10). These are for asperities: a smooth
         case that asks for them is not solved.
-    k : >= 0; 1
+    k : 1
         Relaxation of the successive approximations.
-    rtol : in (0, 1); 1e-6
+    rtol : 1e-6
         Wanted relative error of a, P, D, p0, p_max, Ar_An.
-    nodes : in [4, 256], or 0 (default)
+    nodes : 0
         Number of nodes; 0: chosen by `rtol`.
-    max_iterations : >= 0; 0
+    max_iterations : 0
         Most steps on a mesh, or approximations at one radius; 0: the limit of the scheme.
     R, E2 : > 0; 1
         Radius of the punch, and reduced modulus E2* of the half-space; any units.
@@ -137,20 +137,17 @@ class Problem:
         return (self.scheme == "picard") & (self.micro == "smooth")
 
     def invalid(self):
-        """(B,) bool: a number that the case needs is not finite or outside its bounds."""
-        rough, layered, power = (self._among(*needing) for needing in (ROUGH, LAYERED, FITTED))
-        bad = _not_positive(self.value) | _not_positive(self.R) | _not_positive(self.E2)
-        bad |= layered & (_not_positive(self.h) | _not_positive(self.n))
-        bad |= layered & ~((self.nu1 > -1) & (self.nu1 <= 0.5) & (self.nu2 > -1) & (self.nu2 <= 0.5))
-        bad |= rough & (_not_positive(self.Nbar) | _not_positive(self.Ra))
-        bad |= power & (_not_positive(self.B) | ~((self.beta > 0) & (self.beta <= 1)))
-        bad |= (self.base == "auto") & ~((self.accuracy > 0) & (self.accuracy < 1))
-        bad |= ~((self.rtol > 0) & (self.rtol < 1)) | ~((self.k >= 0) & np.isfinite(self.k))
-        return bad | ((self.nodes != 0) & ((self.nodes < 4) | (self.nodes > 256))) | (self.max_iterations < 0)
-
-
-def _not_positive(v):
-    return ~((v > 0) & np.isfinite(v))
+        """(B,) bool: a number that the case needs is not finite or outside its bounds, those of a problem in units R =
+        E2* = 1."""
+        bad = ~allowed(CONTROL[self.control], self.value)
+        needing = {}
+        for name, own in PARAMETERS.items():
+            if own.interval:
+                selector = LOOKED_AT_BY.get(name, own.needed_by)
+                if selector not in needing:
+                    needing[selector] = self._among(*selector) if selector[0] else True
+                bad |= needing[selector] & ~allowed(own, getattr(self, name))
+        return bad
 
 
 def _array(name, value):

@@ -5,6 +5,15 @@ from enum import IntEnum
 
 import numpy as np
 
+from .status import Status
+
+#: Numbers of a converged case that are more than nought, and those that may be nought, in units R = E2* = 1.
+_POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
+_NOT_NEGATIVE = ("A0", "residual", "error")
+_PROFILES = ("p", "lam")
+#: Shares of an area, and by how much the rounding of a sum over the nodes may carry them above 1.
+_SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
+
 
 class Model(IntEnum):
     """What a case was solved with; smooth models get their asperities afterwards, from the nominal pressure."""
@@ -90,7 +99,45 @@ class Solution:
             values[name] = np.full((size, points), np.nan)
         return cls(**values)
 
+    def not_finite(self, without=()):
+        """(B,) bool: the case has an end that comes with numbers, and one of these is NaN or infinite.
+
+        `without`: names of the numbers that this way to solve does not give; `model_error` may always be NaN.
+        """
+        names = [name for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES) if name not in without]
+        finite = np.all([np.isfinite(_ends(getattr(self, name))).all(axis=0) for name in names], axis=0)
+        return ~finite & np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+
+    def out_of_range(self, without=()):
+        """(B,) bool: the case has converged to a number that is negative, or nought, or above 1 where it cannot be.
+
+        In units R = E2* = 1, where no number is rounded to nought by its unit.
+        """
+        ends = {name: _ends(getattr(self, name)) for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)}
+        wrong = [~(low > 0) for name, (low, _) in ends.items() if name in _POSITIVE and name not in without]
+        wrong += [low < 0 for low, _ in ends.values()]
+        wrong += [ends[name][1] > 1 + _ROUNDING for name in _SHARES]
+        return np.any(wrong, axis=0) & (self.status == Status.CONVERGED)
+
+    def refuse(self, mask, status):
+        """Take the numbers of the cases of `mask` (B,) away, in place, and say why."""
+        if mask.any():
+            for f in fields(self):
+                values = getattr(self, f.name)
+                if values.dtype == float:
+                    values[mask] = np.nan
+            self.status[mask] = status
+
     def put(self, index, part):
         """Write the values of the dict `part` (name -> array) into the cases `index`, in place."""
         for name, value in part.items():
             getattr(self, name)[index] = value
+
+
+def _ends(values):
+    """Smallest and largest of the numbers (B,) or (B, m) of each case: (2, B); NaN if one is."""
+    if values.ndim == 1:
+        return np.stack([values, values])
+    if not values.shape[1]:
+        return np.zeros((2, len(values)))
+    return np.stack([values.min(axis=1), values.max(axis=1)])

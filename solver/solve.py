@@ -5,7 +5,7 @@ from itertools import product
 import numpy as np
 
 from . import auto, picard, rough, smooth
-from .cases import as_cases, dimensionless, restore
+from .cases import as_cases, dimensionless, refused, restore
 from .equation import evaluate
 from .estimate import finish
 from .ladder import start_nodes
@@ -57,14 +57,21 @@ def solve(problem, x=(0.0, 1.0)):
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
+    scaled, C = dimensionless(problem)
+    return _solved(problem, scaled, C, x, refused(problem, scaled) | problem.without_scheme())
+
+
+def _of_a_model(problem, x):
+    """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters."""
+    return _solved(problem, *dimensionless(problem), x, problem.without_scheme())
+
+
+def _solved(problem, scaled, C, x, invalid):
     solution = Solution.empty(len(problem), len(x))
-    invalid = problem.invalid() | problem.without_scheme()
     solution.status[invalid] = Status.INVALID_INPUT
-    with np.errstate(all="ignore"):
-        scaled, C = dimensionless(problem)
-    refused = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
-    solution.status[refused] = Status.THIN_LAYER_NOT_APPLICABLE
-    for index, solver in _routes(problem, ~(invalid | refused)):
+    no_springs = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
+    solution.status[no_springs] = Status.THIN_LAYER_NOT_APPLICABLE
+    for index, solver in _routes(problem, ~(invalid | no_springs)):
         solution.put(index, solver(scaled.take(index), C[index], x))
     _name_models(scaled, solution)
     restore(solution, problem)
@@ -96,11 +103,11 @@ def _route(mask, solver):
 
 
 def _auto(part, C, x):
-    return vars(auto.cheapest(part, x, solve))
+    return vars(auto.cheapest(part, x, _of_a_model))
 
 
 def _judged(part, C, x):
-    return vars(auto.judged(part, x, solve))
+    return vars(auto.judged(part, x, _of_a_model))
 
 
 def _smooth_half_space(part, C, x):

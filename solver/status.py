@@ -25,7 +25,7 @@ _MEANINGS = {
     Status.CONVERGED: "the iteration closed and the estimated error is within rtol",
     Status.ITERATION_LIMIT: "the iteration did not close within its limit; the last numbers are kept",
     Status.LIMIT_CYCLE: "successive approximations cycle near the edge, the load has settled; last numbers kept",
-    Status.DIVERGED: "the iteration diverged; no numbers",
+    Status.DIVERGED: "the iteration diverged, or ended in a number that cannot be; no numbers",
     Status.THIN_LAYER_NOT_APPLICABLE: "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers",
     Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
     Status.LIFT_OFF: "the punch lifts off inside the contact, or the pressure is tensile there; no numbers",

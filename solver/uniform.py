@@ -15,7 +15,7 @@ from scipy.special import ellipkm1
 
 from . import picard
 from .bracket import bisection
-from .cases import as_cases, dimensionless, restore
+from .cases import as_cases, dimensionless, refused, restore
 from .equation import evaluate
 from .outputs import quantities
 from .quadrature import gauss_legendre
@@ -135,14 +135,14 @@ def solve_uniform(problem, intervals, k, tolerance, limit=None):
         raise ValueError(f"one micro law on thin_layer, or a rough one on half_space, not {sorted(kinds)}")
     solution = Solution.empty(len(problem), 0)
     scaled, C = dimensionless(problem)
-    invalid = problem.invalid()
-    refused = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
-    solution.status[invalid], solution.status[refused] = Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE
-    index = np.flatnonzero(~(invalid | refused))
+    invalid = refused(problem, scaled)
+    none = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
+    solution.status[invalid], solution.status[none] = Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE
+    index = np.flatnonzero(~(invalid | none))
     if len(index):
         cases, law = as_cases(scaled.take(index), C[index])
         solution.put(index, _solve(cases, law, uniform_mesh(intervals), k, tolerance, limit))
-    restore(solution, problem)
+    restore(solution, problem, without=("dP_dD", "error"))
     return solution
 
 

@@ -2,32 +2,34 @@
 
 list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
-Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted (also a
-`run` or `retry` whose reader has left before the end).
+Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. They say what
+became of the work, whoever hears of it: nothing stops because a terminal is gone, or a reader has left. Only where
+the answer is all there is (list, check, status, --dry-run) a full disk under it is 1.
 """
 
 import argparse
 import logging
 import os
-import signal
 import sys
 from pathlib import Path
 
-from .arguments import STUDIES, part, positive, study_file
+from . import ending
+from .arguments import STUDIES, Parser, Version, add_engine, folder, part, study_file
+from .ending import INTERRUPTED
+from .terminal import FULL, empty_buffers, open_the_closed, say
 
 # The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
 # others at all, of which each worker process would have one for each processor.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
-INTERRUPTED = 130  # exit code
-SIGNALS = (signal.SIGINT, signal.SIGTERM)
+DIR = {"type": folder, "metavar": "DIR"}
 KEPT = "; finished blocks are kept, the same command goes on from there"
 
 
 def parser() -> argparse.ArgumentParser:
     """All subcommands and their options."""
-    top = argparse.ArgumentParser(prog="python -m study", description="Parameter studies of rough coated contacts.")
+    top = Parser(prog="python -m study", description="Parameter studies of rough coated contacts.")
     top.add_argument("-v", "--verbose", action="store_true", help="show the log")
     top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -37,60 +39,47 @@ def parser() -> argparse.ArgumentParser:
         sub.set_defaults(function=function)
         for argument in arguments:
             sub.add_argument(argument, nargs="+", metavar=argument.upper().removesuffix("S"))
-        sub.add_argument("--results", default="results", metavar="DIR", help="folder of the results (default: results)")
+        sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
-    command(list_, "list the study files, their size and state").add_argument("folder", nargs="?", default=STUDIES)
+    sub = command(list_, "list the study files, their size and state")
+    sub.add_argument("folder", type=folder, nargs="?", default=STUDIES)
     command(check, "check study files without computing", "files")
     sub = command(run, "compute what is missing and write the results", "files")
-    _add_engine(sub)
+    add_engine(sub)
     sub.add_argument("--part", type=part, default=(1, 1), metavar="I/N", help="compute the I-th of N parts only")
     sub.add_argument("--force", action="store_true", help="replace results of which cases would be lost")
     sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
     sub = command(retry, "compute cases of some status again", "files")
-    _add_engine(sub)
+    add_engine(sub)
     sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
-    command(status, "say what has been computed", "files")
+    sub = command(status, "say what has been computed", "files")
+    sub.add_argument("--yes", action="store_true", help="count however many cases there are")
     command(verify, "compare results with their checksums: exit code 1 for what is damaged or has none", "files")
     command(clean, "remove blocks that do not serve a study as it is now, say which; never results", "files")
     sub = command(plot, "draw figures from results", "names")
-    sub.add_argument("--figures", default="figures", metavar="DIR", help="folder of the figures (default: figures)")
+    sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
     sub = command(table, "write tables from results", "names")
-    sub.add_argument("--tables", default="tables", metavar="DIR", help="folder of the tables (default: tables)")
+    sub.add_argument("--tables", default="tables", **DIR, help="folder of the tables (default: tables)")
     sub = command(tradeoff, "measure error against time of every way to solve, and write the page about it")
-    sub.add_argument("--docs", default="docs", metavar="DIR", help="folder of the page (default: docs)")
+    sub.add_argument("--docs", default="docs", **DIR, help="folder of the page (default: docs)")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 
 
-class Version(argparse.Action):
-    """Print the versions of the program and of its numerics, and end."""
-
-    def __call__(self, parser, *_) -> None:
-        from .dataset import package_version
-        from .definition import NUMERICS_VERSION
-
-        print(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}")
-        parser.exit()
-
-
-def _add_engine(sub: argparse.ArgumentParser) -> None:
-    """Options of the commands that compute."""
-    sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
-    sub.add_argument("--scheduler", default="", metavar="ADDRESS", help="compute on the workers of this dask scheduler")
-    either = sub.add_mutually_exclusive_group()
-    either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
-    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
-    sub.add_argument("--yes", action="store_true", help="go on however large the study is")
-
-
 def list_(options) -> int:
+    from .answers import state_line
     from .api import load
 
     files = sorted(Path(options.folder).glob("*.toml"))
     if not files:
-        print(f"no study files in {options.folder}")
-    return _each(files, lambda file: _print_state(load(file, options.results)))
+        return _answer(f"no study files in {options.folder}")
+
+    def one(file):
+        study = load(file, options.results)
+        return _answer(state_line(study.definition, study.status()))
+
+    return _each(files, one)
 
 
 def check(options) -> int:
@@ -99,8 +88,7 @@ def check(options) -> int:
     def one(file):
         definition = read(study_file(file))
         dims = " x ".join(f"{name} {size}" for name, size in definition.grid.sizes.items()) or "one case"
-        print(f"{file}: {definition.grid.size} cases ({dims}), digest {definition.digest[:16]}")
-        return 0
+        return _answer(f"{file}: {definition.grid.size} cases ({dims}), digest {definition.digest[:16]}")
 
     return _each(options.files, one)
 
@@ -112,7 +100,7 @@ def run(options) -> int:
     def one(file):
         study = load(study_file(file), options.results)
         if options.dry_run:
-            return _print_lines([cost_line(study.definition.name, study.dry_run(options.workers))])
+            return _answer(cost_line(study.definition.name, study.dry_run(options.workers, options.yes)))
         return _compute(study, options, part=options.part, force=options.force)
 
     return _each(options.files, one, KEPT)
@@ -135,16 +123,13 @@ def _compute(study, options, **more) -> int:
 
 
 def status(options) -> int:
+    from .answers import count_lines, state_line
     from .api import load
-    from .dataset import status_words
 
     def one(file):
         study = load(study_file(file), options.results)
-        state = study.status()
-        _print_state(study, state)
-        for value, count in state["counts"].items():
-            print(f"    {status_words()[value]}: {count}")
-        return 0
+        state = study.status(options.yes)
+        return _answer(state_line(study.definition, state), *count_lines(state["counts"]))
 
     return _each(options.files, one)
 
@@ -196,6 +181,7 @@ def tradeoff(options) -> int:
 
 def _each(items, action, hint: str = "") -> int:
     """Largest exit code of the actions; what is wrong with one item does not keep the others from their turn."""
+    ending.now.working = True  # all imports have been made
     return max((_attempt(action, item, hint) for item in items), default=0)
 
 
@@ -205,75 +191,65 @@ def _attempt(action, item, hint: str) -> int:
     try:
         return action(item)
     except StudyError as error:
-        print(error, file=sys.stderr)
-        return error.code
-    except BrokenPipeError:  # no fault of the item: nobody reads
-        raise
+        text, code = str(error), error.code
     except OSError as error:  # a full disk, say, or a scheduler that is gone
-        print(f"{item}: {error}{hint}", file=sys.stderr)
-        return 1
-
-
-def _print_state(study, state: dict | None = None) -> int:
-    from .answers import state_line
-
-    print(state_line(study.definition, state or study.status()))
-    return 0
+        text, code = f"{item}: {error}{hint}", 1
+    if ending.now.came:  # and has been taken for something else on its way here
+        raise KeyboardInterrupt
+    say(text, sys.stderr)
+    return code
 
 
 def _print_report(report, name: str) -> int:
     from .answers import failure_lines, report_line
 
     if report.failures:
-        print("\n".join(failure_lines(report, name)), file=sys.stderr)
+        say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1
-    print(report_line(report, name))
+    _answer(report_line(report, name))
     return 0
 
 
 def _print_lines(lines) -> int:
-    print("\n".join(map(str, lines)))
+    _answer(*lines)
     return 0
 
 
-def _interrupt(*_) -> None:
-    """End in good order; a second signal ends at once, which costs the blocks in work and no more."""
-    for number in SIGNALS:
-        if signal.getsignal(number) is _interrupt:
-            signal.signal(number, _end)
-    raise KeyboardInterrupt
-
-
-def _end(*_) -> None:
-    os._exit(INTERRUPTED)
+def _answer(*lines) -> int:
+    """Say what was asked for. Returns the exit code if that is all that was: 1 when a disk has no room for it."""
+    lost = say("\n".join(map(str, lines)), sys.stdout)
+    if lost is None or lost.errno not in FULL:  # else nobody wants to know it, any more
+        return 0
+    say(f"standard output cannot be written: {lost.strerror}", sys.stderr)
+    return 1
 
 
 def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
-    code = 0
+    kept = ""
     try:
-        try:
-            options = parser().parse_args(arguments)
-            level = logging.DEBUG if options.verbose else logging.WARNING
-            logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-            code = INTERRUPTED if options.function in (run, retry) else 0  # should the reader leave half-way
-            code = options.function(options)
-        finally:
-            sys.stdout.flush()  # here, where it is no fault that the reader has left
-    except KeyboardInterrupt:
-        print(f"\ninterrupted{KEPT}", file=sys.stderr)
+        options = parser().parse_args(arguments)
+        level = logging.DEBUG if options.verbose else logging.WARNING
+        logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
+        kept = KEPT if options.function in (run, retry) else ""
+        code = options.function(options)
+        ending.now.code = code
+    except SystemExit as ended:  # of the parser
+        ending.now.code = ended.code
+        raise
+    except (KeyboardInterrupt, Exception) as error:
+        if not (ending.now.came or isinstance(error, KeyboardInterrupt)):  # libraries make other errors of an interrupt
+            raise
+        say(f"\ninterrupted{kept}", sys.stderr)
         code = INTERRUPTED
-    except BrokenPipeError:  # the reader, `head` say, has enough
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        for stream in (sys.stdout, sys.stderr):
-            os.dup2(nowhere, stream.fileno())
+    finally:
+        empty_buffers()
     return code
 
 
 if __name__ == "__main__":
-    for _number in SIGNALS:
-        if signal.getsignal(_number) is not signal.SIG_IGN:
-            signal.signal(_number, _interrupt)
+    open_the_closed()
+    ending.start()
     _code = main()
     if _code == INTERRUPTED:
         os._exit(_code)  # does not wait for the blocks in work

@@ -5,6 +5,7 @@ from .definition import Definition
 from .estimate import Estimate, describe
 from .examine import Condition
 from .order import Report
+from .terminal import on_one_line
 from .vocabulary import NOT_RUN
 
 
@@ -13,7 +14,7 @@ def state_line(definition: Definition, state: dict) -> str:
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
     text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
     done = text.format(cases - missing, cases) if state["counts"] else ""
-    line = f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {definition.title}"
+    line = f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 
@@ -25,6 +26,11 @@ def verified_line(name: str, found: Condition) -> str:
         "missing": "does not exist",
     }
     return f"{name}: {said.get(found.kind, found.reason)}"
+
+
+def count_lines(counts: dict[int, int]) -> list[str]:
+    """How many cases ended with which status, a line each."""
+    return [f"    {status_words()[value]}: {count}" for value, count in counts.items()]
 
 
 def cost_line(name: str, cost: Estimate) -> str:

@@ -1,5 +1,6 @@
 """The public functions: `solve` for a grid given in Python, `load` for a study file."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -14,12 +15,13 @@ from .estimate import Estimate
 from .examine import Condition
 from .grid import LONGEST_AXIS
 from .netcdf import Unusable
-from .order import Report, belongs, look, results_path
+from .order import Report, belongs, check_countable, look, results_path
 from .results_file import open_lazily, open_results
 from .reuse import at_hand, earlier, statuses
 from .run import dry_run, partial_dataset, run
 from .store import Store, count_statuses, inventory
 from .tidy import clean
+from .vocabulary import NOT_RUN
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
@@ -76,17 +78,21 @@ class Study:
         """Compute what is missing and write the results file; options as of `study.order.Order`."""
         return run(self.definition, self.results, command=command_line(), **options)
 
-    def dry_run(self, workers: int | None = None) -> Estimate:
-        """What `run` would cost, and how many cases it would find computed. Computes a sample, writes nothing."""
-        return dry_run(self.definition, self.results, workers=workers)
+    def dry_run(self, workers: int | None = None, yes: bool = False) -> Estimate:
+        """What `run` would cost, and how many cases it would find computed. Computes a sample, writes nothing.
 
-    def status(self) -> dict:
+        Raises StudyError for a very large study of which something is on disk, unless `yes`: looking takes memory.
+        """
+        return dry_run(self.definition, self.results, workers=workers, yes=yes)
+
+    def status(self, yes: bool = False) -> dict:
         """State, cases, status -> number of cases, path of the results, what is wrong with them.
 
         The state is "done", "outdated", "partial" or "new", or of a results file that cannot be used "damaged",
         "foreign" (none of ours) or "unreadable"; then `reason` says what is wrong. Attributes, coordinates and statuses
         are verified, the other numbers are by `verify`. Cases of an outdated results file that a run would use again
-        count as computed; so do those in blocks.
+        count as computed; so do those in blocks. Raises StudyError for a very large study that is neither new nor
+        done, unless `yes`: counting takes memory.
         """
         path = results_path(self.definition, self.results)
         found = look(self.definition, path, ("status",))
@@ -95,7 +101,11 @@ class Study:
         counts = {}
         if self.definition.kind == "contact" and state == "done":
             counts = count_statuses(statuses(path))
-        elif self.definition.kind == "contact" and state in ("new", "outdated"):
+        elif self.definition.kind != "contact" or state not in ("new", "outdated"):
+            pass
+        elif not check_countable(Store(self.definition, self.results), path, yes):
+            counts = {NOT_RUN: self.definition.grid.size}
+        else:
             known = inventory(Store(self.definition, self.results))
             counts = count_statuses(at_hand(known, earlier(self.definition, found)))
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
@@ -136,7 +146,7 @@ class Study:
 
 def load(path, results="results") -> Study:
     """Read and check a study file. Raises StudyError with all that is wrong with it."""
-    return Study(read(path), Path(results))
+    return Study(read(os.path.expanduser(path)), Path(os.path.expanduser(results)))
 
 
 def _add(draft: Draft, name: str, given) -> None:

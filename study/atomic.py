@@ -14,6 +14,8 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
     folder : where the temporary file is, on the file system of `path`; default beside it. The name is random, not the
         process id: two machines that share a folder may have the same.
     """
+    if path.is_symlink():  # what it points to is replaced, on whatever file system that is
+        path, folder = Path(os.path.realpath(path)), None
     temporary = (folder or path.parent) / f".{path.name}.{secrets.token_hex(4)}.tmp"
     try:
         yield temporary

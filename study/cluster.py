@@ -1,7 +1,6 @@
 """Where blocks are computed: threads or processes of this machine, or the workers of a dask cluster. One way to use
 any."""
 
-import logging
 import os
 import signal
 from collections.abc import Callable, Iterable, Iterator
@@ -21,7 +20,7 @@ from multiprocessing import get_context, parent_process
 from threading import Thread
 
 from .blocks import Failure
-from .definition import StudyError
+from .scheduler import connected
 
 CONNECT = 10  # seconds
 AHEAD = 4  # blocks submitted for each worker: it goes on while this thread writes
@@ -45,13 +44,13 @@ class Engine:
 
 
 @contextmanager
-def engine(workers: int | None, scheduler: str, blocks: int = 0) -> Iterator[Engine]:
+def engine(workers: int | None, scheduler: str | None, blocks: int = 0) -> Iterator[Engine]:
     """Threads, for many `blocks` processes (default one for each processor), or with the address of a `scheduler` its
     workers (at most so many).
 
     What has been submitted and not begun is cancelled at the end; what has begun is left to end by itself.
     """
-    if scheduler:
+    if scheduler is not None:
         with _cluster(workers, scheduler) as found:
             yield found
         return
@@ -70,20 +69,45 @@ def processes_for(workers: int, blocks: int) -> int:
 
 
 def _processes(count: int) -> Executor:
-    executor = ProcessPoolExecutor(count, get_context("spawn"), _live_with_parent)
-    with _interrupt_blocked():
+    _start_tracker()
+    with _blocked():
+        executor = ProcessPoolExecutor(count, get_context("spawn"), _live_with_parent)
         for _ in range(count):
             executor.submit(int)  # starts one
     return executor
 
 
+def _start_tracker() -> None:
+    """Start the process that removes the semaphores of the others from /dev/shm, should the run not come to it.
+
+    It must outlive an interrupt, and says nothing then: that an interrupted run has left them is no news.
+    """
+    if os.name == "nt":  # needs none
+        return
+    from multiprocessing.resource_tracker import ensure_running
+
+    before = os.environ.get("PYTHONWARNINGS")
+    quiet = "ignore::UserWarning:multiprocessing.resource_tracker"
+    os.environ["PYTHONWARNINGS"] = f"{before},{quiet}" if before else quiet
+    try:
+        with _blocked():
+            ensure_running()  # before others start: it lets the interrupt through again
+    finally:
+        os.environ.pop("PYTHONWARNINGS")
+        if before is not None:
+            os.environ["PYTHONWARNINGS"] = before
+
+
 @contextmanager
-def _interrupt_blocked() -> Iterator[None]:
-    """Processes that start here inherit this: Ctrl-C is for the one that runs the study."""
+def _blocked() -> Iterator[None]:
+    """Processes that start here inherit this: Ctrl-C, and the end of the terminal, are for the one that runs the study.
+
+    The workers end when that ends.
+    """
     if not hasattr(signal, "pthread_sigmask"):  # not POSIX
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     yield
     signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
@@ -101,15 +125,7 @@ def _live_with_parent() -> None:
 
 @contextmanager
 def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
-    try:
-        from dask.distributed import Client
-    except ImportError:
-        raise StudyError(["--scheduler needs the package distributed: pip install 'roughcoat[cluster]'"]) from None
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # says at length what `Lost` says
-    try:
-        client = Client(scheduler, timeout=CONNECT, set_as_default=False)
-    except (OSError, ValueError) as error:
-        raise StudyError([f"--scheduler {scheduler}: no scheduler answers there ({error})"]) from None
+    client = connected(scheduler, CONNECT)
 
     def width() -> int:
         try:

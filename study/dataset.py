@@ -120,7 +120,8 @@ def command_line() -> str:
     """The command that is running, without the folder of the interpreter."""
     program = Path(sys.argv[0])
     first = "python -m study" if program.name == "__main__.py" and program.parent.name == "study" else program.name
-    return f"{first} {shlex.join(sys.argv[1:])}".strip()
+    text = f"{first} {shlex.join(sys.argv[1:])}".strip()
+    return text.encode("utf-8", "backslashreplace").decode()  # a path may be other bytes, an attribute may not
 
 
 def git_commit() -> str:

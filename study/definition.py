@@ -5,20 +5,24 @@ import json
 import re
 import tomllib
 from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
 
 import numpy as np
 
 from solver import NUMERICS_VERSION
 
-from .draft import Draft
+from .draft import MOST_MESSAGES, Draft
 from .grid import Grid, shown
+from .study_text import text_in
+from .terminal import on_one_line
 from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
 
 BLOCK = 8000
 POINTS = 33
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
 MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
+TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
 FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
 PER_CASE = 16  # numbers per case besides the profiles, roughly
@@ -77,12 +81,15 @@ def read(path) -> Definition:
     if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
         raise StudyError([f"{where}: a study file is called NAME.toml, NAME of letters, digits, _, - and ."])
     try:
-        text = path.read_text(encoding="utf-8-sig")
+        text = text_in(path)
         tables = tomllib.loads(text)
     except OSError as error:
         raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
-    except (ValueError, RecursionError) as error:  # wrong TOML, wrong UTF-8, numbers or nesting without end
-        raise StudyError([f"{where}: is not valid TOML: {error}"]) from None
+    except RecursionError:
+        raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
+    except ValueError as error:  # wrong TOML, wrong UTF-8
+        reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
+        raise StudyError([f"{where}: is not valid TOML: {reason}"]) from None
     return from_tables(tables, path.stem, text, where)
 
 
@@ -93,7 +100,8 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
         raise StudyError([f'{where}: kind = {shown(kind)}: must be one of "contact", "micro_law"'])
     draft = Draft(known=PARAMETERS if kind == "contact" else MICRO_LAW_PARAMETERS)
     draft.errors += [
-        f'"{key}" is not a section{suggest(key, SECTIONS[kind])}' for key in tables if key not in SECTIONS[kind]
+        f"{shown(key)} is not a section{suggest(key, SECTIONS[kind])}"
+        for key in islice((key for key in tables if key not in SECTIONS[kind]), MOST_MESSAGES)
     ]
     numerics = _table(tables, "numerics", (*NUMERICS, "block"), draft)
     for key, value in _table(tables, "model", None, draft).items():
@@ -134,7 +142,9 @@ def complete(
             f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
         )
     if draft.errors:
-        raise StudyError(f"{where}: {message}" for message in draft.errors)
+        more = len(draft.errors) - MOST_MESSAGES
+        shortened = draft.errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
+        raise StudyError(f"{where}: {message}" for message in shortened)
     return replace(made, digest=digest_of(made))
 
 
@@ -219,7 +229,6 @@ def _table(tables: dict, section: str, known: tuple[str, ...] | None, draft: Dra
     if not isinstance(found, dict):
         draft.errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
         return {}
-    for key in found:
-        if known and key not in known:
-            draft.errors.append(f'[{section}] "{key}" is not known{suggest(key, known)}')
+    unknown = [key for key in found if known and key not in known]
+    draft.errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
     return found

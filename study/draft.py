@@ -9,6 +9,9 @@ from .grid import Grid, as_array, axis_values, shown, twins
 from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
 
+MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
+MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
+
 
 @dataclass
 class Draft:
@@ -50,6 +53,7 @@ class Draft:
         if not rows:
             self.errors.append("cases is empty: must have at least one case")
             return
+        before = len(self.errors)
         self._number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
@@ -58,6 +62,8 @@ class Draft:
                 default = VOCABULARY[name].default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
                 self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
+        if len(self.errors) > before:  # values of any size and kind
+            return
         points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
         self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]
 
@@ -105,7 +111,7 @@ class Draft:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
         if name not in self.known:
-            self.errors.append(f'{place}"{name}" is not a parameter{suggest(name, self.known)}')
+            self.errors.append(f"{place}{shown(str(name))} is not a parameter{self._near(name)}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
         elif section == "[model]" and name in NUMERICS:
@@ -114,6 +120,10 @@ class Draft:
             self.sections[name] = section
             return True
         return False
+
+    def _near(self, name: str) -> str:
+        """What may have been meant, as long as somebody will read it."""
+        return suggest(name, self.known) if len(self.errors) < MOST_MESSAGES else ""
 
     def _one_control(self) -> None:
         given = [name for name in CONTROLS if name in self.sections]
@@ -133,6 +143,8 @@ class Draft:
 
     def _dimensions(self) -> None:
         """Dimensions of DataArrays: names that are free, sizes and coordinates that agree with the other parameters."""
+        if len(self.sizes) > MOST_DIMENSIONS:
+            self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
         for dim in self.sizes:
             if dim in self.known and self.values.get(dim, ((dim,),))[0] != (dim,):
                 self.errors.append(f"{dim} is a dimension and a parameter over other dimensions")

@@ -9,6 +9,7 @@ from solver.ladder import LADDER, STACK
 
 from .blocks import compute, parcel
 from .cluster import AHEAD, available_workers, processes_for
+from .dataset import not_run
 from .definition import Definition
 from .join import AT_ONCE
 from .progress import duration
@@ -20,18 +21,24 @@ WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, in siz
 # What solving takes besides, as it was measured: peaks of runs on 17 to 256 nodes, and of 300 cases of
 # studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3  # bytes for each worker, and matrices (B, n, n) of a stack of cases
+KEY = 16  # bytes of the key of a case in a block
+# Of the results file besides its numbers: what HDF5 takes for itself, and its chunks at the edge of a grid, which have
+# room for a whole one. As it was measured on files of 3000 and of 1e6 cases.
+HEAD, ROOM = 300_000, 1.05
 TABLES = 600_000_000  # bytes that each process keeps of the exact layer: 0.4 GB of tables, and what they are made from
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """cases; present, of these on disk; seconds for the rest; memory, bytes at most; size, bytes of the results."""
+    """cases; present, of these on disk; seconds for the rest; memory, bytes at most; size, bytes of the results; disk,
+    bytes at most of what a run writes before it removes its blocks."""
 
     cases: int
     present: int
     seconds: float
     memory: float
     size: float
+    disk: float
 
 
 def estimate(definition: Definition, workers: int | None = None, present: int = 0) -> Estimate:
@@ -46,7 +53,15 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     memory += (AHEAD + WORKING) * count * block
     if definition.kind == "contact":
         memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
-    return Estimate(cases, present, seconds, memory, size)
+    return Estimate(cases, present, seconds, memory, size, disk_for(definition) if missing else 0.0)
+
+
+def disk_for(definition: Definition) -> float:
+    """Bytes of the results file, and of the blocks that it is written from: both are there when it is complete."""
+    empty = not_run(definition, 1).values() if definition.kind == "contact" else ()
+    block = KEY + sum(8 * array.size if array.dtype.kind == "f" else array.nbytes for array in empty)
+    results = definition.numbers * np.dtype(definition.dtype).itemsize
+    return HEAD + ROOM * results + (block * definition.grid.size if empty else 0)
 
 
 def _matrices(definition: Definition) -> int:
@@ -74,6 +89,6 @@ def seconds_per_case(definition: Definition) -> float:
 
 
 def describe(cost: Estimate) -> str:
-    """ "about 2 min 5 s, at most 0.5 GB of memory, 0.7 GB on disk"."""
-    memory, size = (f"{number / 1e9:.2g} GB" for number in (cost.memory, cost.size))
-    return f"about {duration(cost.seconds)}, at most {memory} of memory, {size} on disk"
+    """ "about 2 min 5 s, at most 0.5 GB of memory and 1.4 GB of disk; the results are 0.7 GB"."""
+    memory, disk, size = (f"{number / 1e9:.2g} GB" for number in (cost.memory, cost.disk, cost.size))
+    return f"about {duration(cost.seconds)}, at most {memory} of memory and {disk} of disk; the results are {size}"

@@ -7,6 +7,7 @@ from itertools import product
 
 import numpy as np
 
+from .terminal import on_one_line
 from .vocabulary import Entry, check, finite
 
 LONGEST_AXIS = 1_000_000
@@ -173,6 +174,9 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
             errors.append(
                 f"{key}: {end} = {shown(value)}: must be a finite number{', > 0 for spacing log' * (spacing == 'log')}"
             )
+    start, stop = raw.get("start"), raw.get("stop")
+    if finite(start) and finite(stop) and not math.isfinite(float(stop) - float(start)):
+        errors.append(f"{key}: from start = {shown(start)} to stop = {shown(stop)}: must be less than 1.8e308 apart")
 
 
 def twins(values: list) -> list[tuple[int, int]]:
@@ -187,5 +191,8 @@ def twins(values: list) -> list[tuple[int, int]]:
 
 def shown(value) -> str:
     """A value as a message quotes it: not longer than a line."""
-    text = "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+    try:
+        text = "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        text = "a number of more than 4300 digits"
+    return on_one_line(text, 60)

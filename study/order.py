@@ -1,5 +1,6 @@
 """What a run is asked for, what it reports, and what it checks before it begins."""
 
+import os
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,7 +11,7 @@ import numpy as np
 from .atomic import make_folder
 from .dataset import status_words
 from .definition import LARGE, Definition, StudyError
-from .estimate import describe, estimate
+from .estimate import PER_CASE, describe, estimate
 from .examine import Condition, examine
 from .reuse import statuses
 from .store import Inventory, Store, count_statuses
@@ -55,7 +56,7 @@ class Order:
     definition: Definition
     results: Path
     workers: int | None = None
-    scheduler: str = ""
+    scheduler: str | None = None
     processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()
@@ -131,13 +132,37 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 
 def check_writable(path: Path) -> None:
-    """Raise CannotWrite when the folder of the results cannot be made or written."""
+    """Raise CannotWrite when the folder of the results cannot be made or written, or that which a link leads to."""
+    if not _is_utf8(str(path.absolute())):
+        raise StudyError([f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"])
+    folder = path.parent
     try:
-        make_folder(path.parent)
-        with tempfile.TemporaryFile(dir=path.parent):  # has no name that a kill could leave behind
+        make_folder(folder)
+        if path.is_symlink():
+            folder = Path(os.path.realpath(path)).parent
+        with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
             pass
     except OSError as error:
-        raise CannotWrite([f"{path.parent}: cannot be written: {error.strerror}"]) from None
+        raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        return bool(text.encode())
+    except UnicodeEncodeError:  # Python keeps other bytes of a path as lone surrogates
+        return False
+
+
+def check_countable(store: Store, path: Path, yes: bool) -> bool:
+    """Whether there may be cases on disk. Raises StudyError when looking for them would take very much memory."""
+    definition = store.definition
+    if not path.exists() and not any(store.folder.glob("*.block")):
+        return False
+    if definition.numbers > LARGE and not yes:
+        needed = f"{PER_CASE * definition.grid.size / 1e9:.2g} GB of memory"
+        found = f"{definition.grid.size} cases: to find which of them are computed takes up to {needed}"
+        raise StudyError([f"{definition.name}: {found}; --yes does it"])
+    return True
 
 
 def check_size(order: Order) -> None:

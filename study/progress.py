@@ -2,6 +2,7 @@
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import TextIO
 
@@ -31,16 +32,29 @@ class Progress:
         self.computed += cases
         self.failed += failed
         now = time.monotonic()
-        if self.stream is None:
-            return
+        self._show(self._line, now)
+
+    def close(self) -> None:
+        """End the rewritten line."""
+        self._show(self._end)
+
+    def _show(self, what: Callable, *given) -> None:
+        """Do without the stream from where on it cannot be written: that nobody looks must not end a run."""
+        try:
+            if self.stream is not None:
+                what(*given)
+        except (OSError, ValueError):  # its reader has left, or its terminal; its disk is full; it has been closed
+            self.stream = None
+
+    def _line(self, now: float) -> None:
         if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
             self.written = now
             self._write(now)
 
-    def close(self) -> None:
-        """End the rewritten line."""
-        if self.stream and self.stream.isatty() and self.computed:
+    def _end(self) -> None:
+        if self.stream.isatty() and self.computed:
             self.stream.write("\n")
+            self.stream.flush()
 
     def _write(self, now: float) -> None:
         counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)

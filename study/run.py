@@ -18,11 +18,12 @@ from .estimate import Estimate, estimate
 from .examine import Condition
 from .join import writing
 from .lock import held
-from .order import Order, Report, check_size, check_writable, look, stamp
+from .order import Order, Report, check_countable, check_size, check_writable, look, stamp
 from .progress import Progress
 from .results_file import write
 from .reuse import adopt, at_hand, check_replaceable, earlier
 from .store import Inventory, Store, add, gather, inventory, remove_litter
+from .terminal import say
 from .tidy import tidy
 from .vocabulary import NOT_RUN
 
@@ -116,9 +117,7 @@ def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> str:
 
 
 def say_waiting(order: Order) -> None:
-    if order.stream:
-        order.stream.write(f"{order.definition.name}: waiting for another run of this study to end\n")
-        order.stream.flush()
+    say(f"{order.definition.name}: waiting for another run of this study to end", order.stream)
 
 
 def prepared(order: Order, file: Condition) -> Inventory:
@@ -163,12 +162,19 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
     return failures
 
 
-def dry_run(definition: Definition, results="results", *, workers: int | None = None) -> Estimate:
-    """What `run` would cost, and how many cases it would find computed. Writes nothing."""
+def dry_run(definition: Definition, results="results", *, workers: int | None = None, yes: bool = False) -> Estimate:
+    """What `run` would cost, and how many cases it would find computed. Writes nothing.
+
+    Raises
+    ------
+    StudyError : the study is very large and there are results or blocks to look through, and no `yes`
+    """
     order = Order(definition, Path(results))
     found = look(definition, order.path)
     if definition.kind == "micro_law" or order.done(found):
         return estimate(definition, workers, definition.grid.size)
+    if not check_countable(order.store, order.path, yes):
+        return estimate(definition, workers)
     status = at_hand(inventory(order.store), earlier(definition, found))
     return estimate(definition, workers, int(np.count_nonzero(status != NOT_RUN)))
 

@@ -65,7 +65,8 @@ def _column(given, u: np.ndarray, columns: dict[str, list]) -> list:
     values = np.clip(values, start, stop)
     if "over" in given:
         other, power = _power(given["over"])
-        values = _rounded(values / np.array(columns[other]) ** power)
+        with np.errstate(all="ignore"):  # what is not finite then is refused like any such value
+            values = _rounded(values / np.array(columns[other]) ** power)
     return values.tolist()
 
 

@@ -5,8 +5,10 @@ import math
 import numbers
 from dataclasses import dataclass, replace
 
-from solver.parameters import PARAMETERS as OF_THE_SOLVER
+from solver.parameters import CONTROL, ends
+from solver.parameters import PARAMETERS as BESIDE_IT
 
+OF_THE_SOLVER = CONTROL | BESIDE_IT
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
@@ -20,9 +22,9 @@ class Entry:
 
     `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity, printed in `unit`
     (name, size in SI). `interval` is the allowed range in mathematical notation, `also` lists single values allowed
-    outside it. The solver knows what its parameters default to, the `choices` of a text, and which are `whole` numbers;
-    `default` None means that a parameter has none: it is then required wherever the parameter called `needed_by[0]` has
-    one of the values `needed_by[1]`.
+    outside it. The solver knows these bounds (one that stands here is narrower), what its parameters default to, the
+    `choices` of a text, and which are `whole` numbers; `default` None means that a parameter has none: it is then
+    required wherever the parameter called `needed_by[0]` has one of the values `needed_by[1]`.
     """
 
     name: str
@@ -47,32 +49,31 @@ class Entry:
 
 
 POSITIVE = "(0, inf)"
+LISTED = 40  # names in a message
 
 # fmt: off
 _ENTRIES = (
-    Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)", POSITIVE),
-    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)", POSITIVE),
-    Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)", POSITIVE),
-    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON, "", POSITIVE),
-    Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material", interval=POSITIVE),
-    Entry("nu1", "ν1", "Poisson ratio of the layer", "material", interval="(-1, 0.5]"),
-    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material", interval="(-1, 0.5]"),
+    Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)"),
+    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)"),
+    Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)"),
+    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON),
+    Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material"),
+    Entry("nu1", "ν1", "Poisson ratio of the layer", "material"),
+    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material"),
     Entry("bonding", "", "interface of layer and half-space", "material"),
     Entry("base", "", "elastic base", "material"),
-    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY, "", POSITIVE),
-    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON, "", POSITIVE),
+    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY),
+    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON),
     Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)"),
-    Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness", interval=POSITIVE),
-    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness", interval="(0, 1]"),
+    Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness"),
+    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness"),
     Entry("scheme", "", "scheme of solution", "numerics"),
-    Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)",
-          interval="[0, inf)"),
+    Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)"),
     Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]"),
-    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics", interval="(0, 1)"),
+    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics"),
     Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics"),
-    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics", interval="[4, 256]", also=(0,)),
-    Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics",
-          interval="[1, 100000]", also=(0,)),
+    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics"),
+    Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics"),
     Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), PRESSURE, "(3)"),
     Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), PRESSURE,
           "(13)"),
@@ -109,10 +110,17 @@ _ENTRIES = (
     Entry("max_error", "", "largest relative error of the fit over the interval `check`", "law"),
 )
 # fmt: on
-VOCABULARY = {
-    entry.name: replace(entry, **OF_THE_SOLVER[entry.name]._asdict()) if entry.name in OF_THE_SOLVER else entry
-    for entry in _ENTRIES
-}
+
+
+def _completed(entry: Entry) -> Entry:
+    """With what the solver knows of a parameter."""
+    if entry.name not in OF_THE_SOLVER:
+        return entry
+    known = OF_THE_SOLVER[entry.name]
+    return replace(entry, **known._asdict() | {"interval": entry.interval or known.interval})
+
+
+VOCABULARY = {entry.name: _completed(entry) for entry in _ENTRIES}
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -154,9 +162,9 @@ def check(entry: Entry, value) -> str:
         return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
     if entry.whole and value != int(value):
         return "must be a whole number"
-    low, high = (float(end) for end in entry.interval[1:-1].split(", "))
-    above = value > low or (value == low and entry.interval[0] == "[")
-    below = value < high or (value == high and entry.interval[-1] == "]")
+    low, high, with_low, with_high = ends(entry.interval)
+    above = value > low or (value == low and with_low)
+    below = value < high or (value == high and with_high)
     return "" if value in entry.also or (above and below) else allowed(entry)
 
 
@@ -171,7 +179,8 @@ def finite(value) -> bool:
 def suggest(word: str, known) -> str:
     """ "; did you mean "Nbar"?" when a known word is near, otherwise the list of what is known."""
     lower = {name.lower(): name for name in known}
-    near = difflib.get_close_matches(str(word).lower(), lower, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(str(word).lower()[:100], lower, n=1, cutoff=0.6)
     if near:
         return f'; did you mean "{lower[near[0]]}"?'
-    return "; known: " + ", ".join(known)
+    listed = list(known)
+    return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))

@@ -63,16 +63,19 @@ def held(folder: Path) -> set[str]:
     return set(lines(folder / "go.log"))
 
 
-def command(folder: Path, first: int, *arguments: str, ignoring=(), stuck: bool = False) -> multiprocessing.Process:
+def command(
+    folder: Path, first: int, *arguments: str, ignoring=(), stuck: bool = False, prepared=None
+) -> multiprocessing.Process:
     """A started process that does in `folder` what `python -m study ...` does, stderr to folder/errors, and holds its
     blocks from case `first` on.
 
-    ignoring : signals that its parent ignores; stuck : an interrupted run writes folder/ending and does not end
+    ignoring : signals that its parent ignores; stuck : an interrupted run writes folder/ending and does not end;
+    prepared : is called in the process before it begins
     """
-    return started(_command, folder, first, arguments, ignoring, stuck)
+    return started(_command, folder, first, arguments, ignoring, stuck, prepared)
 
 
-def _command(folder: Path, first: int, arguments, ignoring, stuck: bool) -> None:
+def _command(folder: Path, first: int, arguments, ignoring, stuck: bool, prepared) -> None:
     os.chdir(folder)
     os.dup2(os.open("errors", os.O_WRONLY | os.O_CREAT), sys.stderr.fileno())
     for number, handler in {signal.SIGINT: signal.default_int_handler, signal.SIGTERM: signal.SIG_DFL}.items():
@@ -88,6 +91,8 @@ def _command(folder: Path, first: int, arguments, ignoring, stuck: bool) -> None
             time.sleep(PATIENCE)
 
         Progress.close = close
+    if prepared:
+        prepared()
     sys.argv = ["study", *arguments]
     runpy.run_module("study", run_name="__main__", alter_sys=True)
 

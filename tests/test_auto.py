@@ -9,7 +9,10 @@ from scipy.integrate import quad
 
 import study
 from solver import Model, Problem, Status, auto, solve
+from solver.cases import as_cases
+from solver.mesh import mesh
 from solver.micro import contact_fraction, largest_pressure
+from solver.model_error import first_order
 from study.definition import read
 from study.grid import columns
 
@@ -222,3 +225,23 @@ def test_in_a_study():
             study.solve(**given, base="auto", accuracy=wrong)
     with pytest.raises(study.StudyError, match='model_check = "dear": must be one of "closed_form", "first_order"'):
         study.solve(**given, base="thin_layer", model_check="dear")
+
+
+def test_a_lax_accuracy_buys_no_estimate_of_first_order_where_it_says_nothing():
+    """Accuracy 0.9 allows errors of 49 and 85 %; of such a size the first order is no estimate any more."""
+    given = {"P": [3.7e-7, 4.5e-7], "h": [0.089, 1.6e-4], "n": [0.23, 0.34], "Ra": [4.5e-3, 7.6e-3], "Nbar": 250000}
+    found = solve(Problem.of(**given, base="auto", accuracy=0.9))
+    assert (found.status == Status.CONVERGED).all()
+    assert found.model_error.max() <= 0.375  # 0.3 with its margin of 1.25
+
+
+def test_a_step_of_first_order_that_fails_refuses_the_cheap_model():
+    """From a pressure of NaN it has no numbers; a case without cheap numbers has no estimate at all."""
+    problem = Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT)
+    cases, law = as_cases(problem, np.zeros(3))
+    cheap = vars(solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh(16).x))
+    p = cheap["p"].copy()
+    p[1] = np.nan
+    cheap["a"][2] = np.nan
+    error = first_order(cases, law, cheap, p, 16)
+    assert 0 < error[0] < 1 and error[1] == np.inf and np.isnan(error[2])

@@ -46,7 +46,7 @@ def test_bad_file_does_not_keep_the_good_one_from_its_turn(studies, capsys):
     assert main(["run", "studies/bad.toml", "studies/good.toml"]) == 2
     printed = capsys.readouterr()
     assert 'studies/bad.toml: [model] "mirco" is not a parameter; did you mean "micro"?\n' in printed.err
-    assert "studies/bad.toml: P[1] = -1: must be > 0\n" in printed.err
+    assert "studies/bad.toml: P[1] = -1: must be in [1e-24, 1e3]\n" in printed.err
     assert "results/good.nc: 3 cases, 3 computed now\n" in printed.out
     assert not Path("results/bad.nc").exists()
 

@@ -34,7 +34,7 @@ def asked(monkeypatch) -> list:
     return found
 
 
-DEFAULTS = {"workers": None, "scheduler": "", "fail_fast": False, "yes": False, "processes": True}
+DEFAULTS = {"workers": None, "scheduler": None, "fail_fast": False, "yes": False, "processes": True}
 FULL = "--results there --workers 3 --scheduler tcp://host:1 --fail-fast --yes"
 CHOSEN = {"workers": 3, "scheduler": "tcp://host:1", "fail_fast": True, "yes": True, "processes": True}
 
@@ -65,9 +65,9 @@ def test_yes_computes_what_is_large(monkeypatch, capsys):
 
 def test_dry_run_is_told_the_workers_and_computes_nothing(asked, monkeypatch, capsys):
     seen, real = [], api.Study.dry_run
-    monkeypatch.setattr(api.Study, "dry_run", lambda self, workers: seen.append(workers) or real(self, workers))
+    monkeypatch.setattr(api.Study, "dry_run", lambda self, *given: seen.append(given) or real(self, *given))
     assert main(["run", "good", "--dry-run", "--workers", "7"]) == 0
-    assert seen == [7] and asked == [] and tree() == []
+    assert seen == [(7, False)] and asked == [] and tree() == []
     assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; ")
 
 
@@ -85,6 +85,22 @@ def test_parts_that_are_none(text, capsys):
         main(["run", "good", f"--part={text}"])
     assert caught.value.code == 2
     assert f"--part: {text}: must be I/N, whole numbers with 1 <= I <= N\n" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", ["", "nonsense", "tcp:", "tcp://host", "http://host:8", "tcp://host:0", "host:65536"])
+@pytest.mark.parametrize("command", ["run", "retry"])
+def test_addresses_that_are_none(command, text, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main([command, "good", "--scheduler", text])
+    assert caught.value.code == 2
+    assert f'--scheduler: "{text}": must be the address of a dask scheduler, such as tcp://' in capsys.readouterr().err
+    assert tree() == []
+
+
+@pytest.mark.parametrize("text", ["tcp://10.0.0.1:8786", "node-7.site_a:1", "tls://[::1]:65535", "wss://host:443"])
+def test_addresses(asked, text):
+    assert main(["run", "good", "--scheduler", text]) == 0
+    assert asked[0][2]["scheduler"] == text
 
 
 def test_figures_and_tables_go_to_their_folders(capsys):

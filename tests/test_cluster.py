@@ -3,12 +3,16 @@
 import os
 import random
 import re
+import shutil
 import signal
+import socket
 import subprocess
 import sys
 from concurrent.futures import Executor, Future
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
+from threading import Thread
 
 import pytest
 from children import PATIENCE, PROCESSES, held, holding, stored, wait_for
@@ -96,19 +100,23 @@ def started(cluster: Cluster, opened: study.Study, tmp_path: Path):
     return process, answers
 
 
+@pytest.mark.skipif(not shutil.which("openssl"), reason="openssl makes the certificate")
 def test_walk_through_of_the_documentation(tmp_path):
-    walk, slurm = re.findall(r"```sh\n(.*?)```", WALK, flags=re.DOTALL)
-    script = "set -eu\nexport PYTHONPATH\n" + walk
+    walk, tunnel, slurm = re.findall(r"```sh\n(.*?)```", WALK, flags=re.DOTALL)
+    script = "set -eu\nexport PYTHONPATH\n" + walk + 'echo "at $address"\n'
     ran = subprocess.run(
         ["sh", "-c", script], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, timeout=PATIENCE
     )
     assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "key.pem").stat().st_mode & 0o077 == 0, "the key is its owner's"
+    assert "\nat tls://127.0.0.1:" in ran.stdout
     assert "results/walk.nc: 600 cases, 600 computed now" in ran.stdout and "converged: 600" in ran.stdout
     opened = study.load(tmp_path / "walk.toml", tmp_path / "results")
     here = study.Study(opened.definition, tmp_path / "here")
     here.run()
     assert_same(opened.open(), here.open())
-    assert subprocess.run(["sh", "-n"], input=slurm, text=True, check=False).returncode == 0
+    for script in (tunnel, slurm):
+        assert subprocess.run(["sh", "-n"], input=script, text=True, check=False).returncode == 0
 
 
 def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):  # noqa: F811
@@ -139,12 +147,61 @@ def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, und
     assert_ends_well(opened, undisturbed, CASES - 3 * BLOCK)
 
 
-@pytest.mark.parametrize("address", ["tcp://127.0.0.1:1", "nonsense"])
-def test_a_scheduler_that_is_not_there(tmp_path, address, monkeypatch, undisturbed):  # noqa: F811
+@contextmanager
+def listening(first_words: bytes):
+    """The address of somebody who says something else than a scheduler to each who calls, or nothing."""
+
+    def answer():
+        with suppress(OSError):  # the server has been closed
+            while True:
+                calls.append(server.accept()[0])
+                calls[-1].sendall(first_words)
+
+    calls, server = [], socket.create_server(("127.0.0.1", 0))
+    thread = Thread(target=answer)
+    thread.start()
+    yield f"127.0.0.1:{server.getsockname()[1]}"
+    server.shutdown(socket.SHUT_RDWR)
+    thread.join()
+    for each in (server, *calls):
+        each.close()
+
+
+def refused(opened, address: str) -> str:
+    """Why a scheduler is refused, in one line, with nothing computed."""
+    with pytest.raises(study.StudyError) as caught:
+        opened.run(scheduler=address)
+    (message,) = caught.value.messages
+    assert message.startswith(f"--scheduler {address}: ") and "\n" not in message
+    assert cases_on_disk(opened) == set()
+    return message.removeprefix(f"--scheduler {address}: ")
+
+
+@pytest.mark.parametrize("scheme", ["tcp://", ""])
+@pytest.mark.parametrize(
+    ("words", "why"), [(b"SSH-2.0-OpenSSH_9\r\n", "something else listens there"), (b"", "it says nothing")]
+)
+def test_a_port_that_is_not_dask(tmp_path, monkeypatch, words, why, scheme):
     monkeypatch.setattr(engines, "CONNECT", 0.5)
     opened = written(tmp_path)
-    with pytest.raises(study.StudyError, match=f"--scheduler {address}: no scheduler answers there"):
-        opened.run(scheduler=address)
+    with listening(words) as address:
+        assert f"no scheduler answers there ({why}" in refused(opened, scheme + address)
+
+
+@pytest.mark.parametrize(
+    ("address", "why"),
+    [
+        ("tcp://127.0.0.1:1", "no scheduler answers there (Timed out"),
+        ("tcp://nowhere.invalid:8786", "no scheduler answers there (nowhere.invalid: "),
+        ("tls://127.0.0.1:1", "no scheduler answers there (TLS needs certificates, "),
+        ("nonsense", "must be the address of a dask scheduler"),
+        ("", "must be the address of a dask scheduler"),
+    ],
+)
+def test_a_scheduler_that_is_not_there(tmp_path, address, why, monkeypatch, undisturbed):  # noqa: F811
+    monkeypatch.setattr(engines, "CONNECT", 0.5)
+    opened = written(tmp_path)
+    assert why in refused(opened, address)
     assert_ends_well(opened, undisturbed, CASES)
 
 

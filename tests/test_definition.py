@@ -85,15 +85,15 @@ BAD = [
         "P = 1e-5",
         "P = 1e-05: must be a list or {start, stop, num, spacing}; a single value belongs in",
     ),
-    ("2e-5]", "-1]", "P[1] = -1: must be > 0"),
-    ("2e-5]", "0]", "P[1] = 0: must be > 0"),
-    ("2e-5]", "nan]", "P[1] = nan: must be a finite number, > 0"),
-    ("2e-5]", "inf]", "P[1] = inf: must be a finite number, > 0"),
-    ("2e-5]", "'2e-5']", 'P[1] = "2e-5": must be a finite number, > 0'),
-    ("2e-5]", "true]", "P[1] = True: must be a finite number, > 0"),
-    ("2e-5]", "[1]]", "P[1] = [1]: must be a finite number, > 0"),
-    ("2e-5]", "2024-01-01]", "P[1] = 2024-01-01: must be a finite number, > 0"),
-    ("2e-5]", "1" + "0" * 400 + "]", "...: must be a finite number, > 0"),
+    ("2e-5]", "-1]", "P[1] = -1: must be in [1e-24, 1e3]"),
+    ("2e-5]", "0]", "P[1] = 0: must be in [1e-24, 1e3]"),
+    ("2e-5]", "nan]", "P[1] = nan: must be a finite number, in [1e-24, 1e3]"),
+    ("2e-5]", "inf]", "P[1] = inf: must be a finite number, in [1e-24, 1e3]"),
+    ("2e-5]", "'2e-5']", 'P[1] = "2e-5": must be a finite number, in [1e-24, 1e3]'),
+    ("2e-5]", "true]", "P[1] = True: must be a finite number, in [1e-24, 1e3]"),
+    ("2e-5]", "[1]]", "P[1] = [1]: must be a finite number, in [1e-24, 1e3]"),
+    ("2e-5]", "2024-01-01]", "P[1] = 2024-01-01: must be a finite number, in [1e-24, 1e3]"),
+    ("2e-5]", "1" + "0" * 400 + "]", "...: must be a finite number, in [1e-24, 1e3]"),
     ("2e-5]", "1e-5]", "P[0] and P[1] are both 1e-05: values of an axis must differ"),
     (
         '"bonded"]',
@@ -102,16 +102,16 @@ BAD = [
     ),
     ('"bonded"]', '"glued"]', 'bonding[1] = "glued": must be one of "frictionless", "bonded"'),
     ("P = [1e-5, 2e-5]", "P = []", "P is empty: must have at least one value"),
-    ("n = 0.5", "n = 0", "n = 0: must be > 0"),
-    ("n = 0.5", "n = -0.5", "n = -0.5: must be > 0"),
+    ("n = 0.5", "n = 0", "n = 0: must be in [1e-9, 1e9]"),
+    ("n = 0.5", "n = -0.5", "n = -0.5: must be in [1e-9, 1e9]"),
     ("n = 0.5", "n = 0.5\nnu1 = 0.51", "nu1 = 0.51: must be in (-1, 0.5]"),
     ("n = 0.5", "n = 0.5\nnu2 = -1", "nu2 = -1: must be in (-1, 0.5]"),
     ("n = 0.5", "", 'n is missing: base = "layered" needs it'),
     ("Ra = 0.004", "", 'Ra is missing: micro = "disc_cell" needs it'),
     ("Ra = 0.004", "Ra = 0.004\nmicro = 'power_law'\nB = 0.1", 'beta is missing: micro = "power_law" needs it'),
-    ("Ra = 0.004", "Ra = 0.004\nbeta = 1.5", "beta = 1.5: must be in (0, 1]"),
+    ("Ra = 0.004", "Ra = 0.004\nbeta = 1.5", "beta = 1.5: must be in [0.01, 1]"),
     ("rtol = 1e-4", "rtol = 1e-13", "rtol = 1e-13: must be in [1e-12, 0.1]"),
-    ("rtol = 1e-4", "k = -1", "k = -1: must be >= 0"),
+    ("rtol = 1e-4", "k = -1", "k = -1: must be in [0, 1e6]"),
     ("start = 8", "start = 2", "nodes[0] = 2.0: must be 0 or in [4, 256]"),
     ("stop = 24", "stop = 9", "nodes[1] = 8.5: must be a whole number"),
     ("num = 3", "num = 1", "nodes: num = 1: must be a whole number in [2, 1000000]"),
@@ -150,7 +150,7 @@ def test_all_errors_of_a_file_at_once(tmp_path):
 
 def test_many_wrong_values_of_an_axis_are_counted(tmp_path):
     found = messages(tmp_path, GOOD.replace("P = [1e-5, 2e-5]", "P = {start = -9, stop = 0, num = 10}"))
-    assert found[:3] == [f"P[{i}] = {-9.0 + i}: must be > 0" for i in range(3)]
+    assert found[:3] == [f"P[{i}] = {-9.0 + i}: must be in [1e-24, 1e3]" for i in range(3)]
     assert found[3:] == ["P: and 7 more such values"]
 
 
@@ -159,9 +159,9 @@ def test_many_wrong_values_of_an_axis_are_counted(tmp_path):
     [
         (b"[model\nh = 1\n", "line 1"),
         (b"[model]\nh = 1\nh = 2\n", "line 3"),
-        (b"h = 1" + b"0" * 5000, "Exceeds the limit"),
+        (b"h = 1" + b"0" * 5000, "a whole number has more than 4300 digits"),
         (b"title = '\xff'", "utf-8"),
-        (b"a = " + b"[" * 5000, "recursion"),
+        (b"a = " + b"[" * 5000, "nested too deep"),
     ],
     ids=lambda value: str(value)[:20],
 )

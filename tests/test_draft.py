@@ -145,11 +145,11 @@ def test_nothing_is_a_value_only_where_gaps_are_allowed():
     errors = []
     assert np.isnan(as_array(VOCABULARY["h"], [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
     as_array(VOCABULARY["h"], [None, 1.0], "h", errors)
-    assert errors == ["h[0] = nothing: must be a finite number, > 0"]
+    assert errors == ["h[0] = nothing: must be a finite number, in [1e-12, 1e6]"]
 
 
 def test_long_values_are_cut_in_messages():
     (message,) = messages(model=SMOOTH | {"P": "9" * 61})
-    assert message == 'P = "' + "9" * 56 + "...: must be a finite number, > 0"
+    assert message == 'P = "' + "9" * 56 + "...: must be a finite number, in [1e-24, 1e3]"
     (message,) = messages(model=SMOOTH | {"P": "9" * 58})
-    assert message == 'P = "' + "9" * 58 + '": must be a finite number, > 0'
+    assert message == 'P = "' + "9" * 58 + '": must be a finite number, in [1e-24, 1e3]'

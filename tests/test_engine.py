@@ -71,7 +71,7 @@ def test_a_killed_process_is_told_as_such():
 def test_threads_for_each_processor_unless_told_otherwise(monkeypatch):
     monkeypatch.setattr(cluster, "available_workers", lambda: 5)
     for workers, expected in ((None, 5), (2, 2)):
-        with engine(workers, "") as found:
+        with engine(workers, None) as found:
             assert isinstance(found.executor, ThreadPoolExecutor)
             assert found.executor._max_workers == expected and found.width() == AHEAD * expected
 
@@ -87,8 +87,18 @@ def test_processors_that_may_be_used(monkeypatch):
 
 @pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
 def test_processes_are_started_with_the_interrupt_blocked(monkeypatch):
-    """Between its start and its first line a worker would otherwise end with a traceback at Ctrl-C."""
-    blocked = []
+    """Between its start and its first line a worker would otherwise end with a traceback at Ctrl-C.
+
+    So is what removes their semaphores, and with the end of the terminal blocked.
+    """
+    blocked, masks, quiet = [], [], "ignore::UserWarning:multiprocessing.resource_tracker"
+
+    def ensure_running():
+        masks.append((signal.pthread_sigmask(signal.SIG_BLOCK, ()), os.environ["PYTHONWARNINGS"]))
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # as that of multiprocessing does
+
+    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", ensure_running)
+    monkeypatch.setenv("PYTHONWARNINGS", "error")
 
     class Pool(AtOnce):
         def __init__(self, count, context, begin):
@@ -98,16 +108,21 @@ def test_processes_are_started_with_the_interrupt_blocked(monkeypatch):
             blocked.append(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()))
 
     monkeypatch.setattr(cluster, "ProcessPoolExecutor", Pool)
-    with engine(2, "", 8):
+    with engine(2, None, 8):
         assert blocked == [True, True], "each is started at once"
+        assert [({signal.SIGINT, signal.SIGHUP} <= mask, filters) for mask, filters in masks] == [
+            (True, f"error,{quiet}")
+        ]
+        assert os.environ["PYTHONWARNINGS"] == "error"
         assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
 
 
 def test_where_signals_cannot_be_blocked_processes_are_started_all_the_same(monkeypatch):
     for name in ("pthread_sigmask", "SIG_BLOCK", "SIG_SETMASK"):
         monkeypatch.delattr(signal, name, raising=False)
+    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", lambda: None)
     monkeypatch.setattr(cluster, "ProcessPoolExecutor", lambda *_: AtOnce())
-    with engine(2, "", 8) as found:
+    with engine(2, None, 8) as found:
         assert found.width() == 2 * AHEAD
 
 
@@ -151,13 +166,13 @@ def client(monkeypatch):
 
 
 def test_as_much_for_a_cluster_as_it_has_threads(client, monkeypatch):
-    with engine(None, "tcp://host:1") as found:
+    with engine(None, "tcp://127.0.0.1:1") as found:
         assert found.width() == AHEAD * 5
         client.threads = {"one": 2}
         assert found.width() == AHEAD * 2, "a machine has left"
         client.threads = {}
         assert found.width() == AHEAD, "there may come another"
-        assert client.done == [("tcp://host:1", cluster.CONNECT, False)]
+        assert client.done == [("tcp://127.0.0.1:1", cluster.CONNECT, False)]
         client.threads = None
         with pytest.raises(Lost, match="^the scheduler is gone$"):
             found.width()
@@ -166,13 +181,13 @@ def test_as_much_for_a_cluster_as_it_has_threads(client, monkeypatch):
 
 def test_workers_bound_the_threads_of_a_cluster(client):
     for workers, expected in ((3, 3), (9, 5)):
-        with engine(workers, "tcp://host:1") as found:
+        with engine(workers, "tcp://127.0.0.1:1") as found:
             assert found.width() == AHEAD * expected
 
 
 def test_a_cluster_needs_its_package(monkeypatch):
     monkeypatch.setitem(sys.modules, "dask.distributed", None)
-    with pytest.raises(StudyError) as caught, engine(None, "tcp://host:1"):
+    with pytest.raises(StudyError) as caught, engine(None, "tcp://127.0.0.1:1"):
         pass
     assert caught.value.messages == ("--scheduler needs the package distributed: pip install 'roughcoat[cluster]'",)
 

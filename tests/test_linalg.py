@@ -62,3 +62,11 @@ def test_an_indefinite_member_of_a_shared_operator():
     diagonal[5] = -1.0
     x = solve_stack(K[None], diagonal, rhs)
     assert_allclose(x, np.linalg.solve(K + diagonal[:, :, None] * np.eye(6), rhs), rtol=1e-11, atol=0)
+
+
+def test_a_negative_pivot_near_zero_costs_no_digits():
+    """Without an exchange of rows [[-1e-14, 1], [1, 1]] loses fourteen of them."""
+    K = np.tile(np.eye(2), (MANY, 1, 1))
+    K[0] = [[-1e-14, 1.0], [1.0, 1.0]]
+    x = solve_stack(K, np.zeros((MANY, 2)), np.tile([[1.0], [3.0]], (MANY, 1, 1)))
+    assert_allclose(x[0, :, 0], [2.0, 1.0], rtol=1e-13, atol=0)  # 1e-14 is what the pivot changes

@@ -56,7 +56,8 @@ def test_the_state_of_a_study_counts_what_is_done():
 
 
 def test_the_cost_of_a_study_counts_what_is_computed():
-    text = cost_line("fig04", Estimate(2000, 500, 125.0, 5e8, 7e8))
+    text = cost_line("fig04", Estimate(2000, 500, 125.0, 5e8, 7e8, 1.4e9))
     assert text == (
-        "fig04: 2000 cases, 500 of them computed; the others: about 2 min 5 s, at most 0.5 GB of memory, 0.7 GB on disk"
+        "fig04: 2000 cases, 500 of them computed; the others: about 2 min 5 s, at most 0.5 GB of memory and 1.4 GB of "
+        "disk; the results are 0.7 GB"
     )

@@ -10,7 +10,8 @@ from line_study import load, store_block
 import study
 from solver import layer_tables
 from study import estimate as estimates
-from study import order
+from study import order, run, store
+from study.__main__ import main
 from study.definition import from_tables
 
 
@@ -18,7 +19,7 @@ def test_a_large_study_asks_first(file, monkeypatch, computed):
     monkeypatch.setattr(order, "LARGE", 400)
     opened = load(file)
     with pytest.raises(
-        study.StudyError, match=r"^line: 23 cases: about \d+ s, at most .* on disk; --yes computes them$"
+        study.StudyError, match=r"^line: 23 cases: about \d+ s, .* of disk; the results are .* GB; --yes computes them$"
     ):
         opened.run()
     assert not opened.results.joinpath("line.nc").exists() and computed == [], "nothing but a sample is computed"
@@ -44,8 +45,9 @@ def test_a_large_study_is_told_the_cost_with_its_workers(file, monkeypatch):
 
 
 def test_cost_in_words():
-    cost = estimates.Estimate(cases=9, present=1, seconds=125.4, memory=5.1e8, size=6.66e8)
-    assert estimates.describe(cost) == "about 2 min 5 s, at most 0.51 GB of memory, 0.67 GB on disk"
+    cost = estimates.Estimate(cases=9, present=1, seconds=125.4, memory=5.1e8, size=6.66e8, disk=1.4e9)
+    said = "about 2 min 5 s, at most 0.51 GB of memory and 1.4 GB of disk; the results are 0.67 GB"
+    assert estimates.describe(cost) == said
 
 
 def test_dry_run_says_what_is_there_and_writes_nothing(file):
@@ -153,6 +155,52 @@ def test_the_sample_is_spread_over_all_cases_and_timed_when_warm(monkeypatch):
 def test_estimated_memory_of_a_law_needs_no_solver():
     tables = {"kind": "micro_law", "cases": [{"Ra": 0.004, "Nbar": 250000}]}
     assert estimates.estimate(from_tables(tables, "law", "", "law"), 1, present=1).memory < 0.3e9
+
+
+@pytest.mark.parametrize("dtype", ["float64", "float32"])
+@pytest.mark.parametrize("before", [0, 1500], ids=["new", "extended"])
+def test_disk_stays_just_below_the_estimate(tmp_path, monkeypatch, before, dtype):
+    """Beside an earlier results file, which is there already. Looked at when the results file has just been written."""
+    most, real = [], run.discard
+
+    def discard(store):
+        most.append(sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file()))
+        real(store)
+
+    def opened(num):
+        axes = {"P": {"start": 1e-6, "stop": 2e-6, "num": num}, "nu1": [0.1, 0.3]}
+        model, output = {"base": "half_space", "micro": "smooth"}, {"dtype": dtype}
+        tables = {"model": model, "axes": axes, "numerics": {"block": 800}, "output": output}
+        return study.Study(from_tables(tables, "s", "", "s"), tmp_path)
+
+    monkeypatch.setattr(run, "discard", discard)
+    if before:
+        opened(before).run(workers=1)
+    estimated = opened(2999).dry_run().disk
+    opened(2999).run(workers=1)
+    # the estimate has room for the head of the file and for chunks that are not full, a tenth of so small a study
+    assert (0.8 if dtype == "float64" else 0.7) * estimated < most[-1] < estimated
+
+
+def test_what_is_there_is_said_of_a_new_large_study_without_looking_at_its_cases(tmp_path, monkeypatch, capsys):
+    """3e8 cases, whose keys would be 5 GB."""
+    monkeypatch.setattr(store, "case_keys", lambda _: 1 / 0)
+    axes = "P = {start = 1, stop = 2, num = 30000}\nnu1 = {start = 0.1, stop = 0.4, num = 10000}\n"
+    text = f'[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\n{axes}[output]\nprofiles = false\n'
+    (tmp_path / "huge.toml").write_text(text)
+    opened = study.load(tmp_path / "huge.toml", tmp_path / "results")
+    monkeypatch.setattr(estimates, "seconds_per_case", lambda _: 0.0)
+    assert opened.status()["counts"] == {127: 300_000_000} and opened.status()["state"] == "new"
+    assert opened.dry_run().present == 0
+    (tmp_path / "results" / ".huge.blocks").mkdir(parents=True)
+    (tmp_path / "results" / ".huge.blocks" / "a.block").touch()
+    for ask in (opened.status, opened.dry_run):
+        with pytest.raises(study.StudyError, match="^huge: 300000000 cases: .* 30 GB of memory; --yes does it$"):
+            ask()
+        with pytest.raises(ZeroDivisionError):
+            ask(yes=True)
+    assert main(["status", str(tmp_path / "huge.toml"), "--results", str(tmp_path / "results")]) == 2
+    assert "; --yes does it" in capsys.readouterr().err
 
 
 VARIED = {

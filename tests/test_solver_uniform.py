@@ -120,3 +120,9 @@ def test_bisection_halves_to_its_tolerance_and_gives_up_nan():
     assert abs(x[0] - 0.3) < 1e-3 and abs(x[1] + 7) < 1e-6
     assert abs(g[0]) < 1e-9
     assert calls[2] == 3 and calls[1] > calls[0] > 8
+
+
+def test_much_relaxation_gets_more_approximations():
+    """k = 100 settles after 742, where the paper's own k takes less than 200."""
+    s = paper(20, k=100.0, a=0.04, base="half_space")
+    assert s.status[0] == Status.CONVERGED and 200 < s.iterations[0] < 40 * 101

@@ -116,5 +116,6 @@ def test_solve_names_every_parameter():
 
     listed = study.solve.__doc__.split("**parameters :")[1].split("all dimensionless")[0]
     assert set(PARAMETERS) - set(re.findall(r"\w+", listed)) == set()
-    arguments = re.findall(r"^    [*]{0,2}(\w+) : ", study.solve.__doc__, flags=re.MULTILINE)
+    # getdoc: Python 3.13 takes the indentation of docstrings away
+    arguments = re.findall(r"^[*]{0,2}(\w+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
     assert set(arguments) - {"StudyError"} == set(inspect.signature(study.solve).parameters)

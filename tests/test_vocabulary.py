@@ -143,11 +143,19 @@ def test_parameters_are_in_their_order():
 INF = float("inf")
 # name: smallest and largest values that are allowed, and just outside of them; None: no such end.
 LIMITS = {
-    **dict.fromkeys(("P", "a", "D", "h", "n", "Nbar", "Ra", "B", "fit.p_min", "fit.p_max", "fit.step"), (5e-324, 0)),
+    **dict.fromkeys(("fit.p_min", "fit.p_max", "fit.step"), (5e-324, 0)),
+    "P": (1e-24, 0.99e-24, 1e3, 1.01e3),
+    "a": (1e-9, 0.99e-9, 1e3, 1.01e3),
+    "D": (1e-18, 0.99e-18, 1e3, 1.01e3),
+    "h": (1e-12, 0.99e-12, 1e6, 1.01e6),
+    "n": (1e-9, 0.99e-9, 1e9, 1.01e9),
+    "Nbar": (1e-4, 0.99e-4, 1e18, 1.01e18),
+    "Ra": (1e-7, 0.99e-7, 100, 101),
+    "B": (1e-8, 0.99e-8, 1e4, 1.01e4),
     "nu1": (-0.999, -1, 0.5, 0.501),
     "nu2": (-0.999, -1, 0.5, 0.501),
-    "beta": (1e-9, 0, 1, 1.001),
-    "k": (0, -1e-9),
+    "beta": (0.01, 0.0099, 1, 1.001),
+    "k": (0, -1e-9, 1e6, 1.01e6),
     "rtol": (1e-12, 0.99e-12, 0.1, 0.101),
     "accuracy": (1e-12, 0, 0.999, 1),
     "nodes": (4, 3, 256, 257),

@@ -1,0 +1,25 @@
+"""The text of a study file, if it is one that tomllib can be given: not endless, and not made to exhaust the memory."""
+
+import errno
+import re
+from pathlib import Path
+
+LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
+MOST_PARTS = 50  # of a dotted key; tomllib takes memory by their square, 2.4 GB for 20,000
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
+
+
+def text_in(path: Path) -> str:
+    """The text of a study file. Raises OSError, or ValueError for what is none."""
+    if path.exists() and not path.is_file() and not path.is_dir():  # which says so itself
+        raise OSError(errno.EINVAL, "is no regular file")
+    with open(path, "rb") as file:
+        raw = file.read(LARGEST_FILE + 1)
+    if len(raw) > LARGEST_FILE:
+        raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
+    text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    long = LONG_KEY.search(text)
+    if long:
+        raise ValueError(f"a key has more than {MOST_PARTS} parts (at line {text.count(chr(10), 0, long.start()) + 1})")
+    return text

@@ -70,6 +70,7 @@ mutants: $(READY) ## which of some 400 small mistakes in the code the tests noti
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
 	$(VENV)/bin/python tests/fuzz_solver.py
 	$(VENV)/bin/python tests/fuzz_studies.py
+	$(VENV)/bin/python tests/fuzz_files.py
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json

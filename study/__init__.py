@@ -11,7 +11,7 @@ _HOME = {
     "solve": "api",
     "load": "api",
     "Study": "api",
-    "open_results": "dataset",
+    "open_results": "results_file",
     "StudyError": "definition",
     "to_physical": "units",
     "from_physical": "units",

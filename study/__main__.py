@@ -1,4 +1,6 @@
-"""Command line of roughcoat: python -m study list | check | run | retry | status | plot | table | tradeoff.
+"""Command line of roughcoat: python -m study COMMAND, one of
+
+list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. They say what
 became of the work, whoever hears of it: nothing stops because a terminal is gone, or a reader has left. Only where
@@ -53,6 +55,8 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
     sub = command(status, "say what has been computed", "files")
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
+    command(verify, "compare results with their checksums: exit code 1 for what is damaged or has none", "files")
+    command(clean, "remove blocks that do not serve a study as it is now, say which; never results", "files")
     sub = command(plot, "draw figures from results", "names")
     sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
     sub = command(table, "write tables from results", "names")
@@ -128,6 +132,26 @@ def status(options) -> int:
         return _answer(state_line(study.definition, state), *count_lines(state["counts"]))
 
     return _each(options.files, one)
+
+
+def verify(options) -> int:
+    from .answers import verified_line
+    from .api import load
+    from .examine import examine
+
+    def one(file):
+        results = Path(file).suffix == ".nc"
+        found = examine(file) if results else load(study_file(file), options.results).verify()
+        print(verified_line(found.path, found), file=sys.stdout if found.good else sys.stderr)
+        return 0 if found.kind == "sound" else 2 if found.kind == "missing" else 1
+
+    return _each(options.files, one)
+
+
+def clean(options) -> int:
+    from .api import load
+
+    return _each(options.files, lambda file: _print_lines(load(study_file(file), options.results).clean()))
 
 
 def plot(options) -> int:

@@ -3,6 +3,7 @@
 from .dataset import NO_SOLUTION, status_words
 from .definition import Definition
 from .estimate import Estimate, describe
+from .examine import Condition
 from .order import Report
 from .terminal import on_one_line
 from .vocabulary import NOT_RUN
@@ -13,7 +14,18 @@ def state_line(definition: Definition, state: dict) -> str:
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
     text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
     done = text.format(cases - missing, cases) if state["counts"] else ""
-    return f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
+    line = f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
+    return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
+
+
+def verified_line(name: str, found: Condition) -> str:
+    """What `verify` found."""
+    said = {
+        "sound": "verified, every number is the one that was written",
+        "unverified": "an earlier version wrote it without checksums, so it cannot be verified; nothing wrong was seen",
+        "missing": "does not exist",
+    }
+    return f"{name}: {said.get(found.kind, found.reason)}"
 
 
 def count_lines(counts: dict[int, int]) -> list[str]:
@@ -32,8 +44,9 @@ def failure_lines(report: Report, name: str) -> list[str]:
 
 def report_line(report: Report, name: str) -> str:
     """What a run without failed blocks did."""
+    kept = f"\n{report.kept}" if report.kept else ""
     if not report.counts and not report.computed:
-        return f"{report.path} is up to date ({report.cases} cases), nothing to do"
+        return f"{report.path} is up to date ({report.cases} cases), nothing to do{kept}"
     if not report.complete:
         missing = report.counts.get(NOT_RUN, 0)
         return f"{name}: {report.computed} cases computed now, {missing} of {report.cases} are missing: other parts"
@@ -44,7 +57,7 @@ def report_line(report: Report, name: str) -> str:
         remarks.append(f"{by_status(refused)}: no solution exists, which is no failure")
     if failed:
         remarks.append(f"{sum(failed.values())} of them not converged ({by_status(failed)}): see `status` in the file")
-    return ", ".join(remarks)
+    return ", ".join(remarks) + kept
 
 
 def by_status(counts: dict[int, int]) -> str:

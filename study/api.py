@@ -8,15 +8,19 @@ import numpy as np
 import xarray as xr
 
 from .blocks import compute, parcel
-from .dataset import command_line, digest_in, labelled, open_lazily, open_results
+from .dataset import command_line, labelled
 from .definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .draft import Draft
 from .estimate import Estimate
+from .examine import Condition
 from .grid import LONGEST_AXIS
-from .order import Report, check_countable, results_path
+from .netcdf import Unusable
+from .order import Report, belongs, check_countable, look, results_path
+from .results_file import open_lazily, open_results
 from .reuse import at_hand, earlier, statuses
 from .run import dry_run, partial_dataset, run
 from .store import Store, count_statuses, inventory
+from .tidy import clean
 from .vocabulary import NOT_RUN
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
@@ -82,42 +86,62 @@ class Study:
         return dry_run(self.definition, self.results, workers=workers, yes=yes)
 
     def status(self, yes: bool = False) -> dict:
-        """State ("done", "outdated", "partial", "new"), cases, status -> number of cases, path of the results.
+        """State, cases, status -> number of cases, path of the results, what is wrong with them.
 
-        Cases of an outdated results file that a run would use again count as computed; so do those in blocks. Raises
-        StudyError for a very large study that is neither new nor done, unless `yes`: counting takes memory.
+        The state is "done", "outdated", "partial" or "new", or of a results file that cannot be used "damaged",
+        "foreign" (none of ours) or "unreadable"; then `reason` says what is wrong. Attributes, coordinates and statuses
+        are verified, the other numbers are by `verify`. Cases of an outdated results file that a run would use again
+        count as computed; so do those in blocks. Raises StudyError for a very large study that is neither new nor
+        done, unless `yes`: counting takes memory.
         """
-        path, kind = results_path(self.definition, self.results), self.definition.kind
-        state = "new" if not path.exists() else "outdated"
-        if digest_in(path) == self.definition.digest:
-            state = "done"
-        if kind != "contact":
-            counts = {}
-        elif state == "done":
+        path = results_path(self.definition, self.results)
+        found = look(self.definition, path, ("status",))
+        state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
+        state = "done" if belongs(self.definition, found) else state
+        counts = {}
+        if self.definition.kind == "contact" and state == "done":
             counts = count_statuses(statuses(path))
+        elif self.definition.kind != "contact" or state not in ("new", "outdated"):
+            pass
         elif not check_countable(Store(self.definition, self.results), path, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
             known = inventory(Store(self.definition, self.results))
-            counts = count_statuses(at_hand(known, earlier(self.definition, path)))
+            counts = count_statuses(at_hand(known, earlier(self.definition, found)))
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
-        return {"state": state, "cases": self.definition.grid.size, "counts": counts, "path": path}
+        return {
+            "state": state, "cases": self.definition.grid.size, "counts": counts, "path": path, "reason": found.reason
+        }  # fmt: skip
+
+    def verify(self) -> Condition:
+        """All of the results file against its checksums, see `study.examine.Condition`."""
+        return look(self.definition, results_path(self.definition, self.results))
+
+    def clean(self) -> list[str]:
+        """Remove blocks that do not serve the study as it is; says which. Never touches results."""
+        found = look(self.definition, results_path(self.definition, self.results))
+        return clean(Store(self.definition, self.results), belongs(self.definition, found))
 
     def open(self, partial: bool = False) -> xr.Dataset:
-        """The results. Raises StudyError when there are none, or none of this definition.
+        """The results. Raises StudyError when there are none, none of this definition, or they are damaged.
+
+        Any thread may open results, and read them, while others run studies.
 
         A large file is opened lazily, its variables are dask arrays in chunks of some thousand cases; others are read.
 
         partial : give the blocks computed so far instead, with status 127 (not run) for the rest
         """
         path = results_path(self.definition, self.results)
-        digest = digest_in(path)
-        if digest == self.definition.digest:
+        found = look(self.definition, path, ())
+        if belongs(self.definition, found):
             return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
         if partial and self.definition.kind == "contact":
             return partial_dataset(self.definition, self.results)
-        reason = "holds results of another definition" if path.exists() else "does not exist"
-        raise StudyError([f"{path}: {reason}; run the study first"])
+        if found.good or found.kind == "missing":
+            reason = "holds results of another definition" if found.good else "does not exist"
+            raise StudyError([f"{path}: {reason}; run the study first"])
+        again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
+        raise Unusable(path, found.kind, found.reason + again)
 
 
 def load(path, results="results") -> Study:

@@ -1,4 +1,4 @@
-"""Files that are either whole or not there."""
+"""Files that are either whole or not there, and that a power cut does not take away again."""
 
 import os
 import secrets
@@ -25,3 +25,26 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
+    flush_folder(path.parent)  # and what comes after, such as removing blocks, before the rename
+
+
+def make_folder(path: Path) -> None:
+    """Make a folder, and those above it, so that they outlast a power cut."""
+    missing = [folder for folder in (path, *path.parents) if not folder.exists()]
+    path.mkdir(parents=True, exist_ok=True)
+    for folder in missing:
+        flush_folder(folder.parent)
+
+
+def flush_folder(path: Path) -> None:
+    """Flush the names in a folder to the disk; a system or a file system that knows no such thing is left alone."""
+    try:
+        folder = os.open(path, os.O_RDONLY)
+    except OSError:
+        return
+    try:
+        os.fsync(folder)
+    except OSError:
+        pass
+    finally:
+        os.close(folder)

@@ -6,6 +6,7 @@ Not netCDF: this may be read and written by any thread, and a checksum covers al
 import hashlib
 import json
 import math
+import stat
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,7 +19,9 @@ CHECK = hashlib.sha256().digest_size
 
 
 class Damaged(OSError):
-    """A file that is no block, or no longer the one that was written."""
+    """What is no block, or no longer the one that was written. is_file : it is a file, of whatever content."""
+
+    is_file = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +31,12 @@ class Block:
     facts: dict
     keys: np.ndarray
     arrays: dict[str, np.ndarray]
+
+
+class NoFile(Damaged):
+    """A folder, a pipe or a device."""
+
+    is_file = False
 
 
 def write_block(path: Path, block: Block) -> None:
@@ -45,6 +54,8 @@ def write_block(path: Path, block: Block) -> None:
 
 def read_block(path: Path) -> Block:
     """The block in a file. Raises Damaged, or OSError when it cannot be read."""
+    if not stat.S_ISREG(path.stat().st_mode):  # a pipe would be waited for
+        raise NoFile(f"{path}: is no file, so no block")
     data = path.read_bytes()
     try:
         if not data.startswith(MAGIC) or checksum_of(memoryview(data)[:-CHECK]) != data[-CHECK:]:

@@ -1,19 +1,11 @@
-"""Results as datasets: flat arrays -> labelled Dataset with CF-1.11 attributes and provenance; atomic write; open.
-
-netCDF is touched here only, and must be touched by the main thread only: from several threads it crashes, even on
-different files.
-"""
+"""Results as datasets: flat arrays -> labelled Dataset with CF-1.11 attributes and provenance."""
 
 import json
 import os
 import platform
 import shlex
-import signal
 import subprocess
 import sys
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager
 from datetime import UTC, datetime
 from importlib import metadata
 from pathlib import Path
@@ -23,7 +15,6 @@ import xarray as xr
 
 from solver import NUMERICS_VERSION, Model, Status
 
-from .atomic import replacing
 from .blocks import INTEGERS
 from .definition import Definition
 from .derived import validity
@@ -167,65 +158,3 @@ def package_version(package: str) -> str:
         return metadata.version(package)
     except metadata.PackageNotFoundError:
         return "unknown"
-
-
-@contextmanager
-def interrupts_wait() -> Iterator[None]:
-    """Hold SIGINT and SIGTERM back until the block is left: an exception inside xarray's locks leaves one locked."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    pending = []
-    kinds = (signal.SIGINT, signal.SIGTERM)
-    previous = {kind: signal.signal(kind, lambda number, _: pending.append(number)) for kind in kinds}
-    try:
-        yield
-    finally:
-        for kind, handler in previous.items():
-            signal.signal(kind, handler or signal.SIG_DFL)
-        if pending:
-            signal.raise_signal(pending[0])
-
-
-def encoding(array: xr.DataArray) -> dict:
-    """How a variable is stored, in the words of netCDF4 and of xarray.
-
-    Profiles are nearly all of a file. Compressing them takes longer than the rest of the writing and gains little.
-    """
-    data, numbers = array.name not in array.coords, array.dtype.kind in "fiu"
-    options = {"fill_value": np.nan if data and array.dtype.kind == "f" else None}
-    if not data or not numbers or not array.ndim:
-        return options
-    if "x" in array.dims:
-        return options | {"fletcher32": True}
-    return options | {"zlib": True, "complevel": 1, "shuffle": True}
-
-
-def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write a small dataset: `path` either is complete or does not exist."""
-    options = {name: encoding(dataset[name]) for name in dataset.variables}
-    for given in options.values():
-        given["_FillValue"] = given.pop("fill_value")
-    with replacing(path) as temporary, interrupts_wait():
-        dataset.to_netcdf(temporary, engine="netcdf4", encoding=options)
-
-
-def open_results(path) -> xr.Dataset:
-    """A results file, read into memory and closed. Raises OSError when it does not exist or is no netCDF file."""
-    with interrupts_wait(), xr.open_dataset(path, engine="netcdf4") as dataset:
-        return plainly_written(dataset.load())
-
-
-def open_lazily(path) -> xr.Dataset:
-    """A results file as dask arrays in its chunks: numbers are read when they are asked for."""
-    with interrupts_wait():
-        return plainly_written(xr.open_dataset(path, engine="netcdf4", chunks={}))
-
-
-def digest_in(path: Path) -> str:
-    """Digest of the study that a results file belongs to; "" for a file that is none of ours."""
-    try:
-        with interrupts_wait(), xr.open_dataset(path, engine="netcdf4") as dataset:
-            return str(dataset.attrs.get("study_digest", ""))
-    except (OSError, ValueError):
-        return ""

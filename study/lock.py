@@ -5,6 +5,8 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
+from .atomic import make_folder
+
 try:
     import fcntl
 except ImportError:  # not POSIX: two runs at once compute the same blocks twice, which harms nothing
@@ -32,7 +34,7 @@ def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callab
 
 def _opened(path: Path) -> int:
     while True:
-        path.parent.mkdir(parents=True, exist_ok=True)
+        make_folder(path.parent)
         try:
             return os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
         except FileNotFoundError:  # the folder has just been removed

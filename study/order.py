@@ -8,9 +8,11 @@ from typing import TextIO
 
 import numpy as np
 
-from .dataset import digest_in, status_words
+from .atomic import make_folder
+from .dataset import status_words
 from .definition import LARGE, Definition, StudyError
 from .estimate import PER_CASE, describe, estimate
+from .examine import Condition, examine
 from .reuse import statuses
 from .store import Inventory, Store, count_statuses
 from .vocabulary import NOT_RUN, suggest
@@ -27,7 +29,8 @@ class Report:
     """What a run did.
 
     computed : cases computed now; failures : number of the block -> reason; counts : status -> number of cases, empty
-    when there was nothing to do; path : written if `complete`, otherwise cases failed or belong to other parts
+    when there was nothing to do; path : written if `complete`, otherwise cases failed or belong to other parts; kept :
+    what still lies among the blocks, in words
     """
 
     path: Path
@@ -36,6 +39,7 @@ class Report:
     failures: dict[int, str]
     counts: dict[int, int]
     complete: bool
+    kept: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,10 +80,9 @@ class Order:
         """Whether others compute at the same time."""
         return self.part[1] > 1
 
-    @property
-    def done(self) -> bool:
-        """Whether the results are there already, and hold no case to be tried again."""
-        if digest_in(self.path) != self.definition.digest:
+    def done(self, found: Condition) -> bool:
+        """Whether a results file that was examined is that of this study, and holds no case to be tried again."""
+        if not belongs(self.definition, found):
             return False
         again = self.retry and self.definition.kind == "contact"
         return not (again and np.isin(statuses(self.path), self.retry).any())
@@ -87,6 +90,32 @@ class Order:
     def report(self, known: Inventory | None = None, **what) -> Report:
         counts = count_statuses(known.status) if known else {}
         return replace(Report(self.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what)
+
+
+def look(definition: Definition, path: Path, columns: tuple[str, ...] | None = None) -> Condition:
+    """`examine` the results file of a study, the order of its dimensions included."""
+    found = examine(path, columns)
+    sizes = list(definition.grid.sizes.items())
+    if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
+        reason = (
+            f"another program has changed it: its dimensions are {list(found.sizes)}, not {[dim for dim, _ in sizes]}"
+        )
+        return replace(found, kind="foreign", reason=reason)
+    return found
+
+
+def stamp(path: Path) -> tuple | None:
+    """What changes when a file is replaced; None when there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns
+
+
+def belongs(definition: Definition, found: Condition) -> bool:
+    """Whether an undamaged results file is that of this very study."""
+    return found.good and found.digest == definition.digest
 
 
 def results_path(definition: Definition, results) -> Path:
@@ -108,7 +137,7 @@ def check_writable(path: Path) -> None:
         raise StudyError([f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"])
     folder = path.parent
     try:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         if path.is_symlink():
             folder = Path(os.path.realpath(path)).parent
         with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind

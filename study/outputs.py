@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .dataset import open_results
 from .definition import StudyError
+from .results_file import open_results
 from .vocabulary import suggest
 
 

@@ -12,16 +12,19 @@ import xarray as xr
 from . import micro_law
 from .blocks import Failure, cut, guarded, parcel
 from .cluster import as_they_come, engine
-from .dataset import NO_SOLUTION, labelled, status_words, write
+from .dataset import NO_SOLUTION, labelled, status_words
 from .definition import Definition
 from .estimate import Estimate, estimate
+from .examine import Condition
 from .join import writing
 from .lock import held
-from .order import Order, Report, check_countable, check_size, check_writable
+from .order import Order, Report, check_countable, check_size, check_writable, look, stamp
 from .progress import Progress
+from .results_file import write
 from .reuse import adopt, at_hand, check_replaceable, earlier
-from .store import Inventory, Store, add, discard, gather, inventory, remove_litter
+from .store import Inventory, Store, add, gather, inventory, remove_litter
 from .terminal import say
+from .tidy import tidy
 from .vocabulary import NOT_RUN
 
 log = logging.getLogger(__name__)
@@ -38,42 +41,52 @@ def run(definition: Definition, results="results", **options) -> Report:
         the next run.
     """
     order = Order(definition, Path(results), **options)
-    if order.done:
-        if order.store.folder.exists():  # a run was killed between its last two steps
-            _last(order, order.report())
+    found, seen = look(definition, order.path), stamp(order.path)
+    if order.done(found):
+        if order.store.folder.exists():  # a run was killed between its last two steps, or other blocks lie there
+            return _last(order, order.report())
         return order.report()
     check_writable(order.path)
     check_size(order)
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-            report = _computed(order)
+            if stamp(order.path) != seen:  # by the run that this one has waited for
+                found = look(definition, order.path)
+            report = _computed(order, found)
         return _last(order, report) if order.shared else report
     except FileNotFoundError:
-        if order.done:  # by another run, which has removed the blocks: on a file system without locks
+        if order.done(look(definition, order.path)):  # by another run, which has removed the blocks: without locks
             return order.report()
         raise
 
 
-def _computed(order: Order) -> Report:
+def _computed(order: Order, found: Condition) -> Report:
     """Compute what is missing, and write the results unless others compute too."""
-    if order.done:  # by the run that this one has waited for
-        discard(order.store)
-        return order.report()
+    if order.done(found):
+        return order.report(kept=tidy(order.store, inventory(order.store, force=True)))
+    if found.kind == "damaged":
+        log.warning(
+            "%s: %s; computing again what is damaged, %s.damaged keeps it", order.path, found.reason, order.path
+        )
     if order.definition.kind == "micro_law":
-        found = earlier(order.definition, order.path)
-        if found and not order.force and (found.cases or not found.digest):  # another law is made again in a moment
-            check_replaceable(order.store, found, np.empty((0, 2), dtype=np.uint64))
-        write(micro_law.compute(order.definition, order.command), order.path)
-        discard(order.store)
-        return order.report(computed=order.definition.grid.size)
-    known = prepared(order)
+        return _law(order, found)
+    known = prepared(order, found)
     missing = len(known.missing)
-    writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known))
+    writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))
     with writer as steps:
         failures = compute_blocks(order, known, steps)
-        if not order.shared:
-            _finish(order, known, steps)
-    return order.report(known, computed=missing - len(known.missing), failures=failures)
+        kept = "" if order.shared else _finish(order, known, steps)
+    return order.report(known, computed=missing - len(known.missing), failures=failures, kept=kept)
+
+
+def _law(order: Order, found: Condition) -> Report:
+    """Compute the law, which takes a moment, in place of another law only."""
+    there = earlier(order.definition, found)
+    if there and (there.cases or not found.digest):
+        check_replaceable(order.store, there, np.empty((0, 2), dtype=np.uint64), order.force)
+    write(micro_law.compute(order.definition, order.command), order.path, aside=found.kind == "damaged")
+    kept = tidy(order.store, inventory(order.store, force=True))
+    return order.report(computed=order.definition.grid.size, kept=kept)
 
 
 def _last(order: Order, report: Report) -> Report:
@@ -81,42 +94,42 @@ def _last(order: Order, report: Report) -> Report:
     with held(order.store.lock, wait=False) as alone:
         if not alone:
             return report
-        if order.done:
-            discard(order.store)
-            return replace(report, complete=True)
-        known = inventory(order.store)
-        with closing(_writing(order, known)) as steps:
-            _finish(order, known, steps)
-        return order.report(known, computed=report.computed, failures=report.failures)
+        found = look(order.definition, order.path)
+        if order.done(found):
+            return replace(report, complete=True, kept=tidy(order.store, inventory(order.store, force=True)))
+        known = inventory(order.store, force=order.force)
+        with closing(_writing(order, known, found)) as steps:
+            kept = _finish(order, known, steps)
+        return order.report(known, computed=report.computed, failures=report.failures, kept=kept)
 
 
-def _writing(order: Order, known: Inventory) -> Iterator[None]:
-    return writing(order.store, known, order.path, order.command)
+def _writing(order: Order, known: Inventory, found: Condition) -> Iterator[None]:
+    return writing(order.store, known, order.path, order.command, aside=found.kind == "damaged")
 
 
-def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> None:
-    """The rest of the steps, if no case is missing."""
-    if not len(known.missing):
-        for _ in steps:
-            pass
-        discard(order.store)
+def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> str:
+    """The rest of the steps, if no case is missing; what then still lies among the blocks, in words."""
+    if len(known.missing):
+        return ""
+    for _ in steps:
+        pass
+    return tidy(order.store, known)
 
 
 def say_waiting(order: Order) -> None:
     say(f"{order.definition.name}: waiting for another run of this study to end", order.stream)
 
 
-def prepared(order: Order) -> Inventory:
+def prepared(order: Order, file: Condition) -> Inventory:
     """What is on disk, cases of an earlier results file included. Raises StudyError when these would be lost."""
     if not order.shared:
         remove_litter(order.store)
-    known, found = inventory(order.store, order.retry, order.force), earlier(order.definition, order.path)
+    known, found = inventory(order.store, order.retry, order.force), earlier(order.definition, file)
     if found is None:
         return known
-    if not order.force:
-        check_replaceable(order.store, found, known.keys)
+    check_replaceable(order.store, found, known.keys, order.force)
     adopt(order.store, known, found, order.retry)
-    return inventory(order.store, order.retry)
+    return inventory(order.store, order.retry, order.force)
 
 
 def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dict[int, str]:
@@ -157,11 +170,12 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
     StudyError : the study is very large and there are results or blocks to look through, and no `yes`
     """
     order = Order(definition, Path(results))
-    if definition.kind == "micro_law" or order.done:
+    found = look(definition, order.path)
+    if definition.kind == "micro_law" or order.done(found):
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, order.path, yes):
         return estimate(definition, workers)
-    status = at_hand(inventory(order.store), earlier(definition, order.path))
+    status = at_hand(inventory(order.store), earlier(definition, found))
     return estimate(definition, workers, int(np.count_nonzero(status != NOT_RUN)))
 
 

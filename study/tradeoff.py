@@ -22,8 +22,10 @@ from solver.parameters import BASES
 from solver.uniform import solve_uniform, uniform_mesh
 
 from . import paper_error
-from .dataset import digest_in, open_results, provenance, write
+from .dataset import provenance
+from .examine import examine
 from .problem_sets import SETS
+from .results_file import open_results, write
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 REFERENCE = 1e-11
@@ -231,9 +233,15 @@ def digest(text: str) -> str:
 
 
 def results(folder, size: int = SIZE, force: bool = False, command: str = "") -> xr.Dataset:
-    """The measurements in FOLDER/tradeoff.nc; made first if they are not there, of another plan, or by `force`."""
+    """The measurements in FOLDER/tradeoff.nc; made first if not there, damaged, of another plan, or by `force`.
+
+    A damaged file is kept aside. Raises Unusable for one that is none of ours.
+    """
     path = Path(folder) / "tradeoff.nc"
-    if force or digest_in(path) != digest(plan(WAYS, size)):
+    found = examine(path)
+    if found.kind in ("foreign", "unreadable"):
+        found.raise_if_bad()
+    if force or not found.good or found.digest != digest(plan(WAYS, size)):
         path.parent.mkdir(parents=True, exist_ok=True)
-        write(measure(size, command=command), path)
+        write(measure(size, command=command), path, aside=found.kind == "damaged")
     return open_results(path)

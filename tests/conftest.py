@@ -41,8 +41,8 @@ def results(tmp_path_factory) -> Path:
 
 def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
-    from study.dataset import write
     from study.definition import from_tables
+    from study.results_file import write
     from study.run import run
     from study.tradeoff import WAYS, measure
 

@@ -1,10 +1,11 @@
 """Files that are either whole or not there."""
 
 import os
+import stat
 
 import pytest
 
-from study.atomic import replacing
+from study.atomic import make_folder, replacing
 
 
 def test_the_file_is_flushed_and_then_renamed(tmp_path, monkeypatch):
@@ -14,7 +15,8 @@ def test_the_file_is_flushed_and_then_renamed(tmp_path, monkeypatch):
     fsync, rename = os.fsync, os.replace
 
     def flushed(file):
-        assert path.read_text(encoding="utf-8") == "old" and os.fstat(file).st_size == 3
+        folder = stat.S_ISDIR(os.fstat(file).st_mode)
+        assert folder or path.read_text(encoding="utf-8") == "old" and os.fstat(file).st_size == 3
         steps.append(os.fstat(file).st_ino)
         fsync(file)
 
@@ -27,7 +29,7 @@ def test_the_file_is_flushed_and_then_renamed(tmp_path, monkeypatch):
     with replacing(path) as temporary:
         temporary.write_text("new", encoding="utf-8")
         assert temporary.parent == tmp_path and temporary.name.startswith(".file.")
-    assert steps == [path.stat().st_ino] * 2
+    assert steps == [path.stat().st_ino] * 2 + [tmp_path.stat().st_ino], "the file, its new name, the folder of names"
     assert path.read_text(encoding="utf-8") == "new" and os.listdir(tmp_path) == ["file"]
 
 
@@ -55,3 +57,12 @@ def test_two_writers_have_temporary_files_of_their_own(tmp_path):
         second.write_text("second", encoding="utf-8")
     assert (tmp_path / "file").read_text(encoding="utf-8") == "first", "the last to end"
     assert os.listdir(folder) == []
+
+
+def test_the_names_of_new_folders_are_flushed(tmp_path, monkeypatch):
+    flushed, real = [], os.fsync
+    monkeypatch.setattr(os, "fsync", lambda file: flushed.append(os.fstat(file).st_ino) or real(file))
+    make_folder(tmp_path / "results" / "blocks")
+    assert set(flushed) == {tmp_path.stat().st_ino, (tmp_path / "results").stat().st_ino}
+    make_folder(tmp_path / "results" / "blocks")
+    assert len(flushed) == 2, "nothing is new"

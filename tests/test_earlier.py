@@ -11,13 +11,18 @@ from study import reuse
 from study.block_file import read_block
 from study.case_key import case_keys
 from study.definition import Definition, from_tables
-from study.reuse import Earlier, adopt, check_replaceable, earlier
+from study.examine import Condition, examine
+from study.reuse import Earlier, adopt, check_replaceable
 from study.store import Store, inventory
 
 
 def line(P=(1e-6, 2e-6, 3e-6), **output) -> Definition:
     model, axes = {"n": 0.5, "micro": "smooth", "base": "thin_layer"}, {"P": list(P), "h": [0.001, 0.002]}
     return from_tables({"model": model, "axes": axes, "output": {"x": 3} | output}, "line", "", "line")
+
+
+def earlier(definition: Definition, path) -> Earlier | None:
+    return reuse.earlier(definition, examine(path))
 
 
 @pytest.fixture(scope="module")
@@ -34,7 +39,8 @@ def results(ran):
 
 def test_our_file(ran, results):
     found = earlier(line((2e-6, 9e-6)), results)
-    assert (found.digest, found.numerics, found.cases) == (ran.definition.digest, NUMERICS_VERSION, 6)
+    assert (found.condition.kind, found.condition.digest) == ("sound", ran.definition.digest)
+    assert (found.numerics, found.cases) == (NUMERICS_VERSION, 6)
     np.testing.assert_array_equal(found.keys, case_keys(ran.definition.grid))
 
 
@@ -59,23 +65,33 @@ def test_no_file_and_files_of_others(tmp_path, results):
     status.assign_attrs(ours).to_netcdf(tmp_path / "without_points.nc")
     for name in ("junk", "plain", "half", "without_points"):
         path = tmp_path / f"{name}.nc"
-        assert vars(earlier(line(), path)) == vars(Earlier(path)), name
+        found = earlier(line(), path)
+        assert (found.condition.kind, found.cases, found.keys) == ("foreign", 0, None), name
     xr.Dataset({"A_exact": 1.0}, attrs=ours).to_netcdf(tmp_path / "law.nc")
     law = earlier(line(), tmp_path / "law.nc")
-    assert (law.digest, law.keys, law.cases) == ("d", None, 0)
+    assert (law.condition.digest, law.keys, law.cases) == ("d", None, 0)
 
 
-def replaced(tmp_path, **found) -> None:
+def replaced(tmp_path, kind="sound", digest="other", force=False, **found) -> None:
     """Ask whether a results file, of the six cases of `line` but for what is `found`, may be replaced by theirs."""
     definition = line()
-    given = {"digest": "other", "numerics": NUMERICS_VERSION, "keys": case_keys(definition.grid), "cases": 6} | found
-    check_replaceable(Store(definition, tmp_path), Earlier(tmp_path / "f.nc", **given), case_keys(definition.grid))
+    keys = case_keys(definition.grid)
+    given = {"numerics": NUMERICS_VERSION, "keys": keys, "cases": 6, "grid": definition.grid} | found
+    condition = Condition(tmp_path / "f.nc", kind, "is so and so", digest)
+    check_replaceable(Store(definition, tmp_path), Earlier(condition, **given), keys, force)
+
+
+NOTHING = {"numerics": "", "keys": None, "cases": 0, "grid": None}
 
 
 def test_what_may_be_replaced(tmp_path):
     replaced(tmp_path)
     replaced(tmp_path, keys=case_keys(line().grid)[[3, 1]], cases=2)
     replaced(tmp_path, digest=line().digest, numerics="old", keys=None)
+    replaced(tmp_path, "damaged")
+    replaced(tmp_path, "damaged", "", **NOTHING)
+    replaced(tmp_path, "damaged", line().digest, **NOTHING)
+    replaced(tmp_path, force=True, keys=OTHER, cases=2)
 
 
 OTHER = case_keys(line((7e-6,)).grid)
@@ -85,7 +101,6 @@ SOME = case_keys(line().grid)
 @pytest.mark.parametrize(
     ("found", "message"),
     [
-        ({"digest": ""}, "f.nc: holds results of no study known here: --force replaces them, --results DIR"),
         ({"numerics": "old"}, f"f.nc: holds results of version old of the numerics, this is {NUMERICS_VERSION}: --for"),
         ({"keys": np.concatenate([SOME, OTHER[:1]]), "cases": 7}, "1 of its 7 cases are not in this one: --force repl"),
         ({"keys": OTHER, "cases": 2}, "2 of its 2 cases are not in this one"),
@@ -96,6 +111,27 @@ SOME = case_keys(line().grid)
 def test_what_may_not(tmp_path, found, message):
     with pytest.raises(study.StudyError, match=message):
         replaced(tmp_path, **found)
+
+
+@pytest.mark.parametrize(
+    ("found", "message"),
+    [
+        (
+            {"kind": "damaged", "grid": None},
+            "f.nc: is so and so; which cases it holds cannot be told: run the study as",
+        ),
+        (
+            {"kind": "damaged", "keys": OTHER, "cases": 2},
+            "is so and so; 2 of its 2 cases are not in this one: run the s",
+        ),
+        ({"kind": "foreign", "force": True}, "f.nc: is so and so; move it away, or use --results DIR"),
+        ({"kind": "unreadable", "force": True}, "f.nc: is so and so; move it away, or use --results DIR"),
+    ],
+)
+def test_nobody_is_invited_to_destroy_what_is_damaged_or_not_ours(tmp_path, found, message):
+    with pytest.raises(study.StudyError, match=message) as caught:
+        replaced(tmp_path, **found)
+    assert "--force" not in str(caught.value)
 
 
 @pytest.fixture
@@ -125,6 +161,7 @@ def test_cases_of_a_status_to_be_tried_again_are_not_adopted(ran, tmp_path):
     path.write_bytes((ran.results / "line.nc").read_bytes())
     with netCDF4.Dataset(path, "a") as file:
         file["status"][0, :] = [3, 5]
+        file.delncattr("checksums")
     store = Store(line((1e-6, 3e-6)), tmp_path)
     store.folder.mkdir()
     adopt(store, inventory(store), earlier(store.definition, path), (3,))

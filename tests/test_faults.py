@@ -6,6 +6,7 @@ import os
 import random
 import resource
 import signal
+import stat
 import time
 from pathlib import Path
 
@@ -58,12 +59,17 @@ def written(folder: Path, text: str = TEXT) -> study.Study:
     return study.load(folder / "line.toml", folder / "results")
 
 
-def assert_ends_well(opened: study.Study, undisturbed: xr.Dataset, computed: int | None = None) -> None:
-    """The next run computes so many cases, gives the dataset of an undisturbed run and leaves nothing else."""
+def assert_ends_well(opened: study.Study, undisturbed: xr.Dataset, computed: int | None = None, kept=()) -> None:
+    """The next run computes so many cases, gives the dataset of an undisturbed run and leaves nothing but the blocks
+    that are to be `kept`: what is in them is not in the results."""
     report = opened.run(workers=2)
     assert report.complete and (computed is None or report.computed == computed)
     assert_same(opened.open(), undisturbed)
-    assert [path.name for path in opened.results.rglob("*")] == ["line.nc"]
+    blocks = [f".line.blocks/{name}" for name in ("lock", *(path.name for path in kept))] if kept else []
+    assert sorted(
+        path.relative_to(opened.results).as_posix() for path in opened.results.rglob("*") if path.is_file()
+    ) == (sorted([*blocks, "line.nc"]))
+    assert bool(report.kept) == bool(kept)
 
 
 def cases_on_disk(opened: study.Study) -> set[int]:
@@ -89,7 +95,7 @@ def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
     assert_ends_well(opened, undisturbed, CASES - len(before))
 
 
-@pytest.mark.parametrize("at", ["run._finish", "join.create", "run.discard"])
+@pytest.mark.parametrize("at", ["run._finish", "join.create", "run.tidy"])
 def test_killed_while_the_results_are_written(opened, undisturbed, tmp_path, at):
     process = child(tmp_path / "line.toml", tmp_path / "log", at=at, workers=2)
     process.join(PATIENCE)
@@ -133,7 +139,7 @@ def test_a_block_of_another_study_is_not_taken_for_one_of_this(opened, undisturb
     (tmp_path / "other").mkdir()
     other = written(tmp_path / "other", TEXT.replace("n = 0.5", "n = 0.6"))
     paths[0].write_bytes(store_block(other, 0, BLOCK).read_bytes())
-    assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK)
+    assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK, kept=paths[:1])
 
 
 def test_nothing_executable_is_read(opened, undisturbed, tmp_path):
@@ -173,7 +179,7 @@ def test_disk_full_half_way(opened, undisturbed, monkeypatch):
     flushed, real = [], os.fsync
 
     def fsync(file):
-        flushed.append(file)
+        flushed.extend([file] * stat.S_ISREG(os.fstat(file).st_mode))
         if len(flushed) > 3:
             raise OSError(errno.ENOSPC, "No space left on device")
         real(file)

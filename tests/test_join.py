@@ -14,9 +14,10 @@ from same import assert_same
 import study
 from study import join
 from study.blocks import compute, parcel
-from study.dataset import labelled, open_lazily, write
+from study.dataset import labelled
 from study.definition import from_tables
 from study.grid import Grid, box, cut_out, windows
+from study.results_file import open_lazily, write
 
 shapes = st.lists(st.integers(1, 7), max_size=4).map(tuple)
 

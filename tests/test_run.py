@@ -55,7 +55,7 @@ def test_interrupted_run_computes_only_the_missing_blocks(file, computed, monkey
     with pytest.raises(KeyboardInterrupt):
         opened.run(workers=workers)
     done = sum(len(range(i * 5, min(i * 5 + 5, 23))) for i in stored)
-    expected = {"state": "partial", "cases": 23, "counts": {0: done, 127: 23 - done}, "path": None}
+    expected = {"state": "partial", "cases": 23, "counts": {0: done, 127: 23 - done}, "path": None, "reason": ""}
     assert opened.status() | {"path": None} == expected
     wait_for(quiet)
     part = opened.open(partial=True)

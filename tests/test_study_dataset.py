@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import study
-from study import dataset
+from study import netcdf, results_file
 from study.vocabulary import NOT_RUN, PARAMETERS, VOCABULARY, attributes
 
 CASES = [
@@ -24,7 +24,7 @@ def solved() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def reread(solved, tmp_path_factory) -> xr.Dataset:
     path = tmp_path_factory.mktemp("results") / "file.nc"
-    dataset.write(solved, path)
+    results_file.write(solved, path)
     return study.open_results(path)
 
 
@@ -36,7 +36,7 @@ def test_nothing_is_lost_in_the_file(solved, reread):
 
 
 def test_plain_xarray_opens_it(reread, tmp_path):
-    dataset.write(reread, tmp_path / "again.nc")
+    results_file.write(reread, tmp_path / "again.nc")
     with xr.open_dataset(tmp_path / "again.nc") as plain:
         assert plain.sel(bonding="bonded").sizes == {"case": 2, "x": 5}
         assert plain.status.dtype == np.int8
@@ -89,7 +89,7 @@ def interruptible():
 def test_an_interrupt_waits_until_netcdf_is_done():
     """An exception inside xarray's locks would leave one locked, and the next access would hang."""
     reached = []
-    with pytest.raises(KeyboardInterrupt), dataset.interrupts_wait():
+    with pytest.raises(KeyboardInterrupt), netcdf.interrupts_wait():
         signal.raise_signal(signal.SIGINT)
         reached.append("end of the block")
     assert reached
@@ -99,16 +99,17 @@ def test_an_interrupt_waits_until_netcdf_is_done():
 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
-    real = xr.Dataset.to_netcdf
+    ended, real = [], results_file.create
 
-    def to_netcdf(self, *arguments, **options):
+    def create(*arguments):
         signal.raise_signal(signal.SIGINT)
-        return real(self, *arguments, **options)
+        real(*arguments)
+        ended.append("create")
 
-    monkeypatch.setattr(xr.Dataset, "to_netcdf", to_netcdf)
+    monkeypatch.setattr(results_file, "create", create)
     with pytest.raises(KeyboardInterrupt):
-        dataset.write(reread, tmp_path / "file.nc")
-    assert list(tmp_path.iterdir()) == []
+        results_file.write(reread, tmp_path / "file.nc")
+    assert ended and list(tmp_path.iterdir()) == []
 
 
 def test_vocabulary_names_every_parameter_of_the_solver():

@@ -77,8 +77,10 @@ def test_a_law_replaces_another_but_no_contacts_nor_what_is_not_ours(opened, tmp
         law.run()
     assert contacts.status()["state"] == "done"
     (results / "table1.nc").write_bytes(b"no results")
-    with pytest.raises(study.StudyError, match="holds results of no study known here: --force replaces them"):
-        law.run()
-    assert law.run(force=True).computed == 2
+    for force in (False, True):
+        with pytest.raises(study.StudyError, match="is no netCDF file; move it away, or use --results DIR"):
+            law.run(force=force)
+    (results / "table1.nc").unlink()
+    assert law.run().computed == 2
     coarser = study.Study(from_tables(tomllib.loads(TEXT.replace("1e-3", "5e-3")), "table1", "", "t"), results)
     assert coarser.run().computed == 2 and coarser.open().sizes["p"] == 6

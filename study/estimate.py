@@ -59,7 +59,7 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
 def disk_for(definition: Definition) -> float:
     """Bytes of the results file, and of the blocks that it is written from: both are there when it is complete."""
     empty = not_run(definition, 1).values() if definition.kind == "contact" else ()
-    block = KEY + sum(8 * array.size if array.dtype.kind == "f" else array.nbytes for array in empty)
+    block = KEY + sum(array.nbytes for array in empty)
     results = definition.numbers * np.dtype(definition.dtype).itemsize
     return HEAD + ROOM * results + (block * definition.grid.size if empty else 0)
 

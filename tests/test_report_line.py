@@ -50,9 +50,14 @@ def test_failed_blocks_stand_in_their_order():
 
 def test_the_state_of_a_study_counts_what_is_done():
     definition = SimpleNamespace(name="fig04", title="Loads")
-    state = {"cases": 2000, "counts": {0: 480, 1: 20, 127: 1500}, "state": "partial"}
+    state = {"cases": 2000, "counts": {0: 480, 1: 20, 127: 1500}, "state": "partial", "path": "r.nc", "reason": ""}
     assert state_line(definition, state) == "fig04                2000 cases  partial (500 of 2000 cases)  Loads"
     assert state_line(definition, state | {"state": "done"}) == "fig04                2000 cases  done  Loads"
+    damaged = state | {"state": "damaged", "path": "results/fig04.nc", "reason": "is damaged: a", "counts": {}}
+    assert state_line(definition, damaged).split("\n") == [
+        "fig04                2000 cases  damaged  Loads",
+        "    results/fig04.nc: is damaged: a",
+    ]
 
 
 def test_the_cost_of_a_study_counts_what_is_computed():

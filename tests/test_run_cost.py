@@ -161,11 +161,11 @@ def test_estimated_memory_of_a_law_needs_no_solver():
 @pytest.mark.parametrize("before", [0, 1500], ids=["new", "extended"])
 def test_disk_stays_just_below_the_estimate(tmp_path, monkeypatch, before, dtype):
     """Beside an earlier results file, which is there already. Looked at when the results file has just been written."""
-    most, real = [], run.discard
+    most, real = [], run.tidy
 
-    def discard(store):
+    def tidy(store, known):
         most.append(sum(path.stat().st_size for path in tmp_path.rglob("*") if path.is_file()))
-        real(store)
+        return real(store, known)
 
     def opened(num):
         axes = {"P": {"start": 1e-6, "stop": 2e-6, "num": num}, "nu1": [0.1, 0.3]}
@@ -173,7 +173,7 @@ def test_disk_stays_just_below_the_estimate(tmp_path, monkeypatch, before, dtype
         tables = {"model": model, "axes": axes, "numerics": {"block": 800}, "output": output}
         return study.Study(from_tables(tables, "s", "", "s"), tmp_path)
 
-    monkeypatch.setattr(run, "discard", discard)
+    monkeypatch.setattr(run, "tidy", tidy)
     if before:
         opened(before).run(workers=1)
     estimated = opened(2999).dry_run().disk

@@ -12,7 +12,7 @@ from study.block_file import read_block
 from study.lock import held
 from study.store import Store, put
 
-WHOLE = {"state": "done", "cases": 23, "counts": {0: 23}}
+WHOLE = {"state": "done", "cases": 23, "counts": {0: 23}, "reason": ""}
 
 
 @pytest.fixture

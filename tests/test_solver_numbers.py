@@ -98,5 +98,5 @@ def test_unreachable_tolerance_is_said():
     s = solve(Problem.of(P=LOAD, h=0.02, n=0.5, Nbar=250000, Ra=0.004, base="thin_layer", rtol=1e-15))
     assert s.status[0] == 5
     assert s.error[0] > 1e-15
-    assert s.nodes[0] >= 96
+    assert s.nodes[0] >= 32  # on more nodes the rounding of their sums is more, and no error can be less
     assert_allclose(s.a, one(P=LOAD, nodes=64, micro="disc_cell").a, rtol=1e-13, atol=0)

@@ -30,9 +30,13 @@ def started(opened, *options: str) -> subprocess.Popen:
     """A run from the command line in a session of its own."""
     folder = opened.results.parent
     command = [sys.executable, ROOT / "tests" / "hold.py", "run", "line.toml", "--workers", "2", *options]
-    listening = {"preexec_fn": lambda: signal.signal(signal.SIGINT, signal.SIG_DFL)}  # ignored in background jobs
+
+    def listen():  # what background jobs and nohup ignore
+        for number in (signal.SIGINT, signal.SIGHUP):
+            signal.signal(number, signal.SIG_DFL)
+
     where = {"cwd": folder, "env": holding(folder, BEFORE), "start_new_session": True}
-    return subprocess.Popen(command, **where, **listening, stderr=subprocess.PIPE, text=True)
+    return subprocess.Popen(command, **where, preexec_fn=listen, stderr=subprocess.PIPE, text=True)
 
 
 def workers_of(process: subprocess.Popen) -> list[int]:

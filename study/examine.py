@@ -1,7 +1,11 @@
 """What a results file is: sound, damaged and where, of an earlier version, or none of ours."""
 
 import os
+import pickle
+import subprocess
+import sys
 from dataclasses import dataclass, field
+from functools import lru_cache
 from pathlib import Path
 
 import netCDF4
@@ -9,7 +13,8 @@ import numpy as np
 
 from .checksums import ATTRIBUTE, Rows, attribute, head, parsed, split_runs
 from .grid import Grid, windows
-from .netcdf import Unusable, access, closing, opened
+from .netcdf import Unusable, access, check_regular, closing, opened
+from .seal import LARGE, is_whole
 from .vocabulary import names
 
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
@@ -18,6 +23,7 @@ BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowE
 WHOSE = ("study_digest", "numerics_version", ATTRIBUTE)
 """Attributes of which every results file has the first two."""
 SHOWN = 3  # damaged things that a message names
+PATIENCE, SLOWEST = 60.0, 5e6  # seconds, and bytes in a second: a damaged file may also be read for ever
 CHANGED = "is damaged, or another program has changed it: "
 
 
@@ -59,6 +65,44 @@ def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
     Attributes, coordinates and one column take milliseconds; for the whole see README.
     """
     path = Path(path)
+    try:
+        check_regular(path)
+        whole = is_whole(path, LARGE if columns is not None else float("inf"))
+    except FileNotFoundError:
+        return Condition(path, "missing")
+    except Unusable as error:
+        return Condition(path, error.kind, error.reason)
+    except OSError as error:
+        return Condition(path, "unreadable", f"cannot be read: {error.strerror}")
+    return examined(path, columns) if whole else examined_apart(path, columns, stamp(path))
+
+
+def stamp(path: Path) -> tuple | None:
+    """What changes when a file is replaced or written to; None when there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+@lru_cache(maxsize=16)
+def examined_apart(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
+    """The same of a file without a whole seal, which may end the process that reads it: in another process."""
+    command = "import pickle, sys; from study import examine; given = pickle.load(sys.stdin.buffer)\n"
+    command += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
+    where = os.pathsep.join([str(Path(__file__).parents[1]), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
+    told = {"input": pickle.dumps((path, columns)), "env": os.environ | {"PYTHONPATH": where}, "capture_output": True}
+    patience = PATIENCE + path.stat().st_size / SLOWEST
+    try:
+        child = subprocess.run([sys.executable, "-c", command], **told, timeout=patience)
+        return pickle.loads(child.stdout)
+    except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
+        return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
+
+
+def examined(path: Path, columns: tuple[str, ...] | None = None) -> Condition:
+    """:func:`examine`, in this process."""
     try:
         file = opened(path)
     except FileNotFoundError:

@@ -15,6 +15,7 @@ from .examine import CHUNK
 from .grid import box, cut_out, windows
 from .netcdf import access, closing, created
 from .results_file import add_checksums, create, set_aside
+from .seal import seal
 from .store import Inventory, Store, gather
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
@@ -34,6 +35,7 @@ def writing(store: Store, known: Inventory, path: Path, command: str, aside: boo
     with replacing(path, store.folder) as temporary:
         with closing(created(temporary), path, writing=True) as file:
             yield from _steps(file, store, known, path, command)
+        seal(temporary)
         if aside:
             set_aside(path)
 

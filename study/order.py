@@ -104,15 +104,6 @@ def look(definition: Definition, path: Path, columns: tuple[str, ...] | None = N
     return found
 
 
-def stamp(path: Path) -> tuple | None:
-    """What changes when a file is replaced; None when there is none."""
-    try:
-        found = path.stat()
-    except OSError:
-        return None
-    return found.st_ino, found.st_size, found.st_mtime_ns
-
-
 def belongs(definition: Definition, found: Condition) -> bool:
     """Whether an undamaged results file is that of this very study."""
     return found.good and found.digest == definition.digest

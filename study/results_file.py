@@ -14,6 +14,7 @@ from .checksums import ATTRIBUTE, NOT_SUMMED, Rows, head, text
 from .dataset import plainly_written
 from .examine import examine
 from .netcdf import access, closing, created, read, read_lazily
+from .seal import seal
 
 
 def encoding(array: xr.DataArray) -> dict:
@@ -91,6 +92,7 @@ def write(dataset: xr.Dataset, path: Path, aside: bool = False) -> None:
             for name, array in dataset.data_vars.items():
                 file[name][...] = stored(array)
             add_checksums(file, Rows(0), {})
+        seal(temporary)
         if aside:
             set_aside(path)
 

@@ -15,10 +15,10 @@ from .cluster import as_they_come, engine
 from .dataset import NO_SOLUTION, labelled, status_words
 from .definition import Definition
 from .estimate import Estimate, estimate
-from .examine import Condition
+from .examine import Condition, stamp
 from .join import writing
 from .lock import held
-from .order import Order, Report, check_countable, check_size, check_writable, look, stamp
+from .order import Order, Report, check_countable, check_size, check_writable, look
 from .progress import Progress
 from .results_file import write
 from .reuse import adopt, at_hand, check_replaceable, earlier

@@ -22,6 +22,7 @@ import xarray as xr
 
 import study
 from study import blocks
+from study import examine as looked_at
 from study.examine import examine
 from study.store import Store, add, inventory
 
@@ -35,6 +36,8 @@ STUDIES = {
     "scalars": CONTACT.format(model="", axes="P = {start = 1e-6, stop = 1e-4, num = 30}", block=10)
     + "[output]\nprofiles = false\n",
 }
+#: Share of the flips after which a file without a whole seal is looked at in a process of its own, as users have it.
+THE_SLOW_WAY = 0.05
 OF_THE_RUN = ("history", "created", "command", "git_commit")
 
 
@@ -150,6 +153,8 @@ def apart(flip, example: Example, chance: random.Random, seen: Counter, said: Pa
     child = os.fork()
     if not child:
         counts, fault = Counter(), ""
+        if chance.random() > THE_SLOW_WAY:  # this process may end as well as another
+            looked_at.examined_apart = lambda path, columns, _: looked_at.examined(path, columns)
         try:
             flip(example, chance, counts)
         except Exception:

@@ -67,7 +67,7 @@ kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of
 mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
 
-fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
+fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (an hour)
 	$(VENV)/bin/python tests/fuzz_solver.py
 	$(VENV)/bin/python tests/fuzz_studies.py
 	$(VENV)/bin/python tests/fuzz_files.py

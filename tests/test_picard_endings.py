@@ -45,7 +45,7 @@ def test_a_settled_pressure_at_another_load_is_not_converged():
         return eta + 1e-5, closed  # P ~ a^3: 3e-5 of it, and 1e-6 are asked
 
     assert solved(false_position)[1] == Status.CONVERGED
-    assert solved(beside)[1] == Status.ITERATION_LIMIT
+    assert solved(beside)[1] != Status.CONVERGED
 
 
 def test_the_approximations_at_all_radii_count(monkeypatch):

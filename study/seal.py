@@ -1,7 +1,7 @@
 """A checksum of a whole results file, which stands behind what HDF5 reads of it.
 
-HDF5 trusts what a file says of itself. A flipped bit there may end the interpreter, or a later one in the same process,
-so no file goes to HDF5 in this process unless its seal is whole.
+HDF5 trusts what a file says of itself, and a flipped bit there may end the interpreter. So a file without a whole seal is
+first examined in another process (`examine`). What that survives is read in this one too, its intact cases only.
 """
 
 import os
@@ -11,7 +11,7 @@ from pathlib import Path
 MARK = b"\nroughcoat crc32 "
 LENGTH = len(MARK) + 8  # and the checksum in hexadecimal digits
 PIECE = 1 << 20
-LARGE = 256_000_000  # bytes: a quarter of a second; more are not read where no number is asked for
+LARGE = 256_000_000  # bytes, summed in some tenths of a second; more are not read where no number is asked for
 
 
 def seal(path: Path) -> None:

@@ -238,8 +238,8 @@ def test_rough_thin_layer_tends_to_the_half_space():
 
 
 def test_hertz_is_one_row_of_the_operator():
-    """What the first guess builds on."""
-    assert_allclose(mesh(8).K @ mesh(8).s, HERTZ * mesh(8).s ** 2, rtol=0, atol=3e-15)  # sums over 266 points on each side of a node
+    """What the first guess builds on. Its rule sums over 266 points on each side of a node: a few roundings."""
+    assert_allclose(mesh(8).K @ mesh(8).s, HERTZ * mesh(8).s ** 2, rtol=0, atol=3e-15)
 
 
 @pytest.mark.parametrize("base", BASES)

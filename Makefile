@@ -20,7 +20,7 @@ READY := $(VENV)/.ready
 RUN := $(VENV)/bin/python -m study
 # As many processes as processors, but no more than pays; one that is done takes tests from another.
 PYTEST := $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
-SOURCES := $(wildcard solver/*.py study/*.py)
+SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
 
 .DEFAULT_GOAL := help
 .PHONY: help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels mutants fuzz bench lint clean
@@ -62,7 +62,7 @@ test: $(READY) ## all tests
 
 kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
-	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $$(grep -l '^from solver' tests/test_*.py) || exit 1; done
+	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $$(grep -l '^from solver' tests/*/test_*.py) || exit 1; done
 
 mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
@@ -119,12 +119,12 @@ figures/coatings.pdf: results/coatings.nc
 figures/picard_domain.pdf: results/picard_domain.nc
 figures/tradeoff.pdf: results/tradeoff.nc
 figures/extremes.pdf: results/extremes.nc results/extremes_layered.nc
-figures/%.pdf: study/roughcoat.mplstyle | $(READY)
+figures/%.pdf: study/figures/roughcoat.mplstyle | $(READY)
 	$(RUN) plot $*
 
 # All in one process: most of the time of a figure goes into starting Python. What has been deleted since, `figures`
 # draws one by one.
-figures/.drawn: $(DRAWN:%=results/%.nc) study/roughcoat.mplstyle | $(READY)
+figures/.drawn: $(DRAWN:%=results/%.nc) study/figures/roughcoat.mplstyle | $(READY)
 	$(RUN) plot $(FIGURES)
 	@touch $@
 

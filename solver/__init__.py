@@ -1,8 +1,9 @@
 """Batched solver of the two-scale model of a rough punch on a coated body (Goryacheva & Yakovenko 2024): numpy and
 scipy only, and threadpoolctl, which keeps BLAS on one thread."""
 
-from . import closed_forms, micro
-from .fit import Fit, fit_power_law
+from . import closed_forms
+from .laws import micro
+from .laws.fit import Fit, fit_power_law
 from .problem import Problem
 from .solution import Model, Solution
 from .solve import solve

@@ -5,8 +5,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .base import BONDINGS
-from .micro import MICROS
+from .body.springs import BONDINGS
+from .laws.micro import MICROS
 
 BASES = ("half_space", "thin_layer", "layered", "auto")
 SCHEMES = ("newton", "picard")

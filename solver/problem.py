@@ -4,7 +4,6 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .equation import CONTROLS
 from .parameters import CONTROL, LOOKED_AT_BY, PARAMETERS, Parameter, allowed
 
 
@@ -103,7 +102,7 @@ class Problem:
         Traceback (most recent call last):
         ValueError: h is missing: base = "layered" needs it
         """
-        given = {name: v for name, v in zip(CONTROLS, (P, a, D), strict=True) if v is not None}
+        given = {name: v for name, v in zip(CONTROL, (P, a, D), strict=True) if v is not None}
         if len(given) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()

@@ -4,14 +4,15 @@ from itertools import product
 
 import numpy as np
 
-from . import auto, picard, rough, smooth
-from .cases import as_cases, dimensionless, refused, restore
-from .equation import evaluate
-from .estimate import finish
-from .ladder import start_nodes
-from .mesh import mesh
-from .micro import LAWS
-from .model_error import closed_form
+from .contact import adaptive, picard, smooth
+from .contact.equation import evaluate
+from .contact.error import finish
+from .laws.micro import LAWS
+from .models import auto
+from .models.model_error import closed_form
+from .numerics.ladder import start_nodes
+from .numerics.mesh import mesh
+from .scaling import as_cases, dimensionless, refused, restore
 from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
@@ -43,7 +44,7 @@ def solve(problem, x=(0.0, 1.0)):
     -----
     Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
     exact layer, iterate by their scheme. Successive approximations are for asperities: a smooth case with the scheme
-    "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest of :mod:`.auto` that meets `accuracy`; where
+    "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets `accuracy`; where
     that is a smooth punch, to which the asperities are added, there is nothing to approximate either.
 
     Examples
@@ -120,7 +121,7 @@ def _smooth_layer(part, C, x):
 
 def _newton(part, C, x):
     cases, law = as_cases(part, C)
-    return rough.solve_newton(cases, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
+    return adaptive.solve_newton(cases, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
 def _picard_nodes(problem):

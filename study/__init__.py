@@ -11,19 +11,19 @@ _HOME = {
     "solve": "api",
     "load": "api",
     "Study": "api",
-    "open_results": "results_file",
-    "StudyError": "definition",
-    "to_physical": "units",
-    "from_physical": "units",
-    "reduced_modulus": "units",
+    "open_results": "files.results_file",
+    "StudyError": "spec.definition",
+    "to_physical": "data.units",
+    "from_physical": "data.units",
+    "reduced_modulus": "data.units",
 }
-_ROOMS = ("derived", "units", "vocabulary")
+_MODULES = {"derived": "data.derived", "units": "data.units", "vocabulary": "spec.vocabulary"}
 __all__ = list(_HOME)
 
 
 def __getattr__(name: str):
-    if name in _ROOMS:
-        return import_module(f".{name}", __name__)
+    if name in _MODULES:
+        return import_module(f".{_MODULES[name]}", __name__)
     if name not in _HOME:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     found = getattr(import_module(f".{_HOME[name]}", __name__), name)
@@ -32,4 +32,4 @@ def __getattr__(name: str):
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__, *_ROOMS})
+    return sorted({*globals(), *__all__, *_MODULES})

@@ -13,9 +13,9 @@ import os
 import sys
 from pathlib import Path
 
-from . import ending
-from .arguments import STUDIES, Parser, Version, add_engine, folder, part, study_file
-from .ending import INTERRUPTED
+from .commands import ending
+from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part, study_file
+from .commands.ending import INTERRUPTED
 from .terminal import FULL, empty_buffers, open_the_closed, say
 
 # The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
@@ -68,8 +68,8 @@ def parser() -> argparse.ArgumentParser:
 
 
 def list_(options) -> int:
-    from .answers import state_line
     from .api import load
+    from .commands.answers import state_line
 
     files = sorted(Path(options.folder).glob("*.toml"))
     if not files:
@@ -83,7 +83,7 @@ def list_(options) -> int:
 
 
 def check(options) -> int:
-    from .definition import read
+    from .spec.definition import read
 
     def one(file):
         definition = read(study_file(file))
@@ -94,8 +94,8 @@ def check(options) -> int:
 
 
 def run(options) -> int:
-    from .answers import cost_line
     from .api import load
+    from .commands.answers import cost_line
 
     def one(file):
         study = load(study_file(file), options.results)
@@ -108,7 +108,7 @@ def run(options) -> int:
 
 def retry(options) -> int:
     from .api import load
-    from .order import status_values
+    from .work.plan import status_values
 
     def one(file):
         return _compute(load(study_file(file), options.results), options, retry=status_values(options.status))
@@ -123,8 +123,8 @@ def _compute(study, options, **more) -> int:
 
 
 def status(options) -> int:
-    from .answers import count_lines, state_line
     from .api import load
+    from .commands.answers import count_lines, state_line
 
     def one(file):
         study = load(study_file(file), options.results)
@@ -135,9 +135,9 @@ def status(options) -> int:
 
 
 def verify(options) -> int:
-    from .answers import verified_line
     from .api import load
-    from .examine import examine
+    from .commands.answers import verified_line
+    from .files.examine import examine
 
     def one(file):
         results = Path(file).suffix == ".nc"
@@ -155,7 +155,7 @@ def clean(options) -> int:
 
 
 def plot(options) -> int:
-    from .recipes import draw
+    from .catalogue import draw
 
     return _each(options.names, lambda name: _print_lines(draw(name, options.results, options.figures)))
 
@@ -167,10 +167,10 @@ def table(options) -> int:
 
 
 def tradeoff(options) -> int:
-    from .dataset import command_line
-    from .outputs import write_text
-    from .tradeoff import results
-    from .tradeoff_page import page
+    from .data.dataset import command_line
+    from .evidence.tradeoff import results
+    from .evidence.tradeoff_page import page
+    from .figures.sources import write_text
 
     def one(_):
         found = results(options.results, force=options.force, command=command_line())
@@ -186,7 +186,7 @@ def _each(items, action, hint: str = "") -> int:
 
 
 def _attempt(action, item, hint: str) -> int:
-    from .definition import StudyError
+    from .spec.definition import StudyError
 
     try:
         return action(item)
@@ -201,7 +201,7 @@ def _attempt(action, item, hint: str) -> int:
 
 
 def _print_report(report, name: str) -> int:
-    from .answers import failure_lines, report_line
+    from .commands.answers import failure_lines, report_line
 
     if report.failures:
         say("\n".join(failure_lines(report, name)), sys.stderr)

@@ -7,21 +7,21 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .blocks import compute, parcel
-from .dataset import command_line, labelled
-from .definition import LARGE, POINTS, Definition, StudyError, complete, read
-from .draft import Draft
-from .estimate import Estimate
-from .examine import Condition
-from .grid import LONGEST_AXIS
-from .netcdf import Unusable
-from .order import Report, belongs, check_countable, look, results_path
-from .results_file import open_lazily, open_results
-from .reuse import at_hand, earlier, statuses
-from .run import dry_run, partial_dataset, run
-from .store import Store, count_statuses, inventory
-from .tidy import clean
-from .vocabulary import NOT_RUN
+from .data.dataset import command_line, labelled
+from .files.examine import Condition
+from .files.netcdf import Unusable
+from .files.results_file import open_lazily, open_results
+from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
+from .spec.given import Draft
+from .spec.grid import LONGEST_AXIS
+from .spec.vocabulary import NOT_RUN
+from .store.blocks import Store, count_statuses, inventory
+from .store.earlier import at_hand, earlier, statuses
+from .store.tidy import clean
+from .work.cases import compute, parcel
+from .work.cost import Estimate
+from .work.plan import Report, belongs, check_countable, look, results_path
+from .work.run import dry_run, partial_dataset, run
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
@@ -75,7 +75,7 @@ class Study:
     results: Path
 
     def run(self, **options) -> Report:
-        """Compute what is missing and write the results file; options as of `study.order.Order`."""
+        """Compute what is missing and write the results file; options as of `study.work.plan.Order`."""
         return run(self.definition, self.results, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None, yes: bool = False) -> Estimate:
@@ -114,7 +114,7 @@ class Study:
         }  # fmt: skip
 
     def verify(self) -> Condition:
-        """All of the results file against its checksums, see `study.examine.Condition`."""
+        """All of the results file against its checksums, see `study.files.examine.Condition`."""
         return look(self.definition, results_path(self.definition, self.results))
 
     def clean(self) -> list[str]:

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from . import paper
-from .derived import from_layered, nominal_area_ratio
-from .extremes_map import shares
-from .outputs import csv_text, open_studies, pick, write_text
-from .tradeoff_view import rows as work_precision
-from .vocabulary import VOCABULARY
+from .data.derived import from_layered, nominal_area_ratio
+from .evidence.extremes_map import shares
+from .evidence.tradeoff_view import rows as work_precision
+from .figures.sources import csv_text, open_studies, pick, write_text
+from .paper import numbers
+from .spec.vocabulary import VOCABULARY
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class Table:
 def largest_error(case: xr.Dataset, B: float, beta: float) -> float:
     """Largest |B p^β / A[p] - 1| over the paper's interval; B in R/E1*^β, `case` one case of a micro-law study."""
     law = case.sel(
-        p=slice(*(end * factor for end, factor in zip(paper.ERROR_INTERVAL, (1 - 1e-9, 1 + 1e-9), strict=True)))
+        p=slice(*(end * factor for end, factor in zip(numbers.ERROR_INTERVAL, (1 - 1e-9, 1 + 1e-9), strict=True)))
     )
     return float(np.abs(B * law["p"] ** beta / law["A_exact"] - 1).max())
 
@@ -47,7 +47,7 @@ def table1(laws: xr.Dataset) -> list[tuple]:
     """Table 1: B E1*^β and β printed, with the error that the paper states and the one that we find; the same refitted,
     with their error."""
     rows = []
-    for Ra, Nbar, B, beta in paper.TABLE1:
+    for Ra, Nbar, B, beta in numbers.TABLE1:
         case, density = pick(laws, Ra=Ra, Nbar=Nbar), Nbar * Ra**2
         ours = float(case["B"]) * Ra, float(case["beta"]), float(case["max_error"])
         rows.append((Ra, Nbar, density, B, beta, bound(density), largest_error(case, B, beta), *ours))
@@ -56,13 +56,13 @@ def table1(laws: xr.Dataset) -> list[tuple]:
 
 def bound(density: float) -> str:
     """The paper's words on the error of the fit for a density N̄Ra²."""
-    return f"at most {paper.ERROR_BOUNDS[round(density, 9)]:.0%}"
+    return f"at most {numbers.ERROR_BOUNDS[round(density, 9)]:.0%}"
 
 
 def paper_numbers(reference: xr.Dataset, main: xr.Dataset, laws: xr.Dataset) -> list[tuple]:
     """Every number that the paper prints beside ours and the relative difference; of a bound, whether it holds."""
     rough, homogeneous = (pick(main, label=f"rough, {base}") for base in ("layered", "homogeneous"))
-    first = pick(laws, Ra=paper.TABLE1[0][0], Nbar=paper.TABLE1[0][1])
+    first = pick(laws, Ra=numbers.TABLE1[0][0], Nbar=numbers.TABLE1[0][1])
     ours = {"P": reference["P"]}
     ours |= {name: rough[name] for name in ("p0", "Ar_An", "p_max", "D", "A0")}
     ours |= {"An_ratio": nominal_area_ratio(homogeneous, reference["a"])}
@@ -71,11 +71,11 @@ def paper_numbers(reference: xr.Dataset, main: xr.Dataset, laws: xr.Dataset) -> 
     ours |= {"B": first["B"], "beta": first["beta"]}
     rows = [
         (quantity, printed, float(ours[key]), float(ours[key]) / printed - 1)
-        for key, (quantity, printed) in paper.NUMBERS.items()
+        for key, (quantity, printed) in numbers.NUMBERS.items()
     ]
-    for Ra, Nbar, B, beta in paper.TABLE1[:3]:
+    for Ra, Nbar, B, beta in numbers.TABLE1[:3]:
         error, density = largest_error(pick(laws, Ra=Ra, Nbar=Nbar), B, beta), Nbar * Ra**2
-        holds = "holds" if error <= paper.ERROR_BOUNDS[round(density, 9)] else "does not hold"
+        holds = "holds" if error <= numbers.ERROR_BOUNDS[round(density, 9)] else "does not hold"
         rows.append((f"error of the paper's fit, N Ra^2 = {density:g}", bound(density), error, holds))
     return rows
 

@@ -27,8 +27,8 @@ from benchmark_study import beside_the_solver, whole_run  # noqa: E402
 from benchmark_threads import blas_threads  # noqa: E402
 
 from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
-from study.problem_sets import SETS  # noqa: E402
-from study.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
+from study.evidence.problem_sets import SETS  # noqa: E402
+from study.evidence.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
 
 CASES, REPEATS, SYSTEMS, ORDER = 16_000, 3, 20_000, 17
 SIZES = (1_000, 10_000, 100_000, 1_000_000)

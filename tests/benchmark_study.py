@@ -13,8 +13,8 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from solver import Problem, solve
-from study.blocks import parcel
-from study.definition import from_tables
+from study.spec.definition import from_tables
+from study.work.cases import parcel
 
 STUDY = """
 [model]

@@ -31,16 +31,17 @@ def started(function, *arguments) -> multiprocessing.Process:
 
 def _run(file: Path, log: Path, at: str, locks: bool, options: dict) -> None:
     import study
-    from study import blocks, lock
+    from study.store import lock
+    from study.work import cases
 
-    real = blocks.compute
+    real = cases.compute
 
     def compute(wanted):
         time.sleep(SLOW)
         note(log, f"{wanted.first} {wanted.last}")
         return real(wanted)
 
-    blocks.compute = compute
+    cases.compute = compute
     if not locks:
         lock.fcntl = None
     if at:
@@ -84,7 +85,7 @@ def _command(folder: Path, first: int, arguments, ignoring, stuck: bool, prepare
     import hold  # noqa: F401
 
     if stuck:
-        from study.progress import Progress
+        from study.work.progress import Progress
 
         def close(_):
             note(folder / "ending", "")

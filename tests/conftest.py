@@ -41,10 +41,10 @@ def results(tmp_path_factory) -> Path:
 
 def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
-    from study.definition import from_tables
-    from study.results_file import write
-    from study.run import run
-    from study.tradeoff import WAYS, measure
+    from study.evidence.tradeoff import WAYS, measure
+    from study.files.results_file import write
+    from study.spec.definition import from_tables
+    from study.work.run import run
 
     for toml in STUDIES:
         text = toml.read_text(encoding="utf-8")
@@ -56,7 +56,7 @@ def compute_results(folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def drawing(results) -> Callable:
-    """A figure by its name, from the shrunken results: what `study.recipes.compose` gives; composed once."""
-    from study.recipes import compose
+    """A figure by its name, from the shrunken results: what `study.catalogue.compose` gives; composed once."""
+    from study.catalogue import compose
 
     return cache(lambda name: compose(name, results))

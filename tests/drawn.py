@@ -28,6 +28,16 @@ class Line:
     look: Look
 
 
+WORDS = {  # of the legend, by the masks of `validity`
+    1: "layer not thin",
+    2: r"$\bar N A_n < 100$",
+    4: r"$b > 0.1\,h$",
+    8: r"$n \geq 1$",
+    16: r"$\lambda(0) > 0.4$",
+    32: r"$a > 0.2\,R$ or strain $> 0.1$",
+}
+
+
 def look(line) -> Look:
     marker = str(line.get_marker())
     face = to_hex(line.get_markerfacecolor()) if marker != "None" else ""

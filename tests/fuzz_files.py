@@ -21,10 +21,10 @@ import numpy as np
 import xarray as xr
 
 import study
-from study import blocks
-from study import examine as looked_at
-from study.examine import examine
-from study.store import Store, add, inventory
+from study.files import examine as looked_at
+from study.files.examine import examine
+from study.store.blocks import Store, add, inventory
+from study.work import cases
 
 CONTACT = '[model]\nmicro = "smooth"\nbase = "half_space"\n{model}\n[axes]\n{axes}\n[numerics]\nblock = {block}\n'
 STUDIES = {
@@ -59,7 +59,7 @@ class Example:
         store.folder.mkdir()
         known, size = inventory(store), self.opened.definition.block
         for index in np.split(known.missing, range(size, len(known.missing), size)):
-            add(store, known, index, blocks.compute(blocks.parcel(self.opened.definition, index)))
+            add(store, known, index, cases.compute(cases.parcel(self.opened.definition, index)))
         self.blocks = {path.name: path.read_bytes() for path in known.files}
 
     def restore(self, with_blocks: bool) -> None:

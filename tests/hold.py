@@ -9,10 +9,10 @@ import os
 import runpy
 import time
 
-from study import blocks
+from study.work import cases
 
 FROM, UNTIL = int(os.environ["HOLD_FROM"]), os.environ["HOLD_UNTIL"]
-blocks.unheld = getattr(blocks, "unheld", blocks.compute)  # dask loads this file twice
+cases.unheld = getattr(cases, "unheld", cases.compute)  # dask loads this file twice
 
 
 def compute(wanted):
@@ -21,10 +21,10 @@ def compute(wanted):
             log.write(f"{os.getpid()}\n")
         while not os.path.exists(UNTIL):
             time.sleep(0.005)
-    return blocks.unheld(wanted)
+    return cases.unheld(wanted)
 
 
-blocks.compute = compute
+cases.compute = compute
 
 if __name__ == "__main__":
     runpy.run_module("study", run_name="__main__")

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 import study
-from study import blocks
-from study.blocks import parcel
-from study.store import Store, add, inventory
+from study.store.blocks import Store, add, inventory
+from study.work import cases
+from study.work.cases import parcel
 
 TEXT = """
 [model]
@@ -36,13 +36,13 @@ def file(tmp_path) -> Path:
 @pytest.fixture
 def computed(monkeypatch) -> list:
     """First cases of the blocks that are computed, in the order of their computation."""
-    seen, real = [], blocks.compute
+    seen, real = [], cases.compute
 
     def compute(wanted):
         seen.append(wanted.first)
         return real(wanted)
 
-    monkeypatch.setattr(blocks, "compute", compute)
+    monkeypatch.setattr(cases, "compute", compute)
     return seen
 
 
@@ -55,7 +55,7 @@ def quiet() -> Callable[[], bool]:
 
 def ending(monkeypatch, statuses: dict[int, int]) -> None:
     """Make cases end with a status, and without a contact radius."""
-    real = blocks.compute
+    real = cases.compute
 
     def compute(wanted):
         found = real(wanted)
@@ -65,7 +65,7 @@ def ending(monkeypatch, statuses: dict[int, int]) -> None:
                 found["a"][case - wanted.first] = np.nan
         return found
 
-    monkeypatch.setattr(blocks, "compute", compute)
+    monkeypatch.setattr(cases, "compute", compute)
 
 
 def store_block(opened, start: int, stop: int) -> Path:
@@ -73,7 +73,7 @@ def store_block(opened, start: int, stop: int) -> Path:
     store, index = Store(opened.definition, opened.results), np.arange(start, stop)
     store.folder.mkdir(parents=True, exist_ok=True)
     known = inventory(store)
-    add(store, known, index, blocks.compute(parcel(opened.definition, index)))
+    add(store, known, index, cases.compute(parcel(opened.definition, index)))
     return known.files[-1]
 
 

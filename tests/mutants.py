@@ -3,6 +3,7 @@
 import os
 import re
 import tomllib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -56,14 +57,17 @@ class Verdict:
 
 
 def read(root: Path = ROOT) -> list[Mutant]:
-    """The mutants of a tree: [PACKAGE.MODULE.NAME] with `old`, `new`, and `tests` relative to tests/."""
-    packages = tomllib.loads((root / "tests/mutants.toml").read_text(encoding="utf-8"))
-    return [
-        Mutant(f"{package}.{module}.{name}", f"{package}/{module}.py", **entry)
-        for package, modules in packages.items()
-        for module, mutants in modules.items()
-        for name, entry in mutants.items()
-    ]
+    """The mutants of a tree: [PACKAGE.ROOM.MODULE.NAME] with `old`, `new`, and `tests` relative to tests/."""
+    return list(_within(tomllib.loads((root / "tests/mutants.toml").read_text(encoding="utf-8")), ()))
+
+
+def _within(tables: dict, path: tuple[str, ...]) -> Iterator[Mutant]:
+    """The mutants of nested tables, `path` the names of the tables around."""
+    for name, entry in tables.items():
+        if "old" in entry:
+            yield Mutant(".".join((*path, name)), f"{'/'.join(path)}.py", **entry)
+        else:
+            yield from _within(entry, (*path, name))
 
 
 def totals(verdicts: list[Verdict]) -> dict[str, tuple[int, int]]:

@@ -1,0 +1,1 @@
+"""What lies under the punch: springs (the thin layer) and the exact layered half-space."""

@@ -1,0 +1,147 @@
+"""Tables of the layered operator: Hankel transforms at the nodes of the quadrature of each octave of h/a."""
+
+from collections import OrderedDict
+from functools import lru_cache
+from itertools import pairwise
+from threading import Lock
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import j0
+
+from ..numerics.quadrature import gauss_legendre, lagrange
+from . import film
+from .wave_rule import CUT, FILM, few, quadrature
+
+#: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
+_KEEP = 4e6
+#: Of those between the nodes, of which many are kept.
+_KEEP_BETWEEN = 4e4
+#: Bytes of tables kept.
+_MOST_BYTES = 4e8
+#: Radians of J0 in a piece of its transform.
+_PHASE = 120.0
+#: Nodes k of a part of the transform that is kept.
+_ROWS = 250
+
+
+class Table(NamedTuple):
+    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,).
+
+    `nodes` are those (M,), or all, of which w (L - 1) makes the edge and the matrix: times `edge` (M, n) and `product`
+    (M, n²).
+
+    `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
+    """
+
+    k: np.ndarray
+    J: np.ndarray
+    phi: np.ndarray
+    J_edge: np.ndarray
+    nodes: np.ndarray | slice
+    edge: np.ndarray
+    product: np.ndarray | None
+    film: tuple | None
+
+
+_tables = OrderedDict()
+_tables_lock = Lock()
+
+
+def table(grid, octave, depth, coarse=False):
+    """The :class:`Table` of a mesh; the latest used, up to _MOST_BYTES, are kept."""
+    key = grid, octave, depth, coarse
+    with _tables_lock:
+        if key in _tables:
+            _tables.move_to_end(key)
+            return _tables[key]
+    found = _table(*key)
+    with _tables_lock:
+        _tables[key] = found
+        while len(_tables) > 1 and sum(_size(kept) for kept in _tables.values()) > _MOST_BYTES:
+            _tables.popitem(last=False)
+    return found
+
+
+def _size(found):
+    """Bytes of a table."""
+    return sum(getattr(part, "nbytes", 0) for part in (*found[:-1], *(found.film or ())))
+
+
+def _table(grid, octave, depth, coarse):
+    k, weight = quadrature(octave, depth, coarse)
+    n = grid.n
+    J_edge = j0(k)
+    J = j0(k[:, None] * grid.x) - J_edge[:, None]
+    phi = transform(grid, k)
+    own, at_edge = few(octave, depth, coarse), J_edge[:, None] * phi
+    if own is None:
+        nodes, edge, product = slice(None), at_edge, None
+        if phi.size * n <= _KEEP:
+            product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n)
+    else:
+        nodes, spread = own.nodes, own.spread / weight[own.nodes, None]
+        edge, product = spread @ at_edge, np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
+    return Table(k, J, phi, J_edge, nodes, edge, product, _film_table(grid) if octave == FILM else None)
+
+
+@lru_cache(maxsize=4)
+def _film_table(grid):
+    near = felt(grid, grid.x)
+    edge = film.convolution(grid, np.zeros(1), CUT).of(np.eye(len(film.waves()[1])))
+    return near, film.convolution(grid, grid.s[near], CUT), edge[:, 0]
+
+
+def felt(grid, x):
+    """Indices of the radii x where the convolution is felt: near the edge, and where panels resolve more than CUT."""
+    ends = np.sqrt(1 - np.array(grid.breaks) ** 2)
+    home = np.clip(np.searchsorted(-ends, -x) - 1, 0, len(ends) - 2)
+    fine = (ends[home] - ends[home + 1]) * CUT < 16 * grid.order
+    return np.flatnonzero(((1 - x) * CUT < film.REACH) | (fine & (x * CUT > film.REACH)))
+
+
+def transform(grid, k):
+    """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
+    phi = np.empty((len(k), grid.n))
+    for stop in range(len(k), 0, -_ROWS):  # from the end, which quadratures of an octave share
+        part = slice(max(stop - _ROWS, 0), stop)
+        for i, ends in enumerate(pairwise(grid.breaks)):
+            own = slice(i * grid.order, (i + 1) * grid.order)
+            phi[part, own] = _transform_kept(*ends, grid.s[own].tobytes(), k[part].tobytes())
+    return phi
+
+
+@lru_cache(maxsize=1024)
+def _transform_kept(low, high, nodes_bytes, k_bytes):
+    """Part of φ on a panel, which meshes and quadratures have in common: (G', order)."""
+    nodes, k = np.frombuffer(nodes_bytes), np.frombuffer(k_bytes)
+    angle, weight = _angles(low, high, k.max(), len(nodes))
+    sin, cos = np.sin(angle), np.cos(angle)
+    return j0(k[:, None] * cos) @ ((weight * sin * cos)[:, None] * lagrange(nodes, sin))
+
+
+def _angles(low, high, k, order):
+    """Nodes φ and weights (g,) of ∫ · dφ for s = sin φ on a panel: pieces of like phase k cos φ, the first of half."""
+    x = np.sqrt(1 - np.array([low, high]) ** 2)
+    pieces = int(k * (x[0] - x[1]) / _PHASE) + 1
+    ends = np.arccos(x[0] + np.maximum(np.arange(pieces + 1) - 0.5, 0) / (pieces - 0.5) * (x[1] - x[0]))
+    ends[[0, -1]] = np.arcsin([low, high])
+    width, sin = np.diff(ends), np.sin(ends)
+    # at most, of J0 and of a polynomial, which is fastest at the ends of its panel
+    share = min(np.diff(sin).max() / (high - low), 1.0)
+    phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(share))
+    t, w = gauss_legendre(8 * int(phase / 32 + np.cbrt(phase / 2) * 3 / 8 + 2))
+    return (ends[:-1, None] + width[:, None] * t).ravel(), (width[:, None] * w).ravel()
+
+
+def between(grid, octave, depth, coarse, x):
+    """J0(k x) - J0(k), (G, m)."""
+    key = grid, octave, depth, coarse, x.tobytes()
+    small = len(x) * len(quadrature(octave, depth, coarse)[0]) <= _KEEP_BETWEEN
+    return (_between_kept if small else _between_kept.__wrapped__)(*key)
+
+
+@lru_cache(maxsize=256)
+def _between_kept(grid, octave, depth, coarse, x_bytes):
+    tab = table(grid, octave, depth, coarse)
+    return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]

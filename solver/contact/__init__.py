@@ -1,0 +1,1 @@
+"""The contact problem: its equation, first guesses, iterations, errors and results."""

@@ -1,0 +1,1 @@
+"""Micro laws: what the asperities add to the displacement, one file each."""

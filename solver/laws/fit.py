@@ -1,0 +1,107 @@
+"""The least-squares fit A[p] ≈ B p^β of Section 4.1 of the paper."""
+
+from typing import NamedTuple
+
+import numpy as np
+from scipy.optimize import minimize_scalar
+
+from ..threads import one_blas_thread
+from .micro import displacement
+
+
+class Fit(NamedTuple):
+    """B (unit Ra/E1*^β), β, and the largest relative error |B p^β/A[p] - 1| over the interval of check."""
+
+    B: float
+    beta: float
+    max_error: float
+
+
+def pressures(p_min, p_max, step, mesh):
+    """Abscissas of the fit, unit E1*: uniform with `step`, or as many points graded geometrically."""
+    count = int(round((p_max - p_min) / step)) + 1
+    return np.linspace(p_min, p_max, count) if mesh == "uniform" else np.geomspace(p_min, p_max, count)
+
+
+@one_blas_thread()
+def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
+    """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1).
+
+    Parameters
+    ----------
+    Nbar_Ra2 : float, > 0
+        N̄ Ra²: B in Ra/E1*^β and β depend on nothing else.
+    p_min, p_max, step : float, unit E1*
+        Range and spacing of the abscissas, 0 < p_min < p_max, 0 < step <= p_max - p_min.
+    mesh : "uniform" or "graded"
+        Equal steps as in the paper, or as many points in geometric progression.
+    check : (float, float), unit E1*
+        Interval, 0 < low < high, over which `max_error` is taken (2001 points).
+
+    Returns
+    -------
+    Fit
+        B (unit Ra/E1*^β), beta, max_error (relative).
+
+    Raises
+    ------
+    ValueError
+        For a range, step, mesh or interval outside the bounds above.
+
+    Examples
+    --------
+    >>> B, beta, _ = fit_power_law(4.0)
+    >>> print(f"{B:.4f} {beta:.4f}")
+    0.0919 0.4908
+    """
+    _check(Nbar_Ra2, p_min, p_max, step, mesh, check)
+    p = pressures(p_min, p_max, step, mesh)
+    A = displacement(p, 1.0, Nbar_Ra2, 1.0)
+    scale = np.sqrt(p_min * p_max)  # powers of p/scale, so that B and β are not nearly dependent
+
+    def coefficient(beta):  # the best B for a given β
+        power = (p / scale) ** beta
+        return power, (A @ power) / (power @ power)
+
+    def misfit(beta):
+        power, b = coefficient(beta)
+        return np.sum((A - b * power) ** 2) / np.sum(A * A)
+
+    beta = minimize_scalar(misfit, bounds=(0.05, 1.5), method="bounded", options={"xatol": 1e-12}).x
+    beta = _polish(beta, p, scale, A)
+    B = coefficient(beta)[1] / scale**beta
+    return Fit(float(B), float(beta), power_law_error(B, beta, Nbar_Ra2, check))
+
+
+def power_law_error(B, beta, Nbar_Ra2, check=(0.0025, 0.025)):
+    """Largest relative error |B p^β/A[p] - 1| of a power law over `check` (unit E1*), B in Ra/E1*^β."""
+    p = np.linspace(*check, 2001)
+    return float(np.max(np.abs(B * p**beta / displacement(p, 1.0, Nbar_Ra2, 1.0) - 1)))
+
+
+def _polish(beta, p, scale, A):
+    """Gauss-Newton on (B, β): a minimiser alone finds β only to the root of the rounding error."""
+    log_p = np.log(p / scale)
+    b = None
+    for _ in range(30):
+        power = np.exp(beta * log_p)
+        b = (A @ power) / (power @ power) if b is None else b
+        columns = np.stack([power, b * log_p * power], axis=1)
+        step = np.linalg.lstsq(columns, A - b * power, rcond=None)[0]
+        b, beta = b + step[0], beta + step[1]
+        if abs(step[1]) < 1e-15:
+            break
+    return beta
+
+
+def _check(Nbar_Ra2, p_min, p_max, step, mesh, check):
+    if not (np.isfinite(Nbar_Ra2) and Nbar_Ra2 > 0):
+        raise ValueError(f"Nbar_Ra2 = {Nbar_Ra2}: must be > 0 and finite")
+    if not 0 < p_min < p_max < np.inf:
+        raise ValueError(f"p_min = {p_min}, p_max = {p_max}: must satisfy 0 < p_min < p_max")
+    if not 0 < step <= p_max - p_min:
+        raise ValueError(f"step = {step}: must be > 0 and at most p_max - p_min")
+    if mesh not in ("uniform", "graded"):
+        raise ValueError(f'mesh = "{mesh}": must be "uniform" or "graded"')
+    if not 0 < check[0] < check[1] < np.inf:
+        raise ValueError(f"check = {list(check)}: must be [low, high] with 0 < low < high")

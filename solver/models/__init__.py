@@ -1,0 +1,1 @@
+"""How far a cheap model is from the exact one, and the base "auto", which chooses by that."""

@@ -1,0 +1,74 @@
+"""The ladder of meshes: each case starts on the mesh its tolerance is likely to need and climbs until its estimated
+error meets it."""
+
+import numpy as np
+
+from .mesh import mesh, panel_mesh
+
+LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
+#: First mesh for rtol at least this, where nothing else is known.
+_START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
+#: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
+MARGIN = 2.0
+#: Unknowns solved together: enough that the cost of calls does not count, few enough that they stay in the cache.
+STACK = 40_000
+
+
+def start_nodes(rtol):
+    """Number of nodes (B,) on which to begin for `rtol` (B,)."""
+    return np.select([rtol >= least for least, _ in _START], [n for _, n in _START], 32)
+
+
+def first_rung(wanted):
+    """The coarsest mesh of the ladder, up to 32 nodes, with at least `wanted` (B,) nodes."""
+    steps = np.array([n for n in LADDER if n <= 32])
+    return steps[np.minimum(np.searchsorted(steps, wanted), len(steps) - 1)]
+
+
+def next_rung(n):
+    """The next finer mesh: of the ladder; beyond its end, half as many nodes again."""
+    return next((m for m in LADDER if m > n), n + n // 2)
+
+
+def finer_mesh(grid):
+    """The next finer :class:`.mesh.Mesh`: of the ladder, or of the same panels with a third more nodes."""
+    if len(grid.breaks) == 2:
+        return mesh(next_rung(grid.n))
+    return panel_mesh(grid.order + grid.order // 3, grid.breaks)
+
+
+def climb(rtol, nodes, solve_on, first=None, order=None, stack=STACK):
+    """Let every case climb to the mesh that meets its tolerance.
+
+    Parameters
+    ----------
+    rtol : (B,) float
+    nodes : (B,) int
+        A fixed mesh, or 0: begin on `first`.
+    solve_on : callable
+        ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their
+        estimated errors (NaN: no use going on).
+    first : (B,) int, optional
+        The mesh to begin on; else chosen by rtol.
+    order : (B,) int, optional
+        Permutation of the cases; neighbours in it are solved together.
+    stack : int
+        Most unknowns solved together.
+
+    Returns
+    -------
+    (B,) bool
+        The cases whose error still exceeds rtol on the last mesh.
+    """
+    rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
+    unmet = np.zeros(len(rtol), dtype=bool)
+    order = np.arange(len(rtol)) if order is None else order
+    while (rung > 0).any():
+        n = int(rung[rung > 0].min())
+        batch = order[rung[order] == n]
+        for index in np.array_split(batch, -(-len(batch) * n // stack)):
+            missed = solve_on(index, n) > rtol[index]
+            last = (nodes[index] > 0) | (n >= LADDER[-1])
+            unmet[index] = missed & last
+            rung[index] = np.where(missed & ~last, next_rung(n), 0)
+    return unmet

@@ -1,0 +1,196 @@
+"""The nodes on the contact radius and the half-space operator on them, built once per mesh and cached.
+
+The variable is s = sqrt(1 - x²), x = r/a. In it the pressure is smooth at the centre (it is a function of x²) and at
+the edge (an expansion in sqrt(1 - x)), Hertz's pressure is the polynomial s, the right-hand side of Eq. (4) is s², and
+x dx = -s ds. A mesh is one polynomial in s, or one on each of several panels. The nodes are Gauss-Radau with the
+centre s = 1 among them, so that p(0) is an unknown and not an interpolate.
+"""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from scipy.special import ellipkm1
+
+from .quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
+
+#: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², which makes the first guess exact there.
+HERTZ = np.pi**2 / 16
+
+WHOLE = (0.0, 1.0)
+#: Points times nodes of a panel for which the singular rule is formed together: some MB, in which the calls of numpy
+#: no longer count.
+_TOGETHER = 256
+
+
+@dataclass(frozen=True, eq=False)
+class Mesh:
+    """Discretisation of the contact radius with n nodes.
+
+    Number and panels determine all the rest, so that two meshes are equal when these are: what is kept for a mesh (see
+    solver/body/tables.py) serves one that has been built anew.
+
+    Attributes
+    ----------
+    breaks : tuple of float
+        Ends of the panels in s, from 0 to 1.
+    s, x : (n,) float
+        Nodes sqrt(1 - x²), ascending, the last one the centre s = 1; and the radii x = r/a.
+    w : (n,) float
+        Weights of ∫₀¹ q x dx; exact for polynomials in s (on each panel).
+    K : (n, n) float
+        Half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(k)/(x + x') x' dx' of Eq. (3), K(k) the
+        complete elliptic integral of the first kind. For q = s it is (π²/16) s².
+    edge : (n,) float
+        H[q](1): the displacement at the edge of the contact, which gives D without an interpolation.
+    """
+
+    breaks: tuple
+    s: np.ndarray
+    x: np.ndarray
+    w: np.ndarray
+    K: np.ndarray
+    edge: np.ndarray
+
+    def __eq__(self, other):
+        return self is other or (isinstance(other, Mesh) and self.n == other.n and self.breaks == other.breaks)
+
+    def __hash__(self):
+        return hash((self.n, self.breaks))
+
+    @property
+    def n(self):
+        """Number of nodes."""
+        return len(self.s)
+
+    @property
+    def order(self):
+        """Number of nodes of a panel."""
+        return self.n // (len(self.breaks) - 1)
+
+    def rule(self, order):
+        """Gauss rule of ∫₀¹ · ds with `order` points on each panel: points and weights (m,)."""
+        points, weights = gauss_legendre(order)
+        return on_panels(points, self.breaks), (np.diff(self.breaks)[:, None] * weights).ravel()
+
+    def basis(self, points):
+        """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others."""
+        return piecewise_lagrange(self.s, points, self.breaks)
+
+    def rows(self, points):
+        """H[q](x) - H[q](1) at `points` (m,) in s: (m, n)."""
+        return half_space_rows(self.s, points, self.breaks) - self.edge
+
+
+@lru_cache(maxsize=64)
+def mesh(n):
+    """The :class:`Mesh` of one panel with `n` nodes (n >= 2); cached, the arrays are read-only."""
+    return _build(n, WHOLE)
+
+
+@lru_cache(maxsize=16)
+def panel_mesh(order, breaks):
+    """The :class:`Mesh` with `order` nodes on each of the panels between `breaks`, a tuple from 0 to 1; cached."""
+    return _build(order, breaks)
+
+
+def _build(order, breaks):
+    ends = np.array(breaks)
+    lengths = np.diff(ends)
+    s = on_panels(radau_nodes(order), breaks)
+    s[-1] = 1.0
+    edge = half_space_rows(s, np.zeros(1), breaks)[0]
+    K = half_space_rows(s, s, breaks) - edge
+    points, weights = gauss_legendre(order)
+    on_panel = lagrange(radau_nodes(order), points)
+    w = ((lengths[:, None] * weights * (ends[:-1, None] + lengths[:, None] * points)) @ on_panel).ravel()
+    x = np.sqrt((1 - s) * (1 + s))
+    for array in (s, x, w, K, edge):
+        array.flags.writeable = False
+    return Mesh(breaks=breaks, s=s, x=x, w=w, K=K, edge=edge)
+
+
+def on_panels(points, breaks):
+    """Points (m,) of [0, 1] repeated on each of the p panels: (p m,)."""
+    return (np.array(breaks[:-1])[:, None] + np.diff(breaks)[:, None] * points).ravel()
+
+
+def piecewise_lagrange(nodes, points, breaks=WHOLE):
+    """Values (m, n) at `points` (m,) of the Lagrange polynomials of `nodes` (n,), as many on each panel."""
+    points, panels = np.asarray(points, dtype=float), len(breaks) - 1
+    order = len(nodes) // panels
+    home = np.clip(np.searchsorted(breaks, points, side="left") - 1, 0, panels - 1)
+    values = np.zeros((len(points), len(nodes)))
+    for i in np.unique(home):
+        here, columns = np.flatnonzero(home == i), slice(i * order, (i + 1) * order)
+        values[here, columns] = lagrange(nodes[columns], points[here])
+    return values
+
+
+def half_space_rows(nodes, s_out, breaks=WHOLE):
+    """Half-space operator H[q](x), Eq. (3), against the Lagrange basis in s.
+
+    Parameters
+    ----------
+    nodes : (n,) float
+        Nodes in s of the basis.
+    s_out : (m,) float, [0, 1]
+        Where the displacement is wanted, s = sqrt(1 - x²).
+    breaks : tuple of float
+        Ends of the panels of the basis, as many nodes on each.
+
+    Returns
+    -------
+    (m, n) float
+        Rows that give H[q] at the points from q at the nodes.
+
+    Notes
+    -----
+    K(k)/(x + x') = K(x_</x_>)/x_> (Landen), so the integrand has the one singularity log|s - s'| (a root at the
+    centre): panels farther from it than their length have a plain Gauss rule, the others are split there, each side
+    with dyadic panels towards it. The complementary parameter 1 - k² is formed from the distance to the singularity,
+    so nothing is lost near it. Accurate to about 1e-15 of the largest entry.
+    """
+    rows = np.empty((len(s_out), len(nodes)))
+    order = len(nodes) // (len(breaks) - 1)
+    for i, (low, high) in enumerate(zip(breaks[:-1], breaks[1:], strict=True)):
+        columns = slice(i * order, (i + 1) * order)
+        sign = np.where(s_out <= low, 1, np.where(s_out >= high, -1, 0))  # of s' - s, 0: the target is inside
+        far = np.maximum(low - s_out, s_out - high) >= high - low
+        for side in (-1, 1):
+            there = far & (sign == side)
+            if there.any():
+                rows[there, columns] = _far(nodes[columns], s_out[there, None], side, low, high)
+        near = np.flatnonzero(~far)
+        for part in np.array_split(near, 1 + len(near) * order // _TOGETHER):
+            rows[part, columns] = _near(nodes[columns], s_out[part, None], low, high)
+    return rows
+
+
+def _kernel(s, gap, sign):
+    """s' K(x_</x_>)/x_> at s' = s + sign·gap, which broadcast."""
+    point = s + sign * gap
+    outer2 = (1 - s) * (1 + s) if sign > 0 else ((1 - s) + gap) * (1 + point)  # the larger x²
+    return point * ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0)) / np.sqrt(outer2)
+
+
+def _far(nodes, s, sign, low, high):
+    """Integral over a panel that all targets s (m, 1) are far from, on the side `sign` of them: (m, order)."""
+    t, weight = gauss_legendre(12 + len(nodes) // 2)
+    point = low + (high - low) * t
+    kernel = _kernel(s, sign * (point - s), sign)
+    return ((high - low) * weight * kernel) @ lagrange(nodes, point)
+
+
+def _near(nodes, s, low, high):
+    """Integral over a panel that contains the targets s (m, 1) or is near: (m, order)."""
+    distance, weight = log_rule(14 + len(nodes) // 2)
+    rows = np.zeros((len(s), len(nodes)))
+    for sign, start, stop in ((-1, np.maximum(s - high, 0.0), s - low), (1, np.maximum(low - s, 0.0), high - s)):
+        there = (stop > start)[:, 0]
+        begin, length = start[there], (stop - start)[there]
+        gap = begin + length * distance
+        values = length * weight * _kernel(s[there], gap, sign)
+        basis = lagrange(nodes, (s[there] + sign * gap).ravel()).reshape(*gap.shape, len(nodes))
+        rows[there] += (values[:, None] @ basis)[:, 0]
+    return rows

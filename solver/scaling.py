@@ -1,0 +1,75 @@
+"""From a :class:`.problem.Problem` to the dimensionless :class:`.contact.equation.Cases`, and back to its units."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .body.layered import Layer
+from .body.springs import local_compliance
+from .contact.equation import Cases
+from .laws.micro import LAWS, scales
+from .parameters import PARAMETERS, allowed
+from .status import Status
+
+#: Power of R and of E2* in the unit of each quantity.
+_UNITS = {
+    "a": (1, 0),
+    "D": (1, 0),
+    "A0": (1, 0),
+    "p0": (0, 1),
+    "p_max": (0, 1),
+    "p": (0, 1),
+    "P": (2, 1),
+    "dP_dD": (1, 1),
+}
+
+
+def dimensionless(problem):
+    """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
+    R, E2 = problem.R, problem.E2
+    # divided one by one: R² or R⁻² may overflow where the quotient does not
+    value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
+    layered = problem.base != "half_space"
+    h, n = problem.h / R, np.where(layered, problem.n, 1.0)
+    springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
+    C = np.where(problem.base == "thin_layer", springs, 0.0)
+    one = np.ones(len(problem))
+    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
+
+
+def refused(problem, scaled):
+    """(B,) bool: cases that cannot be solved as they are given; `scaled` is the problem in units R = E2* = 1."""
+    units = [~allowed(PARAMETERS[name], getattr(problem, name)) for name in ("R", "E2")]
+    return scaled.invalid() | units[0] | units[1]
+
+
+def as_cases(part, C):
+    """:class:`~solver.contact.equation.Cases` of one law on one base, and the law."""
+    micro = str(part.micro[0])
+    spot_scale, spot_depth = scales(part.n, part.Nbar, part.Ra)
+    none, one = np.zeros(len(part)), np.ones(len(part))
+    p_star, A_star, spot_scale, exponent = {
+        "disc_cell": (spot_scale, spot_depth, spot_scale, 2 / 3 * one),
+        "power_law": (part.n * one, part.B * part.Ra, spot_scale, part.beta * one),  # A = B Ra (p/E1*)^β: g = q^β
+        "smooth": (part.n * one, none, none, one),
+    }[micro]
+    layered = part.base[0] == "layered"
+    layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
+    E = part.n if layered else one
+    fields = part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent
+    return Cases(*fields, reach=none, coarse=none > 0), LAWS[micro]
+
+
+def restore(solution, problem, without=()):
+    """The end of every way to solve: back to the units of the problem, the controlled quantity exactly as given.
+
+    A case with a number that cannot be is not converged, nor is one with a number that its unit makes infinite.
+    `without`: names of the numbers that this way to solve does not give.
+    """
+    solution.refuse(solution.out_of_range(without), Status.DIVERGED)
+    for name, (of_R, of_E2) in _UNITS.items():
+        array = getattr(solution, name)
+        factor = problem.R**of_R * problem.E2**of_E2
+        array *= factor.reshape(-1, *[1] * (array.ndim - 1))
+    solution.refuse(solution.not_finite(without), Status.DIVERGED)
+    getattr(solution, problem.control)[:] = problem.value

@@ -1,0 +1,87 @@
+"""What the words of a command line stand for: study files, numbers, parts."""
+
+import argparse
+import os
+import sys
+from pathlib import Path
+
+from ..terminal import on_one_line, say
+from ..work.scheduler import address_error
+
+STUDIES = Path("studies")
+MOST_DIGITS = 9  # Python itself refuses to read 4301
+
+
+class Parser(argparse.ArgumentParser):
+    """Nothing is the matter when nobody reads its help."""
+
+    def _print_message(self, message, file=None) -> None:
+        say(message.removesuffix("\n"), file or sys.stderr)
+
+
+class Version(argparse.Action):
+    """Print the versions of the program and of its numerics, and end."""
+
+    def __call__(self, parser, *_) -> None:
+        from ..data.dataset import package_version
+        from ..spec.definition import NUMERICS_VERSION
+
+        say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}", sys.stdout)
+        parser.exit()
+
+
+def add_engine(sub: argparse.ArgumentParser) -> None:
+    """Options of the commands that compute."""
+    sub.add_argument("--workers", type=positive, metavar="N", help="threads or processes (default: one per processor)")
+    sub.add_argument("--scheduler", type=address, metavar="ADDRESS", help="compute on workers of this dask scheduler")
+    either = sub.add_mutually_exclusive_group()
+    either.add_argument("--fail-fast", action="store_true", help="stop at the first block with a failed case")
+    either.add_argument("--keep-going", action="store_false", dest="fail_fast", help="compute the others (default)")
+    sub.add_argument("--yes", action="store_true", help="go on however large the study is")
+
+
+def study_file(text: str) -> Path:
+    """The study file at a path, or of a study in studies/ by its name. Raises StudyError when there is none."""
+    from ..spec.definition import StudyError
+    from ..spec.vocabulary import suggest
+
+    given, short = Path(os.path.expanduser(text)), STUDIES / f"{text}.toml"
+    by_path = given.suffix == ".toml"
+    for path in (given,) if by_path else (given, short):
+        if path.exists():
+            return path
+    folders = [given.parent, STUDIES] if by_path else [STUDIES]
+    known = [path.as_posix() if by_path else path.stem for folder in folders for path in sorted(folder.glob("*.toml"))]
+    looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
+    raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
+
+
+def folder(text: str) -> str:
+    """A folder, with ~ as the shell has it (which leaves that of --results=~/there alone)."""
+    path = os.path.expanduser(text)
+    if not path or path.startswith("~"):
+        raise argparse.ArgumentTypeError(f'"{text}": must be a folder; ./{text} is one that is called so')
+    return path
+
+
+def positive(text: str) -> int:
+    """A whole number > 0."""
+    if not text.isdecimal() or len(text) > MOST_DIGITS or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"{on_one_line(text, 60)}: must be a whole number > 0, at most 9 digits")
+    return int(text)
+
+
+def address(text: str) -> str:
+    """The address of a scheduler."""
+    if address_error(text):
+        raise argparse.ArgumentTypeError(f'"{text}": {address_error(text)}')
+    return text
+
+
+def part(text: str) -> tuple[int, int]:
+    """I/N, the I-th of N parts."""
+    numbers = text.split("/")
+    whole = all(each.isdecimal() and len(each) <= MOST_DIGITS for each in numbers)
+    if len(numbers) != 2 or not whole or not 1 <= int(numbers[0]) <= int(numbers[1]):
+        raise argparse.ArgumentTypeError(f"{on_one_line(text, 60)}: must be I/N, whole numbers with 1 <= I <= N")
+    return int(numbers[0]), int(numbers[1])

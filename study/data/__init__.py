@@ -1,0 +1,1 @@
+"""Results as labelled datasets, units, and what follows from them."""

@@ -1,0 +1,74 @@
+"""Physical and dimensionless quantities: lengths in R, pressures in E2*, loads in E2* R², asperity densities in R⁻²."""
+
+import numpy as np
+import xarray as xr
+
+from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
+
+DONE = "physical_scale"
+
+
+def reduced_modulus(E, nu):
+    """E* = E/(1 - ν²), in the unit of E."""
+    return E / (1 - nu**2)
+
+
+def factor(name: str, R: float, E2_star: float) -> float:
+    """What a dimensionless number is multiplied by to give its physical unit (see `vocabulary`): R m, E2* Pa."""
+    for word, value in (("R", R), ("E2_star", E2_star)):
+        if not (np.isfinite(value) and value > 0):
+            raise ValueError(f"{word} = {value}: must be > 0 and finite")
+    entry = VOCABULARY[name]
+    i, j = entry.powers
+    return E2_star**i * R**j / entry.unit[1]
+
+
+def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
+    """The dataset in physical units: P in N, lengths in µm, pressures in MPa, Nbar in mm⁻², stiffness in N/m.
+
+    Parameters
+    ----------
+    R : radius of the punch, m; E2_star : reduced modulus E2/(1 - ν2²) of the half-space, Pa
+
+    Raises
+    ------
+    ValueError : the dataset is physical already, or holds pressures in E1* (a micro-law study)
+    """
+    if DONE in dataset.attrs:
+        raise ValueError(f"the dataset is in physical units already: {dataset.attrs[DONE]}")
+    if any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
+        raise ValueError("pressures of a micro-law study are in E1*, not in E2*: no half-space is defined there")
+    changed = {}
+    for name, array in dataset.variables.items():
+        if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
+            attributes = {key: text for key, text in array.attrs.items() if key != "scale"}
+            attributes["units"] = VOCABULARY[name].unit[0]
+            fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
+            changed[name] = array.dims, array.data * factor(name, R, E2_star), attributes, fill
+    physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})
+    physical = physical.assign({name: made for name, made in changed.items() if name in dataset.data_vars})
+    return physical.assign_attrs({DONE: f"R = {R!r} m, E2* = {E2_star!r} Pa"})
+
+
+def from_physical(*, R: float, E2_star: float, **parameters) -> dict:
+    """Dimensionless parameters for `study.solve` from physical ones, in the units that `to_physical` gives.
+
+    Parameters
+    ----------
+    R : m; E2_star : Pa; P : N; a, D, h, Ra : µm; Nbar : mm⁻²; everything else is a pure number or text and passes
+        unchanged
+
+    Returns
+    -------
+    dict with the same names, scalars, arrays or DataArrays as given
+    """
+    found = {}
+    for name, given in parameters.items():
+        if name not in PARAMETERS:
+            raise ValueError(f'"{name}" is not a parameter{suggest(name, PARAMETERS)}')
+        if VOCABULARY[name].powers == (0, 0):
+            found[name] = given
+        else:
+            array = given if isinstance(given, xr.DataArray) or np.isscalar(given) else np.asarray(given)
+            found[name] = array / factor(name, R, E2_star)
+    return found

@@ -1,0 +1,134 @@
+"""Random cases far beyond any scene: maps of status, error and iterations over the ranges, and their table."""
+
+from itertools import product
+
+import numpy as np
+import xarray as xr
+from matplotlib.colors import BoundaryNorm, LogNorm
+from matplotlib.lines import Line2D
+
+from solver import Status
+
+from ..data.dataset import NO_SOLUTION
+
+BASES = {"half_space": "half-space", "thin_layer": "thin layer", "layered": "exact layer"}
+LAWS = ("smooth", "disc_cell", "power_law")
+AXES = {
+    "P": r"$P/(E_2^* R^2)$",
+    "N Ra^2": r"$\bar N R_a^2$",
+    "h": "$h/R$",
+    "n": "$n$",
+}
+ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_layer", "h", "n"),
+        ("layered", "P", "N Ra^2"), ("layered", "h", "n"))  # fmt: skip
+BINS = 24
+#: Cases in a map from which on the points of those that converged are the smallest.
+_MANY = 10_000
+_FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
+FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
+COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"), strict=True)) | FAILED
+ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
+Columns = dict[str, np.ndarray]
+
+
+def maps(panels, *studies: xr.Dataset) -> Columns:
+    """Rows: a base and two of its parameters; columns: every case as a point, by its status; of the converged cases of
+    a cell the median error over rtol, and the largest number of iterations. The numbers are those of the cells that
+    hold cases."""
+    cases, parts = pooled(studies), []
+    for row, (base, x, y) in zip(panels, ROWS, strict=True):
+        drawn = {name: values[cases["base"] == base] for name, values in cases.items()}
+        edges = [np.geomspace(drawn[name].min(), drawn[name].max(), BINS + 1) for name in (x, y)]
+        cells = binned(drawn, x, y, edges)
+        points(row[0], drawn, x, y)
+        images = [shaded(row[1], edges, cells["median error/rtol"], LogNorm(1e-8, 1))]
+        images.append(shaded(row[2], edges, cells["largest iterations"], BoundaryNorm(ITERATIONS, 256)))
+        for axes in row:
+            axes.set(xscale="log", yscale="log", xlim=edges[0][[0, -1]], ylim=edges[1][[0, -1]], xlabel=AXES[x])
+            axes.tick_params(top=False, right=False, which="both", direction="out", labelsize=7)
+            axes.minorticks_off()
+        row[0].set_ylabel(f"{BASES[base]}\n{AXES[y]}")
+        held = cells["cases"] > 0
+        numbers = {name: values[held] for name, values in cells.items()}
+        parts.append({"row": np.full(held.sum(), len(parts))} | numbers)
+    for axes, title in zip(panels[0], ("status", "error / rtol, median", "iterations, largest"), strict=True):
+        axes.set_title(title, fontsize=9)
+    legend(panels, images, np.unique(cases["status"]))
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
+    """All cases of the studies, flat: parameters, N Ra², status, error over rtol, iterations."""
+    flat = []
+    for found in studies:
+        wanted = {name: found[name] for name in ("P", "h", "n", "base", "micro", "status", "iterations")}
+        wanted |= {"N Ra^2": found["Nbar"] * found["Ra"] ** 2, "error/rtol": found["error"] / found["rtol"]}
+        same = xr.broadcast(*wanted.values(), exclude=("x",))
+        flat.append({name: array.values.ravel() for name, array in zip(wanted, same, strict=True)})
+    return {name: np.concatenate([part[name] for part in flat]) for name in flat[0]}
+
+
+def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]) -> Columns:
+    """Per cell of the plane: its middle, the cases, those that converged and that failed, and the median and largest
+    error and largest number of iterations of the converged ones (NaN without any)."""
+    at = [np.searchsorted(e[1:-1], cases[name], "right") for name, e in zip((x, y), edges, strict=True)]
+    cell, status = at[0] * BINS + at[1], cases["status"]
+    middles = np.meshgrid(*(np.sqrt(e[1:] * e[:-1]) for e in edges), indexing="ij")
+    found = {"x": middles[0].ravel(), "y": middles[1].ravel(), "cases": np.bincount(cell, minlength=BINS**2)}
+    found["failed"] = np.bincount(cell[np.isin(status, list(FAILED))], minlength=BINS**2)
+    found["converged"] = np.bincount(cell[status == Status.CONVERGED], minlength=BINS**2)
+    columns = {"median error/rtol": np.median, "largest error/rtol": np.max, "largest iterations": np.max}
+    converged = [np.flatnonzero((cell == i) & (status == Status.CONVERGED)) for i in range(BINS**2)]
+    for column, reduce in columns.items():
+        values = cases[column.split()[1]]
+        found[column] = np.array([reduce(values[index]) if len(index) else np.nan for index in converged])
+    return found
+
+
+def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:
+    """Every case by its status, the failures uppermost."""
+    least = 1.0 if len(cases["status"]) > _MANY else 2.0
+    for status, colour in COLOURS.items():
+        which = cases["status"] == status
+        size = least if status == Status.CONVERGED else 5.0 if status in FAILED else 2.5
+        style = {"color": colour, "markersize": size, "markeredgewidth": 0, "rasterized": True}
+        axes.plot(cases[x][which], cases[y][which], ".", **style)
+
+
+def shaded(axes, edges: list[np.ndarray], values: np.ndarray, norm):
+    """A map of cells; empty ones are grey."""
+    axes.set_facecolor("0.9")
+    grid = np.ma.masked_invalid(np.clip(values, norm.vmin, norm.vmax).reshape(BINS, BINS).T)
+    return axes.pcolormesh(*edges, grid, norm=norm, cmap="viridis", rasterized=True)
+
+
+def legend(panels, images, present: np.ndarray) -> None:
+    """What the colours mean, below the columns; `present`: the statuses that occur."""
+    figure = panels[0, 0].figure
+    for column, image in zip(panels.T[1:], images, strict=True):
+        bar = figure.colorbar(image, ax=column, location="bottom", fraction=0.03, pad=0.01, aspect=25)
+        bar.ax.tick_params(labelsize=7)
+    handles = []
+    for status, colour in COLOURS.items():
+        if status in present:
+            word = status.name.lower().replace("_", " ")
+            handles.append(Line2D([], [], color=colour, marker="o", markersize=4, linestyle="", label=word))
+    figure.legend(handles=handles, loc="outside lower left", ncols=2, fontsize=7)
+
+
+def shares(*studies: xr.Dataset) -> list[tuple]:
+    """Rows of the table: for each base and law the cases, the shares that have no solution, and of the others those
+    that converged, missed rtol, failed otherwise; of the converged ones the median, 99.9 % and largest error over
+    rtol, and the median and largest number of iterations."""
+    cases, rows = pooled(studies), []
+    for base, law in product(BASES, LAWS):
+        which = (cases["base"] == base) & (cases["micro"] == law)
+        status = cases["status"][which]
+        solvable = status[~np.isin(status, list(NO_SOLUTION))]
+        kinds = [Status.CONVERGED], [Status.TOLERANCE_NOT_MET], set(FAILED) - {Status.TOLERANCE_NOT_MET}
+        counts = [(status == s).mean() for s in NO_SOLUTION]
+        counts += [np.isin(solvable, list(kind)).mean() for kind in kinds]
+        error, iterations = (cases[name][which][status == Status.CONVERGED] for name in ("error/rtol", "iterations"))
+        numbers = [*counts, *np.quantile(error, (0.5, 0.999, 1)), *np.quantile(iterations, (0.5, 1))]
+        rows.append((BASES[base], law.replace("_", " "), len(status), *map(float, numbers)))
+    return rows

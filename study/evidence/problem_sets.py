@@ -1,0 +1,75 @@
+"""The problem sets of the work-precision study (the paper's on either base): arguments of `solver.Problem.of`."""
+
+from functools import partial
+
+import numpy as np
+
+from solver import fit_power_law
+
+from ..paper import numbers
+
+#: N̄ Ra² of the coatings: those of the paper's Table 1, so that its fits serve.
+DENSITIES = (0.25, 1.0, 4.0)
+
+
+def paper_cases(base: str, size: int, seed: int) -> dict:
+    """The paper's own on one base: its five roughnesses as power laws, under the loads of its figures."""
+    del seed  # nothing is drawn
+    loads = np.geomspace(1e-6, 5e-5, max(size // len(numbers.TABLE1), 1))
+    row, load = (v.ravel() for v in np.indices((len(numbers.TABLE1), len(loads))))
+    Ra, Nbar, B, beta = np.array(numbers.TABLE1).T[:, row]
+    found = {"P": loads[load], "Ra": Ra, "Nbar": Nbar, "B": B / Ra, "beta": beta, "h": 0.02, "n": 0.5}
+    return found | {"base": np.full(len(row), base), "micro": np.full(len(row), "power_law")}
+
+
+def coatings(size: int, seed: int) -> dict:
+    """Soft to hard coatings on the exact layer, exact law, both interfaces; B and beta are the fits of the law."""
+    random = np.random.default_rng(seed)
+    Ra, density = _between(random, 5e-4, 1e-2, size), random.integers(len(DENSITIES), size=size)
+    B, beta, _ = np.array([fit_power_law(value) for value in DENSITIES]).T[:, density]
+    return {
+        "P": _between(random, 1e-7, 1e-3, size),
+        "h": _between(random, 1e-3, 0.1, size),
+        "n": _between(random, 1e-3, 1e3, size),
+        "bonding": random.choice(["frictionless", "bonded"], size),
+        "Ra": Ra,
+        "Nbar": np.array(DENSITIES)[density] / Ra**2,
+        "B": B,
+        "beta": beta,
+        "base": np.full(size, "layered"),
+        "micro": np.full(size, "disc_cell"),
+    }
+
+
+def extremes(size: int, seed: int) -> dict:
+    """Log-uniform far beyond any scene, thin layer and half-space, both laws and interfaces.
+
+    The exact layer there takes seconds a case at the reference's tolerance; `make extremes` has it.
+    """
+    random = np.random.default_rng(seed)
+    Ra = _between(random, 1e-5, 0.1, size)
+    return {
+        "P": _between(random, 1e-12, 0.1, size),
+        "h": _between(random, 1e-8, 1e3, size),
+        "n": _between(random, 1e-6, 0.999999, size),
+        "bonding": random.choice(["frictionless", "bonded"], size),
+        "Ra": Ra,
+        "Nbar": _between(random, 1e-6, 1e6, size) / Ra**2,
+        "B": _between(random, 1e-2, 10, size),
+        "beta": random.uniform(0.3, 0.95, size),
+        "base": random.choice(["half_space", "thin_layer"], size),
+        "micro": random.choice(["disc_cell", "power_law"], size),
+    }
+
+
+SETS = {
+    "paper, layer": partial(paper_cases, "thin_layer"),
+    "paper, half-space": partial(paper_cases, "half_space"),
+    "coatings": coatings,
+    "extremes": extremes,
+}
+
+
+def _between(random, low: float, high: float, size: int) -> np.ndarray:
+    """Log-uniform numbers."""
+    return np.exp(random.uniform(np.log(low), np.log(high), size))

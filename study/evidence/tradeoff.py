@@ -1,0 +1,247 @@
+"""Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
+
+Time is processor time of one thread, which other work on the machine hardly changes: the shortest of the repeats, over
+all cases of a set (copies of them, where a hundred take no time), solved as one batch. The error of a
+case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11; a case without
+an answer, or more than 100 % off, counts as 1.
+"""
+
+import hashlib
+import json
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import xarray as xr
+
+from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
+from solver.parameters import BASES
+
+from ..data.dataset import provenance
+from ..files.examine import examine
+from ..files.results_file import open_results, write
+from ..paper import paper_error
+from ..paper.uniform import solve_uniform, uniform_mesh
+from .problem_sets import SETS
+
+JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
+REFERENCE = 1e-11
+ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
+X = np.array([0.0, 1.0])
+PATIENCE = 1.0
+"""Seconds after which a measurement is not repeated."""
+
+PAPERS = ("paper, layer", "paper, half-space")
+PAPERS_BASES = ("thin_layer", "half_space")
+TOLERANCES = tuple(10.0**-i for i in range(2, 10))
+NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
+SLOW, COPIES = 20, 10
+#: Among them those that just reach 1e-3, 1e-4, 1e-5 and 1e-6 on the paper's layer.
+MESHES = (10.0, 20.0, 45.0, 80.0, 130.0)
+FINE = (390.0, 640.0, 1100.0)
+
+
+@dataclass(frozen=True)
+class Way:
+    """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
+
+    sets : where it is measured; bases : the cases it takes part in; most : of these it takes no more, for slow ones;
+    copies : of the paper's cases in the batch that is timed, for what solves a hundred in no time;
+    prepare : what is done once for a setting, however many cases follow, and not timed
+    """
+
+    run: Callable[[dict, float], Solution]
+    varied: str
+    settings: tuple[float, ...]
+    sets: tuple[str, ...] = tuple(SETS)
+    bases: tuple[str, ...] = BASES
+    most: int = 10**6
+    copies: int = 1
+    prepare: Callable[[float], object] = lambda setting: None
+
+    def index(self, cases: dict) -> np.ndarray:
+        """The cases that it takes."""
+        fits = np.flatnonzero(np.isin(cases["base"], self.bases))
+        return fits[np.unique(np.linspace(0, len(fits) - 1, min(self.most, len(fits))).round().astype(int))]
+
+
+def papers_way(cases: dict, k: float, intervals: float) -> Solution:
+    """The paper's, in batches of one base and law; everything is iterated until the mesh is the largest error."""
+    problem = Problem.of(**cases)
+    solution = Solution.empty(len(problem), 0)
+    for base, micro in {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}:
+        index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
+        part = solve_uniform(problem.take(index), int(intervals), k, 0.3 / intervals**2)
+        solution.put(index, {name: getattr(part, name) for name in (*JUDGED, "status")})
+    return solution
+
+
+def changed(**parameters) -> Callable[[dict, float], Solution]:
+    """`run` of the solver on the cases with other parameters; one that is a function is given the setting."""
+
+    def run(cases: dict, setting: float) -> Solution:
+        new = {name: value(setting) if callable(value) else value for name, value in parameters.items()}
+        return solve(Problem.of(**cases | new), X)
+
+    return run
+
+
+def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution]:
+    """`run` with one model for the other and the other for the one; the setting is rtol."""
+
+    def run(cases: dict, setting: float) -> Solution:
+        values = np.where(cases[name] == one, other, np.where(cases[name] == other, one, cases[name]))
+        return solve(Problem.of(**cases | {name: values, "rtol": setting}), X)
+
+    return run
+
+
+def _picard(k: float) -> Way:
+    options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
+    return Way(changed(**options), "nodes", NODES, PAPERS, most=SLOW)
+
+
+def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
+    """The paper's way with one k, on meshes of `settings` intervals."""
+
+    def mesh(intervals: float):
+        return uniform_mesh(int(intervals))
+
+    return Way(lambda cases, n: papers_way(cases, k, n), "intervals", settings, sets, PAPERS_BASES, most, prepare=mesh)
+
+
+WAYS = {
+    **{f"paper k = {k:g}": paper_way(k) for k in (0.0, 1.0, 2.0, 20.0)},
+    "paper k = 5": paper_way(5.0, sets=(*PAPERS, "extremes")),
+    "paper k = 35": paper_way(35.0, FINE, ("paper, layer",), most=5),
+    **{f"picard k = {k:g}": _picard(k) for k in (2.0, 20.0)},
+    "newton, nodes": Way(changed(nodes=int, rtol=REFERENCE), "nodes", NODES, copies=COPIES),
+    "newton, rtol": Way(changed(rtol=float), "rtol", TOLERANCES, copies=COPIES),
+    "auto": Way(
+        changed(base="auto", accuracy=float, rtol=lambda accuracy: 0.1 * accuracy),
+        "accuracy",
+        (0.5, 0.2, 0.1, 0.05, 0.02, 0.01, 1e-3, 1e-4),
+        ("coatings",),
+    ),
+    "the other law": Way(swapped("micro", "power_law", "disc_cell"), "rtol", (1e-6,), (*PAPERS, "coatings")),
+    "the other layer": Way(swapped("base", "thin_layer", "layered"), "rtol", (1e-6,), ("paper, layer", "coatings")),
+}
+SIZE, SEED = 100, 1
+WORDS = {
+    "setting": "what is varied along step, as `varied` says",
+    "time": "processor time per case on one thread",
+    "median": "error of half the cases",
+    "most": "error of 95 % of the cases",
+    "worst": "largest error",
+    "ended": "share of cases whose iteration closed",
+}
+
+
+def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, command: str = "") -> xr.Dataset:
+    """Work and precision over (set, way, step), with `cases` that were measured, and the variables of `paper_error`.
+
+    size : cases of each set; those that the model cannot solve (`status` of the reference) are left out
+    """
+    shape = len(SETS), len(ways), max(len(way.settings) for way in ways.values())
+    found = {name: np.full(shape, np.nan) for name in WORDS}
+    counts = np.zeros(shape[:2], dtype=np.int32)
+    for i, (name, make) in enumerate(SETS.items()):
+        everything = with_reference(make(size, SEED))
+        for j, way in enumerate(ways.values()):
+            if name not in way.sets:
+                continue
+            cases, reference = taken(*everything, way.index(everything[0]))
+            counts[i, j] = len(reference.a)
+            for step, setting in enumerate(way.settings):
+                copies = way.copies if name in PAPERS else 1
+                for key, value in measured(way, setting, cases, reference, repeats, copies).items():
+                    found[key][i, j, step] = value
+    return assembled(found, counts, ways, size, command)
+
+
+def measured(
+    way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies: int = 1
+) -> dict[str, float]:
+    """WORDS of one way with one setting; `copies` of the cases are timed together."""
+    way.prepare(setting)
+    whole, reference = taken(cases, reference, np.tile(np.arange(len(reference.a)), copies))
+    seconds, solution = timed(lambda: way.run(whole, setting), repeats)
+    error = errors(solution, reference)
+    median, most = np.quantile(error, (0.5, 0.95), method="higher")
+    ended = np.isin(solution.status, ENDED).mean()
+    numbers = (setting, seconds / len(error), median, most, error.max(), ended)
+    return dict(zip(WORDS, numbers, strict=True))
+
+
+def with_reference(cases: dict) -> tuple[dict, Solution]:
+    """The cases that the model can solve at all, and their solutions at the finest tolerance."""
+    reference = solve(Problem.of(**cases | {"rtol": REFERENCE}), X)
+    return taken(cases, reference, np.flatnonzero(np.isin(reference.status, ENDED)))
+
+
+def taken(cases: dict, reference: Solution, index: np.ndarray) -> tuple[dict, Solution]:
+    """The cases at `index` and their reference."""
+    part = {name: value[index] if np.ndim(value) else value for name, value in cases.items()}
+    return part, replace(reference, **{name: getattr(reference, name)[index] for name in vars(reference)})
+
+
+def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution]:
+    """Shortest time of up to 1 + repeats runs of an action, and what it gave; long ones are not repeated."""
+    times, solution = [], None
+    for _ in range(1 + repeats):
+        start = time.process_time()
+        solution = action()
+        times.append(time.process_time() - start)
+        if sum(times) > PATIENCE:
+            break
+    return min(times), solution
+
+
+def errors(solution: Solution, reference: Solution) -> np.ndarray:
+    """(B,) largest relative error of each case over JUDGED; at most, and without an answer, 1."""
+    with np.errstate(all="ignore"):
+        found = [np.abs(getattr(solution, name) / getattr(reference, name) - 1) for name in JUDGED]
+    return np.minimum(np.nan_to_num(np.max(found, axis=0), nan=1.0, posinf=1.0), 1.0)
+
+
+def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, command: str) -> xr.Dataset:
+    """The dataset, with the provenance of every other one."""
+    variables = {
+        name: (("set", "way", "step"), array, {"long_name": WORDS[name], "units": "s" if name == "time" else "1"})
+        for name, array in found.items()
+    }
+    variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured", "units": "1"}
+    variables["varied"] = "way", [way.varied for way in ways.values()]
+    title, text = "Work and precision of every way to solve the model", plan(ways, size)
+    whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
+    coordinates = {"set": list(SETS), "way": list(ways)}
+    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.iterates())
+
+
+def plan(ways: dict[str, Way], size: int) -> str:
+    """What is measured, as text."""
+    settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
+    return json.dumps({"size": size, "seed": SEED, "ways": settings})
+
+
+def digest(text: str) -> str:
+    """sha256 of a plan and the numerics."""
+    return hashlib.sha256((NUMERICS_VERSION + text).encode()).hexdigest()
+
+
+def results(folder, size: int = SIZE, force: bool = False, command: str = "") -> xr.Dataset:
+    """The measurements in FOLDER/tradeoff.nc; made first if not there, damaged, of another plan, or by `force`.
+
+    A damaged file is kept aside. Raises Unusable for one that is none of ours.
+    """
+    path = Path(folder) / "tradeoff.nc"
+    found = examine(path)
+    if found.kind in ("foreign", "unreadable"):
+        found.raise_if_bad()
+    if force or not found.good or found.digest != digest(plan(WAYS, size)):
+        path.parent.mkdir(parents=True, exist_ok=True)
+        write(measure(size, command=command), path, aside=found.kind == "damaged")
+    return open_results(path)

@@ -1,0 +1,144 @@
+"""Maps of the error of the thin-layer model against the exact layer, over h/a and n: where it may be used."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
+from matplotlib.ticker import NullFormatter
+
+from solver.models.thin_layer_error import thin_layer_error
+
+from ..data.derived import from_layered
+
+LEVELS = (-10.0, -0.1, -0.01, 0.01, 0.1, 10.0)
+COLOURS = ("#4f9bcb", "#c6dcee", "white", "#fbd9b5", "#f0914a")
+WORDS = (
+    "more than 10 % too small",
+    "1 to 10 % too small",
+    "within 1 %",
+    "1 to 10 % too large",
+    "more than 10 % too large",
+)
+ESTIMATE = {"colors": "black", "linestyles": [(0, (2, 1.5))], "linewidths": 0.9}
+TITLES = {
+    "frictionless": "frictionless",
+    "bonded, ν = 0": r"bonded, $\nu = 0$",
+    "bonded, ν = 0.3": r"bonded, $\nu = 0.3$",
+    "bonded, ν = 0.45": r"bonded, $\nu = 0.45$",
+    "bonded, ν1 = 0.45, ν2 = 0.3": "bonded, $\\nu_1 = 0.45$,\n$\\nu_2 = 0.3$",
+}
+MAIN_CASE = {"h": 0.02, "n": 0.5}
+Columns = dict[str, np.ndarray]
+
+
+def given_load(panels, found: xr.Dataset) -> Columns:
+    """Errors of a, p(0), D, Ar/An, p_max under one load, paper's main roughness; a row each, a column per material."""
+    rough = found.sel(micro="disc_cell")
+    rows = [(name, rough, name) for name in ("a", "p0", "D", "Ar_An", "p_max")]
+    symbols = {"a": "$a$", "p0": "$p(0)$", "D": "$D$", "Ar_An": "$A_r/A_n$", "p_max": r"$p_{\max}$"}
+    columns = matrix(panels, rows, symbols)
+    legend(panels, estimate=False)
+    return columns
+
+
+def given_radius(panels, found: xr.Dataset) -> Columns:
+    """Error of the load at one contact radius: smooth punch, with the estimate dashed, and the paper's roughness."""
+    rows = [(micro, found.sel(micro=micro), "P") for micro in ("smooth", "disc_cell")]
+    columns = matrix(panels, rows, {"smooth": "$P$, smooth", "disc_cell": "$P$, rough"})
+    for axes, case in zip(panels[0], materials(found), strict=True):
+        x, n = np.geomspace(0.01, 20, 200), np.geomspace(0.01, 0.95, 100)
+        material = [float(case[name]) for name in ("nu1", "nu2")]
+        estimate = thin_layer_error(x, n[:, None], *material, str(case["bonding"].values) == "bonded").P
+        axes.contour(x, n, np.ma.masked_invalid(estimate), LEVELS[1:-1], **ESTIMATE)
+    legend(panels, estimate=True)
+    return columns
+
+
+def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, str]) -> Columns:
+    """A map for each row (name, dataset, quantity) and each material; returns the errors drawn, where there are any."""
+    parts = []
+    for i, (name, dataset, quantity) in enumerate(rows):
+        for axes, case in zip(panels[i], materials(dataset), strict=True):
+            h_a, error = one_map(axes, case, quantity)
+            parts.append((h_a, error))
+            if case["bonding"] == "frictionless":
+                main_case(axes, case)
+            if i == 0:
+                axes.set_title(TITLES[str(case["label"].values)], fontsize=8)
+            axes.tick_params(labelbottom=i == len(rows) - 1, labelleft=axes is panels[i][0], labelsize=7)
+        panels[i][0].set_ylabel("$n$", labelpad=1)
+        panels[i][0].annotate(
+            symbols[name], (-0.62, 0.5), xycoords="axes fraction", ha="right", va="center", fontsize=10
+        )
+    for axes in panels[-1]:
+        axes.set_xlabel("$h/a$")
+    return table(rows, parts)
+
+
+def materials(dataset: xr.Dataset) -> list[xr.Dataset]:
+    """The dataset of each material."""
+    return [dataset.isel(case=i) for i in range(dataset.sizes["case"])]
+
+
+def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Bands of the error over h/a (of the exact layer) and n; hatched where the thin-layer equation does not apply."""
+    error = from_layered(case, quantity).transpose("n", "h")
+    a = case["a"].sel(base="layered", drop=True) if "base" in case["a"].dims else case["a"]
+    h_a = (case["h"] / a).broadcast_like(error).transpose("n", "h")
+    n = case["n"].broadcast_like(h_a)
+    drawn = np.isfinite(error.values).any(axis=1)
+    if not drawn.all():
+        axes.axhspan(float(case["n"][drawn].max()), 1, facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0)
+    grid = h_a.values[drawn], n.values[drawn], error.values[drawn]
+    axes.contourf(*grid, LEVELS, colors=COLOURS)
+    axes.contour(*grid, LEVELS[1:-1], colors="0.25", linewidths=[0.9, 0.5, 0.5, 0.9], linestyles="solid")
+    axes.set(xscale="log", yscale="log", xlim=(0.01, 20), ylim=(0.01, 0.95))
+    axes.set_xticks([0.01, 0.1, 1, 10], ["0.01", "0.1", "1", "10"])
+    axes.set_yticks([0.01, 0.1], ["0.01", "0.1"])
+    axes.yaxis.set_minor_formatter(NullFormatter())
+    axes.tick_params(top=False, right=False, which="both", direction="out")
+    return h_a, error
+
+
+def main_case(axes, case: xr.Dataset) -> None:
+    """A star where the paper's main case lies."""
+    if "base" in case["a"].dims:
+        exact = case["a"].sel(base="layered").sel(n=MAIN_CASE["n"], method="nearest")
+        a = float(np.interp(MAIN_CASE["h"], exact["h"], exact))
+    else:
+        a = float(case["a"])
+    axes.plot(MAIN_CASE["h"] / a, MAIN_CASE["n"], "*", color="black", markersize=7, markeredgewidth=0)
+
+
+def legend(panels, *, estimate: bool) -> None:
+    """One legend for the whole figure, below it."""
+    handles = [
+        Patch(facecolor=colour, edgecolor="0.25", linewidth=0.5, label=word)
+        for colour, word in zip(COLOURS, WORDS, strict=True)
+    ]
+    handles.append(
+        Patch(facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0, label=r"does not apply, $C \leq 0$")
+    )
+    handles.append(Line2D([], [], color="black", marker="*", linestyle="", label="the paper's main case"))
+    if estimate:
+        handles.append(
+            Line2D(
+                [], [], color="black", linestyle=(0, (2, 1.5)), linewidth=0.9, label=r"estimate, $\pm 1$ and $\pm 10$ %"
+            )
+        )
+    panels[0][0].figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, handlelength=1.8)
+
+
+def table(rows, parts) -> Columns:
+    """Long columns: material, quantity (number of the row), h/a, n, error."""
+    columns = {name: [] for name in ("row", "material", "h/a", "n", "error")}
+    for i, (h_a, error) in enumerate(parts):
+        finite = np.isfinite(error.values)
+        count = int(finite.sum())
+        per_row = len(parts) // len(rows)
+        columns["row"].append(np.full(count, i // per_row))
+        columns["material"].append(np.full(count, i % per_row))
+        columns["h/a"].append(h_a.values[finite])
+        columns["n"].append(error["n"].broadcast_like(error).values[finite])
+        columns["error"].append(error.values[finite])
+    return {name: np.concatenate(part) for name, part in columns.items()}

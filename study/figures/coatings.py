@@ -1,0 +1,76 @@
+"""Master curves of coated contacts: effective modulus, largest pressure and real contact area against a/h."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.lines import Line2D
+
+from ..data.derived import effective_modulus, peak_pressure
+
+COLOURS = {
+    1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
+}  # fmt: skip
+"""By n, from soft (blue) to hard (red)."""
+RANGE = (0.05, 20.0)
+Columns = dict[str, np.ndarray]
+
+
+def master_curves(panels, found: xr.Dataset) -> Columns:
+    """Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two
+    interfaces.
+
+    A rough curve is drawn where the spots are many (`validity`). E_eff of the smooth punch is dashed.
+    """
+    peak = peak_pressure(found)
+    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # equal ν: no layer at all
+    quantities = {
+        "E_eff/E1*": effective_modulus(found) / found["n"],
+        "p_peak/p_peak uncoated": peak / bare,
+        "Ar/An": found["Ar_An"],
+    }
+    a_h = found["a"] / found["h"]
+    parts = {name: [] for name in ("bonded", "rough", "n", "P/(E2* R^2)", "a/h", *quantities)}
+    for column, bonding in zip(panels.T, found["bonding"].values, strict=True):
+        for n in found["n"].values.tolist():
+            for micro in ("disc_cell", "smooth"):
+                where = {"bonding": bonding, "n": n, "micro": micro}
+                shown = (found["validity"].sel(where) & 2).values == 0
+                x = a_h.sel(where).values[shown]
+                for name, values in {"bonded": bonding == "bonded", "rough": micro != "smooth", "n": n}.items():
+                    parts[name].append(np.full(len(x), float(values)))
+                parts["P/(E2* R^2)"].append(found["P"].values[shown])
+                parts["a/h"].append(x)
+                for axes, (name, quantity) in zip(column, quantities.items(), strict=True):
+                    y = quantity.sel(where).values[shown]
+                    parts[name].append(y)
+                    if micro != "smooth" or name == "E_eff/E1*":
+                        dashes = "-" if micro != "smooth" else (0, (2.5, 1.5))
+                        width = 1.3 if micro != "smooth" else 0.8
+                        axes.plot(x, y, linestyle=dashes, color=COLOURS[n], linewidth=width)
+        column[0].set_title(bonding)
+    decorate(panels, found)
+    return {name: np.concatenate(part) for name, part in parts.items()}
+
+
+def decorate(panels, found: xr.Dataset) -> None:
+    """Scales, labels, legend."""
+    labels = (r"$E_{\mathrm{eff}}/E_1^*$", "largest real pressure\nover that of the uncoated body", "$A_r/A_n$")
+    for row, label in zip(panels, labels, strict=True):
+        for axes in row:
+            axes.set(xscale="log", xlim=RANGE, yscale="linear" if label.startswith("$A") else "log")
+            axes.set_xticks([0.1, 1, 10], ["0.1", "1", "10"])
+        row[0].set_ylabel(label)
+        low, high = zip(*(axes.get_ylim() for axes in row), strict=True)
+        for axes in row:
+            axes.set_ylim(min(low), max(high))
+    for axes in panels[-1]:
+        axes.set_xlabel("$a/h$")
+    handles = [
+        Line2D([], [], color=COLOURS[n], linewidth=1.3, label=f"$n = {power(n)}$") for n in found["n"].values.tolist()
+    ]
+    handles.append(Line2D([], [], color="0.2", linewidth=0.8, linestyle=(0, (2.5, 1.5)), label="smooth punch"))
+    panels[0, 0].figure.legend(handles=handles, loc="outside lower center", ncols=4)
+
+
+def power(n: float) -> str:
+    """A power of ten for mathtext."""
+    return f"{n:g}" if 0.1 <= n <= 10 else f"10^{{{round(np.log10(n))}}}"

@@ -1,0 +1,216 @@
+"""What a results file is: sound, damaged and where, of an earlier version, or none of ours."""
+
+import os
+import pickle
+import subprocess
+import sys
+from dataclasses import dataclass, field
+from functools import lru_cache
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+
+from ..spec.grid import Grid, windows
+from ..spec.vocabulary import names
+from .checksums import ATTRIBUTE, Rows, attribute, head, parsed, split_runs
+from .netcdf import Unusable, access, check_regular, closing, opened
+from .seal import LARGE, is_whole
+
+CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
+BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError, MemoryError)
+"""What reading a file raises that is not laid out as ours are."""
+WHOSE = ("study_digest", "numerics_version", ATTRIBUTE)
+"""Attributes of which every results file has the first two."""
+SHOWN = 3  # damaged things that a message names
+PATIENCE, SLOWEST = 60.0, 5e6  # seconds, and bytes in a second: a damaged file may also be read for ever
+CHANGED = "is damaged, or another program has changed it: "
+
+
+@dataclass(frozen=True, eq=False)
+class Condition:
+    """What a results file is found to be.
+
+    kind : "sound"; "unverified", without checksums (an earlier version wrote it), nothing wrong to be seen; "damaged";
+        "foreign", none of ours; "unreadable"; "missing"
+    reason : what is wrong, follows the path in a message; digest, numerics : as the file says; sizes : of the
+        dimensions of the cases, in order; damage : names of the lines that do not fit, see `checksums`;
+    intact : (N,) whether the numbers of each case can be trusted, None if not all of the file was looked at
+    """
+
+    path: Path
+    kind: str
+    reason: str = ""
+    digest: str = ""
+    numerics: str = ""
+    sizes: dict[str, int] = field(default_factory=dict)
+    damage: tuple[str, ...] = ()
+    intact: np.ndarray | None = None
+
+    @property
+    def good(self) -> bool:
+        return self.kind in ("sound", "unverified")
+
+    def raise_if_bad(self) -> None:
+        """Raise FileNotFoundError or Unusable unless the file can be used."""
+        if self.kind == "missing":
+            raise FileNotFoundError(2, "No such file", os.fspath(self.path))
+        if not self.good:
+            raise Unusable(self.path, self.kind, self.reason)
+
+
+def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
+    """Look at a results file: at all of it, or of the variables over the cases at the `columns` only.
+
+    Attributes, coordinates and one column take milliseconds, all of it as long as reading and summing it twice. A file
+    without a whole seal (see `seal`) is looked at in another process, which takes a second more.
+    """
+    path = Path(path)
+    try:
+        check_regular(path)
+        whole = is_whole(path, LARGE if columns is not None else float("inf"))
+    except FileNotFoundError:
+        return Condition(path, "missing")
+    except Unusable as error:
+        return Condition(path, error.kind, error.reason)
+    except OSError as error:
+        return Condition(path, "unreadable", f"cannot be read: {error.strerror}")
+    return examined(path, columns) if whole else examined_apart(path, columns, stamp(path))
+
+
+def stamp(path: Path) -> tuple | None:
+    """What changes when a file is replaced or written to; None when there is none."""
+    try:
+        found = path.stat()
+    except OSError:
+        return None
+    return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+
+
+@lru_cache(maxsize=16)
+def examined_apart(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
+    """The same of a file without a whole seal, which may end the process that reads it: in another process."""
+    command = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
+    command += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
+    where = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
+    told = {"input": pickle.dumps((path, columns)), "env": os.environ | {"PYTHONPATH": where}, "capture_output": True}
+    patience = PATIENCE + path.stat().st_size / SLOWEST
+    try:
+        child = subprocess.run([sys.executable, "-c", command], **told, timeout=patience)
+        return pickle.loads(child.stdout)
+    except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
+        return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
+
+
+def examined(path: Path, columns: tuple[str, ...] | None = None) -> Condition:
+    """:func:`examine`, in this process."""
+    try:
+        file = opened(path)
+    except FileNotFoundError:
+        return Condition(path, "missing")
+    except Unusable as error:
+        return Condition(path, error.kind, error.reason)
+    with closing(file, path):
+        try:
+            return _examined(path, file, columns)
+        except Unusable as error:
+            return Condition(path, error.kind, error.reason)
+        except BROKEN as error:
+            return Condition(path, "damaged", f"is damaged: no results are laid out like this ({error})")
+
+
+def _examined(path: Path, file: netCDF4.Dataset, columns: tuple[str, ...] | None) -> Condition:
+    with access(path):
+        about = {name: str(attribute(file, name)) for name in file.ncattrs() if name in WHOSE}
+        lines = parsed(about.pop(ATTRIBUTE)) if ATTRIBUTE in about else {}
+        if not lines and len(about) < 2:
+            return Condition(path, "foreign", "is a netCDF file of another program")
+        whole, over = _split(file, lines)
+        sizes = {dim: len(file.dimensions[dim]) for dim in file["status"].dimensions} if over else {}
+        strange = [] if lines else [name for name in over if not _in_place(file[name].dimensions, tuple(sizes))]
+        if strange:
+            reason = f"another program has changed it: its dimensions are {file[strange[0]].dimensions} in {strange[0]}"
+            return Condition(path, "foreign", reason)
+        found = head(file, whole, over, [line[1:] for line in lines if line.startswith("@")])
+    rows, lost = _read(path, file, [name for name in over if columns is None or name in columns], sizes)
+    damage = [f"#{name}" for name in lost]
+    if lines:
+        found |= rows.lines(runs=columns is None)
+        damage = [name for name in [*found, "=checksums"] if lines.get(name) != found.get(name, "right")]
+    intact = _intact(rows, lines, lost) if columns is None and over else None
+    kind = "damaged" if damage else "sound" if lines else "unverified"
+    reason = CHANGED + _said(damage, intact) if damage else ""
+    about = [about.get(name, "") for name in WHOSE[:2]]
+    return Condition(path, kind, reason, *about, sizes, tuple(damage), intact)
+
+
+def _split(file: netCDF4.Dataset, lines: dict[str, str]) -> tuple[list[str], list[str]]:
+    """Names of the variables that are read whole, and of those over the cases."""
+    if lines:
+        over = [line[1:] for line in lines if line.startswith("#")]
+        return [line for line in lines if line[0] not in "#@="], over
+    if "status" not in file.variables:
+        return list(file.variables), []
+    status = file["status"]
+    coordinates = {*status.dimensions, *str(getattr(status, "coordinates", "")).split()}
+    known = names("control", "result", "profile", "flag", "count")
+    over = [name for name in known if name in file.variables and name not in coordinates]
+    return [name for name in coordinates if name in file.variables], over
+
+
+def _in_place(dims: tuple[str, ...], cases: tuple[str, ...]) -> bool:
+    """Whether a variable lies along the dimensions of the cases, and perhaps x."""
+    return dims in (cases, (*cases, "x"))
+
+
+def _read(path: Path, file: netCDF4.Dataset, over: list[str], sizes: dict[str, int]) -> tuple[Rows, dict]:
+    """What the variables `over` the cases hold, summed; and name -> runs (start, stop) of cases that cannot be read."""
+    grid, lost = Grid(sizes, {}), {}
+    rows = Rows(grid.size)
+    for name in over:
+        start = 0
+        for window in windows(grid, CHUNK, CHUNK):
+            stop = start + int(np.prod([part.stop - part.start for part in window.values()]))
+            try:
+                piece = cut_from(path, file, name, window).reshape(stop - start, -1)
+            except (Unusable, *BROKEN):
+                lost.setdefault(name, []).append((start, stop))
+                piece = np.frombuffer(os.urandom(stop - start), np.uint8)  # fits no checksum
+            rows.add(name, piece)
+            start = stop
+    return rows, lost
+
+
+def cut_from(path: Path, file: netCDF4.Dataset, name: str, window: dict[str, slice]) -> np.ndarray:
+    """The part of a variable within a window, a slice for each dimension of the cases."""
+    with access(path):
+        variable = file[name]
+        return np.asarray(variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)])
+
+
+def _intact(rows: Rows, lines: dict[str, str], lost: dict) -> np.ndarray:
+    """(N,) whether the numbers of a case can be read and are those that were written, as far as that can be told."""
+    found = np.ones(rows.size, dtype=bool)
+    for start, stop in (part for parts in lost.values() for part in parts):
+        found[start:stop] = False
+    if lines:
+        given, there = (split_runs(text) for text in (lines.get("=runs", ""), rows.lines()["=runs"]))
+        for number, digits in enumerate(there):
+            if number >= len(given) or given[number] != digits:
+                found[number * rows.run : (number + 1) * rows.run] = False
+    return found
+
+
+def _said(damage: list[str], intact: np.ndarray | None) -> str:
+    """What is damaged, in words, at most a line."""
+    words = {
+        "=structure": "types, dimensions or attributes of its variables",
+        "=runs": "",
+        "=checksums": "its checksums",
+    }
+    found = [words.get(name, f"the attribute {name[1:]}" if name[0] == "@" else name.lstrip("#")) for name in damage]
+    shown = [word for word in found if word] or ["its checksums"]
+    more = f" and {len(shown) - SHOWN} more" if len(shown) > SHOWN else ""
+    bad = np.flatnonzero(~intact) if intact is not None else ()
+    where = f" in {len(bad)} of {len(intact)} cases, {bad[0]} to {bad[-1]}" if len(bad) else ""
+    return ", ".join(shown[:SHOWN]) + more + where

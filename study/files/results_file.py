@@ -1,0 +1,140 @@
+"""Results files as datasets: written whole, opened."""
+
+import os
+from itertools import count
+from pathlib import Path
+
+import netCDF4
+import numpy as np
+import xarray as xr
+from xarray.conventions import encode_dataset_coordinates
+
+from ..data.dataset import plainly_written
+from .atomic import replacing
+from .checksums import ATTRIBUTE, NOT_SUMMED, Rows, head, text
+from .examine import examine
+from .netcdf import access, closing, created, read, read_lazily
+from .seal import seal
+
+
+def encoding(array: xr.DataArray) -> dict:
+    """How a variable is stored, in the words of netCDF4.
+
+    All have checksums but single numbers, which netCDF stores without; the attribute `checksums` covers those.
+    Profiles are nearly all of a file. Compressing them takes longer than the rest of the writing and gains little.
+    """
+    data, text = array.name not in array.coords, array.dtype.kind in "UO"
+    options = {"fill_value": np.nan if data and array.dtype.kind == "f" else None}
+    if not array.ndim and not text:
+        return options
+    options["fletcher32"] = True
+    if not data or text or "x" in array.dims:
+        return options
+    return options | {"zlib": True, "complevel": 1, "shuffle": True}
+
+
+def create(file: netCDF4.Dataset, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int]) -> None:
+    """Dimensions, attributes and variables as in `part`, but of the sizes and with the coordinates of the `whole`.
+
+    chunk : dimension -> its length in a chunk, where that is not all of it
+    """
+    variables, attributes = encode_dataset_coordinates(part)
+    sizes = dict(whole.sizes)
+    for dim, size in sizes.items():
+        file.createDimension(dim, size)
+    for name, variable in variables.items():
+        options, values = encoding(part[name]), stored(whole[name]) if name in whole else None
+        dims, kind = variable.dims, variable.dtype
+        if kind.kind in "UO":
+            dims, kind = (*dims, f"string{values.shape[-1]}"), "S1"
+            if dims[-1] not in file.dimensions:
+                file.createDimension(dims[-1], values.shape[-1])
+        elif name in part.data_vars and dims:
+            options["chunksizes"] = [chunk.get(dim, sizes[dim]) for dim in dims]
+        made = file.createVariable(name, kind, dims, **options)
+        made.set_auto_mask(False)
+        made.set_auto_chartostring(False)
+        if "chunksizes" in options:
+            made.set_var_chunk_cache(size=1, nelems=1)  # whole chunks are written, once: 64 MB each would hold them
+        made.setncatts(variable.attrs)
+        if kind == "S1":
+            made.setncattr("_Encoding", "utf-8")
+        if name in part.coords:
+            made[...] = values
+    file.setncatts(attributes)
+
+
+def stored(array: xr.DataArray) -> np.ndarray:
+    """The values as the file has them: texts as characters, along one more dimension.
+
+    As netCDF's own strings they would have no checksum, and HDF5 2.2 ends the interpreter when a file with such strings
+    is opened while it is open, as lazily opened results are.
+    """
+    if array.dtype.kind not in "UO":
+        return array.values
+    words = np.char.encode(array.values.astype(str), "utf-8")
+    return words.astype(f"S{max(1, words.itemsize)}")[..., np.newaxis].view("S1")
+
+
+def add_checksums(file: netCDF4.Dataset, rows: Rows, cases: dict[str, str]) -> None:
+    """The attribute, when all else is in the file; `rows` of the variables over the cases, and the line `=cases`."""
+    whole = [name for name in file.variables if name not in rows.digests]
+    attributes = [name for name in file.ncattrs() if name not in NOT_SUMMED]
+    found = head(file, whole, list(rows.digests), attributes) | rows.lines() | cases
+    file.setncattr(ATTRIBUTE, text(found))
+
+
+def write(dataset: xr.Dataset, path: Path, aside: bool = False) -> None:
+    """Write a small dataset: `path` either is complete or does not exist. aside : see `set_aside`."""
+    with replacing(path) as temporary:
+        with closing(created(temporary), path, writing=True) as file, access(path, writing=True):
+            create(file, dataset, dataset, {})
+            for name, array in dataset.data_vars.items():
+                file[name][...] = stored(array)
+            add_checksums(file, Rows(0), {})
+        seal(temporary)
+        if aside:
+            set_aside(path)
+
+
+def set_aside(path: Path) -> Path:
+    """Give a damaged file that is about to be replaced a second name, NAME.nc.damaged, which keeps it; returns that."""
+    names = (f"{path.name}.damaged{f'-{number}' * (number > 1)}" for number in count(1))
+    kept = next(path.with_name(name) for name in names if not path.with_name(name).exists())
+    try:
+        os.link(path, kept)
+    except OSError:  # no hard links on this file system
+        os.rename(path, kept)
+    return kept
+
+
+def open_results(path) -> xr.Dataset:
+    """A results file, read into memory and closed, when nothing in it is damaged.
+
+    Any thread may open, and read, while others run studies. A file without checksums, of an earlier version, is read
+    unverified.
+
+    Raises
+    ------
+    FileNotFoundError : there is none
+    StudyError : it is damaged, or cannot be read; also an OSError
+    """
+    found = examine(path)
+    if found.kind != "foreign":  # another netCDF file is read as it is
+        found.raise_if_bad()
+    return _shown(read(Path(path)))
+
+
+def open_lazily(path) -> xr.Dataset:
+    """A results file as dask arrays in its chunks: numbers are read when they are asked for, in any thread.
+
+    Attributes and coordinates are verified, and each chunk when it is read (StudyError, an OSError).
+    """
+    examine(path, ()).raise_if_bad()
+    return _shown(read_lazily(Path(path)))
+
+
+def _shown(dataset: xr.Dataset) -> xr.Dataset:
+    """Without the checksums: they are those of the file, not of what somebody makes of the dataset and writes."""
+    dataset.attrs.pop(ATTRIBUTE, None)
+    return plainly_written(dataset)

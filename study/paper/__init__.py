@@ -1,0 +1,1 @@
+"""What only the paper needs: its numbers, its own numerical method, its figures."""

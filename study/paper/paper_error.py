@@ -1,0 +1,67 @@
+"""Where the paper's 0.6 % may come from: its numbers against single iterates of its own successive approximations.
+
+With k = 0 the iterates of Eq. (8) at a = 0.04 alternate about the answer and close in on it slowly. One that is
+stopped early has the wrong load, and the next one is wrong to the other side.
+"""
+
+import numpy as np
+import xarray as xr
+
+from solver import Problem, solve
+from solver.closed_forms import hertz
+
+from . import numbers
+from .uniform import solve_uniform
+
+MAIN = {"base": "thin_layer", "h": 0.02, "n": 0.5, "Nbar": 250_000, "Ra": 0.004}
+MAIN |= {"micro": "power_law", "B": 0.1, "beta": 0.5}
+RADIUS = 0.04
+INTERVALS = (20, 40, 80, 160)
+STEPS = 40
+SHARED = ("P", "D", "A0", "Ar_An", "p_max")
+
+
+def iterates() -> xr.Dataset:
+    """P, D, A0, Ar_An, p_max over (intervals, iterate): the paper's main case at its radius, scheme (8) with k = 0."""
+    problem = Problem.of(a=RADIUS, **MAIN)
+    found = [[solve_uniform(problem, n, 0.0, 1e-12, m) for m in range(1, STEPS + 1)] for n in INTERVALS]
+    variables = {
+        f"iterate_{name}": (("intervals", "iterate"), [[float(getattr(s, name)[0]) for s in row] for row in found])
+        for name in SHARED
+    }
+    return xr.Dataset(variables, {"intervals": list(INTERVALS), "iterate": np.arange(1, STEPS + 1)})
+
+
+def nearest_pair(found: xr.Dataset) -> dict[str, int]:
+    """Mesh and number of the iterate that has the paper's load and whose successor has the paper's depth, as nearly."""
+    load = np.abs(found["iterate_P"] / numbers.NUMBERS["P"][1] - 1).isel(iterate=slice(None, -1)).values
+    depth = np.abs(found["iterate_D"] / numbers.NUMBERS["D"][1] - 1).isel(iterate=slice(1, None)).values
+    mesh, step = np.unravel_index(np.argmin(np.maximum(load, depth)), load.shape)
+    return {"intervals": int(mesh), "iterate": int(step)}
+
+
+def explained(found: xr.Dataset) -> list[tuple[str, float, float, float]]:
+    """(quantity, printed, converged, by the pair of iterates) for the paper's numbers of Section 5.
+
+    The load is that of the first iterate of the pair, what is printed for the rough layered contact that of the
+    second, and the other contacts are converged ones under the load of the second.
+    """
+    pair = nearest_pair(found)
+    first = found.isel(pair)
+    second = found.isel(pair | {"iterate": pair["iterate"] + 1})
+    load = float(solve(Problem.of(a=RADIUS, **MAIN, rtol=1e-9)).P[0])
+    converged, theirs = contacts(load), contacts(float(second["iterate_P"]))
+    theirs |= {name: float(second[f"iterate_{name}"]) for name in SHARED} | {"P": float(first["iterate_P"])}
+    return [(numbers.NUMBERS[key][0], numbers.NUMBERS[key][1], converged[key], theirs[key]) for key in theirs]
+
+
+def contacts(load: float) -> dict[str, float]:
+    """The numbers of Section 5 by converged solutions under one load, keys of `paper.NUMBERS`."""
+    changes = {}, {"base": "half_space"}, {"micro": "smooth"}
+    layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
+    return {
+        **{name: float(getattr(layered, name)[0]) for name in SHARED},
+        "An_ratio": float(bare.a[0] / RADIUS) ** 2,
+        "D smooth layered": float(smooth.D[0]),
+        "D smooth homogeneous": float(hertz(P=load).D),
+    }

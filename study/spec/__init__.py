@@ -1,0 +1,1 @@
+"""From a study file or keywords to a checked grid of cases."""

@@ -1,0 +1,237 @@
+"""Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
+
+import hashlib
+import json
+import re
+import tomllib
+from dataclasses import dataclass, replace
+from itertools import islice
+from pathlib import Path
+
+import numpy as np
+
+from solver import NUMERICS_VERSION
+
+from ..terminal import on_one_line
+from .block_size import usual_block
+from .given import MOST_MESSAGES, Draft
+from .grid import Grid, shown
+from .toml_text import text_in
+from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
+
+POINTS = 33
+LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
+MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
+TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
+DTYPES = ("float64", "float32")
+FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
+PER_CASE = 16  # numbers per case besides the profiles, roughly
+SECTIONS = {
+    "contact": ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output"),
+    "micro_law": ("title", "kind", "model", "axes", "cases", "sample", "fit"),
+}
+
+
+class StudyError(ValueError):
+    """Input that cannot be used; `messages` has every reason, one line each; `code`: exit code of a command."""
+
+    code = 2
+
+    def __init__(self, messages):
+        self.messages = tuple(messages)
+        super().__init__("\n".join(self.messages))
+
+
+@dataclass(frozen=True, eq=False)
+class Definition:
+    """What a study computes.
+
+    kind : "contact" or "micro_law"
+    text : the study file as it was read; goes into the dataset
+    x : (m,) points r/a of the profiles; for a micro law its pressures p/E1*
+    profiles : names of the profiles that are stored
+    dtype : "float64" or "float32", of the stored numbers
+    fit : arguments of `solver.fit_power_law` (micro_law only)
+    block : number of cases computed and stored at a time
+    digest : sha256 of all that determines the numbers
+    """
+
+    name: str
+    kind: str
+    title: str
+    text: str
+    grid: Grid
+    x: np.ndarray
+    profiles: tuple[str, ...]
+    dtype: str
+    fit: dict
+    block: int
+    digest: str
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers the results hold, roughly."""
+        return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
+
+
+def read(path) -> Definition:
+    """Definition of a study file. Raises StudyError with all that is wrong with it."""
+    path = Path(path)
+    where = path.as_posix()
+    if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
+        raise StudyError([f"{where}: a study file is called NAME.toml, NAME of letters, digits, _, - and ."])
+    try:
+        text = text_in(path)
+        tables = tomllib.loads(text)
+    except OSError as error:
+        raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
+    except RecursionError:
+        raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
+    except ValueError as error:  # wrong TOML, wrong UTF-8
+        reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
+        raise StudyError([f"{where}: is not valid TOML: {reason}"]) from None
+    return from_tables(tables, path.stem, text, where)
+
+
+def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
+    """Definition of the parsed TOML tables; `where` begins every message."""
+    kind = tables.get("kind", "contact")
+    if not isinstance(kind, str) or kind not in SECTIONS:
+        raise StudyError([f'{where}: kind = {shown(kind)}: must be one of "contact", "micro_law"'])
+    draft = Draft(known=PARAMETERS if kind == "contact" else MICRO_LAW_PARAMETERS)
+    draft.errors += [
+        f"{shown(key)} is not a section{suggest(key, SECTIONS[kind])}"
+        for key in islice((key for key in tables if key not in SECTIONS[kind]), MOST_MESSAGES)
+    ]
+    numerics = _table(tables, "numerics", (*NUMERICS, "block"), draft)
+    for key, value in _table(tables, "model", None, draft).items():
+        draft.scalar(key, value, "[model]")
+    for key in NUMERICS:
+        if key in numerics:
+            draft.scalar(key, numerics[key], "[numerics]")
+    if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
+        draft.cases(tables["cases"])
+    if "sample" in tables:
+        draft.sample(tables["sample"])
+    for key, value in _table(tables, "axes", None, draft).items():
+        draft.axis(key, value, "[axes]")
+    output = _table(tables, "output", ("x", "profiles", "dtype"), draft)
+    fit = fit_arguments(_table(tables, "fit", (*FIT, "check"), draft), draft.errors) if kind == "micro_law" else {}
+    whole = {"name": name, "kind": kind, "title": tables.get("title", ""), "text": text, "fit": fit}
+    whole |= {"x": output.get("x", POINTS), "profiles": output.get("profiles", True)}
+    whole |= {"dtype": output.get("dtype", DTYPES[0])}
+    return complete(draft, where, block=numerics.get("block"), **whole)
+
+
+def complete(
+    draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, dtype=DTYPES[0], block=None,
+    most=MOST_VALUES,
+) -> Definition:  # fmt: skip
+    """Finish a draft: the checks of the whole, and the digest. Raises StudyError with every message collected."""
+    grid = draft.finish()
+    x = profile_points(x, draft.errors) if kind == "contact" else law_points(fit, draft.errors)
+    if not isinstance(title, str):
+        draft.errors.append(f"title = {shown(title)}: must be text")
+    if block is None:  # not said
+        block = 1 if draft.errors else usual_block(grid)
+    if type(block) is not int or not 1 <= block <= 1_000_000:
+        draft.errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
+    profiles = profile_names(profiles, draft.errors)
+    if dtype not in DTYPES:
+        draft.errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
+    made = Definition(name, kind, title, text, grid, x, profiles, dtype, fit, block, "")
+    if made.numbers > most:
+        draft.errors.append(
+            f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
+        )
+    if draft.errors:
+        more = len(draft.errors) - MOST_MESSAGES
+        shortened = draft.errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
+        raise StudyError(f"{where}: {message}" for message in shortened)
+    return replace(made, digest=digest_of(made))
+
+
+def digest_of(definition: Definition) -> str:
+    """sha256 over what determines the numbers: not title, comments or block size."""
+    grid = definition.grid
+    arrays = {**grid.values, **grid.labels, "x": (("x",), definition.x)}
+    content = {
+        "numerics_version": NUMERICS_VERSION,
+        "kind": definition.kind,
+        "sizes": list(grid.sizes.items()),
+        "arrays": {name: (dims, _digest_of_array(array)) for name, (dims, array) in arrays.items()},
+        "profiles": definition.profiles,
+        "dtype": definition.dtype,
+        "fit": definition.fit,
+    }
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _digest_of_array(array: np.ndarray) -> str:
+    """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
+    numbers = array.dtype.kind in "iuf"
+    raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()
+    return hashlib.sha256(raw).hexdigest()
+
+
+def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
+    """Names of the profiles to store, from true, false or their list; in the order of the vocabulary."""
+    known = names("profile")
+    if isinstance(profiles, bool):
+        return known if profiles else ()
+    if not isinstance(profiles, (list, tuple)) or not set(map(str, profiles)) <= set(known):
+        listed = ", ".join(f'"{name}"' for name in known)
+        errors.append(f"profiles = {shown(profiles)}: must be true or false, or a list of {listed}")
+        return ()
+    return tuple(name for name in known if name in profiles)
+
+
+def profile_points(x, errors: list[str]) -> np.ndarray:
+    """Points r/a from their number or their list: increasing from 0 to 1."""
+    points = x.tolist() if isinstance(x, (np.ndarray, np.generic)) else x
+    if type(points) is int and 2 <= points <= 10_000:
+        return np.linspace(0.0, 1.0, points)
+    if not isinstance(points, (list, tuple)) or not all(map(finite, points)):
+        errors.append(f"x = {shown(x)}: must be a whole number in [2, 10000] or a list of numbers from 0 to 1")
+        return np.array([])
+    found = np.array(points, dtype=float)
+    if len(found) < 2 or found[0] != 0 or found[-1] != 1 or (np.diff(found) <= 0).any():
+        errors.append(f"x = {shown(points)}: a list must increase from 0 to 1, both included")
+    return found
+
+
+def fit_arguments(given: dict, errors: list[str]) -> dict:
+    """Arguments of the least-squares fit from the table [fit], defaults filled in, pressures in E1*."""
+    fit = {key: given.get(key, VOCABULARY[f"fit.{key}"].default) for key in FIT}
+    for key, value in fit.items():
+        text = check(VOCABULARY[f"fit.{key}"], value)
+        if text:
+            errors.append(f"[fit] {key} = {shown(value)}: {text}")
+    fit["check"] = given.get("check", [0.0025, 0.025])
+    limits = fit["check"]
+    pair = isinstance(limits, list) and len(limits) == 2 and all(map(finite, limits))
+    if not pair or not 0 < limits[0] < limits[1]:
+        errors.append(f"[fit] check = {shown(limits)}: must be [low, high] with 0 < low < high")
+    return fit
+
+
+def law_points(fit: dict, errors: list[str]) -> np.ndarray:
+    """Pressures p of a micro-law study in E1*: from p_min to p_max in steps as near to `step` as fits."""
+    if errors:
+        return np.array([])
+    steps = (fit["p_max"] - fit["p_min"]) / fit["step"]
+    if not 1 <= steps <= 1e6:
+        errors.append("[fit] p_max must be at least one step, and at most a million steps, above p_min")
+        return np.array([])
+    return np.linspace(fit["p_min"], fit["p_max"], 1 + round(steps))
+
+
+def _table(tables: dict, section: str, known: tuple[str, ...] | None, draft: Draft) -> dict:
+    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller looks)."""
+    found = tables.get(section, {})
+    if not isinstance(found, dict):
+        draft.errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
+        return {}
+    unknown = [key for key in found if known and key not in known]
+    draft.errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
+    return found

@@ -1,0 +1,198 @@
+"""The grid of cases: parameters along named dimensions, their flat columns (B,), and the way back."""
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from itertools import product
+
+import numpy as np
+
+from ..terminal import on_one_line
+from .vocabulary import Entry, check, finite
+
+LONGEST_AXIS = 1_000_000
+SHOWN = 3  # messages of one kind for one parameter; the rest is counted
+
+
+@dataclass(frozen=True, eq=False)
+class Grid:
+    """Labelled cases, the product of the dimensions.
+
+    sizes : dimension -> number of points, in order; values : parameter -> (its dimensions, array over them); labels :
+        the same for coordinates that are no parameters (`case`, `label`, coordinates of a given DataArray). NaN in
+        `values` means "not given for this case because nothing there needs it".
+    """
+
+    sizes: dict[str, int]
+    values: dict[str, tuple[tuple[str, ...], np.ndarray]]
+    labels: dict[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return tuple(self.sizes.values())
+
+    @property
+    def size(self) -> int:
+        """Number of cases B, as a Python integer that cannot overflow."""
+        return math.prod(self.sizes.values())
+
+
+def columns(grid: Grid, start: int, stop: int) -> dict[str, np.ndarray]:
+    """Parameters of the cases start <= i < stop, see `columns_at`."""
+    return columns_at(grid, np.arange(start, stop))
+
+
+def columns_at(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
+    """Parameters of the cases at `index` (k,), each (k,); what a case does not need (NaN) becomes 1."""
+    places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}
+    found = {}
+    for name, (dims, array) in grid.values.items():
+        column = array[tuple(places[dim] for dim in dims)] if dims else np.full(len(index), array)
+        if column.dtype.kind == "f":
+            column = np.where(np.isnan(column), 1.0, column)
+        found[name] = column
+    return found
+
+
+def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
+    """The grid within a window, a slice for each dimension."""
+
+    def within(table: dict) -> dict:
+        return {name: (dims, array[tuple(window[dim] for dim in dims)]) for name, (dims, array) in table.items()}
+
+    sizes = {dim: len(range(size)[window[dim]]) for dim, size in grid.sizes.items()}
+    return Grid(sizes, within(grid.values), within(grid.labels))
+
+
+def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
+    """Windows of at most `most` cases that follow each other in the flat order of the cases, each of whole chunks.
+
+    chunk : largest number of cases in a chunk; see `box`
+    """
+    lengths = box(grid.shape, max(chunk, most))
+    lengths = [
+        length if length == size else length - length % within
+        for length, within, size in zip(lengths, box(grid.shape, chunk), grid.shape, strict=True)
+    ]
+    for corner in product(*(range(0, size, length) for size, length in zip(grid.shape, lengths, strict=True))):
+        yield {
+            dim: slice(low, min(low + length, size))
+            for (dim, size), low, length in zip(grid.sizes.items(), corner, lengths, strict=True)
+        }
+
+
+def box(shape: tuple[int, ...], most: int) -> list[int]:
+    """Lengths of a box of at most `most` cases that are consecutive in flat order: 1, ..., 1, length, whole, ..."""
+    lengths, inner = [1] * len(shape), 1
+    for axis in reversed(range(len(shape))):
+        pieces = -(-shape[axis] // (most // inner))
+        lengths[axis] = -(-shape[axis] // pieces)
+        if pieces > 1:
+            break
+        inner *= shape[axis]
+    return lengths
+
+
+def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
+    """(B, ...) -> (*grid.shape, ...), the inverse of `columns`."""
+    return flat.reshape(grid.shape + flat.shape[1:])
+
+
+def as_array(entry: Entry, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
+    """Check the values of one parameter and make them an array of float, int or text.
+
+    Parameters
+    ----------
+    raw : list of values, or a list with one value
+    key : how messages call the parameter; entry i of several is called key[i]
+    errors : messages are appended here
+    gaps : None stands for "not given" and becomes NaN
+    """
+    if set(map(type, raw)) == {float} and _all_allowed(entry, np.array(raw)):
+        return np.array(raw)
+    found = []
+    for i, value in enumerate(raw):
+        text = "" if value is None and gaps else check(entry, value)
+        if text:
+            found.append(f"{key}{f'[{i}]' if len(raw) > 1 else ''} = {shown(value)}: {text}")
+    errors += found[:SHOWN] + ([f"{key}: and {len(found) - SHOWN} more such values"] if len(found) > SHOWN else [])
+    if found:
+        return np.empty(len(raw))
+    if entry.choices:
+        return np.array(raw, dtype=str)
+    if entry.whole:
+        return np.array([int(value) for value in raw], dtype=np.int64)
+    return np.array([math.nan if value is None else float(value) for value in raw])
+
+
+def _all_allowed(entry: Entry, values: np.ndarray) -> bool:
+    """Whether all are allowed, as they are when the extremes of an interval are: a million one by one take seconds."""
+    plain = not (entry.choices or entry.whole or entry.also)
+    return plain and not check(entry, values.min()) and not check(entry, values.max())  # both NaN if one value is
+
+
+def axis_values(raw, key: str, errors: list[str]) -> list:
+    """Expand an axis: a list, or a table {start, stop, num, spacing = "linear" | "log"}. Wrong input: messages, []."""
+    if isinstance(raw, dict):
+        return _range_values(raw, key, errors)
+    if not isinstance(raw, list):
+        errors.append(
+            f"{key} = {shown(raw)}: must be a list or {{start, stop, num, spacing}}; a single value belongs in [model]"
+        )
+    elif not raw:
+        errors.append(f"{key} is empty: must have at least one value")
+    elif len(raw) > LONGEST_AXIS:
+        errors.append(f"{key} is too long: at most {LONGEST_AXIS} values are allowed")
+    else:
+        return raw
+    return []
+
+
+def _range_values(raw: dict, key: str, errors: list[str]) -> list:
+    before = len(errors)
+    check_range(raw, key, errors, ("start", "stop", "num", "spacing"))
+    num = raw.get("num")
+    if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
+        errors.append(f"{key}: num = {shown(num)}: must be a whole number in [2, {LONGEST_AXIS}]")
+    if len(errors) > before:
+        return []
+    make = np.geomspace if raw.get("spacing", "linear") == "log" else np.linspace
+    return make(raw["start"], raw["stop"], num).tolist()
+
+
+def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) -> None:
+    """Messages for the spacing and the ends of a range, and for what it has that is not one of `names`."""
+    for name in raw:
+        if name not in names:
+            errors.append(f'{key}: "{name}" is not allowed; a range is {{{", ".join(names)}}}')
+    spacing = raw.get("spacing", "linear")
+    if spacing not in ("linear", "log"):
+        errors.append(f'{key}: spacing = {shown(spacing)}: must be one of "linear", "log"')
+    for end in ("start", "stop"):
+        value = raw.get(end)
+        if not finite(value) or (spacing == "log" and value <= 0):
+            errors.append(
+                f"{key}: {end} = {shown(value)}: must be a finite number{', > 0 for spacing log' * (spacing == 'log')}"
+            )
+    start, stop = raw.get("start"), raw.get("stop")
+    if finite(start) and finite(stop) and not math.isfinite(float(stop) - float(start)):
+        errors.append(f"{key}: from start = {shown(start)} to stop = {shown(stop)}: must be less than 1.8e308 apart")
+
+
+def twins(values: list) -> list[tuple[int, int]]:
+    """Pairs of places that hold the same value: a coordinate with twins cannot be selected from."""
+    first, pairs = {}, []
+    for i, value in enumerate(values):
+        j = first.setdefault(value, i)
+        if j != i:
+            pairs.append((j, i))
+    return pairs
+
+
+def shown(value) -> str:
+    """A value as a message quotes it: not longer than a line."""
+    try:
+        text = "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        text = "a number of more than 4300 digits"
+    return on_one_line(text, 60)

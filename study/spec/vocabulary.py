@@ -1,0 +1,188 @@
+"""The only table of names: what every parameter and result is called, measured in, allowed to be and printed as."""
+
+import difflib
+import math
+import numbers
+from dataclasses import dataclass, replace
+
+from solver.parameters import CONTROL, ends
+from solver.parameters import PARAMETERS as BESIDE_IT
+
+OF_THE_SOLVER = CONTROL | BESIDE_IT
+INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
+"""Results that are whole numbers, and as what they are kept."""
+NOT_RUN = 127
+"""Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
+
+MICRON, PRESSURE = ("um", 1e-6), ("MPa", 1e6)
+FORCE, STIFFNESS, DENSITY = ("N", 1.0), ("N m-1", 1.0), ("mm-2", 1e6)
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One name.
+
+    `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity, printed in `unit`
+    (name, size in SI). `interval` is the allowed range in mathematical notation, `also` lists single values allowed
+    outside it. The solver knows these bounds (one that stands here is narrower), what its parameters default to, the
+    `choices` of a text, and which are `whole` numbers; `default` None means that a parameter has none: it is then
+    required wherever the parameter called `needed_by[0]` has one of the values `needed_by[1]`.
+    """
+
+    name: str
+    symbol: str
+    long_name: str
+    role: str
+    powers: tuple[int, int] = (0, 0)
+    unit: tuple[str, float] = ("1", 1.0)
+    equation: str = ""
+    interval: str = ""
+    also: tuple = ()
+    choices: tuple[str, ...] = ()
+    default: object = None
+    whole: bool = False
+    needed_by: tuple[str, tuple[str, ...]] = ("", ())
+
+    @property
+    def scale(self) -> str:
+        """The scale in words, such as "E2* R^2"; empty for a pure number."""
+        parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]
+        return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
+
+
+POSITIVE = "(0, inf)"
+LISTED = 40  # names in a message
+
+# fmt: off
+_ENTRIES = (
+    Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)"),
+    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)"),
+    Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)"),
+    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON),
+    Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material"),
+    Entry("nu1", "ν1", "Poisson ratio of the layer", "material"),
+    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material"),
+    Entry("bonding", "", "interface of layer and half-space", "material"),
+    Entry("base", "", "elastic base", "material"),
+    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY),
+    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON),
+    Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)"),
+    Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness"),
+    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness"),
+    Entry("scheme", "", "scheme of solution", "numerics"),
+    Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)"),
+    Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]"),
+    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics"),
+    Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics"),
+    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics"),
+    Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics"),
+    Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), PRESSURE, "(3)"),
+    Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), PRESSURE,
+          "(13)"),
+    Entry("Ar_An", "Ar/An", "real over nominal contact area", "result", equation="(12)"),
+    Entry("A0", "A[p(0)]", "additional displacement of the rough layer in the centre", "result", (0, 1), MICRON, "(6)"),
+    Entry("dP_dD", "dP/dD", "contact stiffness", "result", (1, 1), STIFFNESS),
+    Entry("lam0", "λ(0)", "relative contact area in the centre", "result", equation="(11)"),
+    Entry("p", "p(r)", "nominal contact pressure", "profile", (1, 0), PRESSURE, "(3)"),
+    Entry("lam", "λ(r)", "relative contact area", "profile", equation="(11)"),
+    Entry("status", "", "how the solution of the case ended", "flag"),
+    Entry("error", "", "estimated relative error of the results", "result"),
+    Entry("model_error", "", "estimated relative error of the model used, against the exact layered one", "result"),
+    Entry("model_used", "", "model that the case was solved with", "flag"),
+    Entry("residual", "", "relative residual of the discrete equation", "result"),
+    Entry("iterations", "", "number of iterations", "count"),
+    Entry("nodes_used", "", "number of nodes used", "count"),
+    Entry("validity", "", "assumptions of the model that the case violates; 0: none", "flag"),
+    Entry("An", "An", "nominal contact area", "derived", (0, 2), ("mm2", 1e-6)),
+    Entry("An_ratio", "An/(π a0²)", "nominal contact area over a reference area", "derived"),
+    Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0), PRESSURE),
+    Entry("spots", "N̄ An", "number of contact spots", "derived"),
+    Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), MICRON, "(7)"),
+    Entry("p_peak", "", "largest real pressure in the contact, wherever it is", "derived", (1, 0), PRESSURE, "(13)"),
+    Entry("E_eff", "Eeff", "effective reduced modulus (dP/dD)/(2a)", "derived", (1, 0), PRESSURE),
+    Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
+    Entry("case", "", "number of the case", "coordinate"),
+    Entry("label", "", "label of the case", "coordinate"),
+    Entry("fit.p_min", "", "smallest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
+    Entry("fit.p_max", "", "largest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=0.025),
+    Entry("fit.step", "", "pressure step of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
+    Entry("fit.mesh", "", "mesh of the fit", "fit", choices=("uniform", "graded"), default="uniform"),
+    Entry("A_exact", "A[p]", "additional displacement, exact", "law", (0, 1), MICRON, "(6)"),
+    Entry("A_fit", "B p^β", "additional displacement, fitted power law", "law", (0, 1), MICRON),
+    Entry("max_error", "", "largest relative error of the fit over the interval `check`", "law"),
+)
+# fmt: on
+
+
+def _completed(entry: Entry) -> Entry:
+    """With what the solver knows of a parameter."""
+    if entry.name not in OF_THE_SOLVER:
+        return entry
+    known = OF_THE_SOLVER[entry.name]
+    return replace(entry, **known._asdict() | {"interval": entry.interval or known.interval})
+
+
+VOCABULARY = {entry.name: _completed(entry) for entry in _ENTRIES}
+
+
+def names(*roles: str) -> tuple[str, ...]:
+    """Names that have one of the roles, in the order of the table."""
+    return tuple(entry.name for entry in _ENTRIES if entry.role in roles)
+
+
+CONTROLS = names("control")
+NUMERICS = names("numerics")
+PARAMETERS = names("control", "material", "roughness", "numerics")
+MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
+
+
+def attributes(name: str) -> dict:
+    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation."""
+    entry = VOCABULARY[name]
+    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    if not entry.choices and entry.role != "flag" and name != "label":
+        found["units"] = "1"
+    return {key: text for key, text in found.items() if text}
+
+
+def allowed(entry: Entry) -> str:
+    """What the values of an entry must be, as the end of a message: "must be > 0"."""
+    if entry.choices:
+        return "must be one of " + ", ".join(f'"{choice}"' for choice in entry.choices)
+    low, high = entry.interval[1:-1].split(", ")
+    if high == "inf":
+        return f"must be {'>' if entry.interval[0] == '(' else '>='} {low}"
+    either = "".join(f"{value} or " for value in entry.also)
+    return f"must be {either}in {entry.interval}"
+
+
+def check(entry: Entry, value) -> str:
+    """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
+    if entry.choices:
+        return "" if isinstance(value, str) and value in entry.choices else allowed(entry)
+    if not finite(value):
+        return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
+    if entry.whole and value != int(value):
+        return "must be a whole number"
+    low, high, with_low, with_high = ends(entry.interval)
+    above = value > low or (value == low and with_low)
+    below = value < high or (value == high and with_high)
+    return "" if value in entry.also or (above and below) else allowed(entry)
+
+
+def finite(value) -> bool:
+    """Whether a value is a real number that a float can hold; True and False are none."""
+    try:
+        return isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(float(value))
+    except OverflowError:
+        return False
+
+
+def suggest(word: str, known) -> str:
+    """ "; did you mean "Nbar"?" when a known word is near, otherwise the list of what is known."""
+    lower = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(str(word).lower()[:100], lower, n=1, cutoff=0.6)
+    if near:
+        return f'; did you mean "{lower[near[0]]}"?'
+    listed = list(known)
+    return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))

@@ -1,0 +1,64 @@
+"""One run at a time in a folder: an advisory lock that the system releases when its holder dies, however it dies."""
+
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from ..files.atomic import make_folder
+
+try:
+    import fcntl
+except ImportError:  # not POSIX: two runs at once compute the same blocks twice, which harms nothing
+    fcntl = None
+
+
+@contextmanager
+def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callable = lambda: None) -> Iterator[bool]:
+    """Hold the lock file `path`, whose folder is made when missing; yields whether it is held.
+
+    shared : together with others that share it; wait : until it is free, after a call of `waiting`, else False at once.
+    A file system without locks counts as free: every file is written under a name of its own and then renamed.
+    """
+    file = _opened(path)
+    try:
+        mine = _locked(file, shared, wait, waiting)
+        while mine and not _is_at(file, path):  # its last holder removed the folder while this one waited
+            os.close(file)
+            file = _opened(path)
+            mine = _locked(file, shared, wait, waiting)
+        yield mine
+    finally:
+        os.close(file)  # releases it
+
+
+def _opened(path: Path) -> int:
+    while True:
+        make_folder(path.parent)
+        try:
+            return os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
+        except FileNotFoundError:  # the folder has just been removed
+            continue
+
+
+def _locked(file: int, shared: bool, wait: bool, waiting: Callable) -> bool:
+    if fcntl is None:
+        return True
+    kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX
+    try:
+        fcntl.flock(file, kind | fcntl.LOCK_NB)
+    except BlockingIOError:
+        if not wait:
+            return False
+        waiting()
+        fcntl.flock(file, kind)
+    except OSError:  # no locks on this file system
+        return True
+    return True
+
+
+def _is_at(file: int, path: Path) -> bool:
+    try:
+        return os.path.samestat(os.fstat(file), path.stat())
+    except FileNotFoundError:
+        return False

@@ -1,0 +1,63 @@
+"""What becomes of blocks when the results are written, and what `clean` removes."""
+
+from contextlib import suppress
+from pathlib import Path
+
+from ..spec.definition import StudyError
+from .blocks import Inventory, Store, inventory, remove_litter
+from .lock import held
+
+
+def tidy(store: Store, known: Inventory) -> str:
+    """Remove the blocks of which the results file holds everything; says what else lies there, "" if nothing does."""
+    for path in known.inside:
+        path.unlink(missing_ok=True)
+    remove_litter(store)
+    rest = _rest(store)
+    if rest:
+        return f"{store.folder} keeps {_counted(rest, known)} that are not in it, `clean` removes them"
+    store.lock.unlink(missing_ok=True)
+    with suppress(OSError):  # it is not there, or another run has just come
+        store.folder.rmdir()
+    return ""
+
+
+def clean(store: Store, done: bool) -> list[str]:
+    """Remove the blocks that do not serve the study as it is; says what was removed, and what stays.
+
+    done : the results file holds the whole study, so no block serves it
+
+    Raises
+    ------
+    StudyError : a run of the study is going on
+    """
+    if not store.folder.exists():
+        return [f"{store.folder}: is not there, nothing to remove"]
+    with held(store.lock, wait=False) as alone:
+        if not alone:
+            raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
+        known = inventory(store, force=True)
+        used = set() if done else {known.files[number] for number in set(known.file[known.file >= 0].tolist())}
+        gone = [path for path in known.blocks if path not in used and path.is_file()]
+        for path in gone:
+            path.unlink(missing_ok=True)
+        said = [f"{store.folder}: removed {_counted(gone, known)}"] if gone else []
+        known.inside.intersection_update(gone)
+        if tidy(store, known):
+            what = "; `run` goes on from there" if used else ""
+            said.append(f"{store.folder}: kept {_counted(_rest(store), known)}{what}")
+    return said or [f"{store.folder}: nothing to remove"]
+
+
+def _counted(paths: list[Path], known: Inventory) -> str:
+    """ "3 blocks of 15 cases, 1 damaged block, 2 other files"."""
+    cases = [known.blocks[path] for path in paths if path in known.blocks]
+    whole = [number for number in cases if number >= 0]
+    parts = [(len(whole), "block", f" of {sum(whole)} cases"), (len(cases) - len(whole), "damaged block", "")]
+    parts.append((len(paths) - len(cases), "other file", ""))
+    return ", ".join(f"{number} {what}{'s' * (number > 1)}{more}" for number, what, more in parts if number)
+
+
+def _rest(store: Store) -> list[Path]:
+    """All that is in the folder but the lock."""
+    return sorted(path for path in store.folder.glob("*") if path != store.lock)

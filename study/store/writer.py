@@ -1,0 +1,64 @@
+"""The results file, written window by window: never more than a small part of a study is in memory."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import netCDF4
+
+from solver import NUMERICS_VERSION
+
+from ..data.dataset import assembled, labelled
+from ..files.atomic import replacing
+from ..files.checksums import Rows, identity
+from ..files.examine import CHUNK
+from ..files.netcdf import access, closing, created
+from ..files.results_file import add_checksums, create, set_aside
+from ..files.seal import seal
+from ..spec.grid import box, cut_out, windows
+from .blocks import Inventory, Store, gather
+
+AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
+
+
+def writing(store: Store, known: Inventory, path: Path, command: str, aside: bool = False) -> Iterator[None]:
+    """Write the results file from the blocks, in steps, while other threads compute: each `next` is one step.
+
+    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is at `path`.
+    aside : keep what is there, as `set_aside` does
+
+    Raises
+    ------
+    Damaged : a block has been spoiled since the inventory was made
+    OSError : the file cannot be written
+    """
+    with replacing(path, store.folder) as temporary:
+        with closing(created(temporary), path, writing=True) as file:
+            yield from _steps(file, store, known, path, command)
+        seal(temporary)
+        if aside:
+            set_aside(path)
+
+
+def _steps(file: netCDF4.Dataset, store: Store, known: Inventory, path: Path, command: str) -> Iterator[None]:
+    definition, start = store.definition, 0
+    rows = Rows(definition.grid.size)
+    most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
+    chunk = dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True))
+    for window in windows(definition.grid, most, CHUNK):
+        grid = cut_out(definition.grid, window)
+        while (known.file[start : start + grid.size] < 0).any():
+            yield
+        arrays = gather(store, known, start, start + grid.size)
+        part = labelled(replace(definition, grid=grid), arrays, command)
+        if not start:
+            with access(path, writing=True):
+                create(file, part, assembled(definition, {}, "x", definition.x, command), chunk)
+        for name, array in part.data_vars.items():
+            with access(path, writing=True):
+                file[name][tuple(window.get(dim, slice(None)) for dim in array.dims)] = array.values
+            rows.add(name, array.values.reshape(grid.size, -1))
+            yield
+        start += grid.size
+    with access(path, writing=True):
+        add_checksums(file, rows, {"=cases": identity(NUMERICS_VERSION, definition.x, known.keys)})

@@ -1,0 +1,94 @@
+"""What a run would cost: time by a sample of the cases, memory and size by their number."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+
+from solver.numerics.ladder import LADDER, STACK
+
+from ..data.dataset import not_run
+from ..spec.definition import Definition
+from ..store.writer import AT_ONCE
+from .cases import compute, parcel
+from .progress import duration
+from .workers import AHEAD, available_workers, processes_for
+
+SAMPLE = 256  # cases
+PROCESS, WORKER = 250_000_000, 110_000_000  # bytes of Python and its packages, and of those in a worker process
+PER_CASE = 100  # bytes for the key of a case, and to find it
+WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, in sizes of its result
+# What solving takes besides, as it was measured: peaks of runs on 17 to 256 nodes, and of 300 cases of
+# studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
+SOLVING, MATRICES = 80_000_000, 3  # bytes for each worker, and matrices (B, n, n) of a stack of cases
+KEY = 16  # bytes of the key of a case in a block
+# Of the results file besides its numbers: what HDF5 takes for itself, and its chunks at the edge of a grid, which have
+# room for a whole one. As it was measured on files of 3000 and of 1e6 cases.
+HEAD, ROOM = 300_000, 1.05
+TABLES = 600_000_000  # bytes that each process keeps of the exact layer: 0.4 GB of tables, and what they are made from
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """cases; present, of these on disk; seconds for the rest; memory, bytes at most; size, bytes of the results; disk,
+    bytes at most of what a run writes before it removes its blocks."""
+
+    cases: int
+    present: int
+    seconds: float
+    memory: float
+    size: float
+    disk: float
+
+
+def estimate(definition: Definition, workers: int | None = None, present: int = 0) -> Estimate:
+    """The cost of the cases that are not present, by the time of a sample spread over all."""
+    count, cases = workers or available_workers(), definition.grid.size
+    missing = cases - present
+    seconds = missing * seconds_per_case(definition) / count if missing else 0.0
+    size = definition.numbers * np.dtype(definition.dtype).itemsize
+    block = size / cases * min(definition.block, cases)
+    processes = processes_for(count, -(-missing // definition.block))
+    memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
+    memory += (AHEAD + WORKING) * count * block
+    if definition.kind == "contact":
+        memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
+    return Estimate(cases, present, seconds, memory, size, disk_for(definition) if missing else 0.0)
+
+
+def disk_for(definition: Definition) -> float:
+    """Bytes of the results file, and of the blocks that it is written from: both are there when it is complete."""
+    empty = not_run(definition, 1).values() if definition.kind == "contact" else ()
+    block = KEY + sum(array.nbytes for array in empty)
+    results = definition.numbers * np.dtype(definition.dtype).itemsize
+    return HEAD + ROOM * results + (block * definition.grid.size if empty else 0)
+
+
+def _matrices(definition: Definition) -> int:
+    """Bytes of the matrices that a worker has at a time, on the largest mesh."""
+    nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
+    stack = 3 * STACK if _on_exact_layer(definition) else STACK
+    return 8 * MATRICES * nodes * min(nodes * min(definition.block, definition.grid.size), stack)
+
+
+def _on_exact_layer(definition: Definition) -> bool:
+    """Whether some case may need the operator of the exact layer, be it for the error of the thin layer."""
+    base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
+    judged = np.any(base == "thin_layer") and np.any(judged == "first_order")
+    return bool(judged or np.isin(base, ("layered", "auto")).any())
+
+
+def seconds_per_case(definition: Definition) -> float:
+    """Time of a case on one worker. The first call prepares what all cases share, and is not counted."""
+    places = np.linspace(0, definition.grid.size - 1, min(SAMPLE, definition.grid.size)).astype(int)
+    wanted = parcel(definition, places)
+    compute(wanted)
+    start = time.perf_counter()
+    compute(wanted)
+    return (time.perf_counter() - start) / len(places)
+
+
+def describe(cost: Estimate) -> str:
+    """ "about 2 min 5 s, at most 0.5 GB of memory and 1.4 GB of disk; the results are 0.7 GB"."""
+    memory, disk, size = (f"{number / 1e9:.2g} GB" for number in (cost.memory, cost.disk, cost.size))
+    return f"about {duration(cost.seconds)}, at most {memory} of memory and {disk} of disk; the results are {size}"

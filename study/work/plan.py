@@ -1,0 +1,164 @@
+"""What a run is asked for, what it reports, and what it checks before it begins."""
+
+import os
+import tempfile
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import TextIO
+
+import numpy as np
+
+from ..data.dataset import status_words
+from ..files.atomic import make_folder
+from ..files.examine import Condition, examine
+from ..spec.definition import LARGE, Definition, StudyError
+from ..spec.vocabulary import NOT_RUN, suggest
+from ..store.blocks import Inventory, Store, count_statuses
+from ..store.earlier import statuses
+from .cost import PER_CASE, describe, estimate
+
+
+class CannotWrite(StudyError):
+    """The study is right, the place for its results is not."""
+
+    code = 1
+
+
+@dataclass(frozen=True)
+class Report:
+    """What a run did.
+
+    computed : cases computed now; failures : number of the block -> reason; counts : status -> number of cases, empty
+    when there was nothing to do; path : written if `complete`, otherwise cases failed or belong to other parts; kept :
+    what still lies among the blocks, in words
+    """
+
+    path: Path
+    cases: int
+    computed: int
+    failures: dict[int, str]
+    counts: dict[int, int]
+    complete: bool
+    kept: str = ""
+
+
+@dataclass(frozen=True, eq=False)
+class Order:
+    """What a run is asked for.
+
+    workers, scheduler : see `cluster.engine`; processes : workers may be processes, which begin by importing the main
+    module of this one; part : (i, n), only the i-th of n parts, whichever ends last writes the
+    results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds a
+    case that has failed (one without a solution has not); force : replace a results file of which cases would be lost;
+    yes : go on however large the study is; command : for the history of the results; stream : text stream for progress
+    """
+
+    definition: Definition
+    results: Path
+    workers: int | None = None
+    scheduler: str | None = None
+    processes: bool = False
+    part: tuple[int, int] = (1, 1)
+    retry: tuple[int, ...] = ()
+    fail_fast: bool = False
+    force: bool = False
+    yes: bool = False
+    command: str = ""
+    stream: TextIO | None = None
+
+    @property
+    def path(self) -> Path:
+        """Of the results file."""
+        return results_path(self.definition, self.results)
+
+    @property
+    def store(self) -> Store:
+        return Store(self.definition, self.results)
+
+    @property
+    def shared(self) -> bool:
+        """Whether others compute at the same time."""
+        return self.part[1] > 1
+
+    def done(self, found: Condition) -> bool:
+        """Whether a results file that was examined is that of this study, and holds no case to be tried again."""
+        if not belongs(self.definition, found):
+            return False
+        again = self.retry and self.definition.kind == "contact"
+        return not (again and np.isin(statuses(self.path), self.retry).any())
+
+    def report(self, known: Inventory | None = None, **what) -> Report:
+        counts = count_statuses(known.status) if known else {}
+        return replace(Report(self.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what)
+
+
+def look(definition: Definition, path: Path, columns: tuple[str, ...] | None = None) -> Condition:
+    """`examine` the results file of a study, the order of its dimensions included."""
+    found = examine(path, columns)
+    sizes = list(definition.grid.sizes.items())
+    if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
+        reason = (
+            f"another program has changed it: its dimensions are {list(found.sizes)}, not {[dim for dim, _ in sizes]}"
+        )
+        return replace(found, kind="foreign", reason=reason)
+    return found
+
+
+def belongs(definition: Definition, found: Condition) -> bool:
+    """Whether an undamaged results file is that of this very study."""
+    return found.good and found.digest == definition.digest
+
+
+def results_path(definition: Definition, results) -> Path:
+    return Path(results) / f"{definition.name}.nc"
+
+
+def status_values(words: list[str]) -> tuple[int, ...]:
+    """Values of `status` by their words. Raises StudyError for a word that is none."""
+    known = {word: value for value, word in status_words().items()}
+    wrong = [f'--status "{word}" is not known{suggest(word, known)}' for word in words if word not in known]
+    if wrong:
+        raise StudyError(wrong)
+    return tuple(known[word] for word in words)
+
+
+def check_writable(path: Path) -> None:
+    """Raise CannotWrite when the folder of the results cannot be made or written, or that which a link leads to."""
+    if not _is_utf8(str(path.absolute())):
+        raise StudyError([f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"])
+    folder = path.parent
+    try:
+        make_folder(folder)
+        if path.is_symlink():
+            folder = Path(os.path.realpath(path)).parent
+        with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
+            pass
+    except OSError as error:
+        raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
+
+
+def _is_utf8(text: str) -> bool:
+    try:
+        return bool(text.encode())
+    except UnicodeEncodeError:  # Python keeps other bytes of a path as lone surrogates
+        return False
+
+
+def check_countable(store: Store, path: Path, yes: bool) -> bool:
+    """Whether there may be cases on disk. Raises StudyError when looking for them would take very much memory."""
+    definition = store.definition
+    if not path.exists() and not any(store.folder.glob("*.block")):
+        return False
+    if definition.numbers > LARGE and not yes:
+        needed = f"{PER_CASE * definition.grid.size / 1e9:.2g} GB of memory"
+        found = f"{definition.grid.size} cases: to find which of them are computed takes up to {needed}"
+        raise StudyError([f"{definition.name}: {found}; --yes does it"])
+    return True
+
+
+def check_size(order: Order) -> None:
+    """Raise StudyError for a study so large that it may be a slip, with what it would cost."""
+    definition = order.definition
+    if definition.numbers > LARGE and not order.yes:
+        cost = describe(estimate(definition, order.workers))
+        raise StudyError([f"{definition.name}: {definition.grid.size} cases: {cost}; --yes computes them"])

@@ -1,0 +1,185 @@
+"""Run a study: missing cases -> blocks -> workers -> one writer -> results file. What is on disk is the progress."""
+
+import logging
+from collections.abc import Iterator
+from contextlib import closing, nullcontext
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from ..data.dataset import NO_SOLUTION, labelled, status_words
+from ..files.examine import Condition, stamp
+from ..files.results_file import write
+from ..spec.definition import Definition
+from ..spec.vocabulary import NOT_RUN
+from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
+from ..store.earlier import adopt, at_hand, check_replaceable, earlier
+from ..store.lock import held
+from ..store.tidy import tidy
+from ..store.writer import writing
+from ..terminal import say
+from . import micro_law
+from .cases import Failure, cut, guarded, parcel
+from .cost import Estimate, estimate
+from .plan import Order, Report, check_countable, check_size, check_writable, look
+from .progress import Progress
+from .workers import as_they_come, engine
+
+log = logging.getLogger(__name__)
+
+
+def run(definition: Definition, results="results", **options) -> Report:
+    """Compute what is missing and write results/NAME.nc. `options` as of `Order`.
+
+    Raises
+    ------
+    StudyError : the folder cannot be written, or holds results that would be lost, or no scheduler answers; nothing has
+        been computed then.
+    OSError : writing failed later (a full disk), or the scheduler is lost; blocks written so far stay and are used by
+        the next run.
+    """
+    order = Order(definition, Path(results), **options)
+    found, seen = look(definition, order.path), stamp(order.path)
+    if order.done(found):
+        if order.store.folder.exists():  # a run was killed between its last two steps, or other blocks lie there
+            return _last(order, order.report())
+        return order.report()
+    check_writable(order.path)
+    check_size(order)
+    try:
+        with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
+            if stamp(order.path) != seen:  # by the run that this one has waited for
+                found = look(definition, order.path)
+            report = _computed(order, found)
+        return _last(order, report) if order.shared else report
+    except FileNotFoundError:
+        if order.done(look(definition, order.path)):  # by another run, which has removed the blocks: without locks
+            return order.report()
+        raise
+
+
+def _computed(order: Order, found: Condition) -> Report:
+    """Compute what is missing, and write the results unless others compute too."""
+    if order.done(found):
+        return order.report(kept=tidy(order.store, inventory(order.store, force=True)))
+    if found.kind == "damaged":
+        log.warning(
+            "%s: %s; computing again what is damaged, %s.damaged keeps it", order.path, found.reason, order.path
+        )
+    if order.definition.kind == "micro_law":
+        return _law(order, found)
+    known = prepared(order, found)
+    missing = len(known.missing)
+    writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))
+    with writer as steps:
+        failures = compute_blocks(order, known, steps)
+        kept = "" if order.shared else _finish(order, known, steps)
+    return order.report(known, computed=missing - len(known.missing), failures=failures, kept=kept)
+
+
+def _law(order: Order, found: Condition) -> Report:
+    """Compute the law, which takes a moment, in place of another law only."""
+    there = earlier(order.definition, found)
+    if there and (there.cases or not found.digest):
+        check_replaceable(order.store, there, np.empty((0, 2), dtype=np.uint64), order.force)
+    write(micro_law.compute(order.definition, order.command), order.path, aside=found.kind == "damaged")
+    kept = tidy(order.store, inventory(order.store, force=True))
+    return order.report(computed=order.definition.grid.size, kept=kept)
+
+
+def _last(order: Order, report: Report) -> Report:
+    """What the last of several runs does: write the results, remove the blocks. The others leave it to that one."""
+    with held(order.store.lock, wait=False) as alone:
+        if not alone:
+            return report
+        found = look(order.definition, order.path)
+        if order.done(found):
+            return replace(report, complete=True, kept=tidy(order.store, inventory(order.store, force=True)))
+        known = inventory(order.store, force=order.force)
+        with closing(_writing(order, known, found)) as steps:
+            kept = _finish(order, known, steps)
+        return order.report(known, computed=report.computed, failures=report.failures, kept=kept)
+
+
+def _writing(order: Order, known: Inventory, found: Condition) -> Iterator[None]:
+    return writing(order.store, known, order.path, order.command, aside=found.kind == "damaged")
+
+
+def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> str:
+    """The rest of the steps, if no case is missing; what then still lies among the blocks, in words."""
+    if len(known.missing):
+        return ""
+    for _ in steps:
+        pass
+    return tidy(order.store, known)
+
+
+def say_waiting(order: Order) -> None:
+    say(f"{order.definition.name}: waiting for another run of this study to end", order.stream)
+
+
+def prepared(order: Order, file: Condition) -> Inventory:
+    """What is on disk, cases of an earlier results file included. Raises StudyError when these would be lost."""
+    if not order.shared:
+        remove_litter(order.store)
+    known, found = inventory(order.store, order.retry, order.force), earlier(order.definition, file)
+    if found is None:
+        return known
+    check_replaceable(order.store, found, known.keys, order.force)
+    adopt(order.store, known, found, order.retry)
+    return inventory(order.store, order.retry, order.force)
+
+
+def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dict[int, str]:
+    """Compute and store the missing cases, a step of the results file after each block; returns the failures.
+
+    A block that raises costs that block only.
+    """
+    blocks, failures = cut(known.missing, order.definition.block, order.part), {}
+    if not blocks:
+        return failures
+    size = order.definition.grid.size
+    shown = Progress(order.definition.name, size, order.stream, size - len(known.missing))
+    many = len(blocks) if order.processes else 0
+    with closing(shown) as progress, engine(order.workers, order.scheduler, many) as workers:
+        tasks = (parcel(order.definition, index) for index in blocks)
+        for number, result in as_they_come(workers, guarded, tasks):
+            if isinstance(result, Failure):
+                failures[number] = result.message
+                log.debug("block %d: %s", number, result.trace)
+            else:
+                add(order.store, known, blocks[number], result)
+                next(steps, None)
+                failed = np.flatnonzero(~np.isin(result["status"], (0, *NO_SOLUTION)))
+                progress.update(len(result["status"]), len(failed))
+                if order.fail_fast and len(failed):
+                    case, value = blocks[number][failed[0]], int(result["status"][failed[0]])
+                    failures[number] = f"case {case}: {status_words()[value]}"
+            if order.fail_fast and failures:
+                break
+    return failures
+
+
+def dry_run(definition: Definition, results="results", *, workers: int | None = None, yes: bool = False) -> Estimate:
+    """What `run` would cost, and how many cases it would find computed. Writes nothing.
+
+    Raises
+    ------
+    StudyError : the study is very large and there are results or blocks to look through, and no `yes`
+    """
+    order = Order(definition, Path(results))
+    found = look(definition, order.path)
+    if definition.kind == "micro_law" or order.done(found):
+        return estimate(definition, workers, definition.grid.size)
+    if not check_countable(order.store, order.path, yes):
+        return estimate(definition, workers)
+    status = at_hand(inventory(order.store), earlier(definition, found))
+    return estimate(definition, workers, int(np.count_nonzero(status != NOT_RUN)))
+
+
+def partial_dataset(definition: Definition, results) -> xr.Dataset:
+    """The grid with the blocks computed so far; the rest is NaN with status 127, not run."""
+    store = Store(definition, Path(results))
+    return labelled(definition, gather(store, inventory(store), 0, definition.grid.size), "partial results")

@@ -1,0 +1,234 @@
+"""The command line: exit codes, messages, and that nothing heavy is imported before it is needed."""
+
+import os
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from conftest import ROOT
+
+import study
+from study.__main__ import main
+from study.work import cases
+from study.work import run as running
+
+GOOD = """
+title = "a line"
+[model]
+micro = "smooth"
+base = "half_space"
+[axes]
+P = [1e-6, 2e-6, 3e-6]
+[numerics]
+block = 1
+"""
+
+
+@pytest.fixture(autouse=True)
+def studies(tmp_path, monkeypatch) -> Path:
+    monkeypatch.chdir(tmp_path)
+    folder = tmp_path / "studies"
+    folder.mkdir()
+    (folder / "good.toml").write_text(GOOD, encoding="utf-8")
+    return folder
+
+
+def test_check(capsys):
+    assert main(["check", "studies/good.toml"]) == 0
+    assert capsys.readouterr().out.startswith("studies/good.toml: 3 cases (P 3), digest ")
+    assert not Path("results").exists()
+
+
+def test_bad_file_does_not_keep_the_good_one_from_its_turn(studies, capsys):
+    (studies / "bad.toml").write_text(GOOD.replace("micro", "mirco").replace("2e-6", "-1"), encoding="utf-8")
+    assert main(["run", "studies/bad.toml", "studies/good.toml"]) == 2
+    printed = capsys.readouterr()
+    assert 'studies/bad.toml: [model] "mirco" is not a parameter; did you mean "micro"?\n' in printed.err
+    assert "studies/bad.toml: P[1] = -1: must be in [1e-24, 1e3]\n" in printed.err
+    assert "results/good.nc: 3 cases, 3 computed now\n" in printed.out
+    assert not Path("results/bad.nc").exists()
+
+
+@pytest.mark.parametrize("command", ["check", "run", "status", "retry --status diverged", "run --dry-run"])
+def test_a_study_that_is_not_there(studies, command, capsys):
+    (studies / "par_maps.toml").write_text("", encoding="utf-8")
+    command, *options = command.split()
+    assert main([command, "par_map", "q", "studies/par_map.toml", "good.toml", "a/b", *options]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.splitlines() == [
+        'par_map: not found (looked for par_map and studies/par_map.toml); did you mean "par_maps"?',
+        "q: not found (looked for q and studies/q.toml); known: good, par_maps",
+        'studies/par_map.toml: not found; did you mean "studies/par_maps.toml"?',
+        'good.toml: not found; did you mean "studies/good.toml"?',
+        "a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps",
+    ]
+    assert not Path("results").exists()
+
+
+def test_where_there_are_no_studies_none_is_suggested(studies, monkeypatch, capsys):
+    monkeypatch.chdir(studies)
+    assert main(["status", "goood", "goood.toml"]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        "goood: not found (looked for goood and studies/goood.toml)",
+        'goood.toml: not found; did you mean "good.toml"?',
+    ]
+
+
+def test_a_path_goes_before_a_name(studies, capsys):
+    Path("good").mkdir()
+    assert main(["check", "good"]) == 2
+    assert capsys.readouterr().err.startswith("good: a study file is called NAME.toml")
+
+
+def test_version(capsys):
+    from solver import NUMERICS_VERSION
+
+    with pytest.raises(SystemExit) as caught:
+        main(["--version"])
+    assert caught.value.code == 0
+    version = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert capsys.readouterr().out == f"roughcoat {version}, numerics {NUMERICS_VERSION}\n"
+
+
+def test_run_twice_and_by_name(capsys):
+    assert main(["run", "good"]) == 0
+    assert main(["run", "good", "--workers", "2"]) == 0
+    assert capsys.readouterr().out.endswith("results/good.nc is up to date (3 cases), nothing to do\n")
+    found = study.open_results("results/good.nc")
+    assert found.attrs["study"] == GOOD
+    assert found.attrs["title"] == "a line"
+
+
+def test_list_and_status(capsys, studies):
+    assert main(["list"]) == 0
+    assert capsys.readouterr().out.split() == ["good", "3", "cases", "new", "a", "line"]
+    main(["run", "good", "--results", "elsewhere"])
+    capsys.readouterr()
+    assert main(["status", "good", "--results", "elsewhere"]) == 0
+    assert capsys.readouterr().out.split() == ["good", "3", "cases", "done", "a", "line", "converged:", "3"]
+    (studies / "bad.toml").write_text("[", encoding="utf-8")
+    assert main(["list"]) == 2
+    assert main(["list", "nowhere"]) == 0
+    assert "no study files in nowhere" in capsys.readouterr().out
+
+
+def test_results_of_another_definition(studies, capsys):
+    main(["run", "good"])
+    (studies / "good.toml").write_text(GOOD.replace("2e-6", "2.5e-6"), encoding="utf-8")
+    assert main(["run", "good"]) == 2
+    assert "--force replaces them, --results DIR writes elsewhere" in capsys.readouterr().err
+    assert main(["run", "good", "--results", "other"]) == 0
+    assert main(["run", "good", "--force"]) == 0
+    assert study.open_results("results/good.nc").P.values[1] == 2.5e-6
+
+
+def test_failed_block(monkeypatch, capsys):
+    real = cases.compute
+
+    def compute(wanted):
+        if wanted.first == 1:
+            raise MemoryError("too large")
+        return real(wanted)
+
+    monkeypatch.setattr(cases, "compute", compute)
+    assert main(["run", "good"]) == 1
+    assert "good: block 1 failed: cases 1 to 1: MemoryError: too large" in capsys.readouterr().err
+    assert main(["status", "good"]) == 0
+    assert "partial (2 of 3 cases)" in capsys.readouterr().out
+
+
+def test_full_disk(monkeypatch, capsys):
+    def store(*_):
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(running, "add", store)
+    assert main(["run", "good"]) == 1
+    assert "good: [Errno 28] No space left on device" in capsys.readouterr().err
+
+
+def test_dry_run_retry_and_parts(capsys):
+    assert main(["run", "good", "--dry-run"]) == 0
+    assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; the others: about 0 s, at most 0.")
+    assert main(["run", "good", "--part", "1/2"]) == 0
+    assert capsys.readouterr().out == "good: 2 cases computed now, 1 of 3 are missing: other parts\n"
+    assert main(["status", "good"]) == 0
+    assert capsys.readouterr().out.split("\n")[1:3] == ["    converged: 2", "    not_run: 1"]
+    assert main(["run", "good", "--part", "2/2"]) == 0
+    assert capsys.readouterr().out == "results/good.nc: 3 cases, 1 computed now\n"
+    assert main(["retry", "good", "--status", "diverged"]) == 0
+    assert capsys.readouterr().out.endswith("is up to date (3 cases), nothing to do\n")
+    assert main(["retry", "good", "--status", "converged"]) == 0
+    assert capsys.readouterr().out == "results/good.nc: 3 cases, 3 computed now\n"
+    assert main(["retry", "good", "--status", "divergd", "--status", "diverged", "--status", "converge"]) == 2
+    assert capsys.readouterr().err.splitlines() == [
+        '--status "divergd" is not known; did you mean "diverged"?',
+        '--status "converge" is not known; did you mean "converged"?',
+    ]
+
+
+def test_a_micro_law_has_nothing_to_retry(studies, capsys):
+    law = 'kind = "micro_law"\n[[cases]]\nRa = 0.004\nNbar = 250000\n'
+    (studies / "law.toml").write_text(law, encoding="utf-8")
+    assert main(["run", "law", "--part", "2/2"]) == 0
+    assert main(["retry", "law", "--status", "diverged"]) == 0
+    assert capsys.readouterr().out.endswith("results/law.nc is up to date (1 cases), nothing to do\n")
+    assert [path.name for path in Path("results").iterdir()] == ["law.nc"]
+
+
+def test_fail_fast(studies, capsys):
+    hard = GOOD.replace('"smooth"', '"disc_cell"\nNbar = 1e5\nRa = 0.004') + "max_iterations = 1"
+    (studies / "hard.toml").write_text(hard, encoding="utf-8")
+    assert main(["run", "hard", "--fail-fast", "--workers", "1"]) == 1
+    assert "hard: block 0 failed: case 0: iteration_limit" in capsys.readouterr().err
+    assert main(["run", "hard", "--keep-going"]) == 0
+    assert "3 of them not converged" in capsys.readouterr().out
+
+
+def test_interrupt(monkeypatch, capsys):
+    def store(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(running, "add", store)
+    assert main(["run", "good", "--workers", "1"]) == 130
+    assert "finished blocks are kept" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["rnu"],
+        ["run"],
+        ["run", "good", "--workers", "0"],
+        ["run", "good", "--workers", "two"],
+        ["run", "good", "--part", "3/2"],
+        ["retry", "good"],
+        ["run", "good", "--fail-fast", "--keep-going"],
+    ],
+)
+def test_wrong_calls(arguments, capsys):
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    assert "usage: python -m study" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "code"), [(["--help"], 0), (["check", "studies/none.toml"], 2), (["check", "good"], 0)]
+)
+def test_answers_without_heavy_imports(arguments, code):
+    """--help and complaints about a file need neither xarray nor matplotlib."""
+    script = (
+        "import sys, study.__main__ as m\n"
+        "try: code = m.main(sys.argv[1:])\n"
+        "except SystemExit as e: code = e.code\n"
+        "heavy = {'xarray', 'dask', 'netCDF4', 'matplotlib', 'pandas'} & set(sys.modules)\n"
+        "assert not heavy, heavy\n"
+        "assert ('numpy' in sys.modules) == (sys.argv[1] == 'check')\n"
+        "sys.exit(code)"
+    )
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+    done = subprocess.run([sys.executable, "-c", script, *arguments], env=environment, capture_output=True, text=True)
+    assert done.returncode == code, done.stderr

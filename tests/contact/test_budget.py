@@ -1,0 +1,119 @@
+"""The work of one case is limited, by what is done and not by time: where it ends, and what is said then.
+
+The limits are lowered here, so that cases which take little work reach them.
+"""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from solver_cases import LOAD, MAIN
+
+from solver import Problem, Status, solve
+from solver.body.layered import Layer, operator_error
+from solver.contact import adaptive, driver, picard
+from solver.contact.budget import newton_steps
+from study.spec.definition import from_tables
+
+X = np.linspace(0.0, 1.0, 5)
+#: Relaxed so much that it takes some 500 approximations; and hardly, on springs that carry nearly all: some 20.
+PAPERS = MAIN | {"base": "thin_layer", "micro": "power_law", "scheme": "picard"}
+SLOW, QUICK = {"k": 20.0, "h": 0.02}, {"k": 1.0, "h": 3.0}
+#: The asperities saturate: a corner that one polynomial does not resolve to 1e-9; and the main case.
+CORNER = {"a": [0.1, 0.04], "h": [1e-4, 0.02], "n": [1e-2, 0.5], "Ra": [0.02, 0.004], "Nbar": [1.5e4, 250000.0]}
+
+
+@pytest.mark.parametrize(("control", "value"), [("a", 0.04), ("P", LOAD)])
+def test_approximations(monkeypatch, control, value):
+    """At one radius and in all; the neighbour, which settles in time, has its numbers."""
+    both = {name: [SLOW[name], QUICK[name]] for name in SLOW}
+    free, quick = (solve(Problem.of(**PAPERS | {control: value} | case), X) for case in (both, QUICK))
+    monkeypatch.setattr(picard, "APPROXIMATIONS", 300 if control == "P" else 100)
+    s = solve(Problem.of(**PAPERS | {control: value, "max_iterations": 100_000} | both), X)
+    assert s.status[0] == Status.BUDGET_SPENT and free.status[0] != Status.BUDGET_SPENT
+    assert 100 <= s.iterations[0] <= 900 and np.isfinite(s.P[0])
+    assert quick.status[0] == s.status[1] == Status.CONVERGED
+    assert_allclose(s.a[1], quick.a[0], rtol=1e-9)  # the last approximation moves it by less than 1e-6/10
+    few = solve(Problem.of(**PAPERS | {"a": 0.04, "max_iterations": 20} | SLOW), X)
+    assert few.status[0] == Status.ITERATION_LIMIT  # the limit of the user is none of ours
+
+
+def test_newton_steps(monkeypatch):
+    """A limit of the user's beyond ours, on a case that takes more."""
+    case = MAIN | {"P": [LOAD, 1e3 * LOAD], "base": "thin_layer", "rtol": 1e-9}
+    monkeypatch.setattr(adaptive, "newton_steps", lambda nodes: np.minimum(2, nodes))
+    s = solve(Problem.of(**case, max_iterations=100_000), X)
+    assert s.status.tolist() == [Status.BUDGET_SPENT] * 2 and np.isfinite(s.a).all()
+    s = solve(Problem.of(**case, max_iterations=1), X)
+    assert s.status.tolist() == [Status.ITERATION_LIMIT] * 2
+
+
+def test_a_search_for_the_radius_ends(monkeypatch):
+    """Newton on the load fails on purpose: then each radius is solved by itself, until the steps are spent."""
+    case = Problem.of(P=LOAD, **MAIN, base="thin_layer", nodes=16)
+    steps = []
+
+    def failing(cases, state, law, grid, *rest, **options):
+        found = plain(cases, state, law, grid, *rest, **options)
+        steps.append(int(found[2].sum()))
+        return (found[0], found[1] & (cases.control == "a"), found[2])
+
+    plain = driver.iterate
+    monkeypatch.setattr(driver, "iterate", failing)
+    monkeypatch.setattr(adaptive, "iterate", failing)
+    solve(case, X)
+    many = sum(steps)
+    steps.clear()
+    monkeypatch.setattr(driver, "newton_steps", lambda nodes: 10)
+    solve(case, X)
+    assert 10 <= sum(steps) < many / 2
+
+
+def test_panels(monkeypatch):
+    """The corner ends on its first panels, with last numbers; the main case beside it needs none."""
+    case = Problem.of(**CORNER, base="thin_layer", rtol=1e-9)
+    free = solve(case, X)
+    monkeypatch.setattr(adaptive, "PANELS", 1)
+    s = solve(case, X)
+    assert free.status.tolist() == [Status.CONVERGED] * 2
+    assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
+    assert s.error[0] > 1e-9 and np.isfinite(s.p).all() and s.a[1] == free.a[1]
+
+
+def test_a_tolerance_that_no_mesh_meets_takes_no_panels():
+    """The operator of a soft film is not as good as rtol: that is said on the first mesh that is as good as it."""
+    film = {"n": 1.41e-5, "nu1": 0.091, "nu2": -0.15, "bonding": "bonded"}
+    s = solve(Problem.of(P=132.0, h=1.97e-9, **film, micro="smooth", rtol=1e-10), X)
+    layer = Layer(*(np.array([v]) for v in (1.97e-9, *film.values())))._replace(bonded=np.array([True]))
+    assert s.status[0] == Status.TOLERANCE_NOT_MET and s.nodes[0] <= 64
+    assert_allclose(s.error, operator_error(layer, s.a, s.nodes), rtol=1e-9)
+    assert np.isfinite(s.p).all() and np.isfinite(s.lam).all()
+
+
+def test_a_finer_mesh_has_fewer_steps_but_never_fewer_than_newton_takes():
+    assert newton_steps(np.array([6, 96])).tolist() == [1000, 1000]
+    assert 60 < newton_steps(256) < 200 and newton_steps(384) == 62 and newton_steps(10_000) == 60
+
+
+#: What a study holds, and the cases of a block.
+BLOCKS = [
+    ({}, 8000),
+    ({"base": "half_space", "rtol": 1e-12}, 8000),
+    ({"rtol": 1e-10}, 100),
+    ({"n": 2e3}, 100),
+    ({"n": 2e3, "base": "thin_layer"}, 8000),
+    ({"n": 2e3, "base": "auto"}, 100),
+    ({"scheme": "picard"}, 100),
+    ({"scheme": "picard", "base": "thin_layer"}, 1000),
+    ({"nodes": 128, "base": "half_space"}, 1000),
+    ({"n": 2e3, "block": 7}, 7),
+]
+
+
+@pytest.mark.parametrize(("given", "size"), BLOCKS)
+def test_blocks_of_slow_cases_are_small(given, size):
+    """One slow value of an axis is enough; what a study says itself holds."""
+    numerics = {name: given[name] for name in ("rtol", "scheme", "nodes", "block") if name in given}
+    model = {"h": 0.02, "Nbar": 250000, "Ra": 0.004} | {"base": given.get("base", "layered")}
+    axes = {"P": [1e-5, 2e-5], "n": [0.5, given.get("n", 0.6)]}
+    made = from_tables({"model": model, "axes": axes, "numerics": numerics}, "s", "", "s.toml")
+    assert made.block == size

@@ -1,0 +1,150 @@
+"""No silent failure, far beyond any scene: fixed samples of the cases of `make extremes`, every base and law.
+
+The ranges are those of studies/extremes.toml and extremes_layered.toml. Warnings are errors here, as in all tests.
+"""
+
+import tomllib
+from functools import cache
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from layered_independent import answers, rough
+from solver_cases import ALL_KINDS, ROUGH_KINDS, difference
+
+from solver import Problem, Status, solve
+from study.spec.sample import draw
+
+RTOL = 1e-6
+#: Cases of the sample, and the share of those with a solution that must converge.
+SIZE = {"half_space": 300, "thin_layer": 60, "layered": 12}
+CONVERGED = dict.fromkeys(ALL_KINDS, 0.999)
+NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "p", "lam")
+WITH_NUMBERS = {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
+NO_SOLUTION = {Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF}
+
+#: By law, a case of a sample with n above 1e3 that one rule for all panels of the convolution gets wrong.
+STIFF_FILMS = {"smooth": [286], "disc_cell": [36], "power_law": [3]}
+
+kinds = pytest.mark.parametrize(("base", "law"), ALL_KINDS, ids=["-".join(kind) for kind in ALL_KINDS])
+
+
+@cache
+def sample(base, size=None, seed=11, **start):
+    """Arguments of ``Problem.of`` without base and law; `start`: of a range, where it is not the study's."""
+    study = ROOT / "studies" / ("extremes_layered.toml" if base == "layered" else "extremes.toml")
+    table = tomllib.loads(study.read_text(encoding="utf-8"))["sample"]
+    ranges = {name: table[name] | {"start": value} for name, value in start.items()}
+    errors = []
+    columns = draw(table | {"size": size or SIZE[base], "seed": seed} | ranges, errors)
+    assert not errors
+    return {name: np.array(values) for name, values in columns.items()}
+
+
+@cache
+def solved(base, law, rtol=RTOL):
+    return solve(Problem.of(**sample(base), base=base, micro=law, rtol=rtol))
+
+
+@kinds
+def test_every_answer_is_numbers_or_a_flag(base, law):
+    s = solved(base, law)
+    for status in np.unique(s.status):
+        of_status = s.status == status
+        for name in NUMBERS:
+            finite = np.isfinite(getattr(s, name)[of_status])
+            assert np.all(finite) if status in WITH_NUMBERS else name == "P" or not np.any(finite), (name, status)
+    assert np.all(s.error[s.status == Status.CONVERGED] <= RTOL)
+    assert np.all(s.error[s.status == Status.TOLERANCE_NOT_MET] > RTOL)
+    solvable = ~np.isin(s.status, list(NO_SOLUTION))
+    assert (s.status[solvable] == Status.CONVERGED).mean() >= CONVERGED[base, law]
+    assert solvable.mean() > 0.8
+
+
+@kinds
+def test_no_case_converges_to_another_answer(base, law):
+    """The truth: the same case at a hundredth of rtol; at a tenth on the exact layer, which takes longer."""
+    s, fine = solved(base, law), solved(base, law, RTOL / (10 if base == "layered" else 100))
+    np.testing.assert_array_equal(np.isin(s.status, list(NO_SOLUTION)), np.isin(fine.status, list(NO_SOLUTION)))
+    both = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
+    truth = difference(s, fine)[both]
+    assert both.sum() > 0.8 * (s.status == Status.CONVERGED).sum()
+    assert truth.max() <= 10 * RTOL
+    assert (truth <= RTOL).mean() >= 0.99
+
+
+@pytest.mark.parametrize(("law", "which"), STIFF_FILMS.items())
+def test_stiff_films_neither_fail_nor_lift_off(law, which):
+    """Of 300 films more than 1e3 times stiffer than the body, those that an inaccurate convolution makes fail, or
+    appear to be tensile at the edge. The truth: the same case at a tenth of rtol."""
+    case = {name: values[which] for name, values in sample("layered", 300, 5, n=1e3).items()}
+    s, fine = (solve(Problem.of(**case, base="layered", micro=law, rtol=rtol)) for rtol in (RTOL, RTOL / 10))
+    assert np.all(s.status == Status.CONVERGED) and np.all(fine.status == Status.CONVERGED)
+    assert np.all(difference(s, fine) <= RTOL)
+
+
+@pytest.mark.parametrize(("base", "law"), ROUGH_KINDS)
+def test_against_another_formulation(base, law):
+    """Collocation through the Abel transform at given a, where it is fine enough."""
+    size = 60
+    case, judged = sample(base, size, 3), 0
+    found = solve(Problem.of(**case, base=base, micro=law, rtol=RTOL))
+    for i in np.flatnonzero(found.status == Status.CONVERGED):
+        one = {name: case[name][i] for name in ("h", "n", "nu1", "nu2", "Nbar", "Ra", "B", "beta")}
+        with np.errstate(all="ignore"):  # it may fail: then it does not judge
+            coarse, fine = (
+                rough(count, law, found.a[i], bonded=case["bonding"][i] == "bonded", base=base, **one)
+                for count in (36, 54)
+            )
+            own = 3 * np.abs(coarse / fine - 1).max()
+        if own < RTOL:
+            judged += 1
+            assert np.abs(answers(found, i) / fine - 1).max() <= 10 * RTOL, i
+    assert judged >= 20
+
+
+@kinds
+def test_a_poisoned_case_harms_no_neighbour(base, law):
+    """Each parameter that the case needs in turn is NaN, infinite or negative in the middle of extreme neighbours."""
+    case = {name: values[:7] for name, values in sample(base).items()} | {"base": base, "micro": law}
+    clean = solve(Problem.of(**case, rtol=1e-3))
+    names = ["P"] + ["h", "n", "nu1"] * (base != "half_space") + ["Nbar", "Ra"] * (law != "smooth")
+    for name, bad in zip(names, [np.nan, np.inf, -2.0] * 2, strict=False):
+        values = case[name].copy()
+        values[3] = bad
+        s = solve(Problem.of(**case | {name: values}, rtol=1e-3))
+        assert s.status[3] == Status.INVALID_INPUT
+        others = np.arange(7) != 3
+        np.testing.assert_array_equal(s.status[others], clean.status[others])
+        assert np.nanmax(difference(s, clean)[others]) < 1e-9
+
+
+@kinds
+@pytest.mark.parametrize(
+    ("R", "E2"), [(1e-150, 1.0), (1e150, 1.0), (1.0, 1e-300), (1.0, 1e300), (1e-140, 1e290), (1e140, 1e-290)]
+)
+def test_scales(base, law, R, E2):
+    """R and E2* are units: nothing but them changes in the results, as far as the numbers can be written."""
+    case = {"h": 0.02, "n": 0.5, "Ra": 0.004, "Nbar": 250000.0, "B": 0.1, "beta": 0.5, "D": 1e-3}
+    powers = {"h": 1, "Ra": 1, "D": 1, "Nbar": -2}
+    scaled = {name: value * R ** powers.get(name, 0) for name, value in case.items()}
+    one = solve(Problem.of(**case, base=base, micro=law))
+    s = solve(Problem.of(**scaled, R=R, E2=E2, base=base, micro=law))
+    assert s.status[0] == Status.CONVERGED
+    units = {"a": R, "D": R, "p0": E2, "p_max": E2, "Ar_An": 1.0, "P": R * E2 * R}
+    for name, unit in units.items():
+        assert getattr(s, name)[0] / unit == pytest.approx(getattr(one, name)[0], rel=1e-9), name
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
+def test_subnormal_scales(base):
+    """Lengths and pressures with a few bits left: powers of 2, which they hold exactly."""
+    R = 2.0**-1060
+    one, tiny = (
+        solve(Problem.of(a=unit / 32, h=unit / 64, n=0.5, R=unit, base=base, micro="smooth")) for unit in (1.0, R)
+    )
+    soft = solve(Problem.of(a=1 / 32, h=1 / 64, n=0.5, E2=R, base=base, micro="smooth"))
+    assert tiny.status[0] == soft.status[0] == Status.CONVERGED
+    assert tiny.p0[0] == pytest.approx(one.p0[0], rel=1e-12)
+    assert tiny.error[0] <= RTOL and soft.error[0] <= RTOL
+    assert soft.D[0] == pytest.approx(one.D[0], rel=1e-12)

@@ -1,0 +1,82 @@
+"""How the paper's successive approximations end: a cycle is told from what is slow, not settled, or beside the load."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from solver_cases import LOAD, MAIN, one
+
+from solver import Problem, Status
+from solver.contact import picard as scheme
+from solver.numerics.bracket import false_position
+from solver.numerics.mesh import mesh
+from solver.scaling import as_cases, dimensionless
+
+
+def picard(**case):
+    return one(**{"scheme": "picard", "nodes": 32, "micro": "power_law", "base": "thin_layer"} | case)
+
+
+def test_what_still_falls_is_no_cycle():
+    """k = 20 is slow: after 100 approximations |p̂ - p| still falls tenfold in 50, and the load has long settled."""
+    s = picard(a=0.04, k=20.0, max_iterations=100)
+    assert s.status[0] == Status.ITERATION_LIMIT
+    assert_allclose(s.P, one(a=0.04, micro="power_law", base="thin_layer").P, rtol=1e-2, atol=0)
+
+
+@pytest.mark.parametrize("nodes", [4, 32])
+def test_a_load_that_swings_with_the_iterates_is_no_cycle_with_a_result(nodes):
+    """Soft asperities on a hard film, without relaxation: full pressure and none in turn, and so does the load."""
+    s = picard(a=0.04, k=0.0, B=1.0, beta=0.5, h=1e-3, nodes=nodes)
+    assert s.status[0] == Status.ITERATION_LIMIT
+
+
+def solved(search, follow=False, **case):
+    """Radius (1,), status and count of the scheme with a search of one's own."""
+    problem = Problem.of(**(MAIN | {"P": LOAD, "micro": "power_law", "base": "thin_layer"} | case))
+    scaled, C = dimensionless(problem)
+    cases, law = as_cases(scaled, C)
+    state, status, count = scheme.solve(cases, law, mesh(16), np.array([5.0]), np.array([1e-6]), 0, search, follow)
+    return state, status[0], count[0]
+
+
+def test_a_settled_pressure_at_another_load_is_not_converged():
+    def beside(function, start, tolerance):
+        eta, closed = false_position(function, start, tolerance)
+        return eta + 1e-5, closed  # P ~ a^3: 3e-5 of it, and 1e-6 are asked
+
+    assert solved(false_position)[1] == Status.CONVERGED
+    assert solved(beside)[1] != Status.CONVERGED
+
+
+def test_the_approximations_at_all_radii_count(monkeypatch):
+    counts = []
+
+    def counted(*arguments):
+        fixed = approximate(*arguments)
+        counts.append(fixed.count.sum())
+        return fixed
+
+    approximate = scheme.approximate
+    monkeypatch.setattr(scheme, "approximate", counted)
+    *_, total = solved(false_position)
+    assert len(counts) > 3 and total == sum(counts)
+
+
+def test_no_cycle_is_handed_on():
+    """After a radius that ends in a cycle the next one begins from p = 0, as if it were the first."""
+    seen = []
+
+    def two_radii(function, start, tolerance):
+        function(start, np.arange(1))
+        return start, np.ones(1, bool)
+
+    def noted(cases, eta, law, mesh, k, rtol, limit, start=None):
+        seen.append(start.copy())
+        return approximate(cases, eta, law, mesh, k, rtol, limit, start)
+
+    approximate = scheme.approximate
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(scheme, "approximate", noted)
+        solved(two_radii, follow=True, h=1e-6)  # so thin that it ends in a cycle
+        solved(two_radii, follow=True, h=0.02)
+    assert not seen[1].any() and seen[3].all()

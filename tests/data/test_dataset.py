@@ -1,0 +1,119 @@
+"""A dataset in a file and back: nothing is lost, attributes and flags follow CF, interrupts wait."""
+
+import signal
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+from study.files import netcdf, results_file
+from study.spec.vocabulary import NOT_RUN, PARAMETERS, VOCABULARY, attributes
+
+CASES = [
+    {"label": "smooth", "P": 1e-5, "micro": "smooth", "base": "half_space"},
+    {"label": "layer", "P": 2e-5, "h": 0.02, "n": 0.5, "Nbar": 250000, "Ra": 0.004},
+]
+
+
+@pytest.fixture(scope="module")
+def solved() -> xr.Dataset:
+    return study.solve(cases=CASES, bonding=["frictionless", "bonded"], x=5)
+
+
+@pytest.fixture(scope="module")
+def reread(solved, tmp_path_factory) -> xr.Dataset:
+    path = tmp_path_factory.mktemp("results") / "file.nc"
+    results_file.write(solved, path)
+    return study.open_results(path)
+
+
+def test_nothing_is_lost_in_the_file(solved, reread):
+    xr.testing.assert_identical(solved.drop_vars("label"), reread.drop_vars("label"))
+    assert reread.label.values.tolist() == ["smooth", "layer"]
+    for name in (*solved.coords, *solved.data_vars):
+        assert solved[name].dtype.kind == reread[name].dtype.kind or solved[name].dtype.kind == "U"
+
+
+def test_plain_xarray_opens_it(reread, tmp_path):
+    results_file.write(reread, tmp_path / "again.nc")
+    with xr.open_dataset(tmp_path / "again.nc") as plain:
+        assert plain.sel(bonding="bonded").sizes == {"case": 2, "x": 5}
+        assert plain.status.dtype == np.int8
+        assert plain.validity.dtype == np.int32
+        assert plain.nodes.dtype.kind == plain.iterations.dtype.kind == plain.nodes_used.dtype.kind == "i"
+        assert "_FillValue" not in plain.status.encoding
+        assert not [name for name in plain.coords if "_FillValue" in plain[name].encoding]
+
+
+def test_every_variable_has_its_attributes(reread):
+    for name, variable in reread.variables.items():
+        expected = attributes(name)
+        assert expected["long_name"]
+        assert {key: variable.attrs[key] for key in expected} == expected, name
+        assert name.isascii()
+    assert reread.P.attrs["scale"] == "E2* R^2"
+    assert reread.Nbar.attrs["scale"] == "R^-2"
+    assert reread.p_max.attrs == {
+        "long_name": VOCABULARY["p_max"].long_name,
+        "symbol": "pmax",
+        "scale": "E2*",
+        "equation": "(13)",
+        "units": "1",
+    }
+    assert "units" not in reread.bonding.attrs
+
+
+def test_flags_follow_cf(reread):
+    for name in ("status", "model_used", "validity"):
+        array = reread[name]
+        values = array.attrs["flag_masks" if name == "validity" else "flag_values"]
+        assert values.dtype == array.dtype
+        assert len(set(array.flag_meanings.split())) == len(values) == len(set(values.tolist()))
+    assert (
+        dict(zip(reread.status.flag_values.tolist(), reread.status.flag_meanings.split(), strict=True))[NOT_RUN]
+        == "not_run"
+    )
+    assert f"{NOT_RUN}: the case has not been computed" in reread.status.comment
+
+
+@pytest.fixture
+def interruptible():
+    """Ctrl-C interrupts, also where the tests run in the background and ignore it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interrupt_waits_until_netcdf_is_done():
+    """An exception inside xarray's locks would leave one locked, and the next access would hang."""
+    reached = []
+    with pytest.raises(KeyboardInterrupt), netcdf.interrupts_wait():
+        signal.raise_signal(signal.SIGINT)
+        reached.append("end of the block")
+    assert reached
+    with pytest.raises(KeyboardInterrupt):
+        signal.raise_signal(signal.SIGINT)
+
+
+@pytest.mark.usefixtures("interruptible")
+def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
+    ended, real = [], results_file.create
+
+    def create(*arguments):
+        signal.raise_signal(signal.SIGINT)
+        real(*arguments)
+        ended.append("create")
+
+    monkeypatch.setattr(results_file, "create", create)
+    with pytest.raises(KeyboardInterrupt):
+        results_file.write(reread, tmp_path / "file.nc")
+    assert ended and list(tmp_path.iterdir()) == []
+
+
+def test_vocabulary_names_every_parameter_of_the_solver():
+    from solver.parameters import CONTROL
+    from solver.parameters import PARAMETERS as OF_THE_SOLVER
+
+    assert set(CONTROL) | (set(OF_THE_SOLVER) - {"R", "E2"}) == set(PARAMETERS)

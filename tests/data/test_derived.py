@@ -1,0 +1,147 @@
+"""Quantities derived from a dataset, against numbers worked out by hand, and the assumptions a case violates."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+from solver import Model
+from study.data import dataset, derived
+from study.spec.vocabulary import attributes
+
+
+def made(**variables) -> xr.Dataset:
+    """A dataset of one case as the results of a solver would give it, to set single quantities at will."""
+    given = {
+        "base": "thin_layer",
+        "micro": "disc_cell",
+        "P": 2.0,
+        "Nbar": 1e6,
+        "h": 0.01,
+        "n": 0.5,
+        "a": 0.02,
+        "D": 3e-4,
+        "p0": 0.01,
+        "lam0": 0.2,
+        "model_error": 0.05,
+    }
+    given |= {"status": np.int8(0), "model_used": np.int8(Model.THIN_LAYER)} | variables
+    made = xr.Dataset({name: ((), value) for name, value in given.items() if value is not None})
+    made["model_used"].attrs = dataset.model_attributes()
+    return made
+
+
+EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
+
+
+@pytest.mark.parametrize(
+    ("variables", "expected"),
+    [
+        ({}, 0),
+        ({"model_error": 0.101}, 1),
+        ({"model_error": 0.099, "h": 0.02}, 0),
+        ({"model_error": 0.2, "base": "auto"}, 1),
+        ({"model_error": 0.2, "base": "auto", "micro": "smooth", "model_used": np.int8(Model.SMOOTH_THIN_LAYER)}, 1),
+        ({"model_error": 0.2, "base": "auto", "model_used": np.int8(Model.LAYER_ALONE)}, 0),
+        ({"Nbar": 99 / (np.pi * 0.02**2), "lam0": 1e-3}, 2),
+        ({"Nbar": 101 / (np.pi * 0.02**2), "lam0": 1e-3}, 0),
+        ({"lam0": 0.4, "Nbar": 0.99e4 * 0.4 / np.pi, "a": 0.19, "h": 0.1}, 4),
+        ({"lam0": 0.4, "Nbar": 1.01e4 * 0.4 / np.pi, "a": 0.19, "h": 0.1}, 0),
+        ({"n": 1.0}, 8),
+        ({"n": 1.0, "base": "auto"}, 0),
+        ({"n": 1.0, "model_error": 0.3, "Nbar": 1.0, "lam0": 0.5, "a": 0.3}, 1 | 2 | 4 | 8 | 16 | 32),
+        ({"lam0": 0.401}, 16),
+        ({"lam0": 0.399}, 0),
+        ({"lam0": 1.0, "micro": "smooth"}, 0),
+        ({"a": 0.201}, 32),
+        ({"a": 0.199}, 0),
+        ({"D": 1.1e-3, "p0": 0.051}, 32),
+        ({"D": 1.1e-3, "p0": 0.049}, 0),
+        ({"D": 0.9e-3, "p0": 0.051}, 0),
+        ({"D": 1.1e-3, "p0": 0.051, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 0),
+        ({"n": 0.999}, 0),
+        ({"base": "layered", "n": 1.0, "h": 0.03, **EXACT}, 0),
+        ({"base": "layered", "Nbar": 1.0, **EXACT}, 2 | 4),
+        ({"base": "half_space", "h": 0.001, "n": 2.0, **EXACT}, 0),
+        ({"base": "half_space", "h": None, "n": None, **EXACT}, 0),
+        ({"micro": "smooth", "Nbar": 1.0}, 0),
+        ({"micro": "smooth", "Nbar": None}, 0),
+        ({"a": np.nan, "lam0": np.nan, "model_error": np.nan, "n": 2.0, "status": np.int8(3)}, 8),
+    ],
+    ids=str,
+)
+def test_validity(variables, expected):
+    found = derived.validity(made(**variables))
+    assert found.item() == expected
+    assert found.dtype == np.int32
+
+
+def test_validity_has_the_dimensions_of_status():
+    given = {"P": 1e-5, "Nbar": [250000, 1e4], "h": [0.1, 0.001], "n": 0.5, "Ra": 0.004, "base": "thin_layer"}
+    found = study.solve(**given, bonding=["frictionless", "bonded"])
+    assert found.validity.dims == found.status.dims == ("Nbar", "h", "bonding")
+    assert ((found.validity & 1).values == np.reshape([1, 0], (1, 2, 1))).all()
+    assert ((found.validity & 2).values == np.reshape([0, 2], (2, 1, 1))).all()
+
+
+ONE = made(dP_dD=0.03)
+BY_HAND = {
+    "An": (derived.nominal_area(ONE), np.pi * 4e-4),
+    "An_ratio": (derived.nominal_area_ratio(ONE, 0.04), 0.25),
+    "p_mean": (derived.mean_pressure(ONE), 2 / (np.pi * 4e-4)),
+    "spots": (derived.number_of_spots(ONE), np.pi * 400),
+    "b0": (derived.spot_radius(ONE), np.sqrt(0.2 / (np.pi * 1e6))),
+    "E_eff": (derived.effective_modulus(ONE), 0.75),
+}
+
+
+@pytest.mark.parametrize("name", BY_HAND)
+def test_derived_quantities(name):
+    found, expected = BY_HAND[name]
+    assert found.item() == pytest.approx(expected, rel=1e-14)  # a few roundings
+    assert found.name == name and found.attrs == attributes(name)
+
+
+def test_smooth_cases_have_no_spots():
+    for function in (derived.number_of_spots, derived.spot_radius):
+        assert np.isnan(function(made(micro="smooth"))) and np.isfinite(function(made()))
+
+
+@pytest.mark.parametrize(("base", "E1"), [("half_space", 1.0), ("layered", 0.5)])
+def test_peak_pressure_is_the_largest_of_the_spots(base, E1):
+    """Eq. (13) where λ = 1/2: sin² of 45°, half of the nominal pressure goes through the ring around the spot."""
+    profiles = {"p": ("x", [0.01, 0.08, 0.0]), "lam": ("x", [0.25, 0.5, 0.0])}
+    rough = made(base=base, Ra=0.004).assign(profiles)
+    b = np.sqrt(0.5 / (np.pi * 1e6))
+    found = derived.peak_pressure(rough)
+    assert found.item() == pytest.approx(2 * E1 * b / (np.pi * 0.004) + 2 * 0.08 / np.pi * np.pi / 4, rel=1e-14)
+    assert found.dims == () and found.attrs == attributes("p_peak")
+    assert derived.peak_pressure(made(base=base, micro="smooth", Ra=0.004).assign(profiles)).item() == 0.08
+
+
+def test_peak_pressure_of_a_smooth_study_needs_no_roughness():
+    found = study.solve(a=[0.02, 0.04], micro="smooth", base="half_space", x=5)
+    np.testing.assert_allclose(derived.peak_pressure(found), found.p0, rtol=1e-14, atol=0)
+
+
+def test_error_of_the_thin_layer():
+    both = xr.Dataset({"D": ("base", [1.03e-3, 1e-3])}, {"base": ["thin_layer", "layered"]})
+    found = derived.from_layered(both, "D")
+    assert found.item() == pytest.approx(0.03, rel=1e-12)  # 1e-14 of a difference from 1
+    assert found.attrs == {"long_name": "indentation depth: thin layer over exact layer, less 1", "units": "1"}
+
+
+@pytest.mark.parametrize("at", [{}, {"P": 0}], ids=["an axis", "one load"])
+def test_derived_quantities_refuse_physical_units(at):
+    smooth = study.solve(P=[1e-6, 2e-6], micro="smooth", base="half_space", x=3).isel(at)
+    with pytest.raises(ValueError, match="p_mean is derived from dimensionless datasets: derive first, then convert"):
+        derived.mean_pressure(study.to_physical(smooth, R=0.01, E2_star=1e11))
+
+
+def test_the_exact_layer_is_the_default_and_has_no_assumption_of_thinness():
+    given = {"P": 1e-5, "Nbar": 250000, "Ra": 0.004, "bonding": "bonded", "nu1": 0.5}
+    found = study.solve(**given, h=[0.01, 1.0], n=[0.5, 100.0], x=3)
+    assert found.base.item() == "layered"
+    assert (found.status == 0).all() and ((found.validity & 9) == 0).all()
+    thin = study.solve(**given, h=0.01, n=0.5, base="thin_layer")
+    assert thin.status.item() == 4, "the thin-layer equation does not apply to bonded rubber"

@@ -1,0 +1,120 @@
+"""Physical units there and back."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+from study.data import derived
+from study.data.units import factor
+from study.spec.vocabulary import PARAMETERS, VOCABULARY
+
+SCALE = {"R": 5e-3, "E2_star": 2e11}
+
+
+# Physical sizes, in the printed units, of dimensionless ones on a sphere of 5 mm on 200 GPa.
+FACTORS = {
+    **dict.fromkeys(("a", "D", "h", "Ra", "A0", "b0", "A_exact", "A_fit"), 5e3),  # µm
+    **dict.fromkeys(("p0", "p_max", "p", "p_mean", "p_peak", "E_eff"), 2e5),  # MPa
+    "P": 5e6,  # N: 2e11 Pa (5e-3 m)²
+    "Nbar": 0.04,  # mm⁻²: 1/(5 mm)²
+    "dP_dD": 1e9,  # N/m: 2e11 Pa 5e-3 m
+    "An": 25.0,  # mm²
+}
+
+
+@pytest.mark.parametrize("name", VOCABULARY)
+def test_factors(name):
+    assert factor(name, **SCALE) == pytest.approx(FACTORS.get(name, 1.0), rel=1e-14)  # a few roundings
+
+
+def test_scenes_of_another_size_and_stiffness_are_the_same_contact():
+    """All lengths times 2, pressures times 3: areas grow by 4, loads by 12."""
+    scene = {"R": 5e-3, "E2_star": 2e11, "P": 10.0, "a": 50.0, "D": 0.5, "h": 20.0, "Nbar": 1e4, "Ra": 8.0}
+    scaled = {"R": 1e-2, "E2_star": 6e11, "P": 120.0, "a": 100.0, "D": 1.0, "h": 40.0, "Nbar": 2500.0, "Ra": 16.0}
+    pure = {"n": 0.5, "nu1": 0.3, "B": 0.1, "k": 2.0, "nodes": 16, "micro": "smooth"}
+    first, second = (study.from_physical(**given) for given in (scene, scaled))
+    assert first == pytest.approx(second, rel=1e-14)  # a few roundings
+    assert study.from_physical(**scene, **pure) == first | pure
+
+
+def test_rough_contact_in_physical_units():
+    """Equations (6), (11) and (13) and the equilibrium, in SI units, from the numbers and units as they are printed."""
+    s, w = np.polynomial.legendre.leggauss(40)
+    s, w = (1 - s) / 2, w / 2
+    x = np.sqrt(1 - s**2)
+    given = study.from_physical(**SCALE, P=10.0, Nbar=1e4, Ra=20.0)
+    found = study.solve(**given, base="half_space", rtol=1e-10, x=[0.0, *x, 1.0])
+    quantities = (derived.nominal_area, derived.mean_pressure, derived.spot_radius, derived.peak_pressure)
+    more = xr.merge([found, *(quantity(found) for quantity in quantities)])
+    physical = study.to_physical(more, **SCALE)
+    size = {"N": 1.0, "um": 1e-6, "MPa": 1e6, "mm-2": 1e6, "N m-1": 1.0, "mm2": 1e-6, "1": 1.0}
+    si = {name: physical[name].values * size[physical[name].units] for name in (*FACTORS, "lam0") if name in physical}
+    assert si["P"] == pytest.approx(10, rel=1e-14) and si["Nbar"] == pytest.approx(1e10, rel=1e-14)  # a few roundings
+    E, Ra, p0, lam = 2e11, 20e-6, si["p0"], si["lam0"]
+    b, cell = np.sqrt(lam / (np.pi * 1e10)), np.sqrt(1 / (np.pi * 1e10))
+    exact = {"rel": 1e-10}  # identities of one state; A0 is a difference of numbers some times larger
+    assert si["p_max"] == pytest.approx(2 * E * b / (np.pi * Ra) + 2 * p0 / np.pi * np.arcsin(b / cell), **exact)
+    assert si["A0"] == pytest.approx(b**2 / Ra - 2 * p0 / E * np.sqrt(cell**2 - b**2), **exact)
+    assert si["b0"] == pytest.approx(b, **exact) and si["p_peak"] == pytest.approx(si["p_max"], **exact)
+    assert si["An"] == pytest.approx(np.pi * si["a"] ** 2, **exact)
+    assert si["p_mean"] == pytest.approx(10 / si["An"], **exact)
+    assert 2 * np.pi * si["a"] ** 2 * (si["p"][1:-1] * s * w).sum() == pytest.approx(10, rel=1e-8)  # rtol is 1e-10
+
+
+def test_hertz_in_physical_units():
+    """A steel ball of 5 mm under 10 N: the textbook formulae in SI units."""
+    given = study.from_physical(**SCALE, P=10.0, micro="smooth", base="half_space")
+    found = study.to_physical(study.solve(**given), **SCALE)
+    a = (3 * 10 * 5e-3 / (4 * 2e11)) ** (1 / 3)
+    assert found.P.item() == pytest.approx(10, rel=1e-14)  # a few roundings
+    assert found.a.item() == pytest.approx(a * 1e6, rel=1e-12)  # closed form
+    assert found.D.item() == pytest.approx(a**2 / 5e-3 * 1e6, rel=1e-12)  # closed form
+    assert found.p0.item() == pytest.approx(1.5 * 10 / (np.pi * a**2) / 1e6, rel=1e-12)  # closed form
+    assert found.dP_dD.item() == pytest.approx(2 * 2e11 * a, rel=1e-9)
+    modulus = study.to_physical(derived.effective_modulus(study.solve(**given)).to_dataset(), **SCALE).E_eff
+    assert (modulus.item(), modulus.units) == (pytest.approx(2e5, rel=1e-9), "MPa")
+    assert [found[name].units for name in ("P", "a", "p0", "dP_dD", "nu1")] == ["N", "um", "MPa", "N m-1", "1"]
+    assert "scale" not in found.P.attrs
+    assert found.physical_scale == "R = 0.005 m, E2* = 200000000000.0 Pa"
+
+
+def test_axes_are_converted_and_stay_selectable():
+    found = study.to_physical(study.solve(P=[1e-6, 2e-6], micro="smooth", base="half_space"), **SCALE)
+    np.testing.assert_allclose(found.indexes["P"], [5.0, 10.0], rtol=1e-14, atol=0)  # a few roundings
+    assert found.sel(P=10, method="nearest").a.notnull()
+
+
+def test_there_and_back():
+    parameters = {name: 0.25 for name in PARAMETERS if not VOCABULARY[name].choices}
+    physical = {name: value * factor(name, **SCALE) for name, value in parameters.items()}
+    assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-15)  # one rounding
+
+
+def test_forms_are_kept():
+    array = xr.DataArray([5e3, 1e4], dims="sample")
+    found = study.from_physical(**SCALE, h=array, Ra=[5e3, 1e4], a=5e3, bonding=["bonded"])
+    assert found["h"].dims == ("sample",)
+    np.testing.assert_allclose(found["h"], [1, 2], rtol=1e-15, atol=0)  # one rounding
+    np.testing.assert_allclose(found["Ra"], [1, 2], rtol=1e-15, atol=0)  # one rounding
+    assert found["a"] == 1
+    assert found["bonding"] == ["bonded"]
+
+
+def test_reduced_modulus():
+    assert study.reduced_modulus(210e9, 0.3) == pytest.approx(230.769230769e9, rel=1e-11)
+
+
+def test_wrong_calls():
+    smooth = study.solve(P=1e-6, micro="smooth", base="half_space")
+    with pytest.raises(ValueError, match="in physical units already: R = 0.005 m"):
+        study.to_physical(study.to_physical(smooth, **SCALE), **SCALE)
+    for bad in (0, -1, float("nan"), float("inf")):
+        with pytest.raises(ValueError, match="^R = .*: must be > 0 and finite"):
+            study.to_physical(smooth, R=bad, E2_star=1e11)
+        with pytest.raises(ValueError, match="^E2_star = .*: must be > 0 and finite"):
+            study.from_physical(R=1.0, E2_star=bad, P=1.0)
+    with pytest.raises(ValueError, match='"p_max" is not a parameter'):
+        study.from_physical(**SCALE, p_max=3)
+    with pytest.raises(ValueError, match='"Nabr" is not a parameter; did you mean "Nbar"?'):
+        study.from_physical(**SCALE, Nabr=3)

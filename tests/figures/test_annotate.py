@@ -1,0 +1,70 @@
+"""Marks on axes: names of curves, and the shading of loads at which a curve breaks an assumption."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from drawn import WORDS, bands, legend
+from matplotlib.figure import Figure
+
+from study.data.derived import ASSUMPTIONS
+from study.figures.annotate import ASSUMPTION_TEXT, GREYS, name_curve, shade_violations, violated
+from study.figures.annotate import bands as intervals
+
+
+def test_bands_begin_at_zero_and_end_halfway():
+    P = np.array([1.0, 2.0, 4.0, 6.0])
+    assert intervals(P, np.array([True, False, False, True])) == [(0.0, 1.5), (5.0, 6.0)]
+    assert intervals(P, np.zeros(4, dtype=bool)) == []
+
+
+def test_shading_names_the_assumption_and_its_curves():
+    axes = Figure().subplots()
+    attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+    first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
+    thick, few = "layer not thin", r"$\bar N A_n < 100$"
+    assert axes.get_legend_handles_labels()[1] == [f"not valid: {thick} (1)", f"not valid: {few} (1)"]
+    assert violated(first[1]) == [thick]
+    bands_so_far = len(axes.patches)
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": first * 0 + 1})
+    assert [text.get_text() for text in axes.texts] == [f"nowhere valid:\n{thick} (3)"]
+    assert len(axes.get_legend_handles_labels()[1]) == 2
+    assert len(axes.patches) == bands_so_far
+
+
+def test_a_name_stands_above_or_below_and_to_the_side_that_is_asked():
+    axes = Figure().subplots()
+    own = axes.plot([0, 2], [0, 2]) + axes.plot([0, 2], [2, 6])
+    name_curve(axes, own, "over", 1.0)
+    name_curve(axes, own, "under", 0.5, side="below", align="right")
+    over, under = axes.texts
+    assert over.xy == (1, 4) and under.xy == (0.5, 0.5)
+    assert (over.get_va(), over.get_ha(), over.xyann) == ("bottom", "center", (0, 2))
+    assert (under.get_va(), under.get_ha(), under.xyann) == ("top", "right", (0, -2))
+
+
+@pytest.mark.parametrize("mask", WORDS)
+def test_each_assumption_has_its_words_and_its_grey(mask):
+    axes = Figure().subplots()
+    words = "layer_not_thin few_spots spot_not_small_against_h n_not_below_one spots_merging strain_not_small"
+    attributes = {"flag_masks": np.array(list(WORDS)), "flag_meanings": words}
+    flags = xr.DataArray([0, mask, 0], dims="P", attrs=attributes)
+    shade_violations(axes, np.array([1e-5, 2e-5, 4e-5]), {"7": flags})
+    assert bands(axes) == [(pytest.approx(1.5), pytest.approx(3.0), bands(axes)[0][2])]
+    axes.legend()
+    assert list(legend(axes.get_legend())) == [f"not valid: {WORDS[mask]} (7)"]
+    assert axes.patches[0].get_zorder() < 0, "under the curves"
+    assert list(ASSUMPTION_TEXT) == words.split() and len(set(GREYS)) == len(WORDS)
+
+
+def test_one_entry_of_the_legend_stands_for_all_bands_of_the_curves_that_have_some():
+    axes = Figure().subplots()
+    attributes = {"flag_masks": np.array(list(WORDS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+    flags = {"1": [2, 0, 0, 0, 0], "2": [0, 0, 2, 0, 2], "3": [0] * 5}
+    shade_violations(
+        axes,
+        np.array([1e-5, 2e-5, 3e-5, 4e-5, 5e-5]),
+        {curve: xr.DataArray(values, dims="P", attrs=attributes) for curve, values in flags.items()},
+    )
+    assert [band[:2] for band in bands(axes)] == [pytest.approx(band) for band in ((0, 1.5), (2.5, 3.5), (4.5, 5))]
+    assert axes.get_legend_handles_labels()[1] == [r"not valid: $\bar N A_n < 100$ (1, 2)"]

@@ -1,0 +1,196 @@
+"""Every study runs, every figure draws from it, and the numbers beside a figure are those of the datasets."""
+
+import csv
+
+import numpy as np
+import pytest
+from conftest import STUDIES
+from scipy.integrate import simpson
+
+from study import StudyError, open_results
+from study.catalogue import RECIPES, draw, save
+from study.data.derived import effective_modulus, from_layered, peak_pressure
+from study.figures.sources import pick
+from study.paper.curves import CURVES, EXACT_LAYER, PAPERS_FIGURES
+from study.paper.schemes import spot_displacement, sunk
+
+
+@pytest.fixture(scope="module")
+def figures(drawing, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("figures")
+    for name in RECIPES:
+        save(folder / name, *drawing(name))
+    return folder
+
+
+def numbers(figures, name: str) -> dict[str, np.ndarray]:
+    with open(figures / f"{name}.csv", encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return dict(zip(head, np.array(rows, dtype=float).T, strict=True))
+
+
+# picard_domain maps what does not converge: test_picard_domain.py
+CONVERGING = [file for file in STUDIES if file.stem != "picard_domain"]
+
+
+@pytest.mark.parametrize("file", CONVERGING, ids=lambda file: file.stem)
+def test_every_study_runs_and_converges(results, file):
+    found = open_results(results / f"{file.stem}.nc")
+    if "status" in found:
+        refused = (found["status"] == 4) & (found["base"] == "thin_layer")
+        assert ((found["status"] == 0) | refused).all()
+        assert bool(refused.any()) == file.stem.startswith("validity")
+        assert float(found["error"].max()) <= float(found["rtol"])
+    else:
+        assert np.isfinite(found["max_error"]).all()
+
+
+@pytest.mark.parametrize("name", RECIPES)
+def test_every_figure_is_written(figures, name):
+    from matplotlib.image import imread
+
+    image = imread(figures / f"{name}.png")
+    assert image.shape[1] == pytest.approx(300 * RECIPES[name].size[0], abs=1)
+    assert 0.01 < np.mean(image[..., :3].min(axis=2) < 0.9) < 0.9, "nearly blank, or nearly black"
+    pdf = (figures / f"{name}.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF") and b"/Type3" not in pdf and b"CreationDate" not in pdf
+    columns = numbers(figures, name)
+    assert len(columns) >= 3
+    assert all(np.isfinite(column).all() for column in columns.values())
+
+
+def test_the_same_results_give_the_same_bytes(figures, results, tmp_path):
+    for path in draw("fig04", results, tmp_path):
+        assert path.read_bytes() == (figures / path.name).read_bytes(), path.name
+
+
+def test_profiles_of_figures_3_7_and_10_carry_the_load(figures, results):
+    main = open_results(results / "main_case.nc")
+    a0, P0 = float(pick(main, label=CURVES["1"])["a"]), float(main["P"])
+    for name in ("fig03", "fig07", "fig10", "fig03_layered", "fig07_layered", "fig10_layered"):
+        columns = list(numbers(figures, name).values())
+        for r, p in zip(columns[::2], columns[1::2], strict=True):
+            load = 2 * np.pi * a0**2 * simpson(p * r, x=r)
+            assert load == pytest.approx(P0, rel=2e-3), name  # Hertz has a vertical tangent at its edge
+    assert numbers(figures, "fig03")["r/a0 (1)"][-1] == pytest.approx(1, rel=1e-12)  # a product with the same factor
+
+
+def test_a_layer_spreads_the_contact_and_lowers_the_pressure(figures):
+    found = numbers(figures, "fig03")
+    assert found["r/a0 (1)"][-1] > found["r/a0 (2)"][-1]
+    assert found["p/E2* (1)"][0] < found["p/E2* (2)"][0]
+
+
+def test_figures_against_load_show_the_dataset(figures, results):
+    sweep = open_results(results / "load_sweep.nc")
+    for name, quantity, curves in (("fig04", "Ar_An", 2), ("fig05", "p_max", 2), ("fig06", "D", 2), ("fig08", "D", 4)):
+        found = numbers(figures, name)
+        for curve in list(CURVES)[:curves]:
+            expected = pick(sweep, label=CURVES[curve])[quantity]
+            np.testing.assert_array_equal(found[f"{quantity} ({curve})"], expected)
+            assert (np.diff(expected) > 0).all()
+
+
+def test_companions_show_the_exact_layer_and_the_papers_beside_it(figures, results):
+    assert {name.removesuffix("_layered") for name in RECIPES if name.endswith("_layered")} == set(PAPERS_FIGURES)
+    sweep = open_results(results / "load_sweep.nc")
+    for name, quantity in (("fig04", "Ar_An"), ("fig05", "p_max"), ("fig06", "D"), ("fig08", "D")):
+        found = numbers(figures, f"{name}_layered")
+        np.testing.assert_array_equal(found[f"{quantity} (1)"], pick(sweep, label=EXACT_LAYER["1"])[quantity])
+        np.testing.assert_array_equal(found[f"{quantity} (1, thin layer)"], pick(sweep, label=CURVES["1"])[quantity])
+        np.testing.assert_array_equal(found[f"{quantity} (2)"], numbers(figures, name)[f"{quantity} (2)"])
+    paper, exact = numbers(figures, "fig10"), numbers(figures, "fig10_layered")
+    for curve in "123":
+        np.testing.assert_array_equal(exact[f"p/E2* ({curve}, thin layer)"], paper[f"p/E2* ({curve})"])
+        assert exact[f"r/a0 ({curve})"][-1] < paper[f"r/a0 ({curve})"][-1], "the thin layer spreads the contact too far"
+
+
+def test_validity_maps_show_the_error_and_leave_out_what_does_not_apply(figures, results):
+    found, shown = open_results(results / "validity.nc"), numbers(figures, "validity")
+    a = found.a.sel(micro="disc_cell", case=0).transpose("base", "n", "h")
+    first = (shown["row"] == 0) & (shown["material"] == 0)
+    expected = a.sel(base="thin_layer") / a.sel(base="layered") - 1
+    np.testing.assert_allclose(shown["error"][first], expected.values.ravel(), rtol=1e-12)  # the same arithmetic
+    # the same arithmetic
+    np.testing.assert_allclose(shown["h/a"][first], (found.h / a.sel(base="layered")).T.values.ravel(), rtol=1e-12)
+    assert shown["n"][shown["material"] == 4].max() < 0.25 / (0.55 / 0.7), "there C <= 0"
+    assert set(shown["row"]) == set(range(5)) and set(shown["material"]) == set(range(5))
+    error = from_layered(found.isel(case=4), "D")
+    assert error.dims == ("micro", "n", "h") and np.isnan(error.sel(n=0.95)).all() and error.attrs["units"] == "1"
+
+
+def test_coatings_go_from_the_film_to_the_body(results):
+    found = open_results(results / "coatings.nc")
+    smooth = effective_modulus(found).sel(micro="smooth")
+    np.testing.assert_allclose(smooth.sel(n=1, bonding="bonded"), 1, rtol=1e-6)  # no layer at all
+    over_film = smooth / found.n
+    soft, hard = over_film.sel(n=1e-3), over_film.sel(n=1e3)
+    assert (soft.diff("P") > 0).all() and (soft > 1).all() and (soft < 1e3).all()
+    assert (hard.diff("P") < 0).all() and (hard < 1).all() and (hard > 1e-3).all()
+    rough = effective_modulus(found).sel(micro="disc_cell")
+    assert (rough.isel(P=0) < smooth.isel(P=0)).all(), "asperities yield too"
+
+
+def test_the_largest_pressure_of_a_hard_coating_is_not_in_the_middle(results):
+    found = open_results(results / "coatings.nc")
+    peak = peak_pressure(found)
+    rough = {"micro": "disc_cell"}
+    np.testing.assert_allclose(peak.sel(n=1e-3, **rough), found.p_max.sel(n=1e-3, **rough), rtol=1e-9)
+    assert (peak >= found.p_max * (1 - 1e-9)).all()
+    assert (peak / found.p_max).sel(n=1e3, **rough).max() > 1.5
+
+
+def test_figure_9_fits_the_exact_law(figures):
+    found = numbers(figures, "fig09")
+    for name, values in found.items():
+        if name.endswith("exact"):
+            where = found["p/E1*"] >= 0.0025
+            np.testing.assert_allclose(found[name.replace("exact", "fit")][where], values[where], rtol=0.05)
+
+
+def test_scheme_of_the_contact_draws_the_solution(results):
+    """Inside the contact the drawn surface must be D - f(r) - A[p(r)]: Eq. (3) closes."""
+    case = pick(open_results(results / "main_case.nc"), label=CURVES["1"])
+    a, D, h, n, B, Ra = (float(case[name]) for name in ("a", "D", "h", "n", "B", "Ra"))
+    r, p = case["x"].values[::20] * a, case["p"].values[::20]
+    A = B * Ra * (p / n) ** float(case["beta"])
+    np.testing.assert_allclose(sunk(case, r) + h / n * p, D - r**2 / 2 - A, rtol=5e-3)
+
+
+def test_scheme_of_the_spot_follows_the_asperity_and_carries_its_share(results):
+    """Eq. (7) says that the spot carries the pressure of its cell: far away nothing of it is felt."""
+    case = pick(open_results(results / "main_case.nc"), label=CURVES["1"])
+    Ra, p = float(case["Ra"]), float(case["p0"] / case["n"])
+    cell = (np.pi * float(case["Nbar"])) ** -0.5
+    b = cell * float(case["lam"][0]) ** 0.5
+    A = b**2 / Ra - 2 * p * np.sqrt(cell**2 - b**2)
+    r = np.linspace(0, 0.99 * b, 7)
+    np.testing.assert_allclose(spot_displacement(r, A, b, cell, Ra, p), A - r**2 / (2 * Ra), rtol=1e-3)
+    assert abs(spot_displacement(np.array([10 * cell]), A, b, cell, Ra, p)[0]) < 2e-3 * A
+
+
+def test_messages_of_plot(results, tmp_path):
+    with pytest.raises(StudyError, match='"fig3" is not known; did you mean "fig03"?'):
+        draw("fig3", results, tmp_path)
+    with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run studies/main_case.toml"):
+        draw("fig03", tmp_path, tmp_path)
+
+
+def test_pick_wants_exactly_one_case(results):
+    laws = open_results(results / "table1.nc")
+    with pytest.raises(StudyError, match="table1: 3 cases have Ra = 0.004: needs one"):
+        pick(laws, Ra=0.004)
+    with pytest.raises(StudyError, match="table1: 0 cases have Ra = 0.004, Nbar = 250000.001: needs one"):
+        pick(laws, Ra=0.004, Nbar=250_000.001)
+    assert float(pick(laws, Ra=0.004 * (1 - 5e-10), Nbar=62_500)["B"]) == float(laws["B"][1])
+
+
+def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
+    from PIL import Image
+
+    studies = (open_results(results / f"{name}.nc") for name in ("load_sweep", "main_case"))
+    title = "fig04, studies " + " ".join(found.attrs["study_digest"][:16] for found in studies)
+    assert Image.open(figures / "fig04.png").text["Title"] == title
+    assert title.encode() in (figures / "fig04.pdf").read_bytes()
+    assert {recipe.size[0] for recipe in RECIPES.values()} == {3.35, 5.2, 6.9}  # inches: column, figure 1, two columns
+    assert max(recipe.size[1] for recipe in RECIPES.values()) < 9.5

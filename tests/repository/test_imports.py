@@ -1,0 +1,167 @@
+"""The import contract: solver knows numpy and scipy only, study imports one way, importing does nothing heavy."""
+
+import ast
+import graphlib
+import inspect
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SOLVER = sorted((ROOT / "solver").rglob("*.py"))
+STUDY = sorted((ROOT / "study").rglob("*.py"))
+
+#: The rooms of each package; a file beside them is a room of its own.
+ROOMS = {
+    "solver": (
+        *("threads", "status", "closed_forms", "numerics", "laws", "body", "parameters", "problem", "solution"),
+        *("contact", "scaling", "models", "solve"),
+    ),
+    "study": (
+        *("terminal", "spec", "data", "files", "store", "work", "api", "figures", "paper", "evidence"),
+        *("tables", "catalogue", "commands", "__main__"),
+    ),
+}
+#: Rooms that do not know each other, though both are to the left of others.
+APART = {"body": {"laws"}}
+
+
+def name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def imported(path: Path) -> set[str]:
+    """Absolute dotted names that a file imports anywhere, relative ones resolved against its package."""
+    found = set()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            home = path.relative_to(ROOT).parts[: -node.level] if node.level else ()
+            assert home or not node.level, f"{path} leaves its package"
+            module = ".".join(filter(None, (*home, node.module)))
+            # `from . import x` and `from package import module` name modules in their alias list
+            names = {f"{module}.{alias.name}" for alias in node.names}
+            found |= {name if exists(name) else module for name in names}
+    return found
+
+
+def exists(module: str) -> bool:
+    path = ROOT / module.replace(".", "/")
+    return path.is_dir() or path.with_suffix(".py").exists()
+
+
+def tops(path: Path) -> set[str]:
+    return {name.split(".")[0] for name in imported(path)}
+
+
+@pytest.mark.parametrize("path", SOLVER, ids=name)
+def test_solver_imports_numpy_and_scipy_only(path):
+    """And threadpoolctl, in the one file that sets the number of BLAS threads."""
+    more = {"threadpoolctl"} if path.name == "threads.py" else set()
+    assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "solver"} | more
+
+
+@pytest.mark.parametrize("path", SOLVER, ids=name)
+def test_importing_the_solver_does_nothing_to_the_process(path):
+    """A library defines names: no call whose effect stays, such as one that makes malloc keep freed memory."""
+    docstring, *statements = ast.parse(path.read_text(encoding="utf-8")).body
+    defining = ast.Import | ast.ImportFrom | ast.FunctionDef | ast.ClassDef | ast.Assign | ast.AnnAssign
+    assert ast.get_docstring(ast.Module([docstring], []))
+    assert all(isinstance(statement, defining) for statement in statements)
+
+
+@pytest.mark.parametrize("path", STUDY, ids=name)
+def test_study_imports_what_is_declared(path):
+    allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "solver", "study"}
+    assert tops(path) - set(sys.stdlib_module_names) <= allowed
+
+
+@pytest.mark.parametrize("path", [*SOLVER, *STUDY], ids=name)
+def test_rooms_import_one_way(path):
+    """A room imports from those to its left alone, so that each can be read with only these in mind."""
+    package, room = name(path).split("/")[:2]
+    if path.parent == ROOT / package and path.stem == "__init__":
+        return
+    rooms = ROOMS[package]
+    mine = rooms.index(room.removesuffix(".py"))
+    others = {full.split(".")[1] for full in imported(path) if full.startswith(f"{package}.")}
+    assert others <= {*rooms[: mine + 1]} - APART.get(room, set())
+
+
+@pytest.mark.parametrize("package", ["solver", "study"])
+def test_no_cycles(package):
+    graph = {}
+    for path in (ROOT / package).rglob("*.py"):
+        if path.stem != "__init__":
+            module = name(path).removesuffix(".py").replace("/", ".")
+            graph[module] = {full for full in imported(path) if full.startswith(f"{package}.")} - {package}
+    graphlib.TopologicalSorter(graph).prepare()  # raises CycleError
+
+
+@pytest.mark.parametrize("package", ["solver", "study"])
+def test_rooms_are_small(package):
+    """Of files that a reader can hold in mind; a new room is named in ROOMS."""
+    folders = [ROOT / package, *(path for path in (ROOT / package).iterdir() if (path / "__init__.py").exists())]
+    assert {path.stem for folder in folders[:1] for path in folder.glob("*.py")} | {
+        folder.name for folder in folders[1:]
+    } == {*ROOMS[package], "__init__"}
+    assert {
+        folder.name: len(list(folder.glob("*.py"))) for folder in folders if len(list(folder.glob("*.py"))) > 12
+    } == {}
+
+
+def test_only_blocks_and_dataset_and_tables_know_the_solver():
+    """The seam between solver and study stays narrow; the vocabulary knows the table of parameters alone."""
+    users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
+    assert users["vocabulary"] == {"solver.parameters"}
+    assert not any(users[name] for name in ("grid", "given", "run", "api", "units", "derived", "progress"))
+
+
+def alone(script: str) -> None:
+    """Run a script in a Python of its own."""
+    path = [entry or str(ROOT) for entry in sys.path]
+    subprocess.run([sys.executable, "-c", f"import sys; sys.path[:] = {path!r}; {script}"], check=True)
+
+
+NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.modules)"
+
+
+def test_light_modules_stay_light():
+    """Complaints about a study file come at once, and worker processes, which import `blocks`, start soon."""
+    alone(f"import study.spec.vocabulary, study.spec.grid, study.spec.given, study.spec.definition; {NOT_HEAVY}")
+    alone(f"import study.commands.arguments, study.work.cases; {NOT_HEAVY}")
+
+
+def test_rooms_are_there_after_import_of_the_package_alone():
+    """And the package itself imports nothing: neither numpy nor a room."""
+    alone(
+        "import study; assert not {'numpy', 'xarray', 'study.spec', 'study.data'} & set(sys.modules);"
+        f"assert study.vocabulary.VOCABULARY; {NOT_HEAVY};"
+        "assert study.derived.peak_pressure and study.units.factor; assert 'xarray' in sys.modules"
+    )
+
+
+def test_public_names():
+    import study
+
+    assert {"derived", "units", "vocabulary"} <= set(dir(study))
+
+    assert {"solve", "load", "open_results", "Study", "StudyError", "to_physical", "from_physical"} <= set(dir(study))
+    assert all(callable(getattr(study, name)) for name in study.__all__)
+    with pytest.raises(AttributeError, match="no attribute 'sovle'"):
+        study.sovle  # noqa: B018
+
+
+def test_solve_names_every_parameter():
+    import study
+    from study.spec.vocabulary import PARAMETERS
+
+    listed = study.solve.__doc__.split("**parameters :")[1].split("all dimensionless")[0]
+    assert set(PARAMETERS) - set(re.findall(r"\w+", listed)) == set()
+    # getdoc: Python 3.13 takes the indentation of docstrings away
+    arguments = re.findall(r"^[*]{0,2}(\w+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
+    assert set(arguments) - {"StudyError"} == set(inspect.signature(study.solve).parameters)

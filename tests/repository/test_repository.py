@@ -1,0 +1,216 @@
+"""The repository around the code: Makefile, README, lock, citation, CI."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tomllib
+from pathlib import Path
+
+import pytest
+from conftest import ROOT, STUDIES
+
+from study.__main__ import parser
+from study.catalogue import RECIPES
+from study.spec.definition import from_tables
+from study.tables import TABLES
+
+README = (ROOT / "README.md").read_text(encoding="utf-8")
+MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
+TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
+           "picard_domain", "test", "kernels", "mutants", "fuzz", "bench", "lint", "clean")  # fmt: skip
+
+
+def blocks(language: str) -> list[str]:
+    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
+
+
+def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
+    return subprocess.run(["make", *arguments], cwd=folder, capture_output=True, text=True, env=environment, timeout=60)
+
+
+def variable(name: str) -> set[str]:
+    text = re.search(rf"^{name} := ((?:.*\\\n)*.*)$", MAKEFILE, flags=re.MULTILINE)[1].replace("\\\n", " ")
+    return set(re.sub(r"\$\((\w+)\)", lambda found: " ".join(variable(found[1])), text).split())
+
+
+def test_make_help_lists_every_target():
+    lines = make(ROOT, "help").stdout.splitlines()
+    assert {line.split()[1] for line in lines} == set(TARGETS)
+    assert all(len(line.split()) > 2 for line in lines), "each with a word of explanation"
+
+
+def test_makefile_knows_every_study_figure_and_table():
+    assert variable("STUDIES") == {file.stem for file in STUDIES}
+    assert variable("FIGURES") | variable("APART") == set(RECIPES)
+    assert variable("TABLES") == set(TABLES)
+    assert not variable("FIGURES") & variable("APART")
+    assert variable("DRAWN") == {study for figure in variable("FIGURES") for study in RECIPES[figure].studies}
+
+
+@pytest.mark.parametrize("name", [*RECIPES, *TABLES])
+def test_makefile_gives_each_output_its_studies(name):
+    entry, target = (RECIPES[name], f"figures/{name}.pdf") if name in RECIPES else (TABLES[name], f"tables/{name}.txt")
+    rules = re.findall(r"^((?:figures|tables)/[^%:]*): (.*)$", MAKEFILE, flags=re.MULTILINE)
+    needs = [set(sources.split()) for targets, sources in rules if target in targets.split()]
+    assert needs == [{f"results/{study}.nc" for study in entry.studies}]
+
+
+@pytest.fixture
+def sandbox(tmp_path) -> Path:
+    """The Makefile with a python that writes down what it is asked, and like `run` makes a result that is not there."""
+    shutil.copy(ROOT / "Makefile", tmp_path)
+    for folder in ("studies", "study", "solver", "tests", "results", ".venv/bin"):
+        (tmp_path / folder).mkdir(parents=True)
+    for file in (
+        "studies/table1.toml",
+        "studies/mine.toml",
+        "study/api.py",
+        "requirements.lock",
+        "pyproject.toml",
+    ):
+        (tmp_path / file).touch()
+    python = tmp_path / ".venv/bin/python"
+    python.write_text(
+        '#!/bin/sh\necho "$@" >> calls\nfor word; do last=$word; done\n'
+        'result="results/$(basename "$last" .toml).nc"\n[ -e "$result" ] || touch "$result"\n'
+    )
+    python.chmod(0o755)
+    (tmp_path / ".venv/.ready").touch()
+    return tmp_path
+
+
+def calls(folder: Path) -> list[str]:
+    found = (folder / "calls").read_text().splitlines() if (folder / "calls").exists() else []
+    (folder / "calls").unlink(missing_ok=True)
+    return found
+
+
+def test_make_computes_a_study_once_and_replaces_only_its_own(sandbox):
+    assert make(sandbox, "results/table1.nc", "results/mine.nc").returncode == 0
+    assert calls(sandbox) == ["-m study run --force studies/table1.toml", "-m study run studies/mine.toml"]
+    make(sandbox, "results/table1.nc", "results/mine.nc")
+    assert calls(sandbox) == []
+    os.utime(sandbox / "results/mine.nc", (1, 1))  # older than the sources
+    make(sandbox, "results/mine.nc")
+    assert calls(sandbox) == ["-m study run studies/mine.toml"], "the digest decides, so run must be asked"
+    make(sandbox, "results/mine.nc")
+    assert calls(sandbox) == [], "and once is enough"
+
+
+def test_a_refused_run_and_clean_leave_the_results(sandbox):
+    result = sandbox / "results/mine.nc"
+    result.write_text("a night of computing")
+    os.utime(result, (1, 1))
+    (sandbox / ".venv/bin/python").write_text("#!/bin/sh\nexit 2\n")
+    assert make(sandbox, "results/mine.nc").returncode != 0
+    assert make(sandbox, "clean").returncode == 0
+    assert result.read_text() == "a night of computing"
+
+
+def test_old_python_is_refused_with_a_reason(sandbox):
+    (sandbox / ".venv/.ready").unlink()
+    found = make(sandbox, "setup", "PYTHON=false")
+    assert found.returncode != 0
+    assert "needs Python 3.11 or newer" in found.stdout
+
+
+def test_commands_of_the_readme_exist():
+    text = re.sub(r"```(?!sh).*?```", "", README, flags=re.DOTALL)
+    mentioned = set(re.findall(r"\bmake ([a-z0-9_]+)\b", "\n".join(re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL))))
+    assert mentioned and mentioned <= set(TARGETS)
+    commands = [line for block in blocks("sh") for line in block.splitlines() if "-m study" in line]
+    assert len(commands) >= 3
+    for command in commands:
+        parser().parse_args(command.split("-m study ")[1].split())
+    for path in re.findall(r"\]\((docs/[^)]+)\)|`(studies/(?!mine)[a-z_]+\.toml)`", README):
+        assert (ROOT / (path[0] or path[1])).exists(), path
+
+
+def test_study_of_the_readme_is_valid():
+    (text,) = blocks("toml")
+    definition = from_tables(tomllib.loads(text), "mine", text, "README.md")
+    assert dict(definition.grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}
+
+
+def test_python_of_the_readme_runs(results):
+    script = "\n".join(blocks("python"))
+    environment = os.environ | {"MPLBACKEND": "agg", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error::FutureWarning"}
+    command = [sys.executable, "-c", script]
+    ran = subprocess.run(command, cwd=results.parent, capture_output=True, text=True, env=environment, timeout=600)
+    assert ran.returncode == 0, ran.stderr
+    assert "frictionless" in ran.stdout
+    assert (results.parent / "coating.png").stat().st_size > 5000
+
+
+def test_the_readme_is_right_about_softness_and_thickness(results):
+    from study import open_results
+
+    contacts = open_results(results / "parameter_map.nc")
+    chosen = contacts.where(contacts.validity == 0).sel(Nbar=250000, Ra=0.002).sel(P=1e-5, method="nearest").p_max
+    assert (chosen.min("h") / chosen.max("h") > 0.8).all()
+    assert (chosen.min("n") / chosen.max("n") < 0.3).all()
+    fall = 1 - chosen.isel(h=-1) / chosen.isel(h=0)
+    assert (fall.sel(bonding="frictionless") < fall.sel(bonding="bonded")).all()
+
+
+def test_the_readme_is_right_about_the_main_case(results):
+    from study import open_results
+    from study.figures.sources import pick
+
+    main = open_results(results / "main_case.nc")
+    exact, thin = (pick(main, label=f"rough, {base}") for base in ("exact layer", "layered"))
+    for name, error in (("a", 0.092), ("p0", -0.045), ("D", 0.025)):
+        assert float(thin[name] / exact[name]) - 1 == pytest.approx(error, abs=6e-4)
+    assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in README
+
+
+def microseconds(text: str, head: str, row: str, columns: int) -> dict[float, float]:
+    """The last columns of one row of a table, by the error in its head."""
+    found = [re.search(rf"^\| {start}.*$", text, flags=re.MULTILINE)[0] for start in (head, row)]
+    errors, times = ([cell.strip() for cell in line.strip("|").split("|")[-columns:]] for line in found)
+    units = {"": 1.0, "µs": 1.0, "ms": 1e3}
+    split = [time.partition(" ") for time in times]
+    return {float(error): float(number) * units[unit] for error, (number, _, unit) in zip(errors, split, strict=True)}
+
+
+@pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
+def test_the_times_of_the_readme_are_those_of_tradeoff(ours, measured):
+    page = (ROOT / "docs/tradeoff.md").read_text(encoding="utf-8")
+    found = microseconds(README, "processor time", ours, 3)
+    known = microseconds(page, "set ", rf"{measured} \| newton, rtol", 5)
+    assert found == pytest.approx({error: known[error] for error in (1e-3, 1e-6, 1e-9)}, rel=0.3)
+
+
+def test_the_lock_pins_everything_and_names_no_machine():
+    pins = dict(re.findall(r"^([a-z0-9_.-]+)==(\S+)$", LOCK, flags=re.MULTILINE))
+    extras = PROJECT["project"]["optional-dependencies"]
+    wanted = [
+        *PROJECT["build-system"]["requires"],
+        *PROJECT["project"]["dependencies"],
+        *extras["cluster"],
+        *extras["test"],
+        *extras["lint"],
+    ]
+    for requirement in wanted:
+        assert re.match(r"[A-Za-z0-9_.-]+", requirement)[0].lower() in pins
+    lines = [line for line in LOCK.splitlines() if line and not line.lstrip().startswith("#")]
+    assert len(lines) == len(pins), "every line is a pin"
+    assert not re.search(r"://|@|^-|/", "\n".join(lines), flags=re.MULTILINE)
+
+
+def test_versions_agree():
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    assert f"version: {PROJECT['project']['version']}\n" in citation
+    assert "license: BSD-3-Clause" in citation and PROJECT["project"]["license"] == "BSD-3-Clause"
+    assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("BSD 3-Clause License")
+
+
+def test_ci_runs_the_tests_of_the_readme():
+    script = ROOT / ".ci/run"
+    assert os.access(script, os.X_OK)
+    assert script.read_text(encoding="utf-8").rstrip().endswith("make --no-print-directory test")

@@ -1,0 +1,251 @@
+"""More than one machine: the walk-through of docs/cluster.md, and workers and schedulers that die."""
+
+import os
+import random
+import re
+import shutil
+import signal
+import socket
+import subprocess
+import sys
+from concurrent.futures import Executor, Future
+from contextlib import contextmanager, suppress
+from dataclasses import replace
+from pathlib import Path
+from threading import Thread
+
+import pytest
+from children import PATIENCE, PROCESSES, held, holding, stored, wait_for
+from same import assert_same, assert_same_numbers
+from test_faults import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, undisturbed, written  # noqa: F401
+
+import study
+from study.work import run
+from study.work import workers as engines
+
+distributed = pytest.importorskip("distributed")
+ROOT = Path(__file__).resolve().parents[2]
+WALK = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8")
+ENVIRONMENT = os.environ | {
+    "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
+    "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")]),
+    "DASK_DISTRIBUTED__WORKER__DAEMON": "False",
+}
+
+
+class Cluster:
+    """A scheduler and workers, processes of this machine."""
+
+    def __init__(self, folder: Path):
+        self.folder = folder
+        self.log = (folder / "cluster.log").open("w")
+        self.file = folder / "scheduler.json"
+        self.processes = []
+        self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(self.file))
+
+    def start(self, *command: str, **environment: str) -> subprocess.Popen:
+        command = [sys.executable, "-m", "dask", *command, "--no-dashboard"]
+        environment = ENVIRONMENT | environment
+        self.processes.append(subprocess.Popen(command, env=environment, stdout=self.log, stderr=self.log))
+        return self.processes[-1]
+
+    def worker(self, first: int = CASES) -> subprocess.Popen:
+        """Start a worker that holds its blocks from case `first` on until folder/go is there."""
+        wait_for(self.known)
+        options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1", "--preload", str(ROOT / "tests" / "hold.py"))
+        return self.start("worker", "--scheduler-file", str(self.file), *options, **holding(self.folder, first))
+
+    def known(self) -> bool:
+        """Whether the scheduler has written its address: the file exists before."""
+        return self.file.exists() and self.file.stat().st_size > 0
+
+    @property
+    def address(self) -> str:
+        wait_for(self.known)
+        return re.search(r'"address": "(tcp://[^"]+)"', self.file.read_text())[1]
+
+    def stop(self) -> None:
+        for process in self.processes:
+            process.kill()
+            process.wait()
+        self.log.close()
+
+
+@pytest.fixture
+def cluster(tmp_path):
+    found = Cluster(tmp_path)
+    yield found
+    found.stop()
+
+
+def run_on(address: str, file: Path, results: Path, answers) -> None:
+    """In a process of its own: run the study on the cluster, answer with the exit code and what was said."""
+    import contextlib
+    import io
+
+    from study.__main__ import main
+
+    engines.CONNECT = PATIENCE
+    with contextlib.redirect_stderr(io.StringIO()) as errors:
+        code = main(["run", str(file), "--results", str(results), "--scheduler", address])
+    answers.put((code, errors.getvalue()))
+
+
+def started(cluster: Cluster, opened: study.Study, tmp_path: Path):
+    """A run on the cluster in a process of its own, and the queue of its answer."""
+    answers = PROCESSES.Queue()
+    arguments = (cluster.address, tmp_path / "line.toml", opened.results, answers)
+    process = PROCESSES.Process(target=run_on, args=arguments)
+    process.start()
+    return process, answers
+
+
+@pytest.mark.skipif(not shutil.which("openssl"), reason="openssl makes the certificate")
+def test_walk_through_of_the_documentation(tmp_path):
+    walk, tunnel, slurm = re.findall(r"```sh\n(.*?)```", WALK, flags=re.DOTALL)
+    script = "set -eu\nexport PYTHONPATH\n" + walk + 'echo "at $address"\n'
+    ran = subprocess.run(
+        ["sh", "-c", script], cwd=tmp_path, env=ENVIRONMENT, capture_output=True, text=True, timeout=PATIENCE
+    )
+    assert ran.returncode == 0, ran.stderr
+    assert (tmp_path / "key.pem").stat().st_mode & 0o077 == 0, "the key is its owner's"
+    assert "\nat tls://127.0.0.1:" in ran.stdout
+    assert "results/walk.nc: 600 cases, 600 computed now" in ran.stdout and "converged: 600" in ran.stdout
+    opened = study.load(tmp_path / "walk.toml", tmp_path / "results")
+    here = study.Study(opened.definition, tmp_path / "here")
+    here.run()
+    assert_same(opened.open(), here.open())
+    for script in (tunnel, slurm):
+        assert subprocess.run(["sh", "-n"], input=script, text=True, check=False).returncode == 0
+
+
+def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):  # noqa: F811
+    opened = written(tmp_path)
+    workers = [cluster.worker(50), cluster.worker(50)]
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: len(held(tmp_path)) == 2)
+    workers[0].send_signal(signal.SIGKILL)
+    (tmp_path / "go").touch()
+    process.join(PATIENCE)
+    code, errors = answers.get(timeout=PATIENCE)
+    assert code == 0, errors
+    assert_ends_well(opened, undisturbed, 0)
+
+
+def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):  # noqa: F811
+    opened = written(tmp_path)
+    cluster.worker(3 * BLOCK)
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: stored(tmp_path) == 3)
+    cluster.processes[0].kill()
+    process.join(PATIENCE)
+    code, errors = answers.get(timeout=PATIENCE)
+    assert code == 1
+    said = "line.toml: the scheduler is gone; finished blocks are kept, the same command goes on from there\n"
+    assert errors.endswith(said)
+    assert cases_on_disk(opened) == set(range(3 * BLOCK))
+    assert_ends_well(opened, undisturbed, CASES - 3 * BLOCK)
+
+
+@contextmanager
+def listening(first_words: bytes):
+    """The address of somebody who says something else than a scheduler to each who calls, or nothing."""
+
+    def answer():
+        with suppress(OSError):  # the server has been closed
+            while True:
+                calls.append(server.accept()[0])
+                calls[-1].sendall(first_words)
+
+    calls, server = [], socket.create_server(("127.0.0.1", 0))
+    thread = Thread(target=answer)
+    thread.start()
+    yield f"127.0.0.1:{server.getsockname()[1]}"
+    server.shutdown(socket.SHUT_RDWR)
+    thread.join()
+    for each in (server, *calls):
+        each.close()
+
+
+def refused(opened, address: str) -> str:
+    """Why a scheduler is refused, in one line, with nothing computed."""
+    with pytest.raises(study.StudyError) as caught:
+        opened.run(scheduler=address)
+    (message,) = caught.value.messages
+    assert message.startswith(f"--scheduler {address}: ") and "\n" not in message
+    assert cases_on_disk(opened) == set()
+    return message.removeprefix(f"--scheduler {address}: ")
+
+
+@pytest.mark.parametrize("scheme", ["tcp://", ""])
+@pytest.mark.parametrize(
+    ("words", "why"), [(b"SSH-2.0-OpenSSH_9\r\n", "something else listens there"), (b"", "it says nothing")]
+)
+def test_a_port_that_is_not_dask(tmp_path, monkeypatch, words, why, scheme):
+    monkeypatch.setattr(engines, "CONNECT", 0.5)
+    opened = written(tmp_path)
+    with listening(words) as address:
+        assert f"no scheduler answers there ({why}" in refused(opened, scheme + address)
+
+
+@pytest.mark.parametrize(
+    ("address", "why"),
+    [
+        ("tcp://127.0.0.1:1", "no scheduler answers there (Timed out"),
+        ("tcp://nowhere.invalid:8786", "no scheduler answers there (nowhere.invalid: "),
+        ("tls://127.0.0.1:1", "no scheduler answers there (TLS needs certificates, "),
+        ("nonsense", "must be the address of a dask scheduler"),
+        ("", "must be the address of a dask scheduler"),
+    ],
+)
+def test_a_scheduler_that_is_not_there(tmp_path, address, why, monkeypatch, undisturbed):  # noqa: F811
+    monkeypatch.setattr(engines, "CONNECT", 0.5)
+    opened = written(tmp_path)
+    assert why in refused(opened, address)
+    assert_ends_well(opened, undisturbed, CASES)
+
+
+def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):  # noqa: F811
+    """Blocks of random size, axes in another order; the second worker comes while the run is on."""
+    cluster.worker(60)
+    text = TEXT.replace("[0.001, 0.002, 0.003]", "[0.003, 0.001, 0.002]")
+    opened = written(tmp_path, text.replace(f"block = {BLOCK}", f"block = {random.randint(3, 60)}"))
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: held(tmp_path))
+    cluster.worker()
+    with distributed.Client(cluster.address, set_as_default=False) as client:
+        client.wait_for_workers(2, timeout=PATIENCE)
+    (tmp_path / "go").touch()
+    process.join(PATIENCE)
+    assert answers.get(timeout=PATIENCE)[0] == 0
+    assert_same_numbers(opened.open().sel(h=undisturbed.h), undisturbed)
+
+
+def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):  # noqa: F811
+    cluster.worker()
+    opened = written(tmp_path)
+    real = run.parcel
+
+    def parcel(definition, index):
+        found = real(definition, index)
+        return found if found.first != 50 else replace(found, numerics="another")
+
+    monkeypatch.setattr(run, "parcel", parcel)
+    report = opened.run(scheduler=cluster.address)
+    monkeypatch.undo()
+    ((_, reason),) = report.failures.items()
+    assert reason.startswith("cases 50 to 54: RuntimeError: the worker has version")
+    assert report.computed == CASES - BLOCK
+    assert_ends_well(opened, undisturbed, BLOCK)
+
+
+def test_blocks_that_a_lost_scheduler_has_cancelled_are_not_failures():
+    class Gone(Executor):
+        def submit(self, *_):
+            future = Future()
+            future.cancel()
+            future.set_running_or_notify_cancel()
+            return future
+
+    with pytest.raises(engines.Lost, match="the scheduler is gone"):
+        list(engines.as_they_come(engines.Engine(Gone(), lambda: 2), len, ["", ""]))

@@ -1,0 +1,272 @@
+"""Whatever happens to a run, what is on disk is kept, and the next run ends in the dataset of an undisturbed one."""
+
+import errno
+import io
+import os
+import random
+import resource
+import signal
+import stat
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from children import PATIENCE, child, computed_in, lines, wait_for
+from line_study import present, store_block
+from same import assert_same
+
+import study
+from study.__main__ import main
+from study.store import block_file, writer
+from study.store.block_file import read_block
+from study.work import progress
+
+pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals and limits")
+
+CASES, BLOCK = 300, 5
+IN_FLIGHT = 4 * 2 * BLOCK  # cases submitted and not stored, for two workers
+TEXT = f"""
+[model]
+micro = "smooth"
+n = 0.5
+base = "thin_layer"
+[axes]
+h = [0.001, 0.002, 0.003]
+P = {{start = 1e-6, stop = 1e-4, num = {CASES // 3}}}
+[numerics]
+block = {BLOCK}
+[output]
+x = 3
+"""
+
+
+@pytest.fixture(scope="module")
+def undisturbed(tmp_path_factory) -> xr.Dataset:
+    folder = tmp_path_factory.mktemp("undisturbed")
+    opened = written(folder)
+    opened.run()
+    return opened.open()
+
+
+@pytest.fixture
+def opened(tmp_path) -> study.Study:
+    return written(tmp_path)
+
+
+def written(folder: Path, text: str = TEXT) -> study.Study:
+    (folder / "line.toml").write_text(text, encoding="utf-8")
+    return study.load(folder / "line.toml", folder / "results")
+
+
+def assert_ends_well(opened: study.Study, undisturbed: xr.Dataset, computed: int | None = None, kept=()) -> None:
+    """The next run computes so many cases, gives the dataset of an undisturbed run and leaves nothing but the blocks
+    that are to be `kept`: what is in them is not in the results."""
+    report = opened.run(workers=2)
+    assert report.complete and (computed is None or report.computed == computed)
+    assert_same(opened.open(), undisturbed)
+    blocks = [f".line.blocks/{name}" for name in ("lock", *(path.name for path in kept))] if kept else []
+    assert sorted(
+        path.relative_to(opened.results).as_posix() for path in opened.results.rglob("*") if path.is_file()
+    ) == (sorted([*blocks, "line.nc"]))
+    assert bool(report.kept) == bool(kept)
+
+
+def cases_on_disk(opened: study.Study) -> set[int]:
+    return set(np.flatnonzero(opened.open(partial=True).status.values.ravel() != 127).tolist())
+
+
+def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
+    """From before the first block to when so many have been begun that some must have been stored."""
+    file, before = tmp_path / "line.toml", set()
+    for attempt, begun in enumerate(random.sample((0, 0, 1, 1, 2, 3, 4, 6, 9, 12), 10)):
+        log = tmp_path / f"log{attempt}"
+        process = child(file, log, workers=2)
+        wait_for(lambda: len(computed_in(log)) >= begun * BLOCK or not process.is_alive())  # noqa: B023
+        process.join(random.uniform(0, 0.02))
+        process.kill()
+        process.join()
+        after, computed = cases_on_disk(opened), computed_in(log)
+        assert before <= after, "nothing that was on disk is lost"
+        assert not before & set(computed) and len(set(computed)) == len(computed), "nothing is computed twice"
+        assert len(set(computed) - after) <= IN_FLIGHT, "a kill costs the blocks in flight"
+        before = after
+    assert before, "of twelve begun blocks at most eight are in flight"
+    assert_ends_well(opened, undisturbed, CASES - len(before))
+
+
+@pytest.mark.parametrize("at", ["run._finish", "join.create", "run.tidy"])
+def test_killed_while_the_results_are_written(opened, undisturbed, tmp_path, at):
+    process = child(tmp_path / "line.toml", tmp_path / "log", at=at, workers=2)
+    process.join(PATIENCE)
+    assert process.exitcode == -signal.SIGKILL
+    assert_ends_well(opened, undisturbed, 0)
+
+
+def spoil(path: Path, how: str) -> None:
+    """Damage a file."""
+    data = bytearray(path.read_bytes())
+    if how == "bit flipped":
+        place = random.randrange(len(data))
+        data[place] ^= 1 << random.randrange(8)
+    path.write_bytes({"truncated": data[:-100], "emptied": b"", "bit flipped": data}[how])
+
+
+@pytest.mark.parametrize("how", ["truncated", "emptied", *["bit flipped"] * 5])
+def test_a_damaged_block_is_computed_again(opened, undisturbed, caplog, how):
+    paths = [store_block(opened, start, start + BLOCK) for start in range(0, CASES, 50)]
+    spoil(paths[3], how)
+    assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK)
+    assert f"{paths[3]}: is no whole block; the same command computes its cases again" in caplog.text
+
+
+def test_a_block_damaged_after_the_inventory_stops_the_results(opened, undisturbed, monkeypatch):
+    real = writer.gather
+
+    def gather(store, known, start, stop):
+        spoil(known.files[7], "bit flipped")
+        return real(store, known, start, stop)
+
+    monkeypatch.setattr(writer, "gather", gather)
+    with pytest.raises(block_file.Damaged, match="is no whole block; the same command computes its cases again"):
+        opened.run()
+    monkeypatch.undo()
+    assert_ends_well(opened, undisturbed, BLOCK)
+
+
+def test_a_block_of_another_study_is_not_taken_for_one_of_this(opened, undisturbed, tmp_path):
+    paths = [store_block(opened, start, start + BLOCK) for start in range(0, CASES, 50)]
+    (tmp_path / "other").mkdir()
+    other = written(tmp_path / "other", TEXT.replace("n = 0.5", "n = 0.6"))
+    paths[0].write_bytes(store_block(other, 0, BLOCK).read_bytes())
+    assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK, kept=paths[:1])
+
+
+def test_nothing_executable_is_read(opened, undisturbed, tmp_path):
+    """A block with a right checksum and columns of Python objects is refused like a damaged one."""
+    path = store_block(opened, 0, BLOCK)
+    data = path.read_bytes()[: -block_file.CHECK].replace(b'"<f8"', b'"|O"', 1)
+    path.write_bytes(data + block_file.checksum_of(data))
+    with pytest.raises(block_file.Damaged):
+        read_block(path)
+    assert_ends_well(opened, undisturbed, CASES)
+
+
+def full_disk(limit: int):
+    """No file may grow beyond `limit` bytes in this process: a write fails, as on a full disk, even for root."""
+    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, most))
+
+
+@pytest.mark.parametrize(("limit", "kept"), [(500, 0), (8000, CASES)], ids=["of a block", "of the results"])
+def test_full_disk(opened, undisturbed, capsys, tmp_path, limit, kept):
+    command = ["run", str(tmp_path / "line.toml"), "--results", str(opened.results), "--workers", "1"]
+    try:
+        full_disk(limit)
+        code = main(command)
+    finally:
+        full_disk(resource.RLIM_INFINITY)
+    assert code == 1
+    errors = capsys.readouterr().err.splitlines()
+    assert len([line for line in errors if "cases" not in line]) == 1, errors
+    assert "File too large" in errors[-1] or "is the disk full?" in errors[-1]
+    assert present(opened) == kept
+    assert not list(opened.results.rglob("*.tmp"))
+    assert_ends_well(opened, undisturbed, CASES - kept)
+
+
+def test_disk_full_half_way(opened, undisturbed, monkeypatch):
+    flushed, real = [], os.fsync
+
+    def fsync(file):
+        flushed.extend([file] * stat.S_ISREG(os.fstat(file).st_mode))
+        if len(flushed) > 3:
+            raise OSError(errno.ENOSPC, "No space left on device")
+        real(file)
+
+    monkeypatch.setattr(os, "fsync", fsync)
+    with pytest.raises(OSError, match="No space left on device"):
+        opened.run(workers=2)
+    monkeypatch.undo()
+    assert present(opened) == 3 * BLOCK
+    assert_ends_well(opened, undisturbed, CASES - 3 * BLOCK)
+
+
+@pytest.mark.skipif(not Path("/proc/self").exists(), reason="a folder where nobody may write")
+def test_read_only_folder(opened, undisturbed, capsys, tmp_path):
+    assert main(["run", str(tmp_path / "line.toml"), "--results", "/proc/self/results"]) == 1
+    assert capsys.readouterr().err == "/proc/self/results: cannot be written: No such file or directory\n"
+    assert_ends_well(opened, undisturbed, CASES)
+
+
+def test_folder_becomes_read_only(opened, undisturbed, tmp_path, capsys, monkeypatch):
+    store_block(opened, 0, BLOCK)
+
+    def replace(*_):
+        raise OSError(errno.EROFS, "Read-only file system")
+
+    monkeypatch.setattr(os, "replace", replace)
+    assert main(["run", str(tmp_path / "line.toml"), "--results", str(opened.results), "--workers", "1"]) == 1
+    assert "Read-only file system" in capsys.readouterr().err
+    monkeypatch.undo()
+    assert_ends_well(opened, undisturbed, CASES - BLOCK)
+
+
+@pytest.mark.parametrize("locks", [True, False])
+def test_two_runs_at_once(opened, undisturbed, tmp_path, locks):
+    logs = [tmp_path / "one", tmp_path / "two"]
+    runs = [child(tmp_path / "line.toml", log, locks=locks, workers=2) for log in logs]
+    for process in runs:
+        process.join(PATIENCE)
+    assert [process.exitcode for process in runs] == [0, 0]
+    computed = [case for log in logs for case in computed_in(log)]
+    assert set(computed) == set(range(CASES))
+    if locks:
+        assert len(computed) == CASES
+        ends = sorted(lines(log)[-1] for log in logs)
+        assert ends == ["ended", "nothing to do"], "the second waits and finds all done"
+    assert_ends_well(opened, undisturbed, 0)
+
+
+def test_parts_at_once(opened, undisturbed, tmp_path):
+    logs = [tmp_path / f"part{i}" for i in range(3)]
+    runs = [child(tmp_path / "line.toml", log, part=(i + 1, 3), workers=1) for i, log in enumerate(logs)]
+    for process in runs:
+        process.join(PATIENCE)
+    assert [process.exitcode for process in runs] == [0, 0, 0]
+    assert sorted(case for log in logs for case in computed_in(log)) == list(range(CASES))
+    assert opened.status()["state"] == "done", "the last one has written the results"
+    assert_ends_well(opened, undisturbed, 0)
+
+
+def test_a_lazy_reader_keeps_its_file_while_it_is_replaced(opened, undisturbed, monkeypatch, tmp_path):
+    monkeypatch.setattr(study.api, "LAZY", 0)
+    opened.run()
+    reader = opened.open()
+    assert reader.p.chunks
+    written(tmp_path, TEXT.replace("num = 100", "num = 2")).run(force=True)
+    assert_same(reader.load(), undisturbed)
+
+
+def test_a_clock_that_jumps(opened, undisturbed, monkeypatch, tmp_path):
+    path = store_block(opened, 0, BLOCK)
+    os.utime(path, (2e9, 2e9))
+    later = store_block(opened, BLOCK, 2 * BLOCK)
+    os.utime(later, (1, 1))
+    random_time = random.Random(1)
+    monkeypatch.setattr(time, "time", lambda: random_time.uniform(0, 4e9))
+    monkeypatch.setattr(progress, "EVERY", float("inf"))
+    shown = io.StringIO()
+    opened.run(workers=2, stream=shown)
+    assert shown.getvalue().startswith(f"line: {CASES} of {CASES} cases, 0 failed, ") and "-" not in shown.getvalue()
+    monkeypatch.undo()
+    assert_ends_well(opened, undisturbed, 0)
+
+
+@pytest.mark.parametrize("name", ["..", ".hidden", "a b", "-x", "ü"])
+def test_names_that_would_be_trouble_in_the_results_folder_are_refused(tmp_path, name, capsys):
+    (tmp_path / f"{name}.toml").write_text(TEXT, encoding="utf-8")
+    assert main(["run", str(tmp_path / f"{name}.toml"), "--results", str(tmp_path / "results")]) == 2
+    assert "a study file is called NAME.toml, NAME of letters, digits" in capsys.readouterr().err
+    assert [path.name for path in tmp_path.iterdir()] == [f"{name}.toml"]

@@ -117,6 +117,7 @@ def test_a_file_of_ones_own(mine):
         ("nu = 0.3", "nu = 0.51", "nu = 0.51: must be a number above -1 and at most 0.5"),
         ("nu = 0.3", "nu = -1", "nu = -1: must be a number above -1 and at most 0.5"),
         ("nu = 0.3", "nu = [0.3]", "nu = [0.3]: must be a number above -1 and at most 0.5"),
+        ("nu = 0.3", "nu = false", "nu = False: must be a number above -1 and at most 0.5"),
         ("5e9", "5", "E_spread = 5: must be 0 or a number of Pa from 1e-06 E to E (5 GPa is 5e9)"),
         ("5e9", "-5e9", "E_spread = -5e+09: must be 0 or"),
         ("5e9", "210e9", "E_spread = 2.1e+11: must be 0 or"),

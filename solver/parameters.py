@@ -5,13 +5,15 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .body.springs import BONDINGS
-from .laws.micro import MICROS
-
+BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto")
 SCHEMES = ("newton", "picard")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
+
+
+#: The condition of what every case needs.
+EVERY = ("", ())
 
 
 class Parameter(NamedTuple):
@@ -31,13 +33,11 @@ class Parameter(NamedTuple):
     whole: bool = False
     interval: str = ""
     also: tuple = ()
-    needed_by: tuple[str, tuple[str, ...]] = ("", ())
+    needed_by: tuple[str, tuple[str, ...]] = EVERY
 
 
-#: The cases that have a layer, asperities, a fitted law of them.
+#: The cases that have a layer.
 LAYERED = ("base", ("thin_layer", "layered", "auto"))
-ROUGH = ("micro", ("disc_cell", "power_law"))
-FITTED = ("micro", ("power_law",))
 
 #: What may be given; a case has one of them.
 CONTROL = {
@@ -46,21 +46,18 @@ CONTROL = {
     "D": Parameter(interval="[1e-18, 1e3]"),
 }
 
-#: In the order of the fields of :class:`~solver.problem.Problem`, where units are said.
+#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`. Units are
+#: said in :class:`~solver.problem.Problem`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
     "n": Parameter(interval="[1e-9, 1e9]", needed_by=LAYERED),
     "nu1": Parameter(0.3, interval="(-1, 0.5]"),
     "nu2": Parameter(0.3, interval="(-1, 0.5]"),
     "bonding": Parameter("frictionless", BONDINGS),
-    "Nbar": Parameter(interval="[1e-4, 1e18]", needed_by=ROUGH),
-    "Ra": Parameter(interval="[1e-7, 1e2]", needed_by=ROUGH),
     "base": Parameter("layered", BASES),
     "accuracy": Parameter(1e-2, interval="(0, 1)"),
     "model_check": Parameter("closed_form", MODEL_CHECKS),
-    "micro": Parameter("disc_cell", MICROS),
-    "B": Parameter(interval="[1e-8, 1e4]", needed_by=FITTED),
-    "beta": Parameter(interval="[0.01, 1]", needed_by=FITTED),
+    "micro": Parameter("disc_cell"),
     "scheme": Parameter("newton", SCHEMES),
     "k": Parameter(1.0, interval="[0, 1e6]"),
     "rtol": Parameter(1e-6, interval="[1e-15, 1)"),

@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from .laws import LAWS
 from .parameters import CONTROL, LOOKED_AT_BY, PARAMETERS, Parameter, allowed
 
 
@@ -131,9 +132,13 @@ class Problem:
         others = [word for word in PARAMETERS[name].choices if word not in words]
         return np.all([getattr(self, name) != word for word in others], axis=0)
 
+    def rough(self):
+        """(B,) bool: the case has asperities."""
+        return np.all([self.micro != name for name, law in LAWS.items() if not law.rough], axis=0)
+
     def without_scheme(self):
         """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""
-        return (self.scheme == "picard") & (self.micro == "smooth")
+        return (self.scheme == "picard") & ~self.rough()
 
     def invalid(self):
         """(B,) bool: a number that the case needs is not finite or outside its bounds, those of a problem in units R =

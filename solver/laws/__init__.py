@@ -3,11 +3,13 @@
 import re
 from functools import cache
 
+import numpy as np
+
 from ..parameters import CONTROL, PARAMETERS
 from . import disc_cell, power_law, smooth
 from .law import Bound, Curve, Law, Spots
 
-__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "load", "named", "register"]
+__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "named", "register"]
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
@@ -36,7 +38,7 @@ def register(law):
 
 
 def _declare(laws):
-    """Put the parameters of `laws` (name -> Law) into the table, their names into the choices of `micro`. Returns them."""
+    """Put the parameters of `laws` (name -> Law) into the table, and the names to the choices of `micro`; `laws`."""
     declared = {}
     for law in laws.values():
         for name, own in law.parameters.items():
@@ -75,6 +77,11 @@ def named(given):
     if isinstance(given, (list, tuple)):
         return [named(one) for one in given]
     return register(given).name if isinstance(given, Law) else given
+
+
+def known(parameters, micro):
+    """Whether all `parameters` (names) and all words of `micro` (one, or an array) are known without :func:`load`."""
+    return set(parameters) <= set(PARAMETERS) and set(np.ravel(micro).tolist()) <= set(LAWS)
 
 
 def identity(name):

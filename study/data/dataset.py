@@ -17,6 +17,7 @@ from solver import NUMERICS_VERSION, Model, Status
 
 from ..spec.definition import Definition
 from ..spec.grid import unflatten
+from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
 from .derived import validity
 
@@ -112,7 +113,7 @@ def provenance(definition: Definition, command: str) -> dict:
         "cpu": cpu(),
         "blas": blas(),
         "created": created,
-    }
+    } | ({"micro_laws": "\n".join(found)} if (found := law_versions(definition.grid)) else {})
 
 
 def command_line() -> str:

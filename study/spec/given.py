@@ -1,13 +1,15 @@
 """A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
 
 import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 
 import numpy as np
 
 from .grid import Grid, as_array, axis_values, shown, twins
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
+from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, is_parameter, law_names, learn, smooth_laws, suggest
 
 MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
@@ -17,13 +19,21 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x be
 class Draft:
     """Collects parameters; `finish` makes the Grid. `known`: the names allowed; `errors`: messages, no file name."""
 
-    known: tuple[str, ...] = PARAMETERS
+    known: Sequence[str] = field(default_factory=lambda: PARAMETERS)
     errors: list[str] = field(default_factory=list)
     sizes: dict[str, int] = field(default_factory=dict)
     values: dict = field(default_factory=dict)
     labels: dict = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
     claims: list = field(default_factory=list)
+
+    def __post_init__(self):
+        learn()
+
+    def laws(self, given: list) -> None:
+        """Make micro laws that are given as objects known before their parameters come; `micro` tells what is wrong."""
+        with suppress(ValueError):
+            law_names([law for one in given for law in (one if isinstance(one, list) else [one])])
 
     def scalar(self, name: str, raw, section: str) -> None:
         """One value for all cases."""
@@ -95,7 +105,7 @@ class Draft:
 
     def finish(self) -> Grid:
         """Fill in the defaults and check what concerns several parameters."""
-        if self.known == PARAMETERS:
+        if self.known is PARAMETERS:
             self._one_control()
         self._dimensions()
         for name in self.known:
@@ -110,7 +120,7 @@ class Draft:
     def _accept(self, name: str, section: str) -> bool:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
-        if name not in self.known:
+        if name not in self.known and not (self.known is PARAMETERS and is_parameter(name)):
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{self._near(name)}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
@@ -168,7 +178,7 @@ class Draft:
             )
 
 
-def missing_parameters(grid: Grid, known: tuple[str, ...]) -> list[str]:
+def missing_parameters(grid: Grid, known: Sequence[str]) -> list[str]:
     """Messages for parameters that some case needs and does not have."""
     messages = []
     for name in known:
@@ -176,7 +186,7 @@ def missing_parameters(grid: Grid, known: tuple[str, ...]) -> list[str]:
         gaps = np.isnan(array) if array.dtype.kind == "f" else np.zeros(array.shape, dtype=bool)
         selector, needing = VOCABULARY[name].needed_by
         reason = ""
-        if name in CONTROLS or known != PARAMETERS:  # needed by every case
+        if name in CONTROLS or known is not PARAMETERS:  # needed by every case
             gaps = gaps & (name in grid.values or name not in CONTROLS)
         elif selector:
             chosen_dims, chosen = grid.values[selector]
@@ -198,8 +208,11 @@ def lost_scheme(grid: Grid) -> list[str]:
     if "scheme" not in grid.values:  # a micro law
         return []
     (scheme_dims, scheme), (micro_dims, micro) = grid.values["scheme"], grid.values["micro"]
-    asked, rough = scheme == "picard", micro != "smooth"
+    smooth = smooth_laws()
+    asked, rough = scheme == "picard", ~np.isin(micro, smooth)
     served = (asked & rough).any() if scheme_dims == micro_dims else asked.any() and rough.any()
     if served or not asked.any():
         return []
-    return ['scheme = "picard" has no case to solve: micro must be "disc_cell" or "power_law" there, not "smooth"']
+    others = " or ".join(shown(name) for name in VOCABULARY["micro"].choices if name not in smooth)
+    names = " or ".join(map(shown, smooth))
+    return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']

@@ -3,12 +3,13 @@
 import difflib
 import math
 import numbers
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
+from solver import laws
 from solver.parameters import CONTROL, ends
 from solver.parameters import PARAMETERS as BESIDE_IT
 
-OF_THE_SOLVER = CONTROL | BESIDE_IT
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers, and as what they are kept."""
 NOT_RUN = 127
@@ -16,6 +17,8 @@ NOT_RUN = 127
 
 MICRON, PRESSURE = ("um", 1e-6), ("MPa", 1e6)
 FORCE, STIFFNESS, DENSITY = ("N", 1.0), ("N m-1", 1.0), ("mm-2", 1e6)
+UNITS = {(0, 0): ("1", 1.0), (0, 1): MICRON, (0, -2): DENSITY, (1, 0): PRESSURE}
+"""Units of the parameters of registered laws, by their powers of E2* and R; of others SI."""
 
 
 @dataclass(frozen=True)
@@ -118,10 +121,11 @@ _ENTRIES = (
 
 def _completed(entry: Entry) -> Entry:
     """With what the solver knows of a parameter."""
-    if entry.name not in OF_THE_SOLVER:
+    known = CONTROL.get(entry.name) or BESIDE_IT.get(entry.name)
+    if not known:
         return entry
-    known = OF_THE_SOLVER[entry.name]
-    return replace(entry, **known._asdict() | {"interval": entry.interval or known.interval})
+    told = known._asdict() | {"interval": entry.interval or known.interval}
+    return replace(entry, **{name: told[name] for name in told if name not in ("powers", "symbol", "long_name")})
 
 
 VOCABULARY = {entry.name: _completed(entry) for entry in _ENTRIES}
@@ -134,8 +138,52 @@ def names(*roles: str) -> tuple[str, ...]:
 
 CONTROLS = names("control")
 NUMERICS = names("numerics")
-PARAMETERS = names("control", "material", "roughness", "numerics")
+PARAMETERS = list(names("control", "material", "roughness", "numerics"))
+"""Names of parameters; :func:`learn` adds those of registered laws here and to VOCABULARY."""
 MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
+
+
+def learn() -> None:
+    """Take up the micro laws that have been registered since the last time: their names and their parameters."""
+    if VOCABULARY["micro"].choices is BESIDE_IT["micro"].choices:
+        return
+    known = [entry.name for entry in _ENTRIES]
+    for name in set(VOCABULARY) - set(known):
+        del VOCABULARY[name]
+    PARAMETERS[:] = names("control", "material", "roughness", "numerics")
+    for name in [name for law in laws.LAWS.values() for name in law.parameters if name not in PARAMETERS]:
+        own = BESIDE_IT[name]
+        if name in known:
+            raise ValueError(f"the parameter {name} of a micro law is called like a result")
+        unit = UNITS.get(own.powers, ("Pa{} m{}".format(*own.powers), 1.0))
+        words = own.symbol or name, own.long_name or f"parameter of the micro law {' and '.join(own.needed_by[1])}"
+        VOCABULARY[name] = _completed(Entry(name, *words, "roughness", own.powers, unit))
+        PARAMETERS.append(name)
+    VOCABULARY["micro"] = _completed(VOCABULARY["micro"])
+
+
+def law_names(given: list) -> list:
+    """What stands for `micro`, with names in place of laws given as objects, which become known by them; and a law that
+    is not known is looked for among those of installed packages. Raises ValueError for a law that cannot be used."""
+    found = laws.named(given)
+    if not laws.known((), [word for word in found if isinstance(word, str)]):
+        laws.load()
+    learn()
+    return found
+
+
+def is_parameter(name: str) -> bool:
+    """Whether a name is that of a parameter, if need be of a law of an installed package."""
+    if name not in PARAMETERS:
+        with suppress(ValueError):  # one that cannot be loaded is told of where `micro` names it
+            laws.load()
+        learn()
+    return name in PARAMETERS
+
+
+def smooth_laws() -> list[str]:
+    """Names of the laws without asperities."""
+    return [name for name, law in laws.LAWS.items() if not law.rough]
 
 
 def attributes(name: str) -> dict:

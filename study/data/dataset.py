@@ -59,7 +59,8 @@ def assembled(
         for name, flat in arrays.items()
         if name not in grid.values
     }
-    return plainly_written(xr.Dataset(variables, coordinates, provenance(definition, command)))
+    told = {"micro_laws": "\n".join(found)} if (found := law_versions(grid)) else {}
+    return plainly_written(xr.Dataset(variables, coordinates, provenance(definition, command) | told))
 
 
 def plainly_written(dataset: xr.Dataset) -> xr.Dataset:
@@ -113,7 +114,7 @@ def provenance(definition: Definition, command: str) -> dict:
         "cpu": cpu(),
         "blas": blas(),
         "created": created,
-    } | ({"micro_laws": "\n".join(found)} if (found := law_versions(definition.grid)) else {})
+    }
 
 
 def command_line() -> str:

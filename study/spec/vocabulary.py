@@ -129,6 +129,7 @@ def _completed(entry: Entry) -> Entry:
 
 
 VOCABULARY = {entry.name: _completed(entry) for entry in _ENTRIES}
+laws.RESERVED.update(set(VOCABULARY) - set(BESIDE_IT))
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -147,14 +148,11 @@ def learn() -> None:
     """Take up the micro laws that have been registered since the last time: their names and their parameters."""
     if VOCABULARY["micro"].choices is BESIDE_IT["micro"].choices:
         return
-    known = [entry.name for entry in _ENTRIES]
-    for name in set(VOCABULARY) - set(known):
+    for name in set(VOCABULARY) - {entry.name for entry in _ENTRIES}:
         del VOCABULARY[name]
     PARAMETERS[:] = names("control", "material", "roughness", "numerics")
     for name in [name for law in laws.LAWS.values() for name in law.parameters if name not in PARAMETERS]:
         own = BESIDE_IT[name]
-        if name in known:
-            raise ValueError(f"the parameter {name} of a micro law is called like a result")
         unit = UNITS.get(own.powers, ("Pa{} m{}".format(*own.powers), 1.0))
         words = own.symbol or name, own.long_name or f"parameter of the micro law {' and '.join(own.needed_by[1])}"
         VOCABULARY[name] = _completed(Entry(name, *words, "roughness", own.powers, unit))

@@ -167,7 +167,7 @@ def table(options) -> int:
 
 
 def tradeoff(options) -> int:
-    from .data.dataset import command_line
+    from .data.provenance import command_line
     from .evidence.tradeoff import results
     from .evidence.tradeoff_page import page
     from .figures.sources import write_text

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .data.dataset import command_line, labelled
+from .data.dataset import labelled
+from .data.provenance import command_line
 from .files.examine import Condition
 from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results

@@ -5,16 +5,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .body.springs import BONDINGS
-from .laws.micro import MICROS
-
+BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto")
 SCHEMES = ("newton", "picard")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
 
 
-#: No other parameter decides.
+#: The condition of what every case needs.
 EVERY = ("", ())
 
 
@@ -41,11 +39,9 @@ class Parameter(NamedTuple):
     used_by: tuple[str, tuple[str, ...]] = EVERY
 
 
-#: The cases that have a layer, a bonded layer, asperities, a fitted law of them.
+#: The cases that have a layer, and a bonded layer.
 LAYERED = ("base", ("thin_layer", "layered", "auto"))
 BONDED = ("bonding", ("bonded",))
-ROUGH = ("micro", ("disc_cell", "power_law"))
-FITTED = ("micro", ("power_law",))
 
 #: What may be given; a case has one of them.
 CONTROL = {
@@ -54,22 +50,19 @@ CONTROL = {
     "D": Parameter(interval="[1e-18, 1e3]"),
 }
 
-#: In the order of the fields of :class:`~solver.problem.Problem`, where units are said. Keys of cases leave defaults
-#: out (study/store/keys.py): whoever changes a default changes `NUMERICS_VERSION`.
+#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`. Units are
+#: said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out (study/store/keys.py): whoever changes a
+#: default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
     "n": Parameter(interval="[1e-9, 1e9]", needed_by=LAYERED),
     "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
     "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
     "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
-    "Nbar": Parameter(interval="[1e-4, 1e18]", needed_by=ROUGH),
-    "Ra": Parameter(interval="[1e-7, 1e2]", needed_by=ROUGH),
     "base": Parameter("layered", BASES),
     "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
     "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
-    "micro": Parameter("disc_cell", MICROS),
-    "B": Parameter(interval="[1e-8, 1e4]", needed_by=FITTED),
-    "beta": Parameter(interval="[0.01, 1]", needed_by=FITTED),
+    "micro": Parameter("disc_cell"),
     "scheme": Parameter("newton", SCHEMES),
     "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
     "rtol": Parameter(1e-6, interval="[1e-15, 1)"),

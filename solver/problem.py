@@ -4,6 +4,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
+from .laws import LAWS
 from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
 
 
@@ -126,9 +127,13 @@ class Problem:
         """The sub-batch at `index`."""
         return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:]))
 
+    def rough(self):
+        """(B,) bool: the case has asperities."""
+        return np.all([self.micro != name for name, law in LAWS.items() if not law.rough], axis=0)
+
     def without_scheme(self):
         """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""
-        return (self.scheme == "picard") & (self.micro == "smooth")
+        return (self.scheme == "picard") & ~self.rough()
 
     def invalid(self):
         """(B,) bool: a number that the case needs is not finite or outside its bounds, those of a problem in units R =

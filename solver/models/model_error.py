@@ -29,13 +29,13 @@ def nodes_for(accuracy):
     return np.select([accuracy >= limit for limit, _ in _NODES], [n for _, n in _NODES], 24)
 
 
-def first_order(cases, law, cheap, p, n, steps=1):
+def first_order(cases, cheap, p, n, steps=1):
     """Estimated relative error (B,) of a cheap solution against the dear model `cases`, to first order.
 
     Parameters
     ----------
     cases : Cases
-        The dear equation of the B cases, of the micro law `law`, in units R = E2* = 1.
+        The dear equation of the B cases in units R = E2* = 1.
     cheap : dict
         The cheap solution: a, P, D, p0, p_max, Ar_An (B,) in the same units.
     p : (B, n) float, E2*
@@ -52,16 +52,16 @@ def first_order(cases, law, cheap, p, n, steps=1):
         NaN for a case without cheap numbers, inf where the step fails.
     """
     grid = mesh(n)
-    y = law.from_pressure(p / cases.p_star[:, None], cases.exponent)
+    y = cases.law.from_pressure(p / cases.law.p_star[:, None])
     state = State(y, np.log(cheap["a"]))
     for _ in range(steps):
-        ev = evaluate(cases, state, law, grid)
-        (state, _), last = advance(cases, state, ev, grid, law), state
-    curve = law.evaluate(state.y, cases.exponent)
+        ev = evaluate(cases, state, grid)
+        (state, _), last = advance(cases, state, ev, grid), state
+    curve = cases.law.evaluate(state.y)
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (ev.base.edge(grid) * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)
     X, _, _ = groups(cases, state.eta)
-    dear = quantities(cases, state, curve, X[:, 0], edge_q, law, grid)
+    dear = quantities(cases, state, curve, X[:, 0], edge_q, grid)
     error = np.max([np.abs(cheap[name] / dear[name] - 1) for name in JUDGED], axis=0)
     return np.where(np.isfinite(cheap["a"]) & ~np.isfinite(error), np.inf, error)
 

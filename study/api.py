@@ -63,8 +63,8 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         draft.cases(cases)
     for name, given in parameters.items():
         _add(draft, name, given)
-    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "most": LARGE}
-    definition = complete(draft, "solve", x=x, profiles=profiles, **whole)
+    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
+    definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
     return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
 
 

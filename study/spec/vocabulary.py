@@ -5,8 +5,11 @@ import math
 import numbers
 from dataclasses import dataclass, replace
 
-from solver.parameters import CONTROL, ends
+import numpy as np
+
+from solver.parameters import CONTROL, among
 from solver.parameters import PARAMETERS as BESIDE_IT
+from solver.parameters import allowed as within
 
 OF_THE_SOLVER = CONTROL | BESIDE_IT
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
@@ -138,6 +141,11 @@ PARAMETERS = names("control", "material", "roughness", "numerics")
 MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
 
 
+def having(name: str, values) -> np.ndarray:
+    """bool: the cases that have a parameter, by `needed_by`; `values(name)` gives the texts of another one."""
+    return among(VOCABULARY[name].needed_by, values)
+
+
 def attributes(name: str) -> dict:
     """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation."""
     entry = VOCABULARY[name]
@@ -166,10 +174,7 @@ def check(entry: Entry, value) -> str:
         return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
     if entry.whole and value != int(value):
         return "must be a whole number"
-    low, high, with_low, with_high = ends(entry.interval)
-    above = value > low or (value == low and with_low)
-    below = value < high or (value == high and with_high)
-    return "" if value in entry.also or (above and below) else allowed(entry)
+    return "" if within(entry, value) else allowed(entry)
 
 
 def finite(value) -> bool:

@@ -7,8 +7,8 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..spec.grid import Grid
-from ..spec.identity import along, counts
+from ..spec.grid import Grid, along
+from ..spec.identity import counts
 from ..spec.vocabulary import PARAMETERS
 
 VERSION = 2

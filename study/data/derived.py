@@ -7,6 +7,8 @@ vocabulary.
 import numpy as np
 import xarray as xr
 
+from solver.laws import LAWS
+
 from ..spec.vocabulary import attributes
 
 FEW_SPOTS = 100.0
@@ -43,7 +45,7 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     dimensions of `status`.
     """
     v = dataset.variables  # a DataArray compares its coordinates at every step, 20 ms in all
-    layered, rough = v["base"] != "half_space", v["micro"] != "smooth"
+    layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * n)
     violated = {
@@ -84,24 +86,32 @@ def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return _named(_spots(dataset).where(dataset["micro"] != "smooth"), "spots")
+    return _named(_spots(dataset).where(_rough(dataset["micro"])), "spots")
 
 
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return _named(_spot_radius(dataset).where(dataset["micro"] != "smooth"), "b0")
+    return _named(_spot_radius(dataset).where(_rough(dataset["micro"])), "b0")
 
 
 def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
-    profiles p and lam.
+    profile p; NaN for a law that is not registered.
     """
-    b = np.sqrt(dataset["lam"] / (np.pi * _given(dataset, "Nbar")))
     E1 = xr.where(dataset["base"] == "half_space", 1.0, _given(dataset, "n"))
-    spot = 2 / np.pi * (E1 * b / _given(dataset, "Ra") + dataset["p"] * np.arcsin(np.sqrt(dataset["lam"])))
-    return _named(xr.where(dataset["micro"] == "smooth", dataset["p"], spot).max("x"), "p_peak")
+    found = xr.full_like(dataset["p"], np.nan)
+    for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
+        given = [_given(dataset, name) for name in law.parameters]
+        spots = xr.apply_ufunc(_largest(law), dataset["p"], E1, *given, dask="parallelized", output_dtypes=[float])
+        found = xr.where(dataset["micro"] == law.name, spots, found)
+    return _named(found.max("x"), "p_peak")
+
+
+def _largest(law):
+    """p_max of nominal pressures, of the modulus that the asperities feel, and of the parameters of the law."""
+    return lambda p, E, *given: law.at(p, E, **dict(zip(law.parameters, given, strict=True))).p_max
 
 
 def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
@@ -121,6 +131,11 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
     error = dataset[name].sel(base="thin_layer", drop=True) / dataset[name].sel(base="layered", drop=True) - 1
     error.attrs = {"long_name": f"{attributes(name)['long_name']}: thin layer over exact layer, less 1", "units": "1"}
     return error
+
+
+def _rough(micro):
+    """Whether there are asperities; a law that is not registered has some."""
+    return sum(micro == name for name, law in LAWS.items() if not law.rough) == 0
 
 
 def _spots(values):

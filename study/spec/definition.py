@@ -14,7 +14,7 @@ from .given import MOST_MESSAGES, Draft
 from .grid import Grid, shown
 from .identity import digest_of
 from .toml_text import text_in
-from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
+from .vocabulary import NUMERICS, VOCABULARY, check, finite, names, suggest
 
 POINTS = 33
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
@@ -103,7 +103,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     kind = tables.get("kind", "contact")
     if not isinstance(kind, str) or kind not in SECTIONS:
         raise StudyError([f'{where}: kind = {shown(kind)}: must be one of "contact", "micro_law"'])
-    draft = Draft(known=PARAMETERS if kind == "contact" else MICRO_LAW_PARAMETERS)
+    draft = Draft(kind)
     draft.errors += [
         f"{shown(key)} is not a section{suggest(key, SECTIONS[kind])}"
         for key in islice((key for key in tables if key not in SECTIONS[kind]), MOST_MESSAGES)

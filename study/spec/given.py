@@ -1,13 +1,16 @@
 """A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
 
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
 
 import numpy as np
 
 from .grid import Grid, along, as_array, axis_values, shown, twins
+from .laws import is_parameter, law_names, learn, smooth_laws
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
+from .vocabulary import CONTROLS, MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
 
 MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
@@ -17,17 +20,30 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x be
 class Draft:
     """Collects parameters; `finish` makes the Grid of them.
 
-    known : the names allowed; errors : messages, no file name; sizes, values, labels : as of the Grid; sections : where
-    each parameter was given; claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
+    kind : "contact" or "micro_law"; errors : messages, no file name; sizes, values, labels : as of the Grid; sections :
+    where each parameter was given; claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
     """
 
-    known: tuple[str, ...] = PARAMETERS
+    kind: str = "contact"
     errors: list[str] = field(default_factory=list)
     sizes: dict[str, int] = field(default_factory=dict)
     values: dict = field(default_factory=dict)
     labels: dict = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
     claims: list = field(default_factory=list)
+
+    def __post_init__(self):
+        learn()
+
+    @property
+    def known(self) -> Sequence[str]:
+        """The names allowed."""
+        return PARAMETERS if self.kind == "contact" else MICRO_LAW_PARAMETERS
+
+    def laws(self, given: list) -> None:
+        """Make micro laws that are given as objects known before their parameters come; `micro` tells what is wrong."""
+        with suppress(ValueError):
+            law_names([law for one in given for law in (one if isinstance(one, list) else [one])])
 
     def scalar(self, name: str, raw, section: str) -> None:
         """One value for all cases."""
@@ -91,7 +107,7 @@ class Draft:
     def finish(self) -> Grid:
         """Fill in the defaults and check what concerns several parameters."""
         given = [name for name in CONTROLS if name in self.sections]
-        if self.known == PARAMETERS and len(given) != 1:
+        if self.kind == "contact" and len(given) != 1:
             self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
         self._check_dimensions()
         for name in self.known:
@@ -106,7 +122,7 @@ class Draft:
     def _accept(self, name: str, section: str) -> bool:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
-        if name not in self.known:
+        if name not in self.known and not (self.kind == "contact" and is_parameter(name)):
             near = suggest(name, self.known) if len(self.errors) < MOST_MESSAGES else ""  # somebody will read it
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
@@ -165,7 +181,7 @@ class Draft:
                 self.errors.append(f"{name} has other values of {dim} than another parameter")
 
 
-def missing_parameters(grid: Grid, known: tuple[str, ...]) -> list[str]:
+def missing_parameters(grid: Grid, known: Sequence[str]) -> list[str]:
     """Messages for parameters that some case needs and does not have."""
     messages = []
     for name in known:
@@ -186,7 +202,9 @@ def lost_scheme(grid: Grid) -> list[str]:
 
     In a grid that has them for asperities too, the smooth cases are refused one by one, by their status.
     """
-    asked = along(grid, "scheme") == "picard"
-    if not asked.any() or (asked & (along(grid, "micro") != "smooth")).any():
+    asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
+    if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
         return []
-    return ['scheme = "picard" has no case to solve: micro must be "disc_cell" or "power_law" there, not "smooth"']
+    others = " or ".join(shown(name) for name in VOCABULARY["micro"].choices if name not in smooth)
+    names = " or ".join(map(shown, smooth))
+    return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']

@@ -8,6 +8,7 @@ from itertools import product
 import numpy as np
 
 from ..terminal import on_one_line
+from .laws import law_names
 from .vocabulary import VOCABULARY, Entry, check, finite
 
 LONGEST_AXIS = 1_000_000
@@ -117,6 +118,12 @@ def as_array(entry: Entry, raw: list, key: str, errors: list[str], gaps: bool = 
     errors : messages are appended here
     gaps : None stands for "not given" and becomes NaN
     """
+    if entry.name == "micro":
+        try:
+            raw, entry = law_names(raw), VOCABULARY["micro"]
+        except ValueError as error:
+            errors.append(f"{key}: {error}")
+            return np.empty(len(raw))
     if set(map(type, raw)) == {float} and _all_allowed(entry, np.array(raw)):
         return np.array(raw)
     found = []

@@ -12,6 +12,7 @@ from functools import partial
 import numpy as np
 
 from solver import NUMERICS_VERSION
+from solver.laws import identity
 from solver.parameters import uses
 
 from .grid import Grid, along
@@ -23,6 +24,12 @@ def counts(grid: Grid, name: str) -> np.ndarray:
     value, default = along(grid, name), VOCABULARY[name].default
     given = ~np.isnan(value) if default is None else value != default
     return given & uses(name, partial(along, grid))
+
+
+def law_versions(grid: Grid) -> list[str]:
+    """Name and version of the registered laws in the grid, one text each; of this package's own none."""
+    words = set(grid.values["micro"][1].ravel().tolist()) if "micro" in grid.values else ()
+    return sorted(identity(word) for word in words if identity(word) != word)
 
 
 def digest_of(definition) -> str:
@@ -45,6 +52,7 @@ def digest_of(definition) -> str:
         "fit": definition.fit,
     }
     content["values"] = {name: found for name, found in content["values"].items() if found}
+    content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

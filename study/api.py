@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .data.dataset import command_line, labelled
+from .data.dataset import labelled
+from .data.provenance import command_line
 from .files.examine import Condition
 from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results
@@ -64,8 +65,8 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         draft.cases(cases)
     for name, given in parameters.items():
         _add(draft, name, given)
-    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "most": LARGE}
-    definition = complete(draft, "solve", x=x, profiles=profiles, **whole)
+    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
+    definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
     return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
 
 

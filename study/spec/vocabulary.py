@@ -3,12 +3,13 @@
 import difflib
 import math
 import numbers
-from contextlib import suppress
 from dataclasses import dataclass, replace
 
-from solver import laws
-from solver.parameters import CONTROL, ends
+import numpy as np
+
+from solver.parameters import CONTROL, among
 from solver.parameters import PARAMETERS as BESIDE_IT
+from solver.parameters import allowed as within
 
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers, and as what they are kept."""
@@ -119,7 +120,7 @@ _ENTRIES = (
 # fmt: on
 
 
-def _completed(entry: Entry) -> Entry:
+def completed(entry: Entry) -> Entry:
     """With what the solver knows of a parameter."""
     known = CONTROL.get(entry.name) or BESIDE_IT.get(entry.name)
     if not known:
@@ -128,8 +129,7 @@ def _completed(entry: Entry) -> Entry:
     return replace(entry, **{name: told[name] for name in told if name not in ("powers", "symbol", "long_name")})
 
 
-VOCABULARY = {entry.name: _completed(entry) for entry in _ENTRIES}
-laws.RESERVED.update(set(VOCABULARY) - set(BESIDE_IT))
+VOCABULARY = {entry.name: completed(entry) for entry in _ENTRIES}
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -140,48 +140,13 @@ def names(*roles: str) -> tuple[str, ...]:
 CONTROLS = names("control")
 NUMERICS = names("numerics")
 PARAMETERS = list(names("control", "material", "roughness", "numerics"))
-"""Names of parameters; :func:`learn` adds those of registered laws here and to VOCABULARY."""
+"""Names of parameters; :func:`study.spec.laws.learn` adds those of registered laws here and to VOCABULARY."""
 MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
 
 
-def learn() -> None:
-    """Take up the micro laws that have been registered since the last time: their names and their parameters."""
-    if VOCABULARY["micro"].choices is BESIDE_IT["micro"].choices:
-        return
-    for name in set(VOCABULARY) - {entry.name for entry in _ENTRIES}:
-        del VOCABULARY[name]
-    PARAMETERS[:] = names("control", "material", "roughness", "numerics")
-    for name in [name for law in laws.LAWS.values() for name in law.parameters if name not in PARAMETERS]:
-        own = BESIDE_IT[name]
-        unit = UNITS.get(own.powers, ("Pa{} m{}".format(*own.powers), 1.0))
-        words = own.symbol or name, own.long_name or f"parameter of the micro law {' and '.join(own.needed_by[1])}"
-        VOCABULARY[name] = _completed(Entry(name, *words, "roughness", own.powers, unit))
-        PARAMETERS.append(name)
-    VOCABULARY["micro"] = _completed(VOCABULARY["micro"])
-
-
-def law_names(given: list) -> list:
-    """What stands for `micro`, with names in place of laws given as objects, which become known by them; and a law that
-    is not known is looked for among those of installed packages. Raises ValueError for a law that cannot be used."""
-    found = laws.named(given)
-    if not laws.known((), [word for word in found if isinstance(word, str)]):
-        laws.load()
-    learn()
-    return found
-
-
-def is_parameter(name: str) -> bool:
-    """Whether a name is that of a parameter, if need be of a law of an installed package."""
-    if name not in PARAMETERS:
-        with suppress(ValueError):  # one that cannot be loaded is told of where `micro` names it
-            laws.load()
-        learn()
-    return name in PARAMETERS
-
-
-def smooth_laws() -> list[str]:
-    """Names of the laws without asperities."""
-    return [name for name, law in laws.LAWS.items() if not law.rough]
+def having(name: str, values) -> np.ndarray:
+    """bool: the cases that have a parameter, by `needed_by`; `values(name)` gives the texts of another one."""
+    return among(VOCABULARY[name].needed_by, values)
 
 
 def attributes(name: str) -> dict:
@@ -212,10 +177,7 @@ def check(entry: Entry, value) -> str:
         return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
     if entry.whole and value != int(value):
         return "must be a whole number"
-    low, high, with_low, with_high = ends(entry.interval)
-    above = value > low or (value == low and with_low)
-    below = value < high or (value == high and with_high)
-    return "" if value in entry.also or (above and below) else allowed(entry)
+    return "" if within(entry, value) else allowed(entry)
 
 
 def finite(value) -> bool:

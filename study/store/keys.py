@@ -9,8 +9,8 @@ import numpy as np
 
 from solver.laws import identity as law_identity
 
-from ..spec.grid import Grid
-from ..spec.identity import along, counts
+from ..spec.grid import Grid, along
+from ..spec.identity import counts
 from ..spec.vocabulary import PARAMETERS
 
 VERSION = 2

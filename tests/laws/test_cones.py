@@ -17,7 +17,7 @@ import study
 from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS
 from study.spec.definition import from_tables
-from study.spec.vocabulary import learn
+from study.spec.laws import learn
 from study.store.keys import case_keys
 
 CASE = {"h": 0.02, "n": 0.5, "Nbar": 250_000.0}

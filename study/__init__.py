@@ -17,7 +17,12 @@ _HOME = {
     "from_physical": "data.units",
     "reduced_modulus": "data.units",
 }
-_MODULES = {"derived": "data.derived", "units": "data.units", "vocabulary": "spec.vocabulary"}
+_MODULES = {
+    "derived": "data.derived",
+    "units": "data.units",
+    "vocabulary": "spec.vocabulary",
+    "roughness": "scene.roughness",
+}
 __all__ = list(_HOME)
 
 

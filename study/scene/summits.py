@@ -50,15 +50,14 @@ class Asperities(NamedTuple):
 def without_form(z: np.ndarray, steps: tuple, form: str | float) -> np.ndarray:
     """The heights without their mean, their plane (least squares) or a sphere of known radius and the plane.
 
-    The sphere's top is where the paraboloid r²/(2R) fits best; then the sphere itself is taken off.
+    The plane has the slope of the sphere in the middle of the scan, which tells where its top is.
     """
     if form == "mean":
         return z - z.mean()
     lines = [(np.arange(n) - (n - 1) / 2) * step for n, step in zip(z.shape, steps, strict=True)]
     x = np.meshgrid(*lines, indexing="ij")
     if form != "plane":
-        near = z + sum(one**2 for one in x) / (2 * form)
-        top = [form * slope for slope in _plane(near, x)[1:]]
+        top = [form * slope for slope in _plane(z, x)[1:]]
         squared = sum((one - at) ** 2 for one, at in zip(x, top, strict=True))
         z = z + squared / (form * (1 + np.sqrt(np.maximum(0.0, 1 - squared / form**2))))
     mean, *slopes = _plane(z, x)

@@ -17,7 +17,7 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "laws", "body", "parameters", "problem", "solution"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "laws", "body", "problem", "solution"),
         *("contact", "scaling", "models", "solve"),
     ),
     "study": (
@@ -136,6 +136,7 @@ def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `blocks`, start soon."""
     alone(f"import study.spec.vocabulary, study.spec.grid, study.spec.given, study.spec.definition; {NOT_HEAVY}")
     alone(f"import study.commands.arguments, study.work.cases; {NOT_HEAVY}")
+    alone(f"import study.scene.materials; {NOT_HEAVY}")
 
 
 def test_rooms_are_there_after_import_of_the_package_alone():
@@ -150,7 +151,7 @@ def test_rooms_are_there_after_import_of_the_package_alone():
 def test_public_names():
     import study
 
-    assert {"derived", "units", "vocabulary"} <= set(dir(study))
+    assert {"derived", "materials", "roughness", "units", "vocabulary"} <= set(dir(study))
 
     assert {"solve", "load", "open_results", "Study", "StudyError", "to_physical", "from_physical"} <= set(dir(study))
     assert all(callable(getattr(study, name)) for name in study.__all__)

@@ -34,6 +34,7 @@ def lines(*columns, separator=" ", mark=".", ending="\n") -> str:
         "\ufeff# stylus, 2 um tip\nx [um];z [um]\n\n" + lines(X, Z, separator=";") + "\n% the end\n",
         "Profile\nPoints: 20\n" + lines(X, Z, ending=" # point\n"),
         lines(X[::-1], Z[::-1]),
+        "\ufeff" + lines(X, Z),
     ],
 )
 def test_profiles_in_text(tmp_path, text):
@@ -96,6 +97,7 @@ def test_positions_written_with_few_digits_are_uniform():
         ("a.csv", "# z in nm\n" + lines(Z), {"unit": None, "dx": 1}, r'Its heading is "# z in nm"'),
         ("a.csv", lines(X, Z), {"unit": "inch"}, "the unit 'inch' is unknown; allowed are m, mm, um"),
         ("a.csv", lines(X, Z), {"height_unit": "V"}, "the unit 'V' is unknown"),
+        ("a.csv", b"x [\xb5m]\n" + lines(Z).encode(), {"unit": None}, r'heading is "x \[µm\]"'),  # ISO 8859-1
         ("a.csv", lines(Z), {}, r"20 rows of 1 column\(s\); allowed are two columns \(x, z\), one column"),
         ("a.csv", lines(X, Z), {"dx": 0.5}, r"20 rows of 2 column\(s\) with dx = 0.5; allowed are"),
         ("a.csv", lines(X, Z), {"dy": 0.5}, r"20 rows of 2 column\(s\) with dy = 0.5; allowed are"),
@@ -116,6 +118,8 @@ def test_positions_written_with_few_digits_are_uniform():
             "heights span 0.000.* m on a scan 9.5e-06 m long, .* to be in um, heights in um",
         ),
         ("a.csv", lines(X, Z), {"height_unit": "mm"}, "no instrument measures slopes above 3.* heights in mm"),
+        ("a.csv", lines(X, 1.5 * X + 0.1 * Z), {}, "heights span .* m on a scan 9.5e-06 m long"),  # no slope above 3
+        ("a.csv", lines(np.tile(9 * Z, 9)), {"dx": 1}, "with an rms slope of 3"),  # longer than high
         ("a.npy", b"text", {}, "not a .npy file of real numbers"),
     ],
 )

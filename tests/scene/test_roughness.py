@@ -99,6 +99,7 @@ def test_moments_of_a_random_surface(points, dimensions):
     m0, m2, m4 = known
     assert_allclose(answer.Nbar, m4 / m2 / (6 * math.pi * math.sqrt(3)), rtol=errors[1] + errors[2])
     assert_allclose(answer.Ra, 0.375 * math.sqrt(math.pi / m4), rtol=errors[2] / 2)
+    assert_allclose(answer.iso_Ra, math.sqrt(2 / math.pi * m0), rtol=errors[0])
     alpha = m0 * m4 / m2**2
     assert_allclose(answer.sigma_summits, math.sqrt((1 - 0.8968 / alpha) * m0), rtol=errors[0] + errors[1])
 
@@ -148,6 +149,8 @@ def test_steps_of_x_and_y_keep_their_places():
     answer = roughness.measure(roughness.height_map(z, dx=2e-7, dy=1e-7), method="summits", form="mean")
     assert_allclose(answer.Nbar, roughness.square_lattice(3.2e-6), rtol=1e-12)
     assert_allclose(answer.Ra, 2 / (1 / 1e-5 + 1 / 3e-5), rtol=1e-10)
+    with pytest.raises(ValueError, match="cutoff = 5e-07 m; .* at least three steps, 6e-07 m"):
+        roughness.measure(roughness.height_map(z, dx=2e-7, dy=1e-7), cutoff=5e-7)
     assert "50 × 98 points 200 nm × 100 nm apart, 9.8 µm × 9.7 µm" in answer.resolution
 
 
@@ -236,6 +239,14 @@ def test_a_filtered_random_surface_has_the_known_moments():
     assert_allclose(filtered.Ra / longer**1.5, plain.Ra, rtol=0.03)  # m0 falls by ELL²/longer, m4 with its cube
     assert "Gaussian low-pass (ISO 16610) with a cutoff of 2 µm" in filtered.filter
     assert "no low-pass" in plain.filter
+
+
+def test_the_iso_ra_is_of_what_the_filter_leaves():
+    """Not about the mean of the whole scan: without its borders, a wave of its length has another."""
+    x = np.arange(400) / 400
+    scan = roughness.profile(1e-3 * np.cos(2 * np.pi * x) + 1e-5 * np.cos(40 * np.pi * x), dx=1 / 400)
+    inner = scan.z[30:-30] - scan.z[30:-30].mean()
+    assert_allclose(roughness.measure(scan, form="mean", cutoff=0.1).iso_Ra, np.mean(np.abs(inner)), rtol=0.02)
 
 
 def test_the_answer_in_sentences():

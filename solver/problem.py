@@ -1,10 +1,11 @@
 """What is asked: arrays over a batch of cases."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from .parameters import CONTROL, LOOKED_AT_BY, PARAMETERS, Parameter, allowed
+from . import laws
+from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
 
 
 @dataclass(frozen=True)
@@ -37,7 +38,8 @@ class Problem:
     model_check : "closed_form" (default) or "first_order"
         How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
     micro : "smooth", "disc_cell" (default) or "power_law"
-        No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer).
+        No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer); or the name of
+        a registered law, or such a :class:`~solver.laws.Law` itself.
     B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
     scheme : "newton" (default) or "picard"
@@ -53,6 +55,8 @@ class Problem:
         Most steps on a mesh, or approximations at one radius; 0: the limit of the scheme.
     R, E2 : > 0; 1
         Radius of the punch, and reduced modulus E2* of the half-space; any units.
+    more : name -> (B,)
+        The parameters of registered laws that are not above; each is an attribute as well.
     """
 
     control: str
@@ -77,6 +81,13 @@ class Problem:
     max_iterations: np.ndarray
     R: np.ndarray
     E2: np.ndarray
+    more: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def __getattr__(self, name):
+        """A parameter of `more`; NaN of a law that was registered later."""
+        if name not in PARAMETERS:
+            raise AttributeError(f"Problem has no {name}")
+        return self.more.get(name, np.full(len(self), np.nan))
 
     @classmethod
     def of(cls, *, P=None, a=None, D=None, **parameters):
@@ -106,6 +117,9 @@ class Problem:
         if len(given) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()
+        parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
+        if not laws.known(parameters, parameters["micro"]):
+            laws.load()
         unknown = sorted(set(parameters) - set(PARAMETERS))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")
@@ -117,35 +131,36 @@ class Problem:
         missing = [message for name in PARAMETERS if name not in parameters for message in _missing(name, arrays)]
         if missing:
             raise ValueError("; ".join(missing))
-        return cls(control, **{name: np.broadcast_to(v, shape) for name, v in arrays.items()})
+        arrays = {name: np.broadcast_to(v, shape) for name, v in arrays.items()}
+        own = [f.name for f in fields(cls) if f.name in arrays]
+        return cls(control, *(arrays.pop(name) for name in own), more=arrays)
 
     def __len__(self):
         return len(self.value)
 
     def take(self, index):
         """The sub-batch at `index`."""
-        return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:]))
+        more = {name: values[index] for name, values in self.more.items()}
+        return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:-1]), more)
 
-    def _among(self, name, words):
-        """(B,) bool: a text is one of `words`; found by the other choices, of which there are fewer."""
-        others = [word for word in PARAMETERS[name].choices if word not in words]
-        return np.all([getattr(self, name) != word for word in others], axis=0)
+    def rough(self):
+        """(B,) bool: the case has asperities."""
+        return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
 
     def without_scheme(self):
         """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""
-        return (self.scheme == "picard") & (self.micro == "smooth")
+        return (self.scheme == "picard") & ~self.rough()
 
     def invalid(self):
         """(B,) bool: a number that the case needs is not finite or outside its bounds, those of a problem in units R =
         E2* = 1."""
         bad = ~allowed(CONTROL[self.control], self.value)
-        needing = {}
+        having = {}
         for name, own in PARAMETERS.items():
             if own.interval:
-                selector = LOOKED_AT_BY.get(name, own.needed_by)
-                if selector not in needing:
-                    needing[selector] = self._among(*selector) if selector[0] else True
-                bad |= needing[selector] & ~allowed(own, getattr(self, name))
+                if own.needed_by not in having:
+                    having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
+                bad |= having[own.needed_by] & ~allowed(own, getattr(self, name))
         return bad
 
 
@@ -163,5 +178,7 @@ def _array(name, value):
 def _missing(name, arrays):
     """A message if some case needs a parameter that is not given, as a list."""
     selector, needing = PARAMETERS[name].needed_by
-    found = [f'"{word}"' for word in needing if word in arrays[selector]] if selector else []
+    if PARAMETERS[name].default is not None or not selector:
+        return []
+    found = [f'"{word}"' for word in needing if word in arrays[selector]]
     return [f"{name} is missing: {selector} = {' or '.join(found)} needs it"] if found else []

@@ -7,7 +7,7 @@ import numpy as np
 from .body.layered import Layer
 from .body.springs import local_compliance
 from .contact.equation import Cases
-from .laws.micro import LAWS, scales
+from .laws import LAWS
 from .parameters import PARAMETERS, allowed
 from .status import Status
 
@@ -27,14 +27,23 @@ _UNITS = {
 def dimensionless(problem):
     """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
     R, E2 = problem.R, problem.E2
-    # divided one by one: R² or R⁻² may overflow where the quotient does not
-    value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
+    value = _without_unit(problem.value, (1, 2) if problem.control == "P" else (0, 1), R, E2)
     layered = problem.base != "half_space"
     h, n = problem.h / R, np.where(layered, problem.n, 1.0)
     springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
     C = np.where(problem.base == "thin_layer", springs, 0.0)
+    more = {name: _without_unit(v, PARAMETERS[name].powers, R, E2) for name, v in problem.more.items()}
+    own = {name: _without_unit(getattr(problem, name), PARAMETERS[name].powers, R, E2) for name in ("Nbar", "Ra")}
     one = np.ones(len(problem))
-    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
+    return replace(problem, value=value, h=h, n=n, R=one, E2=one, **own, more=more), C
+
+
+def _without_unit(value, powers, R, E2):
+    """`value` over E2^i R^j, (i, j) = `powers`; divided one by one, for R² may overflow where the quotient does not."""
+    for unit, power in zip((R, E2), powers[::-1], strict=True):
+        for _ in range(abs(power)):
+            value = value / unit if power > 0 else value * unit
+    return value
 
 
 def refused(problem, scaled):
@@ -44,20 +53,14 @@ def refused(problem, scaled):
 
 
 def as_cases(part, C):
-    """:class:`~solver.contact.equation.Cases` of one law on one base, and the law."""
-    micro = str(part.micro[0])
-    spot_scale, spot_depth = scales(part.n, part.Nbar, part.Ra)
-    none, one = np.zeros(len(part)), np.ones(len(part))
-    p_star, A_star, spot_scale, exponent = {
-        "disc_cell": (spot_scale, spot_depth, spot_scale, 2 / 3 * one),
-        "power_law": (part.n * one, part.B * part.Ra, spot_scale, part.beta * one),  # A = B Ra (p/E1*)^β: g = q^β
-        "smooth": (part.n * one, none, none, one),
-    }[micro]
+    """:class:`~solver.contact.equation.Cases` of one law on one base."""
+    law = LAWS[str(part.micro[0])]
+    law = law.bind(part.n, **{name: getattr(part, name) for name in law.parameters})
+    none = np.zeros(len(part))
     layered = part.base[0] == "layered"
     layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
-    E = part.n if layered else one
-    fields = part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent
-    return Cases(*fields, reach=none, coarse=none > 0), LAWS[micro]
+    E = part.n if layered else none + 1
+    return Cases(part.control, law, layer, part.value, E, C, reach=none, coarse=none > 0)
 
 
 def restore(solution, problem, without=()):

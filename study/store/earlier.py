@@ -7,6 +7,7 @@ import netCDF4
 import numpy as np
 
 from solver import NUMERICS_VERSION
+from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
 from ..files.checksums import ATTRIBUTE, attribute, identity, parsed
@@ -17,7 +18,7 @@ from ..spec.grid import Grid, columns, windows
 from ..spec.vocabulary import PARAMETERS
 from .block_file import Block
 from .blocks import Inventory, Store, facts, put, usable
-from .keys import case_keys, find
+from .keys import case_keys, find, first_keys
 
 AT_ONCE = CHUNK  # cases read at a time: what can be read and what cannot is told apart by chunks
 MEND = "run the study as it was (its text is the attribute study), which mends it, or use --results DIR"
@@ -75,7 +76,7 @@ def _told(definition: Definition, found: Condition, file: netCDF4.Dataset) -> tu
     lines = parsed(str(attribute(file, ATTRIBUTE))) if ATTRIBUTE in file.ncattrs() else {}
     grid, x = definition.grid, definition.x
     same = list(grid.sizes.items()) == list(found.sizes.items())
-    if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
+    if same and lines.get("=cases") in [identity(NUMERICS_VERSION, x, keys(grid)) for keys in (case_keys, first_keys)]:
         return grid, x, NUMERICS_VERSION
     return None
 
@@ -154,6 +155,11 @@ def _grid_in(file: netCDF4.Dataset) -> Grid:
         if name in coordinates and name in file.variables:
             array = np.asarray(file[name][...])  # texts without the dimension of their characters
             values[name] = file[name].dimensions[: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
+    versions = str(attribute(file, "micro_laws")).split("\n") if "micro_laws" in file.ncattrs() else []
+    if "micro" in values:  # a law of another version than the registered one is another law
+        dims, words = values["micro"]
+        old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
+        values["micro"] = dims, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
     return Grid({dim: len(file.dimensions[dim]) for dim in status.dimensions}, values)
 
 

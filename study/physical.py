@@ -4,7 +4,6 @@ The scene has the radius R of the punch, Young's moduli E1 of the layer, E2 of t
 with Poisson ratios nu1, nu2 and nu_punch. The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -13,7 +12,7 @@ import xarray as xr
 from xarray.indexes import PandasIndex
 
 from .data.units import reduced_modulus
-from .scene.quantities import READABLE, has_unit, quantity
+from .scene.quantities import READABLE, Quantity, has_unit, quantity
 from .spec.definition import StudyError
 from .spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 
@@ -25,6 +24,9 @@ SCENE = {
     "E_punch": ("Pa", "Young's modulus of the punch"),
     "nu_punch": ("1", "Poisson ratio of the punch"),
 }
+_POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
+#: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
+_LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 #: Powers of E2* and R -> SI unit.
 UNITS = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
 #: Part of a spread by which an input is moved for its derivative: small against what is not linear, large against rtol.
@@ -44,9 +46,14 @@ def is_physical(parameters: dict) -> bool:
 
 
 def _first(given: Any) -> Any:
+    """What shows whether a parameter has a unit."""
     if isinstance(given, xr.DataArray):
         return "1 unit" if given.attrs.get("units", "1") != "1" else None
     return given[0] if isinstance(given, (list, tuple)) and len(given) else given
+
+
+class Row(list):
+    """The values of a parameter over the dimension `case`."""
 
 
 @dataclass
@@ -54,12 +61,13 @@ class Scene:
     """A physical scene: `parameters` are dimensionless, for the solver; `dressed` gives its results in SI units.
 
     given : name -> SI values, a float or a DataArray; spreads : the same of the inputs that have spreads;
-    dims : dimension while solving -> name of the parameter
+    dims : dimension while solving -> name of the parameter; labels : of the dimension `case`
     """
 
     given: dict = field(default_factory=dict)
     spreads: dict = field(default_factory=dict)
     dims: dict = field(default_factory=dict)
+    labels: list = field(default_factory=list)
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
     E2_star: Any = 1.0
@@ -92,29 +100,44 @@ class Scene:
             variable = xr.Variable([self.dims.get(dim, dim) for dim in variable.dims], variable.data)
             variable.attrs = {"long_name": long_name, "units": unit_of(name)}
             found = found.assign_coords({name: variable})
+        if self.labels:
+            found = found.assign_coords(label=("case", self.labels))
         for name in self.dims.values():
             if name in found.dims and unit_of(name) != "1":
                 found = found.drop_indexes(name).set_xindex(name, UnitIndex)
         return found
 
 
-def read(parameters: dict) -> Scene:
-    """The scene of physical parameters.
+def read(parameters: dict, cases: list | None = None) -> Scene | None:
+    """The scene of physical parameters of `study.solve`; None if they are dimensionless.
+
+    cases : rows of parameters, which become values over the dimension `case`
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
     """
+    rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
+    if not any(is_physical(given) for given in (parameters, *rows)):
+        return None
     scene, errors = Scene(), []
+    for name in dict.fromkeys(name for row in rows for name in row):
+        lacking = [i for i, row in enumerate(rows) if name not in row]
+        if name in parameters or lacking:
+            errors.append(f"{name} must be given in every case, or once for all")
+        else:
+            parameters = parameters | {name: Row([row[name] for row in rows])}
     for name, given in parameters.items():
-        if name not in SCENE and name not in PARAMETERS:
+        if name == "label" and isinstance(given, Row):
+            scene.labels = list(map(str, given))
+        elif name not in SCENE and name not in PARAMETERS:
             errors.append(f'"{name}" is not a parameter{suggest(name, [*PARAMETERS, *SCENE])}')
-        elif name in SCENE or VOCABULARY[name].powers != (0, 0) or _is_uncertain(given):
+        elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _is_uncertain(given):
             try:
                 _add(scene, name, given)
             except ValueError as error:
                 errors.append(str(error))
         else:
-            scene.parameters[name] = given
+            scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, Row) else given
     errors += _missing(scene, parameters)
     if errors:
         raise StudyError(errors)
@@ -131,28 +154,43 @@ def _add(scene: Scene, name: str, given: Any) -> None:
     """Put SI values and spreads of a parameter into the scene."""
     unit = unit_of(name)
     if isinstance(given, xr.DataArray):
-        factor = 1.0
-        if unit != "1":
-            if "units" not in given.attrs:
-                raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
-            factor = quantity(name, f"1 {given.attrs['units']}", unit).value
-        scene.given[name] = given.drop_attrs() * factor
-        return
-    given = given.tolist() if isinstance(given, np.ndarray) else given
-    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
-    if not isinstance(given, (list, tuple, range)):
-        found = quantity(name, given, unit)
-        scene.given[name], spread = found.value, found.spread
+        value, spread = _of_array(name, given, unit), 0.0
     else:
-        if not len(given):
-            raise ValueError(f"{name} is empty: must have at least one value")
-        found = [quantity(f"{name}[{i}]", one, unit) for i, one in enumerate(given)]
-        dim = name if unit == "1" else f"{name} in SI"
-        scene.dims[dim] = name
-        scene.given[name] = xr.DataArray([one.value for one in found], dims=dim)
-        spread = xr.DataArray([one.spread for one in found], dims=dim)
+        given = given.tolist() if isinstance(given, np.ndarray) else given
+        given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
+        if isinstance(given, (list, tuple, range)):
+            if not len(given):
+                raise ValueError(f"{name} is empty: must have at least one value")
+            found = [quantity(f"{name}[{i}]", one, unit) for i, one in enumerate(given)]
+            dim = "case" if isinstance(given, Row) else name if unit == "1" else f"{name} in SI"
+            scene.dims |= {} if dim == "case" else {dim: name}
+            value, spread = (xr.DataArray([pick(one) for one in found], dims=dim) for pick in (_value, _spread))
+        else:
+            found = quantity(name, given, unit)
+            value, spread = found.value, found.spread
+    low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
+    if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
+        raise ValueError(f"{name} = {given}: {limits}")
+    scene.given[name] = value
     if np.any(np.asarray(spread) > 0):
         scene.spreads[name] = spread
+
+
+def _value(found: Quantity) -> float:
+    return found.value
+
+
+def _spread(found: Quantity) -> float:
+    return found.spread
+
+
+def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
+    """SI values of a DataArray, by its attribute `units`."""
+    if unit == "1":
+        return given.drop_attrs()
+    if "units" not in given.attrs:
+        raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
+    return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
 
 
 def _missing(scene: Scene, parameters: dict) -> list[str]:
@@ -180,14 +218,8 @@ def _make_dimensionless(scene: Scene) -> None:
     """The parameters of the solver, in R and E2*."""
     given = scene.given
 
-    def ratio(name: str, default: float = 0.3) -> Any:
-        return given.get(name, scene.parameters.get(name, default))
-
     def modulus(name: str, nu: str) -> Any:
-        poisson = ratio(nu)
-        if isinstance(poisson, (list, tuple, np.ndarray)):
-            poisson = xr.DataArray(np.asarray(poisson, dtype=float), dims=nu)
-        return reduced_modulus(given[name], poisson)
+        return reduced_modulus(given[name], given.get(nu, 0.3))
 
     scene.R, scene.E2_star = given["R"], modulus("E2", "nu2")
     if "E1" in given:
@@ -206,7 +238,7 @@ def _variable(value: Any) -> xr.Variable:
 
 
 def _with_spreads(found: xr.Dataset, moved: int) -> xr.Dataset:
-    """The results as given, and for each a `NAME_spread`: its standard deviation, to first order, inputs independent."""
+    """The results as given, each with its standard deviation `NAME_spread`, to first order, of independent inputs."""
     centre = found.isel({_MOVED: 0}, drop=True)
     for name, array in found.data_vars.items():
         if _MOVED not in array.dims or VOCABULARY[name].role not in ("control", "result", "profile"):
@@ -227,6 +259,7 @@ class UnitIndex(PandasIndex):
     def sel(self, labels: dict, method=None, tolerance=None):
         name, label = next(iter(labels.items()))
         unit = unit_of(name)
-        read_one: Callable = lambda one: quantity(name, one, unit).value if has_unit(one) else one  # noqa: E731
-        label = [read_one(one) for one in label] if isinstance(label, (list, tuple)) else read_one(label)
-        return super().sel({name: label}, method=method, tolerance=tolerance)
+        ones = list(label) if isinstance(label, (list, tuple)) else [label]
+        ones = [quantity(name, one, unit).value if has_unit(one) else one for one in ones]
+        found = ones if isinstance(label, (list, tuple)) else ones[0]
+        return super().sel({name: found}, method=method, tolerance=tolerance)

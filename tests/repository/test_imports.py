@@ -21,7 +21,8 @@ ROOMS = {
         *("contact", "scaling", "models", "solve"),
     ),
     "study": (
-        *("terminal", "scene", "spec", "data", "files", "store", "work", "api", "figures", "paper", "evidence"),
+        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work", "api"),
+        *("figures", "paper", "evidence"),
         *("tables", "catalogue", "commands", "__main__"),
     ),
 }

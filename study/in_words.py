@@ -14,6 +14,7 @@ from .data.derived import (
     STEEP,
 )
 from .scene.quantities import READABLE, readable
+from .scene.roughness import looks_like_iso_ra
 from .spec.vocabulary import VOCABULARY
 
 MOST_CASES = 20  # that a summary writes out
@@ -81,7 +82,7 @@ def summary(contact: xr.Dataset) -> Summary:
     texts = []
     for i in range(min(cases.sizes["one"], MOST_CASES)):
         case = cases.isel(one=i)
-        where = ", ".join(_given(case, dim) for dim in dims)
+        where = str(case["label"].values) if "label" in case else ", ".join(_given(case, dim) for dim in dims)
         texts.append(f"--- {where}\n{_one(case, dims)}")
     if cases.sizes["one"] > MOST_CASES:
         texts.append(f"--- and {cases.sizes['one'] - MOST_CASES} more cases: choose some with sel() or isel()")
@@ -92,7 +93,8 @@ def _one(case: xr.Dataset, dims=()) -> str:
     """The text of one case."""
     rough = str(case["micro"].values) != "smooth"
     inputs = [name for name in INPUTS if name in case and name not in dims and _matters(case, name, rough)]
-    lines = ["Given: " + ", ".join(_given(case, name) for name in inputs), ""]
+    given = [] if "m" in case else ["a rigid punch"]
+    lines = ["Given: " + ", ".join(given + [_given(case, name) for name in inputs]), ""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:
@@ -115,7 +117,7 @@ def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
 def _given(case: xr.Dataset, name: str) -> str:
     """An input with its unit: "h = 2 µm"."""
     if name not in case:
-        return name
+        return str(name)
     value = case[name].values[()]
     if isinstance(value, (str, np.str_)):
         return str(value)
@@ -156,8 +158,8 @@ def _sentences(case: xr.Dataset) -> list[str]:
         error = float(case["model_error"])
         errs = f"; against the exact layered contact it errs by about {error:.1%}" if error > 0 else ""
         found.append(f"Model: {model}{errs}.")
-    broken = broken_assumptions(case["validity"])
-    found += [f"Beware: {BROKEN.get(name, name)}" for name in broken]
+    broken = doubts(case)
+    found += [f"Beware: {sentence}" for sentence in broken]
     if not broken and word == "converged":
         found.append("Every assumption that the model rests on holds.")
     return found
@@ -169,7 +171,15 @@ def _word(flag: xr.DataArray) -> str:
     return dict(words).get(int(flag), str(int(flag)))
 
 
-def broken_assumptions(validity: xr.DataArray) -> list[str]:
-    """The words of the assumptions that some case violates, in the order of their masks."""
-    masks, words = np.atleast_1d(validity.attrs["flag_masks"]), validity.attrs["flag_meanings"].split()
-    return [word for mask, word in zip(masks, words, strict=True) if (validity.values & mask).any()]
+def doubts(contact: xr.Dataset) -> list[str]:
+    """Sentences about the cases of a dataset that are beyond what the model describes; none: all is well."""
+    flags = contact["validity"]
+    found = []
+    for mask, word in zip(np.atleast_1d(flags.attrs["flag_masks"]), flags.attrs["flag_meanings"].split(), strict=True):
+        count = int(((flags.values & mask) != 0).sum())
+        of_all = f"{count} of {flags.size} cases: " if flags.size > 1 else ""
+        found += [of_all + BROKEN[word]] if count else []
+    if {"Ra", "Nbar"} <= set(contact.coords) and (contact["micro"] != "smooth").any():
+        sharp = looks_like_iso_ra(*(array.values for array in xr.broadcast(contact["Ra"], contact["Nbar"])))
+        found += [sharp] if sharp else []
+    return found

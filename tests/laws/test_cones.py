@@ -133,7 +133,7 @@ def test_picard_solves_cones_too():
 @pytest.mark.parametrize("base", ["half_space", "thin_layer"])
 def test_a_law_needs_no_inverses_of_its_own(base, scheme):
     """The exact law without those it has: the same numbers, from isolated spots to nearly full contact."""
-    none = dict.fromkeys(("from_pressure", "from_displacement", "guess", "sparse"))
+    none = dict.fromkeys(("from_pressure", "from_displacement", "guess"))
     plain = dataclasses.replace(laws.LAWS["disc_cell"], name="plain", version="1", **none)
     given = CASE | {"a": [0.01, 0.04], "Ra": [0.0005, 0.004], "base": base, "x": 5, "rtol": 1e-9} | scheme
     one, other = (study.solve(**given, micro=law) for law in (plain, "disc_cell"))

@@ -101,7 +101,7 @@ def test_scaling():
 @pytest.mark.parametrize("name", ["disc_cell", "power_law"])
 def test_law_derivatives_and_inverses(name, plain):
     """Of the law as it is; and with the inverses that any law has, which does not bring its own."""
-    none = dict.fromkeys(("from_pressure", "from_displacement", "guess", "sparse"))
+    none = dict.fromkeys(("from_pressure", "from_displacement", "guess"))
     law = replace(LAWS[name], **none) if plain else LAWS[name]
     law = law.bind(np.array([0.5]), Nbar=np.array([250000.0]), Ra=0.004, B=0.1, beta=np.array([0.53]))
     y = np.geomspace(1e-3, 30, 40)[None, :]

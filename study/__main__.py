@@ -57,12 +57,12 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
     command(verify, "compare results with their checksums: exit code 1 for what is damaged or has none", "files")
     command(clean, "remove blocks that do not serve a study as it is now, say which; never results", "files")
-    sub = command(plot, "draw figures from results", "names")
-    sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
-    sub = command(table, "write tables from results", "names")
-    sub.add_argument("--tables", default="tables", **DIR, help="folder of the tables (default: tables)")
-    sub = command(tradeoff, "measure error against time of every way to solve, and write the page about it")
-    sub.add_argument("--docs", default="docs", **DIR, help="folder of the page (default: docs)")
+    for function, text in ((plot, "draw figures from results"), (table, "write tables from results")):
+        kind = text.split()[1]
+        sub = command(function, f"{text}; all: those that no long study is needed for", "names")
+        sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
+        sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
+    sub = command(tradeoff, "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 
@@ -155,28 +155,55 @@ def clean(options) -> int:
 
 
 def plot(options) -> int:
-    from .catalogue import draw
+    from .catalogue import FIGURES, draw
 
-    return _each(options.names, lambda name: _print_lines(draw(name, options.results, options.figures)))
+    return _write(options, FIGURES, draw)
 
 
 def table(options) -> int:
-    from .tables import tabulate
+    from .catalogue import TABLES, tabulate
 
-    return _each(options.names, lambda name: _print_lines(tabulate(name, options.results, options.tables)))
+    return _write(options, TABLES, tabulate)
+
+
+def _write(options, known: dict, make) -> int:
+    """Write figures or tables; with --run first compute the studies that they need, each once."""
+    from .catalogue import needed, outdated, usual
+
+    codes = {}
+
+    def one(name):
+        if options.run:
+            for study in needed(name, known):
+                codes[study] = codes[study] if study in codes else _prepared(study, options)
+            code = max((codes[study] for study in needed(name, known)), default=0)
+            if code or not outdated(name, known, options.results, options.folder):
+                return code
+        return _print_lines(make(name, options.results, options.folder))
+
+    return _each(usual(known) if options.names == ["all"] else options.names, one)
+
+
+def _prepared(study: str, options) -> int:
+    """Compute what is missing of a study of this repository; its results of an older version may be replaced."""
+    from .api import load
+
+    if study == "tradeoff":
+        return _measured(options, force=False)
+    report = load(study_file(study), options.results).run(force=True, processes=True, stream=sys.stderr)
+    return _print_report(report, study)
 
 
 def tradeoff(options) -> int:
+    return _each(["tradeoff"], lambda _: _measured(options, options.force))
+
+
+def _measured(options, force: bool) -> int:
     from .data.dataset import command_line
     from .evidence.tradeoff import results
-    from .evidence.tradeoff_page import page
-    from .figures.sources import write_text
 
-    def one(_):
-        found = results(options.results, force=options.force, command=command_line())
-        return _print_lines([write_text(Path(options.docs) / "tradeoff.md", page(found))])
-
-    return _each(["tradeoff"], one)
+    results(options.results, force=force, command=command_line())
+    return _print_lines([f"{options.results}/tradeoff.nc"])
 
 
 def _each(items, action, hint: str = "") -> int:

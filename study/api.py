@@ -62,7 +62,7 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         draft.cases(cases)
     for name, given in parameters.items():
         _add(draft, name, given)
-    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "most": LARGE}
+    whole = {"name": "solve", "title": title, "text": "", "most": LARGE}
     definition = complete(draft, "solve", x=x, profiles=profiles, **whole)
     return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
 
@@ -99,9 +99,9 @@ class Study:
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
-        if self.definition.kind == "contact" and state == "done":
+        if state == "done":
             counts = count_statuses(statuses(path))
-        elif self.definition.kind != "contact" or state not in ("new", "outdated"):
+        elif state not in ("new", "outdated"):
             pass
         elif not check_countable(Store(self.definition, self.results), path, yes):
             counts = {NOT_RUN: self.definition.grid.size}
@@ -135,7 +135,7 @@ class Study:
         found = look(self.definition, path, ())
         if belongs(self.definition, found):
             return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
-        if partial and self.definition.kind == "contact":
+        if partial:
             return partial_dataset(self.definition, self.results)
         if found.good or found.kind == "missing":
             reason = "holds results of another definition" if found.good else "does not exist"

@@ -218,13 +218,14 @@ def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, 
     title, text = "Work and precision of every way to solve the model", plan(ways, size)
     whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
     coordinates = {"set": list(SETS), "way": list(ways)}
-    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.iterates())
+    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.measured())
 
 
 def plan(ways: dict[str, Way], size: int) -> str:
     """What is measured, as text."""
     settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
-    return json.dumps({"size": size, "seed": SEED, "ways": settings})
+    iterates = [paper_error.INTERVALS, paper_error.STEPS]
+    return json.dumps({"size": size, "seed": SEED, "ways": settings, "iterates": iterates})
 
 
 def digest(text: str) -> str:

@@ -24,7 +24,7 @@ class Version(argparse.Action):
 
     def __call__(self, parser, *_) -> None:
         from ..data.dataset import package_version
-        from ..spec.definition import NUMERICS_VERSION
+        from ..spec.identity import NUMERICS_VERSION
 
         say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}", sys.stdout)
         parser.exit()

@@ -6,7 +6,7 @@ import xarray as xr
 from drawn import WORDS, bands, frame, legend, lines, texts
 
 from solver import fit_power_law
-from solver.laws.micro import displacement
+from solver.laws.disc_cell import displacement
 from study import open_results
 
 CASES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from solver import fit_power_law
-from solver.laws.micro import displacement
+from solver.laws.disc_cell import displacement
 from study import open_results
 from study.catalogue import TABLES, tabulate
 

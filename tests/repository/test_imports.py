@@ -21,7 +21,7 @@ ROOMS = {
         *("contact", "scaling", "models", "solve"),
     ),
     "study": (
-        *("terminal", "spec", "data", "files", "store", "work", "api", "figures", "paper", "evidence"),
+        *("terminal", "scene", "spec", "data", "files", "store", "work", "api", "figures", "paper", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }
@@ -134,6 +134,7 @@ def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `blocks`, start soon."""
     alone(f"import study.spec.vocabulary, study.spec.grid, study.spec.given, study.spec.definition; {NOT_HEAVY}")
     alone(f"import study.commands.arguments, study.work.cases; {NOT_HEAVY}")
+    alone(f"import study.scene.materials; {NOT_HEAVY}")
 
 
 def test_rooms_are_there_after_import_of_the_package_alone():
@@ -148,7 +149,7 @@ def test_rooms_are_there_after_import_of_the_package_alone():
 def test_public_names():
     import study
 
-    assert {"derived", "units", "vocabulary"} <= set(dir(study))
+    assert {"derived", "materials", "units", "vocabulary"} <= set(dir(study))
 
     assert {"solve", "load", "open_results", "Study", "StudyError", "to_physical", "from_physical"} <= set(dir(study))
     assert all(callable(getattr(study, name)) for name in study.__all__)

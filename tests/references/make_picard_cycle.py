@@ -1,8 +1,8 @@
 """Write study/evidence/picard_cycle.csv, which the last panel of the figure `picard_domain` shows.
 
 python tests/references/make_picard_cycle.py: two successive iterates of Eq. (8) with k = 0 for the main case at
-a = 0.04 on 64 nodes, long after the load has settled, and the solution, near the edge. The scheme is written out anew here;
-tests/evidence/test_picard_domain.py compares with the solver's.
+a = 0.04 on 64 nodes, long after the load has settled, and the solution, near the edge.
+The scheme is written out anew; tests/evidence/test_picard_domain.py compares with the solver's.
 """
 
 from pathlib import Path

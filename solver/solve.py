@@ -1,5 +1,6 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -63,8 +64,10 @@ def solve(problem, x=(0.0, 1.0)):
 
 
 def _of_a_model(problem, x):
-    """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters."""
-    return _solved(problem, *dimensionless(problem), x, problem.without_scheme())
+    """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters. The
+    asperities feel E1* = n E2* on a half-space too."""
+    scaled, C = dimensionless(problem)
+    return _solved(problem, replace(scaled, n=problem.n), C, x, problem.without_scheme())
 
 
 def _solved(problem, scaled, C, x, invalid):

@@ -171,24 +171,32 @@ class Bound(NamedTuple):
         return np.clip(new, 0.2 * old, 5.0 * old) if self.law.rough else new
 
 
-def inverse(value, target, y, steps=_STEPS):
+def inverse(value, target, y):
     """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding.
 
-    value : y -> (value, its derivative), increasing from 0; target : array; y : array of its shape, to begin with;
-    steps : the number of steps, which must do. By default each element goes on until it has converged.
+    value : y -> (value, its derivative), increasing from 0; target : array; y : array of its shape, to begin with.
 
-    Returns 0 where target <= 0, and NaN where it is NaN or no y is found.
+    Returns 0 where target <= 0, and NaN where it is NaN or no y is found. Each element goes on until it has converged.
     """
-    positive = target > 0
-    target = np.where(positive, target, np.where(np.isnan(target), np.nan, 1.0))
-    y = np.where(positive & (y > 0), y, 1.0)
+    goal = np.where(target > 0, target, 1.0)
+    y = np.where((target > 0) & (y > 0), y, 1.0)
     going, size = np.full(y.shape, True), np.full(y.shape, np.inf)
-    for _ in range(steps):
-        now, slope = value(y)
-        step = np.clip(np.log(target / now) * now / (slope * y), -_LONGEST, _LONGEST)
+    for _ in range(_STEPS):
+        step = np.clip(log_step(value, goal, y), -_LONGEST, _LONGEST)
         y = np.where(going, y * np.exp(step), y)
         size, before = np.where(going, np.abs(step), size), size
         going = going & (size > _LAST) & ((size > _ROUNDING) | (size < before / 2))
         if not going.any():
             break
-    return np.where(positive, np.where(size < 1, y, np.nan), np.where(np.isnan(target), np.nan, 0.0))
+    return of_positive(target, np.where(size < 1, y, np.nan))
+
+
+def log_step(value, target, y):
+    """The change of ln y in a Newton step on ln value against ln y; arguments as those of :func:`inverse`."""
+    now, slope = value(y)
+    return np.log(target / now) * now / (slope * y)
+
+
+def of_positive(target, y):
+    """y where target > 0; 0 where it is not, and NaN where it is NaN."""
+    return np.where(target > 0, y, np.where(np.isnan(target), np.nan, 0.0))

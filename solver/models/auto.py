@@ -147,15 +147,13 @@ def _with(part, **texts):
 
 
 def _half_space(part):
-    """The half-space of E2* under asperities of E1*, which are those of E2* with B̄ E2*/E1* and Ra (E2*/E1*)²."""
-    n = part.n
-    B = part.B * n ** (2 - part.beta)
-    return replace(_with(part, base="half_space"), Nbar=part.Nbar * n**2, Ra=part.Ra / n**2, B=B)
+    """The half-space of E2* under asperities that feel E1*: `n` is kept, which of a half-space is the law's alone."""
+    return _with(part, base="half_space")
 
 
 def _layer_alone(part):
     """A half-space of E1*."""
-    return replace(_with(part, base="half_space"), E2=part.n)
+    return replace(_with(part, base="half_space"), E2=part.n, n=np.ones(len(part)))
 
 
 def _dropped(part, x):

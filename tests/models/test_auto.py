@@ -14,6 +14,7 @@ from solver.models import auto
 from solver.models.model_error import first_order
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases
+from solver.solve import _of_a_model
 from study.spec.definition import read
 from study.spec.grid import columns
 
@@ -119,7 +120,8 @@ def test_a_case_has_the_numbers_of_the_model_it_names():
 @pytest.mark.parametrize("law", [{"micro": "disc_cell"}, {"micro": "power_law", "B": 0.1, "beta": 0.57}])
 def test_half_space_under_asperities_of_the_layer_is_the_thin_layer_without_thickness(law):
     part = Problem.of(P=[1e-5, 3e-4], **CONTACT | {"h": 1e-11}, **law, base="thin_layer")
-    found = solve(auto._half_space(part))
+    with np.errstate(all="ignore"):
+        found = _of_a_model(auto._half_space(part), np.array([0.0, 1.0]))
     same(found, solve(part), rtol=3e-6)
 
 

@@ -60,13 +60,12 @@ def parser() -> argparse.ArgumentParser:
     command("computing", "verify", text, "FILE")
     text = "remove blocks that do not serve a study as it is now, say which; never results"
     command("computing", "clean", text, "FILE")
-    sub = command("drawing", "plot", "draw figures from results", "NAME")
-    sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
-    sub = command("drawing", "table", "write tables from results", "NAME")
-    sub.add_argument("--tables", default="tables", **DIR, help="folder of the tables (default: tables)")
-    text = "measure error against time of every way to solve, and write the page about it"
-    sub = command("drawing", "tradeoff", text)
-    sub.add_argument("--docs", default="docs", **DIR, help="folder of the page (default: docs)")
+    for name, text in (("plot", "draw figures from results"), ("table", "write tables from results")):
+        kind = text.split()[1]
+        sub = command("drawing", name, f"{text}; all: those that no long study is needed for", "NAME")
+        sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
+        sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
+    sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 

@@ -6,7 +6,7 @@ from pathlib import Path
 from ..api import Study, load
 from ..files.examine import examine
 from ..terminal import answer, say
-from ..work.plan import status_values
+from ..work.plan import Report, status_values
 from .answers import cost_line, count_lines, failure_lines, report_line, state_line, verified_line
 from .arguments import study_file
 
@@ -55,9 +55,12 @@ def _opened(options, file: str) -> Study:
 
 
 def _compute(study: Study, options, **more) -> int:
-    names, name = ("workers", "scheduler", "fail_fast", "yes"), study.definition.name
-    chosen = {name: getattr(options, name) for name in names}
-    report = study.run(**chosen, **more, processes=True, stream=sys.stderr)
+    chosen = {name: getattr(options, name) for name in ("workers", "scheduler", "fail_fast", "yes")}
+    return reported(study.run(**chosen, **more, processes=True, stream=sys.stderr), study.definition.name)
+
+
+def reported(report: Report, name: str) -> int:
+    """Say what a run of the study NAME has done; returns the exit code."""
     if report.failures:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1

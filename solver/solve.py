@@ -12,7 +12,7 @@ from .models import auto
 from .models.model_error import closed_form, judged
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
-from .scaling import as_cases, dimensionless, refused, restore
+from .scaling import as_cases, dimensionless, refused, restore, with_rigid_punch
 from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
@@ -58,24 +58,26 @@ def solve(problem, x=(0.0, 1.0)):
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    scaled, C = dimensionless(problem)
-    return _solved(problem, scaled, C, x, refused(problem, scaled) | problem.without_scheme())
+    scaled, _ = dimensionless(problem)
+    return _solved(problem, x, refused(problem, scaled) | problem.without_scheme())
 
 
 def _of_a_model(problem, x):
     """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters."""
-    return _solved(problem, *dimensionless(problem), x, problem.without_scheme())
+    return _solved(problem, x, problem.without_scheme())
 
 
-def _solved(problem, scaled, C, x, invalid):
+def _solved(given, x, invalid):
+    problem = with_rigid_punch(given)
+    scaled, C = dimensionless(problem)
     solution = Solution.empty(len(problem), len(x))
     solution.status[invalid] = Status.INVALID_INPUT
     no_springs = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
     solution.status[no_springs] = Status.THIN_LAYER_NOT_APPLICABLE
     for index, solver in _routes(problem, ~(invalid | no_springs)):
         solution.put(index, solver(scaled.take(index), C[index], x))
-    _name_models(scaled, solution)
     restore(solution, problem)
+    _name_models(given, solution)
     return solution
 
 

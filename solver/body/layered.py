@@ -27,13 +27,27 @@ _BLOCK = 16384
 
 
 class Layer(NamedTuple):
-    """Material of layered cases, arrays (B,): h in R, n, nu1, nu2, bonded (bool)."""
+    """Material of layered cases, arrays (B,): h in R, n, nu1, nu2, bonded (bool), m.
+
+    The punch yields as a half-space of E3* = E1*/m does, so that the kernel is L + m. In units of both surfaces, Ec of
+    1/Ec = 1/E1* + 1/E3*, it is (L + m)/(1 + m), and its L - 1 is (L - 1)/(1 + m).
+    """
 
     h: np.ndarray
     n: np.ndarray
     nu1: np.ndarray
     nu2: np.ndarray
     bonded: np.ndarray
+    m: np.ndarray
+
+    @property
+    def material(self):
+        """n, nu1, nu2, bonded."""
+        return self[1:5]
+
+    def whole(self, u):
+        """The kernel (L + m)/(1 + m) (B,) at u (B,)."""
+        return (whole(u, *self.material) + self.m) / (1 + self.m)
 
     def take(self, index):
         """The sub-batch at `index`."""
@@ -103,9 +117,10 @@ def octave_of(layer, a):
 def operator_error(layer, a, nodes, coarse=False):
     """Relative error (B,) of the operator itself: rounding, for films what the convolution leaves out, and that of the
     coarse quadrature, if it is."""
-    L = whole(10 * layer.h / a, *layer[1:])
+    L = layer.whole(10 * layer.h / a)
     octave, _ = octave_of(layer, a)
-    local = np.abs(L - layer.n) / np.maximum(L, layer.n)
+    below = (layer.n + layer.m) / (1 + layer.m)
+    local = np.abs(L - below) / np.maximum(L, below)
     error = (1e-14 * nodes + np.where(coarse, COARSE * np.maximum(layer.n, 1.0), 0.0)) / np.minimum(L, 1.0)
     return error + np.where(octave == FILM, local / CUT**2, 0.0)
 
@@ -156,7 +171,7 @@ def _weights(layer, a, octave, depth, coarse, index):
         return Weights(*key, *(v @ own.spread for v in values), None, None, None)
     if octave != FILM:
         return Weights(*key, *_sampled(part, eta, k, weight, 0.0), None, None, None)
-    level = whole(CUT * eta / 2, *part[1:])[:, None] - 1
+    level = part.whole(CUT * eta / 2)[:, None] - 1
     kappa, _, _ = film.waves()
     below = _sampled(part, eta, k, weight * film.step(k / CUT), level)
     beyond, d_beyond = _sampled(part, eta, CUT * kappa, 1 - film.step(kappa), level)
@@ -167,10 +182,12 @@ def _weights(layer, a, octave, depth, coarse, index):
 def _sampled(layer, eta, k, weight, level):
     """w (L - 1 - level) and -w u dL/du (b, G) at the nodes k."""
     W, dW = np.empty((len(eta), len(k))), np.empty((len(eta), len(k)))
-    rows, material = max(1, _BLOCK // len(k)), layer[1:]
+    rows = max(1, _BLOCK // len(k))
     for low in range(0, len(eta), rows):  # a block at a time: the temporaries of the kernel stay in the cache
         part = slice(low, low + rows)
-        L1, uL = decaying_part(k * eta[part, None], *(field[part, None] for field in material))
+        L1, uL = decaying_part(k * eta[part, None], *(field[part, None] for field in layer.material))
+        yields = layer.m[part].any()  # most punches are rigid, and this is the inner loop
+        L1, uL = (v / (1 + layer.m[part, None]) for v in (L1, uL)) if yields else (L1, uL)
         np.multiply(weight, L1 - (level[part] if np.ndim(level) else level), out=W[part])
         np.multiply(-weight, uL, out=dW[part])
     return W, dW

@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.kernel import whole
 from ..body.layered import (
     Layer,
     half_space_share,
@@ -231,8 +230,7 @@ def softness(cases, a):
     """Compliance of the base over that of a half-space of E, about L at the wave number 1.5/a."""
     if cases.layer is None:
         return np.ones_like(a)
-    h, *material = cases.layer
-    return whole(1.5 * h / a, *material)
+    return cases.layer.whole(1.5 * cases.layer.h / a)
 
 
 def guess_radius(cases):

@@ -72,8 +72,9 @@ def solve_on_panels(case, rtol, iterate, budget):
 
 def _on_thin_layer(case):
     """The case with the thin layer in place of the exact one."""
-    springs = local_compliance(*case.layer)
-    return case._replace(layer=None, E=np.ones_like(case.E), C=springs)
+    layer = case.layer
+    springs = local_compliance(layer.h, *layer.material)
+    return case._replace(layer=None, E=layer.n / (layer.n + layer.m), C=springs)
 
 
 def resolve(case, ev, state, grid, rtol):

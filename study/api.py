@@ -102,9 +102,9 @@ class Study:
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
-        if self.definition.kind == "contact" and state == "done":
+        if state == "done":
             counts = count_statuses(statuses(path))
-        elif self.definition.kind != "contact" or state not in ("new", "outdated"):
+        elif state not in ("new", "outdated"):
             pass
         elif not check_countable(Store(self.definition, self.results), path, yes):
             counts = {NOT_RUN: self.definition.grid.size}
@@ -138,7 +138,7 @@ class Study:
         found = look(self.definition, path, ())
         if belongs(self.definition, found):
             return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
-        if partial and self.definition.kind == "contact":
+        if partial:
             return partial_dataset(self.definition, self.results)
         if found.good or found.kind == "missing":
             reason = "holds results of another definition" if found.good else "does not exist"

@@ -7,6 +7,7 @@ from solver import Model, Status
 
 from ..spec.definition import Definition
 from ..spec.grid import unflatten
+from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
 from .derived import validity
 from .provenance import provenance
@@ -48,7 +49,9 @@ def assembled(
         for name, flat in arrays.items()
         if name not in grid.values
     }
-    return plainly_written(xr.Dataset(variables, coordinates, provenance(definition, command)))
+    laws = law_versions(grid)
+    about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
+    return plainly_written(xr.Dataset(variables, coordinates, about))
 
 
 def plainly_written(dataset: xr.Dataset) -> xr.Dataset:

@@ -16,7 +16,6 @@ import numpy as np
 from solver import NUMERICS_VERSION
 
 from ..spec.definition import Definition
-from ..spec.identity import law_versions
 
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
@@ -36,7 +35,7 @@ def provenance(definition: Definition, command: str) -> dict:
         "command": command,
         **machine(),
         "created": created,
-    } | ({"micro_laws": "\n".join(found)} if (found := law_versions(definition.grid)) else {})
+    }
 
 
 @cache  # reading versions and asking git takes 10 ms; they are those of the code that was imported

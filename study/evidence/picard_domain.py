@@ -14,6 +14,8 @@ from solver.contact.equation import operate
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases, dimensionless
 
+from ..figures.registry import TWO_COLUMNS, Columns, figure
+
 MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))
 """β and number of nodes of each map."""
 SHOWN = {"beta": 0.5, "nodes": 64, "k": 0.0, "h": 0.02}
@@ -23,9 +25,9 @@ SHARES = (1e-2, 1e-4)
 DECADES = 10.0 ** np.arange(-8, 0)
 LINES = {"color": "black", "linewidth": 0.9}
 DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
-Columns = dict[str, np.ndarray]
 
 
+@figure("picard_domain", "picard_domain", size=(TWO_COLUMNS, 4.6), panels=(2, 3))
 def domain(panels, found: xr.Dataset) -> Columns:
     """Five maps of the size of the cycle in which the approximations end, and two successive iterates in one."""
     *maps, last = panels.ravel()

@@ -24,7 +24,7 @@ from ..data.provenance import provenance
 from ..files.examine import examine
 from ..files.results_file import open_results, write
 from ..paper import paper_error
-from ..paper.uniform import solve_uniform, uniform_mesh
+from ..paper.uniform import Found, solve_uniform, uniform_mesh
 from .problem_sets import SETS
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
@@ -68,17 +68,6 @@ class Way:
         return fits[np.unique(np.linspace(0, len(fits) - 1, min(self.most, len(fits))).round().astype(int))]
 
 
-def papers_way(cases: dict, k: float, intervals: float) -> Solution:
-    """The paper's, in batches of one base and law; everything is iterated until the mesh is the largest error."""
-    problem = Problem.of(**cases)
-    solution = Solution.empty(len(problem), 0)
-    for base, micro in {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}:
-        index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
-        part = solve_uniform(problem.take(index), int(intervals), k, 0.3 / intervals**2)
-        solution.put(index, {name: getattr(part, name) for name in (*JUDGED, "status")})
-    return solution
-
-
 def changed(**parameters) -> Callable[[dict, float], Solution]:
     """`run` of the solver on the cases with other parameters; one that is a function is given the setting."""
 
@@ -105,12 +94,16 @@ def _picard(k: float) -> Way:
 
 
 def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
-    """The paper's way with one k, on meshes of `settings` intervals."""
+    """The paper's way with one k, on meshes of `settings` intervals; all is iterated until the mesh is the largest
+    error."""
 
     def mesh(intervals: float):
         return uniform_mesh(int(intervals))
 
-    return Way(lambda cases, n: papers_way(cases, k, n), "intervals", settings, sets, PAPERS_BASES, most, prepare=mesh)
+    def run(cases: dict, intervals: float) -> Found:
+        return solve_uniform(Problem.of(**cases), int(intervals), k, 0.3 / intervals**2)
+
+    return Way(run, "intervals", settings, sets, PAPERS_BASES, most, prepare=mesh)
 
 
 WAYS = {
@@ -218,13 +211,14 @@ def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, 
     title, text = "Work and precision of every way to solve the model", plan(ways, size)
     whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
     coordinates = {"set": list(SETS), "way": list(ways)}
-    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.iterates())
+    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.measured())
 
 
 def plan(ways: dict[str, Way], size: int) -> str:
     """What is measured, as text."""
     settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
-    return json.dumps({"size": size, "seed": SEED, "ways": settings})
+    iterates = [paper_error.INTERVALS, paper_error.STEPS]
+    return json.dumps({"size": size, "seed": SEED, "ways": settings, "iterates": iterates})
 
 
 def digest(text: str) -> str:

@@ -56,7 +56,6 @@ class Entry:
         return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
 
 
-POSITIVE = "(0, inf)"
 LISTED = 40  # names in a message
 
 # fmt: off
@@ -109,13 +108,6 @@ _ENTRIES = (
     Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
     Entry("case", "", "number of the case", "coordinate"),
     Entry("label", "", "label of the case", "coordinate"),
-    Entry("fit.p_min", "", "smallest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
-    Entry("fit.p_max", "", "largest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=0.025),
-    Entry("fit.step", "", "pressure step of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
-    Entry("fit.mesh", "", "mesh of the fit", "fit", choices=("uniform", "graded"), default="uniform"),
-    Entry("A_exact", "A[p]", "additional displacement, exact", "law", (0, 1), MICRON, "(6)"),
-    Entry("A_fit", "B p^β", "additional displacement, fitted power law", "law", (0, 1), MICRON),
-    Entry("max_error", "", "largest relative error of the fit over the interval `check`", "law"),
 )
 # fmt: on
 
@@ -141,7 +133,6 @@ CONTROLS = names("control")
 NUMERICS = names("numerics")
 PARAMETERS = list(names("control", "material", "roughness", "numerics"))
 """Names of parameters; :func:`study.spec.laws.learn` adds those of registered laws here and to VOCABULARY."""
-MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
 
 
 def having(name: str, values) -> np.ndarray:

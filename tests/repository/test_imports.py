@@ -22,7 +22,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "scene", "spec", "data", "files", "store", "work", "api", "figures", "paper", "evidence"),
-        *("tables", "catalogue", "commands", "__main__"),
+        *("catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

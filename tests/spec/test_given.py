@@ -46,51 +46,6 @@ def test_points_increase_from_0_to_1(x):
     ]
 
 
-LAW = {"kind": "micro_law", "cases": [{"Ra": 0.004, "Nbar": 250000}]}
-
-
-@pytest.mark.parametrize(
-    ("fit", "expected"),
-    [
-        ({"check": [0, 0.1]}, "[fit] check = [0, 0.1]: must be [low, high] with 0 < low < high"),
-        ({"check": [0.1, 0.1]}, "[fit] check = [0.1, 0.1]: must be"),
-        ({"check": [0.1, 0.2, 0.3]}, "[fit] check = [0.1, 0.2, 0.3]: must be"),
-        ({"check": 0.1}, "[fit] check = 0.1: must be"),
-        ({"check": ["a", "b"]}, "[fit] check = ['a', 'b']: must be"),
-        ({"p_min": -1}, "[fit] p_min = -1: must be > 0"),
-        ({"step": 0}, "[fit] step = 0: must be > 0"),
-        ({"p_max": 1.5e-4}, "[fit] p_max must be at least one step, and at most a million steps, above p_min"),
-        ({"pmin": 1}, '[fit] "pmin" is not known; did you mean "p_min"?'),
-    ],
-    ids=str,
-)
-def test_bad_fits(fit, expected):
-    (message,) = messages(**LAW, fit=fit)
-    assert message.startswith(expected)
-
-
-def test_a_fit_is_what_is_given_and_else_the_default():
-    assert defined(**LAW).fit == {
-        "p_min": 1e-4,
-        "p_max": 0.025,
-        "step": 1e-4,
-        "mesh": "uniform",
-        "check": [0.0025, 0.025],
-    }
-    given = {"p_min": 1e-3, "p_max": 0.01, "step": 1e-3, "mesh": "graded", "check": [0.002, 0.009]}
-    assert defined(**LAW, fit=given).fit == given
-    np.testing.assert_allclose(defined(**LAW, fit=given).x, np.arange(1, 11) * 1e-3, rtol=1e-14, atol=0)  # a product
-
-
-def test_a_law_takes_only_roughness_and_a_contact_no_fit():
-    assert messages(**LAW, model={"h": 1})[0].startswith('[model] "h" is not a parameter; known: Nbar, Ra')
-    assert messages(model=SMOOTH | {"P": 1}, fit={})[0] == '"fit" ' + (
-        "is not a section; known: title, kind, model, axes, cases, sample, numerics, output"
-    )
-    assert defined(kind="micro_law", axes={"Ra": [0.004], "Nbar": [1e5, 2e5]}).grid.sizes == {"Ra": 1, "Nbar": 2}
-    assert messages(kind="micro_law", model={"Ra": 0.004}) == ["Nbar is missing"]
-
-
 def test_numerics_reach_the_grid():
     given = {"scheme": "picard", "k": 2.0, "rtol": 1e-4, "accuracy": 0.1, "model_check": "first_order", "nodes": 16,
              "max_iterations": 7}  # fmt: skip

@@ -216,7 +216,7 @@ def base() -> Definition:
     found = from_tables(tables, "base", "text", "base")
     dates = ("n",), np.array(["2024-01-01", "2025-01-01"], dtype="datetime64[ns]")
     grid = replace(found.grid, labels=found.grid.labels | {"date": dates})
-    return replace(found, grid=grid, fit={"p_min": 1e-4, "mesh": "uniform", "check": [0.0025, 0.025]})
+    return replace(found, grid=grid)
 
 
 def changed(what: str, name: str, dims: tuple, *array) -> dict:
@@ -231,7 +231,6 @@ def transposed() -> dict:
 
 
 OTHERS = {
-    "kind": lambda: {"kind": "micro_law"},
     "a number, in its last bit": lambda: changed("values", "P", ("case",), [1e-5, np.nextafter(2e-5, 1)]),
     "a word": lambda: changed("values", "bonding", ("bonding",), ["bonded", "bonded"]),
     "name of a parameter": lambda: changed("values", "nu1", (), 0.1),
@@ -247,9 +246,6 @@ OTHERS = {
     "profiles": lambda: {"profiles": ("p",)},
     "order of profiles": lambda: {"profiles": ("lam", "p")},
     "type": lambda: {"dtype": "float32"},
-    "fit, a number": lambda: {"fit": base().fit | {"p_min": 2e-4}},
-    "fit, a word": lambda: {"fit": base().fit | {"mesh": "graded"}},
-    "fit, interval": lambda: {"fit": base().fit | {"check": [0.0025, 0.02]}},
 }
 
 
@@ -272,10 +268,10 @@ def test_what_changes_no_number_is_not_in_the_digest():
 def load(tmp_path):
     """A study of two contacts, always the same file and folder."""
 
-    def written(numerics: str = "", model: str = "", label: str = "light", kind: str = "") -> study.Study:
+    def written(numerics: str = "", model: str = "", label: str = "light") -> study.Study:
         text = f'[model]\nh = 0.5\nn = 0.5\nmicro = "smooth"\n{model}\n[numerics]\n{numerics}\n[output]\nx = 3\n'
         text += f'[[cases]]\nP = 1e-7\nlabel = "{label}"\n[[cases]]\nP = 1e-3\nlabel = "heavy"\n'
-        (tmp_path / "two.toml").write_text(kind or text, encoding="utf-8")
+        (tmp_path / "two.toml").write_text(text, encoding="utf-8")
         return study.load(tmp_path / "two.toml", tmp_path / "results")
 
     return written
@@ -325,18 +321,6 @@ def test_an_edit_of_a_label_is_in_the_results_and_computes_nothing(load):
     edited = load(label="small")
     assert edited.run().computed == 0
     assert edited.open().label.values.tolist() == ["small", "heavy"]
-
-
-def test_an_edit_of_the_fit_is_not_answered_with_the_old_one(load, tmp_path):
-    law = 'kind = "micro_law"\n[[cases]]\nRa = 0.004\nNbar = 250000\n[fit]\nstep = 1e-3\n'
-    load(kind=law).run()
-    edited = load(kind=law + 'mesh = "graded"\n')
-    assert edited.status()["state"] == "outdated"
-    with pytest.raises(study.StudyError, match="holds results of another definition"):
-        edited.open()
-    edited.run()
-    xr.testing.assert_identical(edited.open().drop_attrs(), fresh(edited, tmp_path / "fresh").drop_attrs())
-    assert edited.open().beta != fresh(load(kind=law), tmp_path / "old").beta
 
 
 def test_an_edit_of_what_no_case_uses_is_of_no_account(load):

@@ -13,6 +13,8 @@ __all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load"
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
+#: Names that no parameter of a law can have; those of results come from the vocabulary of studies.
+RESERVED = {*CONTROL, "control", "value", "more"}
 
 
 def register(law):
@@ -43,9 +45,9 @@ def _declare(laws):
     for law in laws.values():
         for name, own in law.parameters.items():
             known, names = declared.get(name, (own, ()))
-            taken = name in CONTROL or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"
+            taken = name in RESERVED or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"
             if taken or own != known:
-                raise ValueError(f"micro law {law.name}: the parameter {name} is known already, as another one")
+                raise ValueError(f"micro law {law.name}: the name of the parameter {name} is that of something else")
             declared[name] = known, (*names, law.name)
     for name in [name for name, own in PARAMETERS.items() if own.needed_by[0] == "micro" and name not in declared]:
         del PARAMETERS[name]  # of a law that has been replaced

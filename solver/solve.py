@@ -1,6 +1,5 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
 
-from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -10,7 +9,7 @@ from .contact.equation import evaluate
 from .contact.error import finish
 from .laws import LAWS
 from .models import auto
-from .models.model_error import closed_form
+from .models.model_error import closed_form, judged
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
 from .scaling import as_cases, dimensionless, refused, restore
@@ -64,10 +63,8 @@ def solve(problem, x=(0.0, 1.0)):
 
 
 def _of_a_model(problem, x):
-    """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters. The
-    asperities feel E1* = n E2* on a half-space too."""
-    scaled, C = dimensionless(problem)
-    return _solved(problem, replace(scaled, n=problem.n), C, x, problem.without_scheme())
+    """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters."""
+    return _solved(problem, *dimensionless(problem), x, problem.without_scheme())
 
 
 def _solved(problem, scaled, C, x, invalid):
@@ -111,7 +108,7 @@ def _auto(part, C, x):
 
 
 def _judged(part, C, x):
-    return vars(auto.judged(part, x, _of_a_model))
+    return vars(judged(part, x, _of_a_model))
 
 
 def _smooth_half_space(part, C, x):

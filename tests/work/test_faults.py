@@ -96,7 +96,7 @@ def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
     assert_ends_well(opened, undisturbed, CASES - len(before))
 
 
-@pytest.mark.parametrize("at", ["run._finish", "join.create", "run.tidy"])
+@pytest.mark.parametrize("at", ["work.run._finish", "store.writer.create", "work.run.tidy"])
 def test_killed_while_the_results_are_written(opened, undisturbed, tmp_path, at):
     process = child(tmp_path / "line.toml", tmp_path / "log", at=at, workers=2)
     process.join(PATIENCE)

@@ -2,7 +2,8 @@
 scipy only, and threadpoolctl, which keeps BLAS on one thread."""
 
 from . import closed_forms
-from .laws import micro
+from .laws import disc_cell as micro
+from .laws import register
 from .laws.fit import Fit, fit_power_law
 from .problem import Problem
 from .solution import Model, Solution
@@ -22,5 +23,6 @@ __all__ = [
     "closed_forms",
     "fit_power_law",
     "micro",
+    "register",
     "solve",
 ]

@@ -1,4 +1,7 @@
-"""Closed-form solutions: for users, for first guesses and for tests. Smooth punches only.
+"""Closed-form solutions of smooth contacts, for users, for first guesses and for tests.
+
+All arguments are in one consistent set of units (m, Pa and N, say) and so are the answers; with R = E = 1, the default,
+they are dimensionless like those of :func:`solver.solve`. Arrays broadcast.
 
 References
 ----------
@@ -11,8 +14,8 @@ from typing import NamedTuple
 import numpy as np
 
 
-class Hertz(NamedTuple):
-    """Hertz's contact: P in E R², a and D in R, p0 = p(0) in E; arrays of one shape."""
+class SmoothContact(NamedTuple):
+    """Load P, contact radius a, indentation depth D and central pressure p0 = p(0); arrays of one shape."""
 
     P: np.ndarray
     a: np.ndarray
@@ -25,14 +28,14 @@ def hertz(P=None, a=None, D=None, p0=None, R=1.0, E=1.0):
 
     Parameters
     ----------
-    P, a, D, p0 : array, > 0; exactly one
-        Load (E R²), contact radius (R), indentation depth (R), largest pressure (E).
+    P, a, D, p0 : array, > 0; exactly one of them
+        Load, contact radius, indentation depth, pressure in the centre.
     R, E : array, > 0
-        Radius of the sphere and E* of the half-space; any consistent units.
+        Radius of the sphere, and reduced modulus E* of the half-space.
 
     Returns
     -------
-    Hertz
+    SmoothContact
         P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R).
 
     Raises
@@ -54,45 +57,40 @@ def hertz(P=None, a=None, D=None, p0=None, R=1.0, E=1.0):
     elif p0 is not None:
         a = np.pi * np.asarray(p0, float) * R / (2 * E)
     a = np.asarray(a, dtype=float)
-    return Hertz(P=4 / 3 * E * a**3 / R, a=a, D=a * a / R, p0=2 / np.pi * E * a / R)
+    return SmoothContact(P=4 / 3 * E * a**3 / R, a=a, D=a * a / R, p0=2 / np.pi * E * a / R)
 
 
 def hertz_pressure(x, p0):
-    """Hertz's pressure p0 sqrt(1 - x²), x = r/a in [0, 1], broadcast against p0; in the unit of p0."""
+    """Hertz's pressure p0 sqrt(1 - x²) at the radii x = r/a in [0, 1], in the unit of p0; x and p0 broadcast."""
     x = np.asarray(x, dtype=float)
     return p0 * np.sqrt((1 - x) * (1 + x))
 
 
-class Layer(NamedTuple):
-    """Thin layer on a rigid base: P in E R², a and D in R, p0 = p(0) in E; arrays of one shape."""
+def thin_layer_on_rigid_base(P=None, a=None, D=None, *, h, nu1=0.3, bonded=False, R=1.0, E=1.0):
+    """Smooth sphere on a thin layer on a rigid base: P, a, D and p(0) from any one of the first three.
 
-    P: np.ndarray
-    a: np.ndarray
-    D: np.ndarray
-    p0: np.ndarray
-
-
-def thin_layer_on_rigid_base(P=None, a=None, D=None, h=1.0, nu1=0.3, bonded=False, R=1.0, E=1.0):
-    """Smooth sphere on a thin compressible layer on a rigid base (a foundation of springs): leading order in h/a.
+    The layer is a foundation of springs: each place gives way by C p(r) under its own pressure. That is the leading
+    order for a layer much thinner than the contact, h << a, and Eq. (3) of the model for n -> 0.
 
     Parameters
     ----------
-    P, a, D : array, > 0; exactly one
-        Load (E R²), contact radius (R), indentation depth (R).
+    P, a, D : array, > 0; exactly one of them
+        Load, contact radius, indentation depth.
     h : array, > 0
-        Thickness of the layer (R).
+        Thickness of the layer.
     nu1 : array, (-1, 0.5); used when bonded
-        Poisson ratio of the layer; the bonded incompressible layer (0.5) has no such limit and gives inf.
+        Poisson ratio of the layer. At 0.5 a bonded layer is no foundation of springs: P and p0 are infinite at given a
+        or D, and NaN at given P.
     bonded : bool
-        Perfect bond or frictionless interface.
+        Perfect bond of layer and base, or a frictionless interface.
     R, E : array, > 0
-        Radius of the sphere and E1* of the layer.
+        Radius of the sphere, and reduced modulus E1* of the layer.
 
     Returns
     -------
-    Layer
-        p = (a² - r²)/(2 R C), C = 2 A2 h/E with A2 of Eq. (2) at n = 0; P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2
-        R C).
+    SmoothContact
+        P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²). C = 2 A2 h/E, with A2 of
+        Eq. (2) at n = 0: 1/2 without friction, (1 - 2 nu1)/(2 (1 - nu1)²) bonded.
 
     Raises
     ------
@@ -108,5 +106,5 @@ def thin_layer_on_rigid_base(P=None, a=None, D=None, h=1.0, nu1=0.3, bonded=Fals
     elif D is not None:
         a = np.sqrt(2 * R * np.asarray(D, float))
     a = np.asarray(a, dtype=float)
-    with np.errstate(divide="ignore"):
-        return Layer(P=np.pi * a**4 / (4 * R * C), a=a, D=a * a / (2 * R), p0=a * a / (2 * R * C))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return SmoothContact(P=np.pi * a**4 / (4 * R * C), a=a, D=a * a / (2 * R), p0=a * a / (2 * R * C))

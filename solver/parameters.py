@@ -1,17 +1,19 @@
-"""What describes a case: the one table of bounds, defaults and choices, and of who needs what."""
+"""What describes a case: the one table of bounds, defaults and choices, and of which cases have and use what."""
 
 from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
-from .body.springs import BONDINGS
-from .laws.micro import MICROS
-
+BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto")
 SCHEMES = ("newton", "picard")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
+
+
+#: The condition of what every case needs.
+EVERY = ("", ())
 
 
 class Parameter(NamedTuple):
@@ -23,7 +25,9 @@ class Parameter(NamedTuple):
     interval : of a number, what is allowed, in units R = E2* = 1 and mathematical notation. Within it the solver is
         tested (tests/fuzz_solver.py): each case is solved, or has a status.
     also : single values allowed outside the interval.
-    needed_by : name of another parameter, and those of its choices that need this one, which has no default then.
+    needed_by : (name of another parameter, some of its choices): the cases that have this one. There it is checked,
+        and must be given if it has no default. ("", ()): all have it.
+    used_by : the same again: those of them whose answer depends on it.
     """
 
     default: float | int | str | None = None
@@ -31,13 +35,13 @@ class Parameter(NamedTuple):
     whole: bool = False
     interval: str = ""
     also: tuple = ()
-    needed_by: tuple[str, tuple[str, ...]] = ("", ())
+    needed_by: tuple[str, tuple[str, ...]] = EVERY
+    used_by: tuple[str, tuple[str, ...]] = EVERY
 
 
-#: The cases that have a layer, asperities, a fitted law of them.
+#: The cases that have a layer, and a bonded layer.
 LAYERED = ("base", ("thin_layer", "layered", "auto"))
-ROUGH = ("micro", ("disc_cell", "power_law"))
-FITTED = ("micro", ("power_law",))
+BONDED = ("bonding", ("bonded",))
 
 #: What may be given; a case has one of them.
 CONTROL = {
@@ -46,23 +50,21 @@ CONTROL = {
     "D": Parameter(interval="[1e-18, 1e3]"),
 }
 
-#: In the order of the fields of :class:`~solver.problem.Problem`, where units are said.
+#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`. Units are
+#: said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out (study/store/keys.py): whoever changes a
+#: default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
     "n": Parameter(interval="[1e-9, 1e9]", needed_by=LAYERED),
-    "nu1": Parameter(0.3, interval="(-1, 0.5]"),
-    "nu2": Parameter(0.3, interval="(-1, 0.5]"),
-    "bonding": Parameter("frictionless", BONDINGS),
-    "Nbar": Parameter(interval="[1e-4, 1e18]", needed_by=ROUGH),
-    "Ra": Parameter(interval="[1e-7, 1e2]", needed_by=ROUGH),
+    "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
+    "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
+    "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
     "base": Parameter("layered", BASES),
-    "accuracy": Parameter(1e-2, interval="(0, 1)"),
-    "model_check": Parameter("closed_form", MODEL_CHECKS),
-    "micro": Parameter("disc_cell", MICROS),
-    "B": Parameter(interval="[1e-8, 1e4]", needed_by=FITTED),
-    "beta": Parameter(interval="[0.01, 1]", needed_by=FITTED),
+    "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
+    "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
+    "micro": Parameter("disc_cell"),
     "scheme": Parameter("newton", SCHEMES),
-    "k": Parameter(1.0, interval="[0, 1e6]"),
+    "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
     "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
     "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),
     "max_iterations": Parameter(0, whole=True, interval="[1, 100000]", also=(0,)),
@@ -70,8 +72,18 @@ PARAMETERS = {
     "E2": Parameter(1.0, interval="(0, inf)"),
 }
 
-#: Numbers without a default of their own accord that only some cases look at, beside what `needed_by` says.
-LOOKED_AT_BY = {"nu1": LAYERED, "nu2": LAYERED, "accuracy": ("base", ("auto",))}
+
+def among(condition, values):
+    """(...) bool: the cases that a condition such as `needed_by` names; `values(name)` gives the texts of a parameter,
+    of any shape."""
+    name, words = condition
+    return np.any([values(name) == word for word in words], axis=0) if name else np.True_
+
+
+def uses(name, values):
+    """(...) bool: the cases whose answer depends on a parameter; `values` as above."""
+    own = PARAMETERS[name] if name in PARAMETERS else CONTROL[name]
+    return among(own.needed_by, values) & among(own.used_by, values)
 
 
 @lru_cache(maxsize=64)

@@ -4,7 +4,8 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from .parameters import CONTROL, LOOKED_AT_BY, PARAMETERS, Parameter, allowed
+from .laws import LAWS
+from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
 
 
 @dataclass(frozen=True)
@@ -126,26 +127,24 @@ class Problem:
         """The sub-batch at `index`."""
         return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:]))
 
-    def _among(self, name, words):
-        """(B,) bool: a text is one of `words`; found by the other choices, of which there are fewer."""
-        others = [word for word in PARAMETERS[name].choices if word not in words]
-        return np.all([getattr(self, name) != word for word in others], axis=0)
+    def rough(self):
+        """(B,) bool: the case has asperities."""
+        return np.all([self.micro != name for name, law in LAWS.items() if not law.rough], axis=0)
 
     def without_scheme(self):
         """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""
-        return (self.scheme == "picard") & (self.micro == "smooth")
+        return (self.scheme == "picard") & ~self.rough()
 
     def invalid(self):
         """(B,) bool: a number that the case needs is not finite or outside its bounds, those of a problem in units R =
         E2* = 1."""
         bad = ~allowed(CONTROL[self.control], self.value)
-        needing = {}
+        having = {}
         for name, own in PARAMETERS.items():
             if own.interval:
-                selector = LOOKED_AT_BY.get(name, own.needed_by)
-                if selector not in needing:
-                    needing[selector] = self._among(*selector) if selector[0] else True
-                bad |= needing[selector] & ~allowed(own, getattr(self, name))
+                if own.needed_by not in having:
+                    having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
+                bad |= having[own.needed_by] & ~allowed(own, getattr(self, name))
         return bad
 
 
@@ -163,5 +162,7 @@ def _array(name, value):
 def _missing(name, arrays):
     """A message if some case needs a parameter that is not given, as a list."""
     selector, needing = PARAMETERS[name].needed_by
-    found = [f'"{word}"' for word in needing if word in arrays[selector]] if selector else []
+    if PARAMETERS[name].default is not None or not selector:
+        return []
+    found = [f'"{word}"' for word in needing if word in arrays[selector]]
     return [f"{name} is missing: {selector} = {' or '.join(found)} needs it"] if found else []

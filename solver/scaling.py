@@ -7,7 +7,7 @@ import numpy as np
 from .body.layered import Layer
 from .body.springs import local_compliance
 from .contact.equation import Cases
-from .laws.micro import LAWS, scales
+from .laws import LAWS
 from .parameters import PARAMETERS, allowed
 from .status import Status
 
@@ -44,20 +44,14 @@ def refused(problem, scaled):
 
 
 def as_cases(part, C):
-    """:class:`~solver.contact.equation.Cases` of one law on one base, and the law."""
-    micro = str(part.micro[0])
-    spot_scale, spot_depth = scales(part.n, part.Nbar, part.Ra)
-    none, one = np.zeros(len(part)), np.ones(len(part))
-    p_star, A_star, spot_scale, exponent = {
-        "disc_cell": (spot_scale, spot_depth, spot_scale, 2 / 3 * one),
-        "power_law": (part.n * one, part.B * part.Ra, spot_scale, part.beta * one),  # A = B Ra (p/E1*)^β: g = q^β
-        "smooth": (part.n * one, none, none, one),
-    }[micro]
+    """:class:`~solver.contact.equation.Cases` of one law on one base."""
+    own = LAWS[str(part.micro[0])]
+    law = own.bind(part.n, **{name: getattr(part, name) for name in own.parameters})
+    none = np.zeros(len(part))
     layered = part.base[0] == "layered"
     layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
-    E = part.n if layered else one
-    fields = part.control, layer, part.value, p_star, A_star, spot_scale, E, C, exponent
-    return Cases(*fields, reach=none, coarse=none > 0), LAWS[micro]
+    E = part.n if layered else none + 1
+    return Cases(part.control, law, layer, part.value, E, C, reach=none, coarse=none > 0)
 
 
 def restore(solution, problem, without=()):

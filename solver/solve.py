@@ -7,7 +7,7 @@ import numpy as np
 from .contact import adaptive, picard, smooth
 from .contact.equation import evaluate
 from .contact.error import finish
-from .laws.micro import LAWS
+from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form
 from .numerics.ladder import start_nodes
@@ -85,7 +85,7 @@ def _routes(problem, solvable):
     yield from _route(solvable & judged, _judged)
     yield from _route(solvable & (problem.base == "auto"), _auto)
     solvable = solvable & ~judged & (problem.base != "auto")
-    is_smooth, by_picard = problem.micro == "smooth", problem.scheme == "picard"
+    is_smooth, by_picard = ~problem.rough(), problem.scheme == "picard"
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
     layered = problem.base == "layered"
@@ -120,8 +120,7 @@ def _smooth_layer(part, C, x):
 
 
 def _newton(part, C, x):
-    cases, law = as_cases(part, C)
-    return adaptive.solve_newton(cases, law, part.rtol, part.nodes, int(part.max_iterations[0]), x)
+    return adaptive.solve_newton(as_cases(part, C), part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
 def _picard_nodes(problem):
@@ -130,12 +129,12 @@ def _picard_nodes(problem):
 
 def _picard(part, C, x):
     """Successive approximations on one mesh; their error is the distance to one Newton step on the next finer mesh."""
-    cases, law = as_cases(part, C)
+    cases = as_cases(part, C)
     n = int(_picard_nodes(part)[0])
     grid = mesh(n)
     with np.errstate(all="ignore"):
-        state, status, count = picard.solve(cases, law, grid, part.k, part.rtol, int(part.max_iterations[0]))
-        values, _ = finish(cases, law, grid, state, x, evaluate(cases, state, law, grid))
+        state, status, count = picard.solve(cases, grid, part.k, part.rtol, int(part.max_iterations[0]))
+        values, _ = finish(cases, grid, state, x, evaluate(cases, state, grid))
     del values["tension"]  # asperities carry none
     status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
     return values | {"status": status.astype(np.int8), "iterations": count}

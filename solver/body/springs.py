@@ -6,8 +6,6 @@ A1 + A2 u, Eq. (2), so that u = (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*
 
 import numpy as np
 
-BONDINGS = ("frictionless", "bonded")
-
 
 def thin_layer_coefficients(n, nu1, nu2, bonded):
     """Coefficients A1 and A2 of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios.

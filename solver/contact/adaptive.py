@@ -26,7 +26,7 @@ _SURE, _GAP = 0.1, 1e-9
 _TENSION = 1e-9
 
 
-def solve_newton(cases, law, rtol, nodes, limit, x):
+def solve_newton(cases, rtol, nodes, limit, x):
     """Solve a batch of one law on one base: dict of output arrays in units R = E2* = 1, named as in Solution.
 
     rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a mesh (0: the scheme's own); x (m,) radii of
@@ -43,7 +43,7 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
     out |= {"p": np.full((size, len(x)), np.nan), "lam": np.full((size, len(x)), np.nan)}
     if cases.layer is not None and limit == 0:
         with np.errstate(all="ignore"):
-            cases = only_as_wanted(cases, law, np.where(nodes == 0, rtol, 0.0))
+            cases = only_as_wanted(cases, np.where(nodes == 0, rtol, 0.0))
     hopeless, spent = np.zeros((2, size), dtype=bool)
     starts = {}  # n -> which cases (B,) have a state on n nodes to begin with, and those
 
@@ -51,10 +51,10 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         for done in [m for m in starts if m < n]:
             del starts[done]
         part, begun = cases.take(index), starts.get(n)
-        start, known = begin(part, law, mesh(n), limit, *(v[index] for v in begun) if begun else ())
+        start, known = begin(part, mesh(n), limit, *(v[index] for v in begun) if begun else ())
         goes_on = (nodes[index] == 0) & (n < LADDER[-1])
         with np.errstate(all="ignore"):  # a case that goes wrong is a NaN and a status
-            finer = _rung(part, law, n, limit, start, known, x, out, index, np.where(goes_on, rtol[index], np.inf))
+            finer = _rung(part, n, limit, start, known, x, out, index, np.where(goes_on, rtol[index], np.inf))
         closed = out["status"][index] == Status.CONVERGED
         unsure = (nodes[index] == 0) & _perhaps_lifted(out, index)
         error = np.where(unsure, np.inf, out["error"][index])
@@ -67,15 +67,15 @@ def solve_newton(cases, law, rtol, nodes, limit, x):
         return np.where(closed, error, np.nan)
 
     with np.errstate(all="ignore"):
-        first = first_rung(nodes_wanted(cases, law, rtol))
+        first = first_rung(nodes_wanted(cases, rtol))
     stack = STACK if cases.layer is None else 3 * STACK  # there the calls are more
-    unmet = climb(rtol, nodes, solve_on, first, _neighbours(cases, law), stack)
+    unmet = climb(rtol, nodes, solve_on, first, _neighbours(cases), stack)
     lifted = _lifted(out)  # perhaps by the polynomial: panels must confirm it
     hopeless &= ~lifted
     open_end = (unmet | lifted | (out["status"] != Status.CONVERGED)) & (nodes == 0) & (limit == 0) & ~hopeless
     for i in np.flatnonzero(open_end):
         with np.errstate(all="ignore"):
-            unmet[i], spent[i] = _on_panels(cases.take([i]), law, rtol[i], x, out, i)
+            unmet[i], spent[i] = _on_panels(cases.take([i]), rtol[i], x, out, i)
     out["status"][unmet | hopeless] = Status.TOLERANCE_NOT_MET
     spent &= out["status"] == Status.TOLERANCE_NOT_MET
     spent |= (out["status"] == Status.ITERATION_LIMIT) & (out["iterations"] >= newton_steps(out["nodes"]))
@@ -106,12 +106,12 @@ def _refuse(out, mask, status):
     out["status"][mask] = status
 
 
-def _neighbours(cases, law):
+def _neighbours(cases):
     """Order (B,) in which layered cases of one octave of h/a stand together: fewer, larger matrix products."""
     if cases.layer is None:
         return None
     with np.errstate(all="ignore"):
-        octave, depth = octave_of(cases.layer, guess_radius(cases, law))
+        octave, depth = octave_of(cases.layer, guess_radius(cases))
     return np.lexsort((octave, depth))
 
 
@@ -123,15 +123,15 @@ def _keep(starts, index, state, size):
     known[index], y[index], eta[index] = True, *state
 
 
-def _rung(cases, law, n, limit, start, known, x, out, index, enough):
+def _rung(cases, n, limit, start, known, x, out, index, enough):
     """Solve on n nodes, write everything to `out` at `index`; returns the state on the next finer mesh."""
     grid = mesh(n)
     most = min(limit, newton_steps(n)) or newton.LIMIT
-    state, closed, count = iterate(cases, start, law, grid, most, 0.0 if limit else NEAR, known)
+    state, closed, count = iterate(cases, start, grid, most, 0.0 if limit else NEAR, known)
     if not (closed.all() or limit):
-        rescue(cases, law, grid, state, closed, count)
-    ev = settle(cases, law, grid, state, closed, count, known)
-    values, finer = finish(cases, law, grid, state, x, ev, np.where(closed, enough, np.inf))  # the others end here
+        rescue(cases, grid, state, closed, count)
+    ev = settle(cases, grid, state, closed, count, known)
+    values, finer = finish(cases, grid, state, x, ev, np.where(closed, enough, np.inf))  # the others end here
     opened = ev.gap.max(axis=1) > _GAP  # perhaps by the mesh
     values["error"][opened] = np.maximum(values["error"][opened], 1.0)
     for name, value in values.items():
@@ -142,7 +142,7 @@ def _rung(cases, law, n, limit, start, known, x, out, index, enough):
     return finer
 
 
-def _on_panels(case, law, rtol, x, out, i):
+def _on_panels(case, rtol, x, out, i):
     """Solve case `i` on panels of its own and write it to `out` if that is better; returns whether it misses rtol, and
     whether its budget is spent.
 
@@ -152,10 +152,10 @@ def _on_panels(case, law, rtol, x, out, i):
     for goal in (rtol, _FINER * rtol):  # the last coefficients on the panels may be small where the error is not
         if left <= 0:
             break
-        grid, state, closed, count, work = solve_on_panels(case, law, goal, _close, left)
+        grid, state, closed, count, work = solve_on_panels(case, goal, _close, left)
         left -= work
-        ev = evaluate(case, state, law, grid)
-        values, _ = finish(case, law, grid, state, x, ev)
+        ev = evaluate(case, state, grid)
+        values, _ = finish(case, grid, state, x, ev)
         out["iterations"][i] += count[0]
         if not closed[0]:
             continue
@@ -175,9 +175,9 @@ def _on_panels(case, law, rtol, x, out, i):
     return not lifts and out["status"][i] == Status.CONVERGED, left <= 0
 
 
-def _close(case, state, law, grid):
+def _close(case, state, grid):
     """As :func:`iterate`, with a second attempt."""
-    state, closed, count = iterate(case, state, law, grid)
+    state, closed, count = iterate(case, state, grid)
     if not closed[0]:
-        rescue(case, law, grid, state, closed, count)
+        rescue(case, grid, state, closed, count)
     return state, closed, count

@@ -20,7 +20,7 @@ _ROUNDING = 20 * np.finfo(float).eps
 _LAG = 1e-3
 
 
-def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
+def iterate(cases, state, grid, limit=newton.LIMIT, near=0.0, known=None):
     """Newton steps until the residual is below its tolerance; finished cases leave the batch.
 
     So do cases after the step from a residual below `near`, without another look. `known`: weights of the layer (list)
@@ -42,7 +42,7 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
                 break
             active, cases, state = active[keep], cases.take(keep), state.take(keep)
             weights, lagged = take_weights(weights, keep), _take(lagged, keep)
-        ev = evaluate(cases, state, law, grid, weights)
+        ev = evaluate(cases, state, grid, weights)
         residual = ev.residual
         done = residual < tolerance[active]
         closed[active[done]] = True
@@ -57,7 +57,7 @@ def iterate(cases, state, law, grid, limit=newton.LIMIT, near=0.0, known=None):
             lagged = _take(lagged, keep)
         last, weights = residual[keep] < near, ev.base.weights
         lagged = _matrix(lagged, ev, state.eta, grid)
-        state, _ = newton.advance(cases, state, ev, grid, law, lagged and lagged[0])
+        state, _ = newton.advance(cases, state, ev, grid, lagged and lagged[0])
     if known is not None:
         known[:] = left
     return State(y, eta), closed, count
@@ -82,16 +82,16 @@ def _take(lagged, index):
     return lagged and (np.take(lagged[0].transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1), lagged[1][index])
 
 
-def settle(cases, law, grid, state, closed, count, known):
+def settle(cases, grid, state, closed, count, known):
     """:class:`Evaluation` of states that :func:`iterate` left; those that had not closed after all go on, in place."""
-    ev = evaluate(cases, state, law, grid, known)
+    ev = evaluate(cases, state, grid, known)
     again = np.flatnonzero(closed & ~(ev.residual < _tolerance(cases, state, grid)))
     if not len(again):
         return ev
-    found, closed[again], steps = iterate(cases.take(again), state.take(again), law, grid)
+    found, closed[again], steps = iterate(cases.take(again), state.take(again), grid)
     state.y[again], state.eta[again] = found
     count[again] += steps
-    return evaluate(cases, state, law, grid, ev.base.weights)
+    return evaluate(cases, state, grid, ev.base.weights)
 
 
 def _tolerance(cases, state, grid):
@@ -101,7 +101,7 @@ def _tolerance(cases, state, grid):
     return np.maximum(newton.TOLERANCE, floor)
 
 
-def rescue(cases, law, grid, state, closed, count):
+def rescue(cases, grid, state, closed, count):
     """Second attempt at cases that did not close, in place: search the radius, start each from the smooth contact.
 
     The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
@@ -111,22 +111,23 @@ def rescue(cases, law, grid, state, closed, count):
 
     def at_radius(eta, index):
         fixed = part.take(index)._replace(control="a", value=np.exp(eta))
-        found, done, steps = iterate(fixed, smooth_start(fixed, law, grid), law, grid)
+        found, done, steps = iterate(fixed, smooth_start(fixed, grid), grid)
         count[failed[index]] += steps
         return found, done
 
     def control_at(eta, index):
         found, closed = at_radius(eta, index)
-        q, here = law.evaluate(found.y, part.exponent[index]).q, part.take(index)
+        here = part.take(index)
+        q = here.law.evaluate(found.y).q
         edge_q = operate(here, eta, q, grid).edge_q
         closed &= count[failed[index]] < newton_steps(grid.n)  # else its budget is spent
         return np.where(closed, control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid), np.nan)
 
-    eta = np.log(guess_radius(part, law))
+    eta = np.log(guess_radius(part))
     if cases.control != "a":
         eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
     found, done = at_radius(eta, np.arange(len(failed)))
     if cases.control != "a":
-        found, done, steps = iterate(part, found, law, grid)
+        found, done, steps = iterate(part, found, grid)
         count[failed] += steps
     state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done

@@ -24,7 +24,7 @@ from ..body.layered import (
     layer_weights,
     take_weights,
 )
-from ..laws.micro import Curve
+from ..laws import Bound, Curve
 from ..numerics.linalg import solve_stack
 from ..numerics.mesh import HERTZ
 
@@ -35,27 +35,24 @@ _NOTHING, _LEAST = 1e-16, 1e-12
 class Cases(NamedTuple):
     """A batch of B cases of one base and micro law in units R = 1, E2* = 1; arrays (B,).
 
-    `control` is "P", "a" or "D" for the whole batch; `layer` is None but on the exact layered base. `spot_scale` is
-    p* of the exact law, whatever law is solved; 0 for a smooth punch. `reach` is the change of ln a over which the
+    `control` is "P", "a" or "D" for the whole batch; `law` is the micro law with the numbers of these cases; `layer`
+    is None but on the exact layered base. `reach` is the change of ln a over which the
     layer's operator need not be formed anew, and `coarse` says where its quadrature may be the coarse one.
     """
 
     control: str
+    law: Bound
     layer: Layer | None
     value: np.ndarray
-    p_star: np.ndarray
-    A_star: np.ndarray
-    spot_scale: np.ndarray
     E: np.ndarray
     C: np.ndarray
-    exponent: np.ndarray
     reach: np.ndarray
     coarse: np.ndarray
 
     def take(self, index):
         """The sub-batch at `index`."""
         layer = None if self.layer is None else self.layer.take(index)
-        return Cases(self.control, layer, *(field[index] for field in self[2:]))
+        return Cases(self.control, self.law.take(index), layer, *(field[index] for field in self[3:]))
 
 
 class State(NamedTuple):
@@ -139,8 +136,9 @@ class Evaluation(NamedTuple):
 def groups(cases, eta):
     """X, Y, Z (B, 1) at η = ln a (B,)."""
     a = np.exp(eta)
-    X = (8 / np.pi) * cases.p_star / (a * cases.E)
-    return X[:, None], (2 * cases.C * cases.p_star / a**2)[:, None], (2 * cases.A_star / a**2)[:, None]
+    p_star, A_star = cases.law.p_star, cases.law.A_star
+    X = (8 / np.pi) * p_star / (a * cases.E)
+    return X[:, None], (2 * cases.C * p_star / a**2)[:, None], (2 * A_star / a**2)[:, None]
 
 
 def operate(cases, eta, q, mesh, known=()):
@@ -164,10 +162,10 @@ def displacement_between(ev, H, x, mesh):
     return layer_displacement(ev.base.weights, q, mesh, x, half_space)
 
 
-def evaluate(cases, state, law, mesh, known=()):
+def evaluate(cases, state, mesh, known=()):
     """:class:`Evaluation` of `cases` at `state`; `known` as in :func:`operate`."""
     X, Y, Z = groups(cases, state.eta)
-    curve = law.evaluate(state.y, cases.exponent)
+    curve = cases.law.evaluate(state.y)
     base = operate(cases, state.eta, curve.q, mesh, known)
     F = X * base.Kq + Y * curve.q + Z * curve.g - mesh.s**2
     G = control_residual(cases, state.eta, X, curve.q, base.edge_q, mesh)
@@ -180,7 +178,7 @@ def control_residual(cases, eta, X, q, edge_q, mesh):
         return eta - np.log(cases.value)
     if cases.control == "P":
         load = np.einsum("bj,j->b", q, mesh.w)  # not BLAS, whose rounding would depend on the number of cases
-        return np.log(2 * np.pi * cases.p_star * load / cases.value) + 2 * eta
+        return np.log(2 * np.pi * cases.law.p_star * load / cases.value) + 2 * eta
     return np.log((1 + X[:, 0] * edge_q) / (2 * cases.value)) + 2 * eta
 
 
@@ -203,30 +201,30 @@ def jacobian(ev, mesh, K=None):
     return ev.base.matrix(mesh) if K is None else K, own / ev.X, dF_deta
 
 
-def first_guess(cases, law, mesh):
+def first_guess(cases, mesh):
     """State from the three one-term solutions (half-space, springs, asperities alone) added as compliances."""
-    a = guess_radius(cases, law)
+    a = guess_radius(cases)
     X, Y, Z = groups(cases, np.log(a))
-    q = guess_pressure(cases, law, X * softness(cases, a)[:, None], Y, Z, mesh.s)
-    return State(law.guess(q, cases.exponent), np.log(a))
+    q = guess_pressure(cases, X * softness(cases, a)[:, None], Y, Z, mesh.s)
+    return State(cases.law.guess(q), np.log(a))
 
 
-def smooth_start(cases, law, mesh):
+def smooth_start(cases, mesh):
     """State at given radii (control a) from the smooth contact there and the asperities alone, added as compliances."""
     X, Y, Z = groups(cases, np.log(cases.value))
     s2 = mesh.s**2
     K = operate(cases, np.log(cases.value), np.zeros((len(X), mesh.n)), mesh).matrix(mesh)
     smooth = solve_stack(K, Y / X * np.ones(mesh.n), (s2 / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
-    alone = law.sparse(s2 / Z, cases.exponent)
-    return State(law.guess(1 / (1 / smooth + 1 / alone), cases.exponent), np.log(cases.value))
+    alone = cases.law.sparse(s2 / Z)
+    return State(cases.law.guess(1 / (1 / smooth + 1 / alone)), np.log(cases.value))
 
 
-def guess_pressure(cases, law, X, Y, Z, s):
+def guess_pressure(cases, X, Y, Z, s):
     """q (B, m) at s (m,) > 0 for groups (B, 1): each of the three terms of the equation is exact where it matters
     alone."""
     s2 = s**2
-    return 1 / ((X * HERTZ * s + Y) / s2 + 1 / law.sparse(s2 / Z, cases.exponent))
+    return 1 / ((X * HERTZ * s + Y) / s2 + 1 / cases.law.sparse(s2 / Z))
 
 
 def softness(cases, a):
@@ -237,13 +235,13 @@ def softness(cases, a):
     return whole(1.5 * h / a, *material)
 
 
-def guess_radius(cases, law):
+def guess_radius(cases):
     """Contact radius (B,) of the first guess."""
     if cases.control == "a":
         return cases.value
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
         return np.sqrt(1.5 * cases.value)
-    hertz, springs, spots = _one_term_radii(cases, *law.power(cases.exponent))
+    hertz, springs, spots = _one_term_radii(cases)
     if cases.layer is None:
         return (hertz**4 + springs**4 + spots**4) ** 0.25
     a = (hertz**4 + spots**4) ** 0.25
@@ -252,12 +250,12 @@ def guess_radius(cases, law):
     return a
 
 
-def _one_term_radii(cases, gamma, beta):
+def _one_term_radii(cases):
     """Radii (B,) under the load of a half-space, of springs of compliance C, and of asperities of A ~ p^β alone."""
+    gamma, beta = cases.law.edge()
     e = 1 / beta
     hertz = np.cbrt(0.75 * cases.value / cases.E)
     springs = (4 * cases.C * cases.value / np.pi) ** 0.25
-    spots = (cases.value / (2 * np.pi * cases.p_star) * (2 * cases.A_star * gamma) ** e * (2 * e + 2)) ** (
-        1 / (2 + 2 * e)
-    )
+    alone = cases.value / (2 * np.pi * cases.law.p_star) * (2 * cases.law.A_star * gamma) ** e * (2 * e + 2)
+    spots = alone ** (1 / (2 + 2 * e))
     return hertz, springs, spots

@@ -16,7 +16,7 @@ def tangent(ev, mesh):
     return solve_stack(K, diagonal, -dF_deta[..., None])[..., 0]
 
 
-def advance(cases, state, ev, mesh, law, K=None):
+def advance(cases, state, ev, mesh, K=None):
     """The :class:`State` after one step from `state`, where the equation is `ev`, and dq/dη (B, n) along the branch of
     solutions. K is the matrix (B or 1, n, n) of the operator, if it is at hand.
 
@@ -30,5 +30,5 @@ def advance(cases, state, ev, mesh, law, K=None):
     d_eta = -(ev.G + (by_q * dq).sum(axis=1)) / (by_eta + (by_q * dq_deta).sum(axis=1))
     d_eta = np.clip(d_eta, -1.0, 1.0)
     dy = (dq + dq_deta * d_eta[:, None]) / ev.curve.dq
-    y = law.limit(state.y + dy, state.y)
+    y = cases.law.limit(state.y + dy, state.y)
     return State(y, state.eta + d_eta), dq_deta

@@ -14,7 +14,7 @@ from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
 from .budget import panel_work
 from .equation import State, evaluate, first_guess, guess_radius
-from .results import interpolate, spot_area
+from .results import interpolate
 
 #: Panels to begin with, nodes on each, and the narrowest panel as a power of 1/2.
 START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
@@ -32,32 +32,32 @@ _SHARE = 0.3
 _FLOOR = 1e-12
 
 
-def solve_on_panels(case, law, rtol, iterate, budget):
+def solve_on_panels(case, rtol, iterate, budget):
     """Solve one case (a batch of one) on panels that resolve it, or as far as the budget goes.
 
-    iterate(case, state, law, grid) -> state, closed (1,), count (1,).
+    iterate(case, state, grid) -> state, closed (1,), count (1,).
 
     Returns
     -------
     grid, state, closed, count, work (more than the budget: it was spent before all was resolved)
     """
     breaks, state, total, work = START, None, 0, 0.0
-    if case.layer is not None and case.layer.h[0] < _THIN * guess_radius(case, law)[0]:
+    if case.layer is not None and case.layer.h[0] < _THIN * guess_radius(case)[0]:
         alike = _on_thin_layer(case)
         if alike.C[0] > 0:  # nearly the same solution, far cheaper
-            grid, found, closed, total, work = solve_on_panels(alike, law, rtol, iterate, budget)
+            grid, found, closed, total, work = solve_on_panels(alike, rtol, iterate, budget)
             if closed[0]:
                 breaks, state = grid.breaks, found
     goals = np.maximum(rtol, _GOALS)
-    film = case.layer is not None and octave_of(case.layer, guess_radius(case, law))[0][0] == FILM
+    film = case.layer is not None and octave_of(case.layer, guess_radius(case))[0][0] == FILM
     for i, goal in enumerate(goals):
         grid = panel_mesh(ORDER, breaks)
-        state, closed, count = iterate(case, state or first_guess(case, law, grid), law, grid)
+        state, closed, count = iterate(case, state or first_guess(case, grid), grid)
         total += count
-        ev = evaluate(case, state, law, grid)
+        ev = evaluate(case, state, grid)
         if not np.isfinite(ev.residual[0]) or i == len(goals) - 1:
             break
-        better = resolve(case, ev, state, law, grid, goal)
+        better = resolve(case, ev, state, grid, goal)
         if better == breaks:
             if goal == rtol:
                 break
@@ -66,7 +66,7 @@ def solve_on_panels(case, law, rtol, iterate, budget):
         if work > budget:
             break
         nodes = on_panels(radau_nodes(ORDER), better)
-        state, breaks = State(interpolate(case, ev, law, grid, nodes), state.eta), better
+        state, breaks = State(interpolate(case, ev, grid, nodes), state.eta), better
     return grid, state, closed, total, work
 
 
@@ -76,10 +76,10 @@ def _on_thin_layer(case):
     return case._replace(layer=None, E=np.ones_like(case.E), C=springs)
 
 
-def resolve(case, ev, state, law, grid, rtol):
+def resolve(case, ev, state, grid, rtol):
     """Ends of panels (tuple) that resolve q and λ of a solution; those of `grid` where it is resolved."""
     q = ev.curve.q[0]
-    lam = _area(case, state.y, q[None], law)[0]
+    lam = case.law.area(state.y, q[None])[0]
     scale = np.array([q @ grid.w, lam @ grid.w]) * max(_SHARE * rtol, _FLOOR)
     inside = {}  # panel -> values of q and λ at its nodes
     for i, panel in enumerate(zip(grid.breaks[:-1], grid.breaks[1:], strict=True)):
@@ -97,16 +97,12 @@ def resolve(case, ev, state, law, grid, rtol):
                 ends.add(low)
         if halves:
             nodes = np.concatenate([low + (high - low) * radau_nodes(ORDER) for low, high in halves])
-            y = interpolate(case, ev, law, grid, nodes)
-            q_new = law.evaluate(y, case.exponent).q
-            values = np.stack([q_new[0], _area(case, y, q_new, law)[0]])
+            y = interpolate(case, ev, grid, nodes)
+            q_new = case.law.evaluate(y).q
+            values = np.stack([q_new[0], case.law.area(y, q_new)[0]])
             inside = dict(zip(halves, np.split(values, len(halves), axis=1), strict=True))
         todo = halves
     return tuple(sorted(ends))
-
-
-def _area(case, y, q, law):
-    return spot_area(law.spot(y, (case.p_star / case.spot_scale)[:, None] * q))
 
 
 def _tail(values):

@@ -36,7 +36,7 @@ class Fixed(NamedTuple):
     edge_q: np.ndarray
 
 
-def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False, budget=0):
+def solve(cases, mesh, k, rtol, limit, search=false_position, follow=False, budget=0):
     """State, status (B,) and total number of approximations (B,) of :class:`.equation.Cases` by the paper's scheme.
 
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT); search : of numerics/bracket.py;
@@ -49,8 +49,8 @@ def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False,
     budget = budget or APPROXIMATIONS
     limit = min(limit or LIMIT, budget)
     if cases.control != "a":
-        eta = _search(search, cases, law, mesh, k, rtol, limit, count, q, budget)
-    fixed = approximate(cases, eta, law, mesh, k, rtol, limit, q)
+        eta = _search(search, cases, mesh, k, rtol, limit, count, q, budget)
+    fixed = approximate(cases, eta, mesh, k, rtol, limit, q)
     missed = np.abs(_control(cases, eta, fixed, mesh))
     with np.errstate(invalid="ignore"):
         status = np.select(
@@ -62,11 +62,11 @@ def solve(cases, law, mesh, k, rtol, limit, search=false_position, follow=False,
             [Status.DIVERGED, Status.CONVERGED, Status.LIMIT_CYCLE],
             np.where(count + fixed.count >= budget, Status.BUDGET_SPENT, Status.ITERATION_LIMIT),
         )
-    y = law.from_pressure(fixed.q, cases.exponent)
+    y = cases.law.from_pressure(fixed.q)
     return State(np.maximum(y, _TINY), eta), status, count + fixed.count
 
 
-def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
+def approximate(cases, eta, mesh, k, rtol, limit, start=None):
     """Successive approximations at the radii exp(eta) (B,) from `start` (B, n), or from p = 0: finished cases leave
     the batch.
 
@@ -84,7 +84,7 @@ def approximate(cases, eta, law, mesh, k, rtol, limit, start=None):
                 earlier = change.copy()
             now = q[active]
             Kq = now @ K[0].T if start is not None and len(K) == 1 else _each(K if len(K) == 1 else K[active], now)
-            new = _next(now, Kq, cases.take(active), [v[active] for v in XYZ], law, mesh, k[active])
+            new = _next(now, Kq, cases.take(active), [v[active] for v in XYZ], mesh, k[active])
             change[active] = (1 + k[active]) * np.abs(new - q[active]).max(axis=1) / np.maximum(new.max(axis=1), _TINY)
             load_change[active] = np.abs((q[active] @ mesh.w) / (new @ mesh.w) - 1)
             q[active] = new
@@ -109,34 +109,34 @@ def _each(K, q):
     return np.matmul(K, q[..., None])[..., 0]
 
 
-def _next(q, Kq, cases, XYZ, law, mesh, k):
-    X, Y, Z = XYZ
+def _next(q, Kq, cases, XYZ, mesh, k):
+    law, (X, Y, Z) = cases.law, XYZ
     left = mesh.s**2 - X * Kq
     springs, by_layer, by_spots = (cases.C > 0)[:, None], 0.0, 0.0
     if springs.any():
-        y = law.from_pressure(q, cases.exponent)
-        by_layer = np.maximum((left - Z * law.evaluate(y, cases.exponent).g) / Y, 0.0)
+        y = law.from_pressure(q)
+        by_layer = np.maximum((left - Z * law.evaluate(y).g) / Y, 0.0)
     if not springs.all():
-        y = law.from_displacement(np.maximum(left / Z, 0.0), cases.exponent)
-        by_spots = law.evaluate(y, cases.exponent).q
+        y = law.from_displacement(np.maximum(left / Z, 0.0))
+        by_spots = law.evaluate(y).q
     target = np.where(springs, by_layer, by_spots)
     return (target + k[:, None] * q) / (1 + k[:, None])
 
 
-def _search(search, cases, law, mesh, k, rtol, limit, count, q, budget):
+def _search(search, cases, mesh, k, rtol, limit, count, q, budget):
     """ln a (B,) for the load or depth; adds the approximations to `count` (B,), and keeps the last ones in q (B, n),
     where the next radius begins, if it is given. A case that has spent its budget is given up where it is."""
 
     def evaluate(eta, index):
         part = cases.take(index)
-        fixed = approximate(part, eta, law, mesh, k[index], rtol[index], limit, None if q is None else q[index])
+        fixed = approximate(part, eta, mesh, k[index], rtol[index], limit, None if q is None else q[index])
         count[index] += fixed.count
         if q is not None:
             q[index] = np.where((fixed.change < 0.1 * rtol[index])[:, None], fixed.q, 0.0)  # no cycle is handed on
         return np.where(count[index] < budget, _control(part, eta, fixed, mesh), np.nan)
 
     with np.errstate(all="ignore"):
-        return search(evaluate, np.log(guess_radius(cases, law)), 0.1 * rtol)[0]
+        return search(evaluate, np.log(guess_radius(cases)), 0.1 * rtol)[0]
 
 
 def _control(cases, eta, fixed, mesh):

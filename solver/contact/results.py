@@ -8,34 +8,22 @@ import numpy as np
 from .equation import displacement_between
 
 
-def quantities(cases, state, curve, X, edge_q, law, mesh):
+def quantities(cases, state, curve, X, edge_q, mesh):
     """a, P, D, p0, A0, p_max, Ar_An as a dict of (B,) arrays in units R = E2* = 1.
 
     curve: the law at `state`; X, edge_q (B,): the group and the displacement of the edge there. D is taken from Eq.
     (3) at r = a, where p = 0; it equals Eq. (14) and needs p at no point.
     """
-    q, a = curve.q, np.exp(state.eta)
-    y = law.spot(state.y, (cases.p_star / cases.spot_scale)[:, None] * q)
-    p0 = cases.p_star * q[:, -1]
+    law, y, q, a = cases.law, state.y, curve.q, np.exp(state.eta)
     return {
         "a": a,
-        "P": 2 * np.pi * a**2 * cases.p_star * (q @ mesh.w),  # (5)
+        "P": 2 * np.pi * a**2 * law.p_star * (q @ mesh.w),  # (5)
         "D": a**2 / 2 * (1 + X * edge_q),  # (14)
-        "p0": p0,
-        "A0": cases.A_star * curve.g[:, -1],
-        "p_max": spot_pressure(y[:, -1], p0, cases.spot_scale),
-        "Ar_An": 2 * (spot_area(y) @ mesh.w),  # (12)
+        "p0": law.p_star * q[:, -1],
+        "A0": law.A_star * curve.g[:, -1],
+        "p_max": law.peak(y[:, -1:], q[:, -1:])[:, 0],  # (13)
+        "Ar_An": 2 * (law.area(y, q) @ mesh.w),  # (12)
     }
-
-
-def spot_area(y):
-    """λ = (b/B̄)² (11) of y = cot θ, 0 to inf."""
-    return 1 / (1 + y**-2.0)
-
-
-def spot_pressure(y, p, spot_scale):
-    """Largest real pressure (13) at nominal pressure p and y = cot θ."""
-    return 3 / np.pi * spot_scale / np.sqrt(1 + y**-2.0) + 2 / np.pi * p * np.arctan(y)
 
 
 #: Newton steps between the nodes; a few do but near full contact.
@@ -69,7 +57,7 @@ def _stiffness_between(mesh, s):
     return np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
 
 
-def interpolate(cases, ev, law, mesh, s, tolerance=1e-13, rows=slice(None)):
+def interpolate(cases, ev, mesh, s, tolerance=1e-13, rows=slice(None)):
     """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh.
 
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
@@ -81,7 +69,7 @@ def interpolate(cases, ev, law, mesh, s, tolerance=1e-13, rows=slice(None)):
     between = _between(mesh, np.ascontiguousarray(s, dtype=float).tobytes())
     x = np.sqrt((1 - between.s) * (1 + between.s))
     Kq = displacement_between(ev, between.H, x, mesh)[rows]
-    X, Y, Z, exponent = ev.X[rows], ev.Y[rows], ev.Z[rows], cases.exponent[rows]
+    X, Y, Z, law = ev.X[rows], ev.Y[rows], ev.Z[rows], cases.law.take(rows)
     q, g = ev.curve.q[rows], ev.curve.g[rows]
     stiff = X * between.kappa
     q_L = q @ between.L.T
@@ -91,7 +79,7 @@ def interpolate(cases, ev, law, mesh, s, tolerance=1e-13, rows=slice(None)):
     linear, node_linear = stiff + Y, X * between.node_kappa + Y
 
     def guess(linear, right):
-        return law.guess(1 / (linear / right + 1 / law.sparse(right / Z, exponent)), exponent)
+        return law.guess(1 / (linear / right + 1 / law.sparse(right / Z)))
 
     missed = np.nan_to_num(ev.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
     missed = np.clip(missed, 0.5, 2.0) @ between.L.T
@@ -99,7 +87,7 @@ def interpolate(cases, ev, law, mesh, s, tolerance=1e-13, rows=slice(None)):
     active = np.arange(len(y))
     for _ in range(_STEPS):
         old, slope, weight = y[active], linear[active], Z[active]
-        curve = law.evaluate(old, exponent[active])
+        curve = law.take(active).evaluate(old)
         f = slope * curve.q + weight * curve.g - right[active]
         new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
         y[active] = new
@@ -109,15 +97,15 @@ def interpolate(cases, ev, law, mesh, s, tolerance=1e-13, rows=slice(None)):
     return y
 
 
-def profiles(cases, ev, mesh, law, x, rows=slice(None)):
+def profiles(cases, ev, mesh, x, rows=slice(None)):
     """p (b, m) in E2* and λ (b, m) of the cases `rows` at the radii x (m,) from the solution on a mesh; 0 at the
     edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner = s > 0
-    y = interpolate(cases, ev, law, mesh, s[inner], rows=rows)
-    p_star = cases.p_star[rows][:, None]
-    q = law.evaluate(y, cases.exponent[rows]).q
+    y = interpolate(cases, ev, mesh, s[inner], rows=rows)
+    law = cases.law.take(rows)
+    q = law.evaluate(y).q
     p, lam = np.zeros((len(q), len(s))), np.zeros((len(q), len(s)))
-    p[:, inner] = p_star * q
-    lam[:, inner] = spot_area(law.spot(y, p_star / cases.spot_scale[rows][:, None] * q))
+    p[:, inner] = law.p_star[:, None] * q
+    lam[:, inner] = law.area(y, q)
     return p, lam

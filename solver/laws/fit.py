@@ -6,7 +6,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from ..threads import one_blas_thread
-from .micro import displacement
+from .disc_cell import displacement
 
 
 class Fit(NamedTuple):

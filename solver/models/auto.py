@@ -14,7 +14,7 @@ import numpy as np
 from ..body.kernel import layered_kernel
 from ..body.springs import local_compliance
 from ..contact.equation import guess_radius
-from ..laws.micro import contact_fraction, largest_pressure
+from ..laws import LAWS, smooth
 from ..numerics.mesh import mesh
 from ..numerics.quadrature import gauss_legendre
 from ..scaling import as_cases
@@ -41,10 +41,10 @@ class Rung(NamedTuple):
 
 def model_of(problem):
     """:class:`Model` (B,) int8 of cases whose base is named; NONE of "auto"."""
-    used = np.zeros(len(problem), dtype=np.int8)
+    used, rough = np.zeros(len(problem), dtype=np.int8), problem.rough()
     for base, model in _BY_NAME.items():
         of_base = problem.base == base
-        used[of_base] = np.where(problem.micro[of_base] == "smooth", model + 1, model)
+        used[of_base] = np.where(rough[of_base], model, model + 1)
     return used
 
 
@@ -76,10 +76,10 @@ def judged(problem, x, solve):
 
 def _descend(part, index, n, x, solve, out):
     """Solve the cases `part` of one micro law, judged on n nodes, into `out` at `index`."""
-    expected = _expected_errors(part)
+    expected, law = _expected_errors(part), LAWS[str(part.micro[0])]
     left = np.arange(len(part))
     for rung in RUNGS:
-        if rung.model == Model.LAYERED or (part.micro[0] == "smooth" and not rung.smooth):
+        if rung.model == Model.LAYERED or not (law.rough or rung.smooth):
             continue
         tried = left[MARGIN * expected[rung.model][left] < part.accuracy[left]]
         if len(tried):
@@ -96,12 +96,12 @@ def _descend(part, index, n, x, solve, out):
 
 def _on_rung(rung, part, n, x, solve):
     """Output arrays (dict) of the cases `part` on one rung, its asperities and model error included."""
-    asperities = rung.smooth and part.micro[0] != "smooth"
+    asperities = rung.smooth and LAWS[str(part.micro[0])].rough
     s, weight = _area_rule()
     points = [x, mesh(n).x, np.sqrt((1 - s) * (1 + s))]
     problem = rung.problem(part)
     if asperities:
-        problem = _with(problem, micro="smooth", scheme="newton")
+        problem = _with(problem, micro=smooth.LAW.name, scheme="newton")
     found = vars(solve(problem, np.concatenate(points)))
     _, at_nodes, at_area = np.split(found["p"], np.cumsum([len(v) for v in points[:-1]]), axis=1)
     if asperities:
@@ -118,21 +118,20 @@ def _area_rule():
 
 def _asperities(part, found, p, weight):
     """What Eqs (6), (11)-(13) make of the pressure of a smooth solution; p (B, m) at the points of the area rule."""
-    spots = [v[:, None] for v in (part.n, part.Nbar, part.Ra)]
-    cases, law = as_cases(part, np.zeros(len(part)))
-    y = law.from_pressure((found["p0"] / cases.p_star)[:, None], cases.exponent)
+    law = as_cases(part, np.zeros(len(part))).law
+    centre = law.at(found["p0"][:, None])
     return {
-        "A0": cases.A_star * law.evaluate(y, cases.exponent).g[:, 0],
-        "p_max": largest_pressure(found["p0"], part.n, part.Nbar, part.Ra),
-        "Ar_An": 2 * contact_fraction(p, *spots) @ weight,
-        "lam": contact_fraction(found["p"], *spots),
+        "A0": centre.A[:, 0],
+        "p_max": centre.p_max[:, 0],
+        "Ar_An": 2 * law.at(p).lam @ weight,
+        "lam": law.at(found["p"]).lam,
     }
 
 
 def _model_error(part, found, n, p, steps=1):
     """Estimated model error (B,) without margin of the solution `found` of the cases `part`; p at the nodes."""
-    cases, law = as_cases(_with(part, base="layered"), np.zeros(len(part)))
-    return first_order(cases, law, found, p, n, steps)
+    cases = as_cases(_with(part, base="layered"), np.zeros(len(part)))
+    return first_order(cases, found, p, n, steps)
 
 
 def _shown(found, m):
@@ -186,20 +185,19 @@ RUNGS = (
 
 def _expected_errors(part):
     """Error (B,) expected of each model (dict), from closed forms at the first guess of the radius: a screening."""
-    cases, law = as_cases(_with(part, base="layered"), np.zeros(len(part)))
-    a = guess_radius(cases, law)
+    cases = as_cases(_with(part, base="layered"), np.zeros(len(part)))
+    a = guess_radius(cases)
     x = part.h / a
     material = part.n, part.nu1, part.nu2, part.bonding == "bonded"
     p0 = 2 / np.pi * a * part.n / layered_kernel(1.5 * x, *material).L
-    y = law.from_pressure((p0 / cases.p_star)[:, None], cases.exponent)
-    A0 = cases.A_star * law.evaluate(y, cases.exponent).g[:, 0]
+    A0 = cases.law.at(p0[:, None]).A[:, 0]
     asperities = _ASPERITIES[part.control] * (A0 / a**2) ** 0.75
     errors = {rung.model: rung.expected(part, x) + rung.smooth * asperities for rung in RUNGS}
     # on the exact layer a smooth case costs little less than a rough one: it must be nearly sure
     errors[Model.SMOOTH_LAYERED] = 2 * asperities
     # asperities soften the edge, where the thin layer errs
     errors[Model.THIN_LAYER] = errors[Model.THIN_LAYER] / (1 + 0.15 / x)
-    if part.micro[0] == "smooth":
+    if not cases.law.rough:
         errors[Model.SMOOTH_LAYERED] = np.full(len(part), np.inf)  # it is the exact model
     # it costs what the thin layer costs, which is better wherever there is one
     springs = local_compliance(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded")

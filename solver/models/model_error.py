@@ -1,9 +1,9 @@
-"""How far a cheap model is from the exact layered rough one, estimated from the cheap solution.
+"""The error of a cheap model against the exact layer with its asperities, estimated from the solution of the cheap one.
 
-One Newton step of the dear equation (two, where asperities come in), begun at the nominal pressure and the radius of
-the cheap solution, gives to first order what the dear model would have found under the same control. The dear operator
-is applied on few nodes, instead of at each of some ten steps on each mesh of the ladder. What the two differ by is the
-estimate: the largest over a, P, D, p(0), p_max, Ar/An.
+One Newton step of the exact equation (two, where asperities come in) begins at the pressure and the radius of the cheap
+solution. It gives to first order what the exact model would have found under the same control. The largest relative
+difference over a, P, D, p(0), p_max, Ar/An is the estimate. A whole solution takes some ten steps on each of several
+meshes; this takes one, on few nodes.
 """
 
 import numpy as np
@@ -14,28 +14,29 @@ from ..contact.results import quantities
 from ..numerics.mesh import mesh
 from .thin_layer_error import largest_error
 
+#: The quantities whose largest relative error is the model error.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
-#: The estimate is what the step finds times this: below TRUSTED, what it finds is at least 0.85 of the true error on
+#: The base "auto" multiplies the estimate by this. Below TRUSTED, the estimate is at least 0.85 of the true error on
 #: the grids of studies/validity.toml and validity_load.toml; tests/models/test_auto.py holds it to that.
 MARGIN = 1.25
-#: Above this the first order says no more than that the error is large: no cheap model is accepted there.
+#: A larger estimate only says that the error is large: "auto" takes no cheap model there.
 TRUSTED = 0.3
 #: Nodes of the step for an accuracy of at least this; they need only resolve the error, not the solution.
 _NODES = ((5e-5, 16),)
 
 
 def nodes_for(accuracy):
-    """Number of nodes (B,) of the step that judges at `accuracy` (B,)."""
+    """Number of nodes (B,) of the Newton step whose estimate is compared with `accuracy` (B,)."""
     return np.select([accuracy >= limit for limit, _ in _NODES], [n for _, n in _NODES], 24)
 
 
-def first_order(cases, law, cheap, p, n, steps=1):
-    """Estimated relative error (B,) of a cheap solution against the dear model `cases`, to first order.
+def first_order(cases, cheap, p, n, steps=1):
+    """Estimated relative error (B,) of a cheap solution against the exact model `cases`, to first order.
 
     Parameters
     ----------
     cases : Cases
-        The dear equation of the B cases, of the micro law `law`, in units R = E2* = 1.
+        The exact equation of the B cases in units R = E2* = 1.
     cheap : dict
         The cheap solution: a, P, D, p0, p_max, Ar_An (B,) in the same units.
     p : (B, n) float, E2*
@@ -43,33 +44,34 @@ def first_order(cases, law, cheap, p, n, steps=1):
     n : int
         Number of nodes.
     steps : int
-        Newton steps; asperities added to a smooth solution take two, for they change the pressure most where it is
-        singular.
+        Newton steps. Two, where the cheap solution is smooth and the exact one is not: asperities change the pressure
+        most at the edge, where the smooth one has a root, and one step does not follow.
 
     Returns
     -------
     (B,) float
-        NaN for a case without cheap numbers, inf where the step fails.
+        NaN for a case whose cheap solution has no numbers, inf where the step fails.
     """
     grid = mesh(n)
-    y = law.from_pressure(p / cases.p_star[:, None], cases.exponent)
+    y = cases.law.from_pressure(p / cases.law.p_star[:, None])
     state = State(y, np.log(cheap["a"]))
     for _ in range(steps):
-        ev = evaluate(cases, state, law, grid)
-        (state, _), last = advance(cases, state, ev, grid, law), state
-    curve = law.evaluate(state.y, cases.exponent)
+        ev = evaluate(cases, state, grid)
+        (state, _), last = advance(cases, state, ev, grid), state
+    curve = cases.law.evaluate(state.y)
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (ev.base.edge(grid) * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)
     X, _, _ = groups(cases, state.eta)
-    dear = quantities(cases, state, curve, X[:, 0], edge_q, law, grid)
+    dear = quantities(cases, state, curve, X[:, 0], edge_q, grid)
     error = np.max([np.abs(cheap[name] / dear[name] - 1) for name in JUDGED], axis=0)
     return np.where(np.isfinite(cheap["a"]) & ~np.isfinite(error), np.inf, error)
 
 
 def closed_form(problem, a):
-    """Estimated relative error (B,) of the thin-layer model at its contact radii a (B,), in the units of the problem.
+    """Estimated relative error (B,) of the thin-layer model, without asperities and at no cost.
 
-    See :func:`~solver.models.thin_layer_error.largest_error`; NaN where that equation does not apply.
+    `a` (B,) are its contact radii, in the unit of `problem.h`. NaN where the thin-layer equation does not apply. See
+    :func:`~solver.models.thin_layer_error.largest_error`.
     """
     material = problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
     return largest_error(problem.control, problem.h / a, *material)

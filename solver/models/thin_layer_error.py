@@ -1,14 +1,15 @@
-"""How far the thin-layer model is from the exact layer, for a smooth punch: an estimate that can be worked by hand.
+"""How far the thin-layer model is from the exact layer, for a smooth punch: a closed form that can be worked by hand.
 
-Near the edge of a contact with h << a the exact kernel and A1 + A2 u give half-plane problems, which the Wiener-Hopf
-method solves. Away from the edge the two solutions differ by a shift of the edge alone: with the thin layer the
-contact is wider by κ h,
+For h << a the two models differ near the edge only. There the exact kernel L and A1 + A2 u give half-plane problems,
+which the Wiener-Hopf method solves: the contact of the thin layer is wider by κ h,
 
     κ = (1/π) ∫₀^∞ ln[(A1 + A2 u)/L(u)] du/u².
 
 So at given load the radius is wrong by κ h/a, while depth and central pressure have no error of first order; at given
-radius the load is wrong by -m κ h/a with m = d ln P/d ln a. For h >> a the load of the thin layer tends to
-(3π/(32 A2)) (a/h) of the true one, (4/3) E1* a³/R. The estimate is the simplest fraction with both limits.
+radius the load is wrong by -m κ h/a, with m = d ln P/d ln a. For h >> a the true load is that of a half-space of E1*,
+(4/3) E1* a³/R, and the load of the thin layer tends to (3π/(32 A2)) (a/h) of it. The estimate is the simplest fraction
+with both limits (docs/accuracy.md shows it with a table of κ; tests/models/test_thin_layer_error.py compares it with
+the solver).
 """
 
 from functools import lru_cache
@@ -21,13 +22,15 @@ from ..body.kernel import whole
 from ..body.springs import thin_layer_coefficients
 from ..threads import one_blas_thread
 
-#: Points and step of the trapezoidal rule for κ in ln u, at both ends of which the integrand decays like e^-|ln u|.
+#: Step of the trapezoidal rule for κ in ln u, and its points u. The integrand decays like e^-|ln u| at both ends. κ is
+#: right to 2e-6 (tests/models/test_thin_layer_error.py, test_edge_shift_is_the_integral_and_what_the_solver_finds).
 _STEP = 0.5
 _U = np.exp(np.arange(-16.0, 36.0, _STEP))
-#: Largest |ln n| of the table without friction.
-_RANGE = 25.0
-#: Number of points up to u = 45; beyond, L = 1 to rounding.
+#: Number of these points below u = 45. Beyond, L - 1 < e^-90: L is 1 and is not evaluated.
 _NEAR = int(np.sum(_U < 45.0))
+#: Largest |ln n| of the table of κ without friction, beyond the bounds of n. A case costs 0.2 µs from the table and
+#: 6 µs by the rule; a whole smooth case on a thin layer costs about 2 µs.
+_RANGE = 25.0
 
 
 class ThinLayerError(NamedTuple):
@@ -39,7 +42,7 @@ class ThinLayerError(NamedTuple):
 
 @one_blas_thread()
 def edge_shift(n, nu1, nu2, bonded):
-    """κ: by how many thicknesses the thin-layer contact is wider than the exact one, for h << a.
+    """κ: by how many thicknesses h the contact of the thin layer is wider than that of the exact layer, for h << a.
 
     Parameters
     ----------
@@ -53,7 +56,8 @@ def edge_shift(n, nu1, nu2, bonded):
     Returns
     -------
     array
-        κ to about 1e-6; NaN where the thin-layer equation does not apply (A2 <= 0). Negative: narrower.
+        κ to about 1e-6, without unit. Negative where the contact of the thin layer is the narrower one. NaN where the
+        thin-layer equation does not apply (A2 <= 0).
 
     Examples
     --------
@@ -73,14 +77,14 @@ def edge_shift(n, nu1, nu2, bonded):
 
 @lru_cache(maxsize=1)
 def _without_friction():
-    """κ over ln n without friction, a spline to 1e-8."""
+    """κ without friction as a cubic spline over ln n, right to 1e-8; Poisson ratios change nothing there."""
     ln_n = np.linspace(-_RANGE, _RANGE, 1001)
     none = np.zeros_like(ln_n)
     return CubicSpline(ln_n, _integrated(np.exp(ln_n), none, none, none))
 
 
 def _integrated(n, nu1, nu2, bonded):
-    """κ (B,) of B materials, by the trapezoidal rule."""
+    """κ (B,) of B materials by the trapezoidal rule; NaN where A2 <= 0."""
     n, nu1, nu2, bonded = (v[:, None] for v in (n, nu1, nu2, bonded))
     A1, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
     L = np.ones((len(n), len(_U)))
@@ -89,12 +93,12 @@ def _integrated(n, nu1, nu2, bonded):
 
 
 def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
-    """Estimated relative errors of the thin-layer model for a smooth sphere.
+    """Estimated relative errors of the thin-layer model for a smooth sphere: of P at given a, and of a at given P.
 
     Parameters
     ----------
     h_a : array, > 0
-        Thickness over the (true) contact radius, x = h/a.
+        x = h/a, thickness of the layer over the true contact radius.
     n, nu1, nu2, bonded
         The layer, as in :func:`edge_shift`; all broadcast.
 
@@ -105,10 +109,11 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
 
     Notes
     -----
-    P/P_thin = 1 + x (m κ x0 + g x)/(x0 + x), g = 32 A2/(3π), m = 3 + (g x/n)/(1 + g x/n); x0 = 1.55 - 1.16 n
-    (frictionless) or 1.5 + 2.3 κ (bonded) is fitted. a_thin/a = (P/P_thin)^(1/m). Over h/a = 0.01 to 20, n = 0.01 to
-    0.95: P_thin/P to 5 % frictionless, 8 % bonded ν <= 0.3, 13 % bonded ν = 0.45, exact in both limits; 30 % where
-    A2 almost vanishes (ν1 > ν2). Roughness makes the edge softer, and the error at h/a < 0.3 smaller.
+    P/P_thin = 1 + x (m κ x0 + g x)/(x0 + x) and a_thin/a = (P/P_thin)^(1/m), with g = 32 A2/(3π),
+    m = 3 + (g x/n)/(1 + g x/n), and x0 fitted: 1.55 - 1.16 n without friction, 1.5 + 2.3 κ bonded. Both limits are
+    exact. Over h/a from 0.01 to 20 and n from 0.01 to 0.95, P_thin/P is right to 5 % without friction, 8 % bonded with
+    ν <= 0.3, 13 % bonded with ν = 0.45, and 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the edge: with
+    them the error at h/a < 0.3 is smaller.
 
     Examples
     --------
@@ -122,26 +127,27 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
 
 
 def largest_error(control, h_a, n, nu1, nu2, bonded):
-    """Estimated size of the largest relative error over a, P, D, p(0), p_max, Ar/An of the thin-layer model.
+    """Estimated relative error of the thin-layer model: the largest over a, P, D, p(0), p_max and Ar/An.
 
     Parameters
     ----------
     control : "P", "a" or "D"
-        What is given.
+        The quantity that is given, which has no error itself.
     h_a, n, nu1, nu2, bonded
         As in :func:`thin_layer_error`.
 
     Returns
     -------
-    array
-        For errors from 0.001 to 1 of a smooth sphere, 0.24 to 4.6 times the true one, most often 1 to 2 times; more
-        under asperities at small h/a. NaN where the thin-layer equation does not apply.
+    array, >= 0
+        NaN where the thin-layer equation does not apply. For true errors from 0.001 to 1 of a smooth sphere, 0.24 to
+        4.6 times the true one, most often 1 to 2 times. Under asperities and for small h/a it is more than that.
 
     Notes
     -----
-    The two terms of P/P_thin are taken to add: where they cancel, other quantities are as wrong. Only at given a does
-    the edge shift tell on the load in full; at given P or D it tells on a, and, where it is inwards (κ < 0), twice as
-    much on p(0).
+    P/P_thin - 1 has a term of the edge and a term of thick layers, which may have different signs. Their sizes are
+    added: where they cancel in P, the other quantities are still wrong. The term of the edge counts in full at given a,
+    where it changes the load. At given P or D it changes the radius, and counts 1/m times; where the contact is the
+    narrower one (κ < 0) p(0) is twice as wrong, and it counts 2/m times.
     """
     edge, far, m = _terms(h_a, n, nu1, nu2, bonded)
     inwards = np.where(edge < 0, 2, 1)
@@ -151,7 +157,7 @@ def largest_error(control, h_a, n, nu1, nu2, bonded):
 
 
 def _terms(h_a, n, nu1, nu2, bonded):
-    """The terms of the edge and of thick layers in P/P_thin - 1, and m."""
+    """The term of the edge and that of thick layers, whose sum is P/P_thin - 1, and m = d ln P/d ln a."""
     x = np.asarray(h_a, dtype=float)
     kappa = edge_shift(n, nu1, nu2, bonded)
     g = 32 / (3 * np.pi) * thin_layer_coefficients(n, nu1, nu2, bonded)[1]

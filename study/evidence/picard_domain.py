@@ -91,7 +91,7 @@ def theory(case: dict, h: np.ndarray, beta: float, nodes: int) -> tuple[np.ndarr
     alone, and of the asperities alone where p/p(0) is each of SHARES, A'(p)/C."""
     grid = mesh(nodes)
     problem = Problem.of(**case, beta=beta, h=h, rtol=1e-6)
-    cases, _ = as_cases(*dimensionless(problem))
+    cases = as_cases(*dimensionless(problem))
     K = operate(cases, np.log(cases.value), np.zeros((len(h), grid.n)), grid).matrix(grid)
     largest = np.linalg.eigvals(K[0]).real.max()
     whole = 4 / np.pi * cases.value * largest / (cases.E * cases.C)
@@ -105,11 +105,11 @@ def cycle(axes, case: dict) -> None:
     grid = mesh(case.pop("nodes"))
     k = np.array([case.pop("k")])
     problem = Problem.of(**case, nodes=grid.n, rtol=1e-9)
-    cases, law = as_cases(*dimensionless(problem))
+    cases = as_cases(*dimensionless(problem))
     eta = np.log(cases.value)
     for count, mark in ((1000, "o"), (1001, "s")):
-        q = picard.approximate(cases, eta, law, grid, k, np.zeros(1), count).q[0]
-        axes.plot(grid.x, 1e3 * cases.p_star * q, f"-{mark}", markersize=3, linewidth=0.9, label=f"iterate {count}")
+        q = picard.approximate(cases, eta, grid, k, np.zeros(1), count).q[0]
+        axes.plot(grid.x, 1e3 * cases.law.p_star * q, f"-{mark}", markersize=3, linewidth=0.9, label=f"iterate {count}")
     x = np.linspace(0.98, 1, 201)
     axes.plot(x, 1e3 * solve(problem, x).p[0], "k-", linewidth=0.9, label="solution")
     axes.set(xlim=(0.985, 1.0005), ylim=(0, None), xlabel="$r/a$", ylabel=r"$10^3\,p/E_2^*$")

@@ -140,22 +140,22 @@ def solve_uniform(problem, intervals, k, tolerance, limit=None):
     solution.status[invalid], solution.status[none] = Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE
     index = np.flatnonzero(~(invalid | none))
     if len(index):
-        cases, law = as_cases(scaled.take(index), C[index])
-        solution.put(index, _solve(cases, law, uniform_mesh(intervals), k, tolerance, limit))
+        cases = as_cases(scaled.take(index), C[index])
+        solution.put(index, _solve(cases, uniform_mesh(intervals), k, tolerance, limit))
     restore(solution, problem, without=("dP_dD", "error"))
     return solution
 
 
-def _solve(cases, law, grid, k, tolerance, limit):
+def _solve(cases, grid, k, tolerance, limit):
     """Output arrays (dict) of :class:`~solver.contact.equation.Cases`."""
     one = np.ones(len(cases.value))
     limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
     way = {"search": bisection, "follow": True, "budget": np.iinfo(int).max}  # for comparison: at any cost
-    state, status, count = picard.solve(cases, law, grid, k * one, tolerance * one, limit, **way)
-    ev = evaluate(cases, state, law, grid)
-    values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, law, grid)
+    state, status, count = picard.solve(cases, grid, k * one, tolerance * one, limit, **way)
+    ev = evaluate(cases, state, grid)
+    values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, grid)
     line = np.append(np.ones(grid.n - 1), 0.5) / grid.n
-    integral = values["a"] * cases.p_star * (ev.curve.q @ line)
+    integral = values["a"] * cases.law.p_star * (ev.curve.q @ line)
     values["D"] = 2 * integral + cases.C * values["p0"] + values["A0"]  # (14)
     lost = status == Status.DIVERGED
     values = {name: np.where(lost, np.nan, value) for name, value in values.items()}

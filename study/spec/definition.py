@@ -1,7 +1,5 @@
 """Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
 
-import hashlib
-import json
 import re
 import tomllib
 from dataclasses import dataclass, replace
@@ -10,12 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from solver import NUMERICS_VERSION
-
 from ..terminal import on_one_line
 from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
 from .grid import Grid, shown
+from .identity import digest_of
 from .toml_text import text_in
 from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
 
@@ -149,29 +146,6 @@ def complete(
         shortened = draft.errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
         raise StudyError(f"{where}: {message}" for message in shortened)
     return replace(made, digest=digest_of(made))
-
-
-def digest_of(definition: Definition) -> str:
-    """sha256 over what determines the numbers: not title, comments or block size."""
-    grid = definition.grid
-    arrays = {**grid.values, **grid.labels, "x": (("x",), definition.x)}
-    content = {
-        "numerics_version": NUMERICS_VERSION,
-        "kind": definition.kind,
-        "sizes": list(grid.sizes.items()),
-        "arrays": {name: (dims, _digest_of_array(array)) for name, (dims, array) in arrays.items()},
-        "profiles": definition.profiles,
-        "dtype": definition.dtype,
-        "fit": definition.fit,
-    }
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-
-
-def _digest_of_array(array: np.ndarray) -> str:
-    """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
-    numbers = array.dtype.kind in "iuf"
-    raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()
-    return hashlib.sha256(raw).hexdigest()
 
 
 def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:

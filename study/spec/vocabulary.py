@@ -26,7 +26,8 @@ class Entry:
     (name, size in SI). `interval` is the allowed range in mathematical notation, `also` lists single values allowed
     outside it. The solver knows these bounds (one that stands here is narrower), what its parameters default to, the
     `choices` of a text, and which are `whole` numbers; `default` None means that a parameter has none: it is then
-    required wherever the parameter called `needed_by[0]` has one of the values `needed_by[1]`.
+    required wherever the parameter called `needed_by[0]` has one of the values `needed_by[1]`. `used_by` says the same
+    of where an answer depends on it.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Entry:
     default: object = None
     whole: bool = False
     needed_by: tuple[str, tuple[str, ...]] = ("", ())
+    used_by: tuple[str, tuple[str, ...]] = ("", ())
 
     @property
     def scale(self) -> str:

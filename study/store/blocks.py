@@ -8,7 +8,7 @@ import hashlib
 import json
 import logging
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from itertools import count
 from pathlib import Path
 
@@ -20,7 +20,7 @@ from ..data.dataset import not_run
 from ..spec.definition import Definition, StudyError
 from ..spec.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
-from .keys import case_keys, find
+from .keys import VERSION, case_keys, find, renewed
 
 log = logging.getLogger(__name__)
 
@@ -71,8 +71,9 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray) -> dict:
-    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles."""
-    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
+    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles; and the version
+    of the keys."""
+    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist(), "keys": VERSION}
 
 
 def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:
@@ -87,12 +88,18 @@ def blocks_on_disk(store: Store) -> Iterator[tuple[Path, Block | None]]:
     """Every block, None for one that is not whole: its cases are missing, so they are computed again."""
     for path in sorted(store.folder.glob("*.block")):
         try:
-            yield path, read_block(path)
+            yield path, _read(store, path)
         except FileNotFoundError:  # the run that it belongs to has just ended
             continue
         except OSError as error:
             log.warning("%s", error)
             yield path, None
+
+
+def _read(store: Store, path: Path) -> Block:
+    """A block; one that was written with keys of version 1 has those of today."""
+    block = read_block(path)
+    return block if "keys" in block.facts else replace(block, keys=renewed(block.keys, store.definition.grid))
 
 
 def inventory(store: Store, retry: tuple[int, ...] = (), force: bool = False) -> Inventory:
@@ -189,7 +196,7 @@ def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, n
     found = not_run(store.definition, stop - start)
     file = known.file[start:stop]
     for number in np.unique(file[file >= 0]):
-        block, path = read_block(known.files[number]), known.files[number]
+        block, path = _read(store, known.files[number]), known.files[number]
         here = np.flatnonzero(file == number)
         row = known.row[start + here]
         if len(block.keys) <= row.max() or (block.keys[row] != known.keys[start + here]).any():

@@ -17,7 +17,7 @@ from ..spec.grid import Grid, columns, windows
 from ..spec.vocabulary import PARAMETERS
 from .block_file import Block
 from .blocks import Inventory, Store, facts, put, usable
-from .keys import case_keys, find
+from .keys import case_keys, find, first_keys
 
 AT_ONCE = CHUNK  # cases read at a time: what can be read and what cannot is told apart by chunks
 MEND = "run the study as it was (its text is the attribute study), which mends it, or use --results DIR"
@@ -75,7 +75,7 @@ def _told(definition: Definition, found: Condition, file: netCDF4.Dataset) -> tu
     lines = parsed(str(attribute(file, ATTRIBUTE))) if ATTRIBUTE in file.ncattrs() else {}
     grid, x = definition.grid, definition.x
     same = list(grid.sizes.items()) == list(found.sizes.items())
-    if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
+    if same and lines.get("=cases") in [identity(NUMERICS_VERSION, x, keys(grid)) for keys in (case_keys, first_keys)]:
         return grid, x, NUMERICS_VERSION
     return None
 

@@ -1,28 +1,55 @@
-"""One 128-bit key per case, made of its parameter values alone: the same case in another order of the axes, on another
-grid or in another run has the same key. Numpy only, a million cases in a fraction of a second.
+"""One 128-bit key per case, made of the values that count for it alone: the same case in another order of the axes, on
+another grid or in another run has the same key. Numpy only, a million cases in a fraction of a second.
 """
 
 import hashlib
+from functools import lru_cache
 
 import numpy as np
 
 from ..spec.grid import Grid
+from ..spec.identity import along, counts
 from ..spec.vocabulary import PARAMETERS
 
-NOT_GIVEN = (), np.array(np.nan)
+VERSION = 2
+"""Of the keys; blocks say with which they were made. Version 1, which says nothing, summed all of FIRST."""
+FIRST = (
+    *("P", "a", "D", "h", "n", "nu1", "nu2", "bonding", "base", "Nbar", "Ra", "micro", "B", "beta"),
+    *("scheme", "k", "rtol", "accuracy", "model_check", "nodes", "max_iterations"),
+)
 
 
 def case_keys(grid: Grid) -> np.ndarray:
-    """(B, 2) uint64: two independent sums over the parameters of a hash of (name, value).
+    """(B, 2) uint64: two independent sums of a hash of (name, value), over the parameters whose value counts.
 
-    A sum, so that each parameter is hashed along its own dimensions only. A parameter that no case has is like one
-    that is not given (NaN); -0.0 is 0.0.
+    A sum, so that each parameter is hashed along its own dimensions only. -0.0 is 0.0.
     """
     lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
     for name in PARAMETERS:
-        dims, array = grid.values.get(name, NOT_GIVEN)
-        lanes += _hashed(name, _along(grid, dims, array))
+        counted = counts(grid, name)
+        if counted.any():
+            lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
+
+
+def first_keys(grid: Grid) -> np.ndarray:
+    """(B, 2) uint64: keys as version 1 made them, of all parameters of that time whether or not a case uses them."""
+    lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
+    for name in FIRST:
+        lanes += _hashed(name, along(grid, name))
+    return np.ascontiguousarray(lanes.reshape(2, -1).T)
+
+
+def renewed(keys: np.ndarray, grid: Grid) -> np.ndarray:
+    """Keys (n, 2) of version 1 made anew; those of cases that are not on the grid stay, and serve nobody."""
+    first, new = _both(grid)
+    where = find(keys, first, np.zeros(len(first)))
+    return np.where((where >= 0)[:, np.newaxis], new[where], keys)
+
+
+@lru_cache(maxsize=1)  # for all blocks of a study
+def _both(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
+    return first_keys(grid), case_keys(grid)
 
 
 def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
@@ -38,17 +65,14 @@ def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
     return np.where((known[row] == keys).all(axis=1), row, -1)
 
 
-def _along(grid: Grid, dims: tuple[str, ...], array: np.ndarray) -> np.ndarray:
-    """The array with its dimensions in the order of the grid and length 1 along the others."""
-    order = sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i]))
-    return array.transpose(order).reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
-
-
 def _hashed(name: str, array: np.ndarray) -> np.ndarray:
     """(2, *shape) uint64 from a parameter's values, a seed of its name in each lane."""
     if array.dtype.kind == "U":
-        words, places = np.unique(array, return_inverse=True)
-        bits = np.array([_digest(str(word), 8)[0] for word in words])[places.reshape(array.shape)]
+        bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
+        while left.any():  # word by word: there are few, and to sort a million takes seconds
+            here = array == array.flat[left.argmax()]
+            bits[here] = _digest(str(array[here][0]), 8)[0]
+            left &= ~here
     else:
         numbers = array.astype(np.float64) + 0.0
         bits = np.where(np.isnan(numbers), np.nan, numbers).view(np.uint64)  # one NaN of many

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from solver import fit_power_law
-from solver.laws import micro
+from solver.laws.disc_cell import displacement
 
 from ..data.dataset import assembled
 from ..spec.definition import Definition
@@ -19,7 +19,7 @@ def compute(definition: Definition, command: str) -> xr.Dataset:
     fits = [fit_power_law(ratio, **(fit | {"check": tuple(fit["check"])})) for ratio in Nbar * Ra**2]
     B, beta, max_error = (np.array([getattr(one, name) for one in fits]) for name in ("B", "beta", "max_error"))
     arrays = {
-        "A_exact": np.array([micro.displacement(p, 1.0, *case) for case in zip(Nbar, Ra, strict=True)]),
+        "A_exact": np.array([displacement(p, 1.0, *case) for case in zip(Nbar, Ra, strict=True)]),
         "A_fit": (B * Ra)[:, None] * p ** beta[:, None],
         "B": B,
         "beta": beta,

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 from solver_cases import LOAD, MAIN, difference, one, random_cases
 
 from solver import Problem, Status, solve
-from solver.laws import micro
+from solver.laws import disc_cell as micro
 
 LAW = pytest.mark.parametrize("law", ["smooth", "disc_cell", "power_law"])
 #: Material of a layer: n, nu1, nu2, bonding.

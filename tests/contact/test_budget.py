@@ -52,8 +52,8 @@ def test_a_search_for_the_radius_ends(monkeypatch):
     case = Problem.of(P=LOAD, **MAIN, base="thin_layer", nodes=16)
     steps = []
 
-    def failing(cases, state, law, grid, *rest, **options):
-        found = plain(cases, state, law, grid, *rest, **options)
+    def failing(cases, state, grid, *rest, **options):
+        found = plain(cases, state, grid, *rest, **options)
         steps.append(int(found[2].sum()))
         return (found[0], found[1] & (cases.control == "a"), found[2])
 

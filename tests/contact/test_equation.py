@@ -6,7 +6,7 @@ import pytest
 from solver import Problem
 from solver.contact import driver
 from solver.contact.equation import Evaluation, Operator, State, evaluate
-from solver.laws.micro import Curve
+from solver.laws import Curve
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases, dimensionless
 
@@ -42,9 +42,9 @@ def test_the_matrix_of_a_layer_follows_the_radius():
     """It is formed anew for the case whose radius has moved by more than a thousandth; the other keeps its own."""
     grid = mesh(8)
     problem = Problem.of(a=[0.04, 0.04], h=0.02, n=0.5, micro="smooth")
-    cases, law = as_cases(*dimensionless(problem))
+    cases = as_cases(*dimensionless(problem))
     at = np.log([0.04, 0.04])
-    first, moved = (evaluate(cases, State(np.ones((2, 8)), eta), law, grid) for eta in (at, at + [1e-2, 1e-5]))
+    first, moved = (evaluate(cases, State(np.ones((2, 8)), eta), grid) for eta in (at, at + [1e-2, 1e-5]))
     lagged = driver._matrix(None, first, at, grid)
     np.testing.assert_array_equal(lagged[0], first.base.matrix(grid))
     K, of = driver._matrix(lagged, moved, at + [1e-2, 1e-5], grid)

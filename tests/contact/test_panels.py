@@ -7,7 +7,7 @@ from solver_cases import JUDGED, difference
 
 from solver import Problem, Status, solve
 from solver.body.tables import between, table
-from solver.laws.micro import cell_radius
+from solver.laws.disc_cell import cell_radius
 from solver.numerics.mesh import HERTZ, mesh, panel_mesh
 
 BREAKS = (0.0, 0.01, 0.05, 0.3, 0.31, 0.32, 0.6, 1.0)

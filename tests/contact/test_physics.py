@@ -8,7 +8,7 @@ from solver_cases import ALL_KINDS, BASES, KINDS, LOAD, MAIN, ROUGH, ROUGH_KINDS
 
 from solver import Problem, solve
 from solver.closed_forms import hertz, thin_layer_on_rigid_base
-from solver.laws import micro
+from solver.laws import disc_cell as micro
 from solver.numerics.mesh import HERTZ, mesh
 
 _t, _w = np.polynomial.legendre.leggauss(80)

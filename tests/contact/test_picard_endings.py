@@ -34,8 +34,8 @@ def solved(search, follow=False, **case):
     """Radius (1,), status and count of the scheme with a search of one's own."""
     problem = Problem.of(**(MAIN | {"P": LOAD, "micro": "power_law", "base": "thin_layer"} | case))
     scaled, C = dimensionless(problem)
-    cases, law = as_cases(scaled, C)
-    state, status, count = scheme.solve(cases, law, mesh(16), np.array([5.0]), np.array([1e-6]), 0, search, follow)
+    cases = as_cases(scaled, C)
+    state, status, count = scheme.solve(cases, mesh(16), np.array([5.0]), np.array([1e-6]), 0, search, follow)
     return state, status[0], count[0]
 
 
@@ -70,9 +70,9 @@ def test_no_cycle_is_handed_on():
         function(start, np.arange(1))
         return start, np.ones(1, bool)
 
-    def noted(cases, eta, law, mesh, k, rtol, limit, start=None):
+    def noted(cases, eta, mesh, k, rtol, limit, start=None):
         seen.append(start.copy())
-        return approximate(cases, eta, law, mesh, k, rtol, limit, start)
+        return approximate(cases, eta, mesh, k, rtol, limit, start)
 
     approximate = scheme.approximate
     with pytest.MonkeyPatch.context() as patch:

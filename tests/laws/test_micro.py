@@ -1,12 +1,14 @@
 """Micro laws: against 50-digit references, against the paper's equations as written, inverse pairs, limits."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solver.laws import micro
+from solver.laws import LAWS
+from solver.laws import disc_cell as micro
 
 TABLE = np.genfromtxt(Path(__file__).parents[1] / "references" / "micro_reference.csv", delimiter=",", names=True)
 
@@ -95,20 +97,27 @@ def test_scaling():
         assert_allclose(scaled, function(p, 1.0, 4.0, 1.0), rtol=1e-13, atol=0)
 
 
-@pytest.mark.parametrize("law", [micro.disc_cell, micro.power_law], ids=["disc_cell", "power_law"])
-def test_law_derivatives_and_inverses(law):
+@pytest.mark.parametrize("plain", [False, True], ids=["own_inverses", "inverses_of_any_law"])
+@pytest.mark.parametrize("name", ["disc_cell", "power_law"])
+def test_law_derivatives_and_inverses(name, plain):
+    """Of the law as it is; and with the inverses that any law has, which does not bring its own."""
+    none = dict.fromkeys(("from_pressure", "from_displacement", "guess", "sparse"))
+    law = replace(LAWS[name], **none) if plain else LAWS[name]
+    law = law.bind(np.array([0.5]), Nbar=np.array([250000.0]), Ra=0.004, B=0.1, beta=np.array([0.53]))
     y = np.geomspace(1e-3, 30, 40)[None, :]
-    exponent = np.array([0.53])
     step = 1e-5 * y
-    below, at, above = (law.evaluate(v, exponent) for v in (y - step, y, y + step))
+    below, at, above = (law.evaluate(v) for v in (y - step, y, y + step))
     assert_allclose((above.q - below.q) / (2 * step), at.dq, rtol=1e-8, atol=0)
     assert_allclose((above.g - below.g) / (2 * step), at.dg, rtol=2e-8, atol=0)
-    assert_allclose(law.from_pressure(at.q, exponent), y, rtol=1e-13, atol=0)
-    assert_allclose(law.from_displacement(at.g, exponent), y, rtol=1e-11, atol=0)
-    assert_allclose(law.guess(at.q, exponent), y, rtol=0.4, atol=0)
-    gamma, beta = law.power(exponent)
-    small = law.evaluate(np.array([[1e-7]]), exponent)
+    assert_allclose(law.from_pressure(at.q), y, rtol=1e-13, atol=0)
+    assert_allclose(law.from_displacement(at.g), y, rtol=1e-11, atol=0)
+    assert_allclose(law.guess(at.q), y, rtol=0.4, atol=0)
+    gamma, beta = law.edge()
+    small = law.evaluate(np.array([[1e-7]]))
     assert_allclose(gamma * small.q[0] ** beta, small.g[0], rtol=1e-6, atol=0)
+    assert_allclose(law.sparse(small.g), small.q, rtol=1e-6, atol=0)
+    if plain or name == "disc_cell":
+        assert_array_equal(law.from_pressure(np.array([[0.0, -1.0, np.nan]])), [[0, 0, np.nan]])
 
 
 def test_outside_the_law():

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from solver.laws.micro import contact_fraction, displacement, largest_pressure
+from solver.laws.disc_cell import contact_fraction, displacement, largest_pressure
 from study.data.derived import MERGING
 
 POINTS = 96

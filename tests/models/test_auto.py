@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 import study
 from solver import Model, Problem, Status, solve
-from solver.laws.micro import contact_fraction, largest_pressure
+from solver.laws.disc_cell import contact_fraction, largest_pressure
 from solver.models import auto
 from solver.models.model_error import first_order
 from solver.numerics.mesh import mesh
@@ -239,10 +239,10 @@ def test_a_lax_accuracy_buys_no_estimate_of_first_order_where_it_says_nothing():
 def test_a_step_of_first_order_that_fails_refuses_the_cheap_model():
     """From a pressure of NaN it has no numbers; a case without cheap numbers has no estimate at all."""
     problem = Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT)
-    cases, law = as_cases(problem, np.zeros(3))
+    cases = as_cases(problem, np.zeros(3))
     cheap = vars(solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh(16).x))
     p = cheap["p"].copy()
     p[1] = np.nan
     cheap["a"][2] = np.nan
-    error = first_order(cases, law, cheap, p, 16)
+    error = first_order(cases, cheap, p, 16)
     assert 0 < error[0] < 1 and error[1] == np.inf and np.isnan(error[2])

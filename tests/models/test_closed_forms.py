@@ -1,5 +1,7 @@
 """Closed forms: each quantity from each other, equilibrium, units, limits."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -59,12 +61,19 @@ def test_layer_is_a_column_under_the_punch(bonded):
 
 
 def test_bonded_incompressible_layer_has_no_such_limit():
-    assert np.isposinf(thin_layer_on_rigid_base(a=0.1, h=0.01, nu1=0.5, bonded=True).P)
+    rubber = {"h": 0.01, "nu1": 0.5, "bonded": True}
+    assert np.isposinf(thin_layer_on_rigid_base(a=0.1, **rubber).P)
+    assert np.isnan(thin_layer_on_rigid_base(P=0.1, **rubber).p0)
 
 
-@pytest.mark.parametrize("function", [hertz, thin_layer_on_rigid_base])
+@pytest.mark.parametrize("function", [hertz, partial(thin_layer_on_rigid_base, h=0.01)])
 def test_exactly_one_quantity(function):
     with pytest.raises(ValueError, match="exactly one"):
         function()
     with pytest.raises(ValueError, match="exactly one"):
         function(P=1.0, a=1.0)
+
+
+def test_a_layer_has_a_thickness():
+    with pytest.raises(TypeError, match="'h'"):
+        thin_layer_on_rigid_base(P=1.0)

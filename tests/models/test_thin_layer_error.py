@@ -3,8 +3,8 @@
 import re
 
 import numpy as np
+import pages
 import pytest
-from conftest import ROOT
 from scipy.integrate import quad
 
 from solver import Problem, solve
@@ -76,8 +76,8 @@ def test_estimate_has_its_stated_accuracy_on_the_grid(results, number):
         assert np.nanmax(difference[within]) < STATED[str(case.label.values)][quantity == "a"]
 
 
-def test_table_of_the_readme_is_the_edge_shift():
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+def test_table_of_the_page_is_the_edge_shift():
+    text = pages.read("docs/accuracy.md")
     rows = re.findall(r"^\| (0\.\d+) \| (-?[\d.]+) \| (-?[\d.]+) \| (-?[\d.]+) \| (-?[\d.]+) \|$", text, re.MULTILINE)
     assert len(rows) == 6
     for n, *printed in ([float(cell) for cell in row] for row in rows):
@@ -85,9 +85,9 @@ def test_table_of_the_readme_is_the_edge_shift():
             assert value == pytest.approx(edge_shift(n, *material), abs=5.1e-4)
 
 
-def test_limits_of_h_over_a_in_the_readme():
+def test_limits_of_h_over_a_on_the_page():
     """Frictionless, smooth: at the printed h/a the worst n has just the printed error."""
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    text = pages.read("docs/accuracy.md")
     n = np.array([0.01, 0.05, 0.2, 0.5, 0.8, 0.95])
     for name, attribute in {"P": "P", "a": "a", r"p\(0\)": "p0", "D": "D"}.items():
         printed = re.search(rf"^\| {name} \| [aP] \| ([\d.]+) \| ([\d.]+) \|", text, re.MULTILINE)

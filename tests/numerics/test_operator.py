@@ -97,7 +97,7 @@ def test_algebraic_singularity_converges_algebraically():
 def test_part_of_a_batch(base, size):
     """The operator at a state has a row for each case: no case of one leaves no row, whatever the batch shares."""
     problem = Problem.of(a=np.linspace(0.02, 0.04, size), h=0.02, n=0.5, Nbar=250000, Ra=0.004, base=base)
-    cases, _ = as_cases(*dimensionless(problem))
+    cases = as_cases(*dimensionless(problem))
     grid, eta = mesh(6), np.log(cases.value)
     q = np.linspace(1, 2, size)[:, None] * grid.s
     whole = operate(cases, eta, q, grid)

@@ -77,8 +77,8 @@ def test_what_does_not_settle_says_so():
 @pytest.mark.parametrize("base", ["thin_layer", "half_space"])
 def test_to_follow_the_pressure_saves_approximations_and_changes_nothing_else(base):
     problem = Problem.of(**(MAIN | {"micro": "power_law", "P": [LOAD, 0.3 * LOAD], "base": base}))
-    cases, law = as_cases(*dimensionless(problem))
-    given = cases, law, uniform_mesh(40), np.full(2, 20.0), np.full(2, 1e-6), 2000, bisection
+    cases = as_cases(*dimensionless(problem))
+    given = cases, uniform_mesh(40), np.full(2, 20.0), np.full(2, 1e-6), 2000, bisection
     (anew, status, many), (state, same, few) = picard.solve(*given), picard.solve(*given, follow=True)
     assert (status == Status.CONVERGED).all() and (same == Status.CONVERGED).all()
     assert_allclose(state.eta, anew.eta, rtol=0, atol=1e-6)

@@ -4,28 +4,20 @@ import os
 import re
 import shutil
 import subprocess
-import sys
 import tomllib
 from pathlib import Path
 
 import pytest
 from conftest import ROOT, STUDIES
 
-from study.__main__ import parser
 from study.catalogue import RECIPES
-from study.spec.definition import from_tables
 from study.tables import TABLES
 
-README = (ROOT / "README.md").read_text(encoding="utf-8")
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
            "picard_domain", "test", "kernels", "mutants", "fuzz", "bench", "lint", "clean")  # fmt: skip
-
-
-def blocks(language: str) -> list[str]:
-    return re.findall(rf"```{language}\n(.*?)```", README, flags=re.DOTALL)
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
@@ -117,73 +109,6 @@ def test_old_python_is_refused_with_a_reason(sandbox):
     found = make(sandbox, "setup", "PYTHON=false")
     assert found.returncode != 0
     assert "needs Python 3.11 or newer" in found.stdout
-
-
-def test_commands_of_the_readme_exist():
-    text = re.sub(r"```(?!sh).*?```", "", README, flags=re.DOTALL)
-    mentioned = set(re.findall(r"\bmake ([a-z0-9_]+)\b", "\n".join(re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL))))
-    assert mentioned and mentioned <= set(TARGETS)
-    commands = [line for block in blocks("sh") for line in block.splitlines() if "-m study" in line]
-    assert len(commands) >= 3
-    for command in commands:
-        parser().parse_args(command.split("-m study ")[1].split())
-    for path in re.findall(r"\]\((docs/[^)]+)\)|`(studies/(?!mine)[a-z_]+\.toml)`", README):
-        assert (ROOT / (path[0] or path[1])).exists(), path
-
-
-def test_study_of_the_readme_is_valid():
-    (text,) = blocks("toml")
-    definition = from_tables(tomllib.loads(text), "mine", text, "README.md")
-    assert dict(definition.grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}
-
-
-def test_python_of_the_readme_runs(results):
-    script = "\n".join(blocks("python"))
-    environment = os.environ | {"MPLBACKEND": "agg", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error::FutureWarning"}
-    command = [sys.executable, "-c", script]
-    ran = subprocess.run(command, cwd=results.parent, capture_output=True, text=True, env=environment, timeout=600)
-    assert ran.returncode == 0, ran.stderr
-    assert "frictionless" in ran.stdout
-    assert (results.parent / "coating.png").stat().st_size > 5000
-
-
-def test_the_readme_is_right_about_softness_and_thickness(results):
-    from study import open_results
-
-    contacts = open_results(results / "parameter_map.nc")
-    chosen = contacts.where(contacts.validity == 0).sel(Nbar=250000, Ra=0.002).sel(P=1e-5, method="nearest").p_max
-    assert (chosen.min("h") / chosen.max("h") > 0.8).all()
-    assert (chosen.min("n") / chosen.max("n") < 0.3).all()
-    fall = 1 - chosen.isel(h=-1) / chosen.isel(h=0)
-    assert (fall.sel(bonding="frictionless") < fall.sel(bonding="bonded")).all()
-
-
-def test_the_readme_is_right_about_the_main_case(results):
-    from study import open_results
-    from study.figures.sources import pick
-
-    main = open_results(results / "main_case.nc")
-    exact, thin = (pick(main, label=f"rough, {base}") for base in ("exact layer", "layered"))
-    for name, error in (("a", 0.092), ("p0", -0.045), ("D", 0.025)):
-        assert float(thin[name] / exact[name]) - 1 == pytest.approx(error, abs=6e-4)
-    assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in README
-
-
-def microseconds(text: str, head: str, row: str, columns: int) -> dict[float, float]:
-    """The last columns of one row of a table, by the error in its head."""
-    found = [re.search(rf"^\| {start}.*$", text, flags=re.MULTILINE)[0] for start in (head, row)]
-    errors, times = ([cell.strip() for cell in line.strip("|").split("|")[-columns:]] for line in found)
-    units = {"": 1.0, "µs": 1.0, "ms": 1e3}
-    split = [time.partition(" ") for time in times]
-    return {float(error): float(number) * units[unit] for error, (number, _, unit) in zip(errors, split, strict=True)}
-
-
-@pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
-def test_the_times_of_the_readme_are_those_of_tradeoff(ours, measured):
-    page = (ROOT / "docs/tradeoff.md").read_text(encoding="utf-8")
-    found = microseconds(README, "processor time", ours, 3)
-    known = microseconds(page, "set ", rf"{measured} \| newton, rtol", 5)
-    assert found == pytest.approx({error: known[error] for error in (1e-3, 1e-6, 1e-9)}, rel=0.3)
 
 
 def test_the_lock_pins_everything_and_names_no_machine():

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import study
-from study.spec import definition
+from study.spec import definition, identity
 from study.spec.definition import MOST_VALUES
 from study.spec.vocabulary import PARAMETERS, VOCABULARY
 
@@ -269,7 +269,7 @@ def test_digest_is_of_the_numbers(tmp_path):
 
 def test_digest_changes_with_the_numerics(tmp_path, monkeypatch):
     digest = read(tmp_path, GOOD).digest
-    monkeypatch.setattr(definition, "NUMERICS_VERSION", "other")
+    monkeypatch.setattr(identity, "NUMERICS_VERSION", "other")
     assert read(tmp_path, GOOD).digest != digest
 
 

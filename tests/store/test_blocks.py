@@ -12,7 +12,7 @@ from study.spec.definition import Definition, from_tables
 from study.store import block_file, blocks
 from study.store.block_file import CHECK, MAGIC, Block, Damaged, checksum_of, read_block, write_block
 from study.store.blocks import Inventory, Store, add, count_statuses, facts, gather, inventory, put, usable
-from study.store.keys import case_keys
+from study.store.keys import VERSION, case_keys
 
 
 def line(**output) -> Definition:
@@ -107,7 +107,7 @@ def test_a_block_without_a_column_does_not_serve(wanted, name):
 def test_what_serves_a_study(wanted):
     scalars, half, other = line(profiles=False), line(dtype="float32"), np.array([0, 0.4, 1])
     here = facts(wanted.x)
-    assert here == {"numerics_version": blocks.NUMERICS_VERSION, "x": [0, 0.5, 1]}
+    assert here == {"numerics_version": blocks.NUMERICS_VERSION, "x": [0, 0.5, 1], "keys": VERSION}
     for definition, given, arrays, expected in (
         (wanted, here, columns(wanted), True),
         (wanted, facts(other), columns(wanted), False),

@@ -1,6 +1,7 @@
-"""What a case and a study are recognised by: every parameter is in the key of a case, every input in the digest.
+"""What a case and a study are recognised by: what counts for a case is in its key, every input in the digest.
 
-Whatever were left out of them would be served stale after an edit.
+Whatever were left out of them would be served stale after an edit. What changes no number is in neither, so that it
+makes no result unusable.
 """
 
 import hashlib
@@ -12,13 +13,22 @@ import numpy as np
 import pytest
 import xarray as xr
 from line_study import store_block
-from same import assert_same
+from numpy.testing import assert_array_equal
+from same import assert_same, assert_same_numbers
 
+import solver
 import study
-from study.spec.definition import Definition, digest_of, from_tables
+from solver.parameters import CONTROL, EVERY, Parameter
+from study.spec import identity
+from study.spec.definition import Definition, from_tables
 from study.spec.grid import Grid
-from study.spec.vocabulary import NUMERICS, PARAMETERS
-from study.store.keys import case_keys
+from study.spec.identity import digest_of
+from study.spec.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
+from study.store import blocks, keys
+from study.store.keys import case_keys, first_keys
+from study.work.cases import compute, parcel
+
+OF_ALL = CONTROL | solver.parameters.PARAMETERS
 
 # Two allowed values of every parameter.
 TWO = {
@@ -59,12 +69,95 @@ def test_the_table_has_every_parameter():
     assert set(TWO) == set(PARAMETERS)
 
 
+#: Where a parameter is used that the case of `defined` does without.
+USED = {
+    **dict.fromkeys(("nu1", "nu2"), {"bonding": "bonded"}),
+    **dict.fromkeys(("B", "beta"), {"micro": "power_law"}),
+    "k": {"scheme": "picard"},
+    "accuracy": {"base": "auto"},
+    "model_check": {"base": "thin_layer"},
+}
+#: Where it is not.
+BASES = [{"base": base} for base in ("half_space", "thin_layer", "layered", "auto")]
+SMOOTH, HALF_SPACE = {"micro": "smooth"}, BASES[0]
+UNUSED = {
+    **dict.fromkeys(("h", "n", "bonding"), [HALF_SPACE]),
+    **dict.fromkeys(("nu1", "nu2"), [HALF_SPACE | {"bonding": "bonded"}, *BASES]),
+    **dict.fromkeys(("Nbar", "Ra"), [SMOOTH]),
+    **dict.fromkeys(("B", "beta"), [SMOOTH, *BASES]),
+    "k": BASES,
+    "accuracy": BASES[:3],
+    "model_check": [*BASES[:1], *BASES[2:], BASES[3] | SMOOTH],
+}
+
+
 @pytest.mark.parametrize("name", PARAMETERS)
 def test_every_parameter_is_in_key_and_digest(name):
-    one, same, other = (defined(**{name: TWO[name][i]}) for i in (0, 0, 1))
+    """Of the cases that use it."""
+    one, same, other = (defined(**USED.get(name, {}) | {name: TWO[name][i]}) for i in (0, 0, 1))
     assert (case_keys(one.grid) == case_keys(same.grid)).all() and one.digest == same.digest
     assert (case_keys(one.grid) != case_keys(other.grid)).all(), "both halves of the key"
     assert one.digest != other.digest
+
+
+@pytest.mark.parametrize("name", UNUSED)
+def test_what_a_case_does_not_use_changes_nothing(name):
+    """Neither its key, nor the digest of the study, nor a single bit of its numbers."""
+    for where in UNUSED[name]:
+        one, other = (defined(**where | {name: two}) for two in TWO[name])
+        assert_array_equal(case_keys(one.grid), case_keys(other.grid), str(where))
+        assert one.digest == other.digest, where
+        found = [compute(parcel(definition, np.arange(1))) for definition in (one, other)]
+        for number, values in found[0].items():
+            assert_array_equal(values, found[1][number], f"{number} {where}")
+
+
+def test_every_parameter_is_used_by_all_or_tested():
+    always = {name for name in PARAMETERS if OF_ALL[name].needed_by == OF_ALL[name].used_by == EVERY}
+    assert always | set(UNUSED) == set(PARAMETERS)
+
+
+def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given(monkeypatch):
+    """A tilt of the punch, say, 0 by default. Results and blocks of today stay those of their cases."""
+    today = defined()
+    monkeypatch.setitem(solver.parameters.PARAMETERS, "tilt", Parameter(0.0, interval="[0, 1]"))
+    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "", "tilt of the punch", "material", default=0.0))
+    for module in (identity, keys):
+        monkeypatch.setattr(module, "PARAMETERS", (*PARAMETERS, "tilt"))
+    for tilt, same in ((None, True), (0.0, True), (0.5, False)):
+        values = today.grid.values | ({} if tilt is None else {"tilt": ((), np.array(tilt))})
+        tilted = replace(today, grid=replace(today.grid, values=values))
+        assert (case_keys(tilted.grid) == case_keys(today.grid)).all() == same
+        assert (digest_of(tilted) == today.digest) == same
+
+
+def test_what_counts_for_some_cases_alone(monkeypatch):
+    """h along the cases, along an axis beside that of the bases, and over both."""
+    rows = [{"base": "half_space", "h": 0.02}, {"base": "layered", "h": 0.02}]
+    model = {"P": 1e-5, "n": 0.5, "micro": "smooth"}
+
+    def cases(first: float, second: float) -> Definition:
+        given = [row | {"h": h} for row, h in zip(rows, (first, second), strict=True)]
+        return from_tables({"model": model, "cases": given}, "two", "", "two")
+
+    one, unused, used = cases(0.02, 0.02), cases(0.03, 0.02), cases(0.02, 0.03)
+    assert (case_keys(one.grid) == case_keys(unused.grid)).all() and one.digest == unused.digest
+    assert (case_keys(one.grid) == case_keys(used.grid)).all(axis=1).tolist() == [True, False]
+    assert one.digest != used.digest
+
+    crossed = from_tables({"model": model, "axes": {"base": ["half_space", "layered"], "h": [0.02, 0.03]}}, "", "", "")
+    found = case_keys(crossed.grid).reshape(2, 2, 2)
+    assert (found[0, 0] == found[0, 1]).all() and (found[1, 0] != found[1, 1]).all()
+    assert (found[0, 0] == case_keys(one.grid)[0]).all() and (found[1, 0] == case_keys(one.grid)[1]).all()
+
+    def over_both(*h) -> Grid:
+        thick = ("h0", "base"), np.array(h)  # in another order than that of the grid
+        return replace(crossed.grid, sizes={"base": 2, "h0": 2}, values=crossed.grid.values | {"h": thick})
+
+    one, unused, used = (over_both([0.02, 0.02], h) for h in ([0.02, 0.03], [0.05, 0.03], [0.02, 0.04]))
+    assert (case_keys(one) == case_keys(unused)).all() and (case_keys(one) != case_keys(used)).any()
+    digests = [digest_of(replace(crossed, grid=grid)) for grid in (one, unused, used)]
+    assert digests[0] == digests[1] != digests[2]
 
 
 def bits(value) -> int:
@@ -80,16 +173,30 @@ def mixed(z: int) -> int:
     return z ^ z >> 31
 
 
-def test_a_key_is_the_sum_of_the_hashes_of_its_parameters():
-    """Other keys would make every block and results file on a disk worthless."""
-    values = {name: two[0] for name, two in TWO.items() if name not in ("a", "D")} | {"a": math.nan, "D": math.nan}
+def summed(values: dict) -> list[int]:
+    """The key of these names and values."""
     lanes = [0, 0]
     for name, value in values.items():
         seeds = hashlib.blake2b(name.encode(), digest_size=16).digest()
         for i in (0, 1):
             seed = int.from_bytes(seeds[8 * i : 8 * i + 8], "little")
             lanes[i] = (lanes[i] + mixed(bits(value) ^ seed)) % 2**64
-    assert case_keys(defined().grid).tolist() == [lanes]
+    return lanes
+
+
+def test_a_key_is_the_sum_of_the_hashes_of_what_counts():
+    """Other keys would make every block and results file on a disk worthless."""
+    one = {name: TWO[name][0] for name in ("P", "h", "n", "Nbar", "Ra")}
+    assert case_keys(defined().grid).tolist() == [summed(one)]
+    law = one | {"micro": "power_law", "B": 0.2, "beta": 0.53, "rtol": 1e-9}
+    assert case_keys(defined(**law).grid).tolist() == [summed(law)]
+
+
+def test_keys_of_version_1():
+    """They were of all parameters of that time, NaN for what was not given."""
+    values = {name: two[0] for name, two in TWO.items() if name not in ("a", "D")} | {"a": math.nan, "D": math.nan}
+    assert first_keys(defined().grid).tolist() == [summed(values)]
+    assert set(values) == set(keys.FIRST)
 
 
 def test_a_nan_is_a_nan():
@@ -148,7 +255,7 @@ OTHERS = {
 
 def test_every_input_is_in_the_digest(monkeypatch):
     digests = {"base": digest_of(base())} | {name: digest_of(replace(base(), **new())) for name, new in OTHERS.items()}
-    monkeypatch.setattr(study.spec.definition, "NUMERICS_VERSION", "other")
+    monkeypatch.setattr(identity, "NUMERICS_VERSION", "other")
     digests["numerics"] = digest_of(base())
     twins = [(a, b) for a in digests for b in digests if a < b and digests[a] == digests[b]]
     assert not twins
@@ -230,3 +337,54 @@ def test_an_edit_of_the_fit_is_not_answered_with_the_old_one(load, tmp_path):
     edited.run()
     xr.testing.assert_identical(edited.open().drop_attrs(), fresh(edited, tmp_path / "fresh").drop_attrs())
     assert edited.open().beta != fresh(load(kind=law), tmp_path / "old").beta
+
+
+def test_an_edit_of_what_no_case_uses_is_of_no_account(load):
+    """Of a finished study, and of one that stopped half-way."""
+    load(model="nu1 = 0.2").run()
+    assert load(model="nu1 = 0.4").status()["state"] == "done"
+    half_way = load(model="nu1 = 0.2\nB = 0.1", numerics="rtol = 1e-7")
+    store_block(half_way, 0, 1)
+    assert load(model="B = 0.3", numerics="rtol = 1e-7").run(force=True).computed == 1
+
+
+@pytest.fixture
+def version_1(monkeypatch):
+    """Everything is written as by the version before."""
+    with monkeypatch.context() as patch:
+        patch.setattr(blocks, "case_keys", first_keys)
+        patch.setattr(blocks, "facts", lambda x: {"numerics_version": solver.NUMERICS_VERSION, "x": x.tolist()})
+        patch.setattr(blocks, "renewed", lambda keys, _: keys)
+        patch.setattr(study.spec.definition, "digest_of", lambda _: "of version 1")
+        yield patch
+
+
+def test_blocks_of_version_1_are_used(load, version_1, tmp_path):
+    old = load()
+    store_block(old, 0, 1)
+    expected = old.open(partial=True)
+    version_1.undo()
+    assert load().dry_run().present == 1
+    assert_same_numbers(load().open(partial=True), expected)
+    assert load().run().computed == 1
+    assert_same(load().open(), fresh(load(), tmp_path / "fresh"))
+
+
+def test_results_of_version_1_are_used(load, version_1, tmp_path):
+    load().run()
+    version_1.undo()
+    assert load().status()["state"] == "outdated" and load().dry_run().present == 2
+    assert load().run().computed == 0
+    assert_same(load().open(), fresh(load(), tmp_path / "fresh"))
+
+
+def test_damaged_results_of_version_1_are_told_by_their_cases(load, version_1):
+    """As those of today are: a damaged coordinate is the study's, when the line of the cases is."""
+    load().run()
+    version_1.undo()
+    path, raw = load().verify().path, np.array([1e-7, 1e-3]).tobytes()
+    content = path.read_bytes()
+    assert content.count(raw) == 1
+    path.write_bytes(content.replace(raw, raw[::-1]))
+    assert load().verify().damage == ("P",)
+    assert load().run().computed == 0

@@ -8,7 +8,7 @@ import xarray as xr
 
 import study
 from solver import fit_power_law
-from solver.laws import micro
+from solver.laws import disc_cell as micro
 from study.spec.definition import from_tables
 
 TEXT = """

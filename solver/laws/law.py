@@ -1,0 +1,194 @@
+"""The protocol of a micro law: all that the solver, its outputs and the derived quantities ask of one.
+
+A micro law says what identical asperities do under a nominal pressure p: their additional displacement A[p], the
+relative contact area λ and the largest real pressure p_max. It is written in an unknown y > 0,
+
+    p = p* q(y),   A = A* g(y),   λ = area(y),   p_max = p* peak(y),
+
+in which q and g are smooth and increase from 0 at y = 0, where g ~ y²: the solver's unknowns are the values of y at
+its nodes. A :class:`Law` holds these functions and the parameters they depend on; ``law.bind`` gives a :class:`Bound`,
+the law with the numbers of a batch of cases.
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+import numpy as np
+
+from ..parameters import Parameter
+
+#: Most Newton steps of an inverse, and the longest step of ln y. Ten steps do for the laws here.
+_STEPS, _LONGEST = 100, 5.0
+#: The change of ln y after which the next step would be below rounding, and the one below which steps that do not halve
+#: any more are rounding: where a law saturates, it leaves so much of y undetermined (tests/laws/test_micro.py).
+_LAST, _ROUNDING = 1e-9, 1e-3
+
+
+class Curve(NamedTuple):
+    """A law at some y: q = p/p*, g = A/A* and their derivatives by y; arrays of the shape of y."""
+
+    q: np.ndarray
+    g: np.ndarray
+    dq: np.ndarray
+    dg: np.ndarray
+
+
+class Spots(NamedTuple):
+    """A law at some pressure p: A (unit of R), λ and p_max (unit of p); arrays of the shape of p."""
+
+    A: np.ndarray
+    lam: np.ndarray
+    p_max: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Law:
+    """One micro law. The functions get arrays y, q or g (B, m), and behind them what `scales` returns beside p* and A*.
+
+    To travel to worker processes a law must be picklable: of functions that have a name in a module.
+
+    Attributes
+    ----------
+    name : what a user writes for ``micro``
+    parameters : name -> Parameter, with bounds, default, unit and words; each is an argument of `scales`
+    scales : (E, **parameters) -> (p*, A*, *own); all (B,), in units R = E2* = 1. E is E1*, or E2* without a layer
+    curve : (y, *own) -> Curve
+    area : (y, q, *own) -> λ, from 0 to 1 (11)
+    peak : (y, q, *own) -> p_max/p* (13)
+    edge : (*own) -> (gamma, beta) of g ~ gamma q^beta for small q; floats, or arrays that broadcast to (B, m)
+    version : text that changes whenever the numbers of the law may change; part of the keys of its cases
+    rough : False of no asperities at all: A = 0, and the equation of the contact is linear in y = q
+    rise : the rise of the nodes wanted with the share of the asperities in the displacement; a first guess of the mesh
+
+    What follows may be left out: it then comes from `curve` and `edge`, in more time.
+
+    from_pressure : (q, *own) -> y with q(y) = q >= 0
+    from_displacement : (g, *own) -> y with g(y) = g >= 0; NaN where g is larger than the law's limit
+    guess : (q, *own) -> y with q(y) = q, roughly
+    sparse : (g, *own) -> q = (g/gamma)^(1/beta)
+    """
+
+    name: str
+    scales: Callable
+    curve: Callable
+    area: Callable
+    peak: Callable
+    edge: Callable
+    parameters: dict[str, Parameter] = field(default_factory=dict)
+    version: str = ""
+    rough: bool = True
+    rise: float = 0.5
+    from_pressure: Callable | None = None
+    from_displacement: Callable | None = None
+    guess: Callable | None = None
+    sparse: Callable | None = None
+
+    def bind(self, E, **given):
+        """:class:`Bound`: the law of B cases of modulus E (B,) and its parameters (B,), in units R = E2* = 1."""
+        p_star, A_star, *own = self.scales(E, **{name: given[name] for name in self.parameters})
+        one = np.ones(np.shape(E))
+        return Bound(self, p_star * one, A_star * one, tuple((v * one)[:, None] for v in own))
+
+    def at(self, p, E, **given):
+        """:class:`Spots` at the nominal pressure p >= 0 (unit of E) and the parameters of the law, all of any shapes
+        that broadcast. NaN stays NaN."""
+        names = list(self.parameters)
+        p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(given[name] for name in names))))
+        flat = {name: v.ravel() for name, v in zip(names, values, strict=True)}
+        with np.errstate(all="ignore"):
+            found = self.bind(E.ravel(), **flat).at(p.reshape(-1, 1))
+        return Spots(*(v.reshape(p.shape) for v in found))
+
+
+class Bound(NamedTuple):
+    """A law with the numbers of B cases: p* and A* (B,), and what else its functions depend on, `own`, (B, 1) each."""
+
+    law: Law
+    p_star: np.ndarray
+    A_star: np.ndarray
+    own: tuple[np.ndarray, ...]
+
+    @property
+    def rough(self):
+        """Whether there are asperities."""
+        return self.law.rough
+
+    def take(self, index):
+        """The sub-batch at `index`."""
+        return Bound(self.law, self.p_star[index], self.A_star[index], tuple(v[index] for v in self.own))
+
+    def evaluate(self, y):
+        """:class:`Curve` at y (B, m)."""
+        return self.law.curve(y, *self.own)
+
+    def area(self, y, q):
+        """λ (B, m), Eq. (11), at y and q (B, m) of the same points."""
+        return self.law.area(y, q, *self.own)
+
+    def peak(self, y, q):
+        """p_max (B, m), Eq. (13), at y and q (B, m) of the same points."""
+        return self.p_star[:, None] * self.law.peak(y, q, *self.own)
+
+    def at(self, p):
+        """:class:`Spots` at the nominal pressures p (B, m) >= 0."""
+        q = p / self.p_star[:, None]
+        y = self.from_pressure(q)
+        A = self.A_star[:, None] * np.where(y > 0, self.evaluate(y).g, y)
+        return Spots(A, self.area(y, q), self.peak(y, q))
+
+    def guess(self, q):
+        """y (B, m) with q(y) = q, roughly: where a Newton iteration begins."""
+        return self.law.guess(q, *self.own) if self.law.guess else self.from_pressure(q)
+
+    def from_pressure(self, q):
+        """y (B, m) with q(y) = q; 0 where q <= 0, NaN where it is NaN."""
+        if self.law.from_pressure:
+            return self.law.from_pressure(q, *self.own)
+        gamma, beta = self.law.edge(*self.own)
+        return inverse(lambda y: self.evaluate(y)[0::2], q, np.sqrt(gamma * np.maximum(q, 0.0) ** beta))
+
+    def from_displacement(self, g):
+        """y (B, m) with g(y) = g; 0 where g <= 0, NaN where no pressure makes it so large."""
+        if self.law.from_displacement:
+            return self.law.from_displacement(g, *self.own)
+        return inverse(lambda y: self.evaluate(y)[1::2], g, np.sqrt(np.maximum(g, 0.0)))
+
+    def edge(self):
+        """gamma, beta (B,) of g ~ gamma q^beta for small q."""
+        return (np.broadcast_to(v, (len(self.p_star), 1))[:, 0] for v in self.law.edge(*self.own))
+
+    def sparse(self, g):
+        """q (B, m) of small g, for any g: the inverse of g = gamma q^beta."""
+        if self.law.sparse:
+            return self.law.sparse(g, *self.own)
+        gamma, beta = self.law.edge(*self.own)
+        return (g / gamma) ** (1 / beta)
+
+    def limit(self, new, old):
+        """y after a Newton step from `old` to `new`: it stays positive and changes by a factor of five at most. Without
+        asperities the step is exact, and any sign is right."""
+        return np.clip(new, 0.2 * old, 5.0 * old) if self.law.rough else new
+
+
+def inverse(value, target, y, steps=_STEPS):
+    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding.
+
+    value : y -> (value, its derivative), increasing from 0; target : array; y : array of its shape, to begin with;
+    steps : the number of steps, which must do. By default each element goes on until it has converged.
+
+    Returns 0 where target <= 0, and NaN where it is NaN or no y is found.
+    """
+    positive = target > 0
+    target = np.where(positive, target, np.where(np.isnan(target), np.nan, 1.0))
+    y = np.where(positive & (y > 0), y, 1.0)
+    going, size = np.full(y.shape, True), np.full(y.shape, np.inf)
+    for _ in range(steps):
+        now, slope = value(y)
+        step = np.clip(np.log(target / now) * now / (slope * y), -_LONGEST, _LONGEST)
+        y = np.where(going, y * np.exp(step), y)
+        size, before = np.where(going, np.abs(step), size), size
+        going = going & (size > _LAST) & ((size > _ROUNDING) | (size < before / 2))
+        if not going.any():
+            break
+    return np.where(positive, np.where(size < 1, y, np.nan), np.where(np.isnan(target), np.nan, 0.0))

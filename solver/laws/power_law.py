@@ -1,0 +1,49 @@
+"""The fit of the paper, Section 4.1: A = B Ra (p/E1*)^β, so that p* = E1*, A* = B Ra and g = q^β.
+
+λ and p_max are those of the law that is fitted (:mod:`.disc_cell`) at the same pressure.
+"""
+
+import numpy as np
+
+from ..parameters import Parameter
+from . import disc_cell
+from .law import Curve, Law
+
+
+def _scales(E, Nbar, Ra, B, beta):
+    """p*, A*; and β, p* over that of the fitted law."""
+    return E, B * Ra, beta, E / disc_cell.scales(E, Nbar, Ra)[0]
+
+
+def _curve(y, beta, ratio):
+    inverse = 2 / beta
+    q = y**inverse
+    return Curve(q, y * y, inverse * q / y, 2 * y)
+
+
+def _from_pressure(q, beta, ratio):
+    return q ** (beta / 2)
+
+
+def _area(y, q, beta, ratio):
+    return disc_cell.spot_area(disc_cell.spot_from_pressure(ratio * q))
+
+
+def _peak(y, q, beta, ratio):
+    spot = ratio * q
+    return disc_cell.spot_peak(disc_cell.spot_from_pressure(spot), spot) / ratio
+
+
+LAW = Law(
+    name="power_law",
+    #: Coefficient, without unit, and exponent.
+    parameters=disc_cell.PARAMETERS | {"B": Parameter(interval="[1e-8, 1e4]"), "beta": Parameter(interval="[0.01, 1]")},
+    scales=_scales,
+    curve=_curve,
+    area=_area,
+    peak=_peak,
+    edge=lambda beta, ratio: (1.0, beta),
+    from_pressure=_from_pressure,
+    from_displacement=lambda g, beta, ratio: np.sqrt(np.maximum(g, 0.0)),
+    guess=_from_pressure,
+)

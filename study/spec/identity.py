@@ -1,0 +1,71 @@
+"""What tells one case, and one study, from another: of the parameters only what can change a number.
+
+A value counts where its case uses the parameter (`needed_by`, `used_by` in the solver's table) and where it is not the
+default. So the edit of an unused value, or a parameter that is added with a default, leaves every key and digest as it
+is. Who changes a default changes NUMERICS_VERSION, which is in the digest and beside every key.
+"""
+
+import hashlib
+import json
+
+import numpy as np
+
+from solver import NUMERICS_VERSION
+from solver.parameters import uses
+
+from .grid import Grid
+from .vocabulary import PARAMETERS, VOCABULARY
+
+
+def along(grid: Grid, name: str) -> np.ndarray:
+    """Values of a parameter with all dimensions of the grid, in its order, of length 1 where the parameter has none;
+    the default, or NaN, when it is not given."""
+    default = VOCABULARY[name].default
+    dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
+    array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
+    return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
+
+
+def counts(grid: Grid, name: str) -> np.ndarray:
+    """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
+    value, default = along(grid, name), VOCABULARY[name].default
+    given = ~np.isnan(value) if default is None else value != default
+    return given & uses(name, lambda other: along(grid, other))
+
+
+def digest_of(definition) -> str:
+    """sha256 over what determines the results of a `Definition`: not title, comments or block size.
+
+    Of a parameter along no dimension of its own these are the values that count. Dimensions are selected from, so their
+    values are always in it.
+    """
+    grid = definition.grid
+    arrays = {**grid.labels, "x": (("x",), definition.x)}
+    arrays |= {name: (dims, array) for name, (dims, array) in grid.values.items() if name in grid.sizes}
+    content = {
+        "numerics_version": NUMERICS_VERSION,
+        "kind": definition.kind,
+        "sizes": list(grid.sizes.items()),
+        "arrays": {name: (dims, _digest_of_array(array)) for name, (dims, array) in arrays.items()},
+        "values": {name: _digest_of_values(grid, name) for name in PARAMETERS if name not in grid.sizes},
+        "profiles": definition.profiles,
+        "dtype": definition.dtype,
+        "fit": definition.fit,
+    }
+    content["values"] = {name: found for name, found in content["values"].items() if found}
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _digest_of_values(grid: Grid, name: str) -> tuple:
+    """Shape of a parameter, digests of the values that count for some case and of their places; () if none does."""
+    values = along(grid, name)
+    several = tuple(np.flatnonzero(np.array(values.shape) == 1))
+    mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
+    return (values.shape, _digest_of_array(mask), _digest_of_array(values[mask])) if mask.any() else ()
+
+
+def _digest_of_array(array: np.ndarray) -> str:
+    """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
+    numbers = array.dtype.kind in "iufb"
+    raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()
+    return hashlib.sha256(raw).hexdigest()

@@ -1,0 +1,53 @@
+"""Pages of text with Python in them: what stands in a block is run, what it prints is the block of text after it."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from conftest import ROOT
+
+PAGES = ("README.md", *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md")))
+_END = "-- end of block --"
+
+
+def read(page: str) -> str:
+    """The text of a page, by its path in the repository."""
+    return (ROOT / page).read_text(encoding="utf-8")
+
+
+def blocks(page: str, language: str) -> list[str]:
+    """Its blocks of one language."""
+    return re.findall(rf"^```{language}\n(.*?)^```", read(page), flags=re.DOTALL | re.MULTILINE)
+
+
+def examples(page: str) -> list[tuple[str, str]]:
+    """Each Python block with the text block that follows it, or "" if none does."""
+    return re.findall(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```)?", read(page), flags=re.DOTALL | re.MULTILINE)
+
+
+def check_examples(page: str, folder: Path) -> None:
+    """Run the Python of a page in `folder`, in one process, and compare what it prints with the page."""
+    found = examples(page)
+    script = "".join(f"{code}\nprint({_END!r})\n" for code, _ in found)
+    environment = os.environ | {"MPLBACKEND": "agg", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error::FutureWarning"}
+    command = [sys.executable, "-c", script]
+    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=600)
+    assert ran.returncode == 0, ran.stderr
+    for (code, text), printed in zip(found, ran.stdout.split(_END + "\n"), strict=False):
+        assert not text or same(printed.split(), text.split()), f"{code}\nprints\n{printed}\nnot\n{text}"
+
+
+def same(printed: list[str], expected: list[str]) -> bool:
+    """Whether two lists of words are the same; numbers may differ by one in the last digit."""
+    return len(printed) == len(expected) and all(map(_same_word, printed, expected))
+
+
+def _same_word(printed: str, expected: str) -> bool:
+    try:
+        difference = abs(float(printed) - float(expected))
+    except ValueError:
+        return printed == expected
+    mantissa, _, exponent = expected.partition("e")
+    return difference < 1.01 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))

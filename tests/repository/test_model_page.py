@@ -1,0 +1,95 @@
+"""docs/model.md: its equations against the solver, its tables against the code."""
+
+import re
+
+import numpy as np
+import pages
+import pytest
+
+import study
+from solver import Problem, Status, solve
+from solver.body.kernel import layered_kernel
+from study.data import derived
+from study.data.dataset import status_words
+from study.spec.vocabulary import VOCABULARY
+
+PAGE = pages.read("docs/model.md")
+ROLES = ("control", "material", "roughness", "numerics", "result", "profile", "flag", "count", "derived")
+MICRONS = {"um": "µm", "mm2": "mm²", "mm-2": "mm⁻²", "N m-1": "N/m", "1": ""}
+
+
+def rows(head: str) -> list[list[str]]:
+    """Cells of the table whose first line begins with `head`."""
+    table = re.search(rf"^\| {re.escape(head)}.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, flags=re.MULTILINE)[1]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
+
+
+def test_python_of_the_page_prints_what_stands_there(tmp_path):
+    assert len(pages.examples("docs/model.md")) == 6 and all(text for _, text in pages.examples("docs/model.md"))
+    pages.check_examples("docs/model.md", tmp_path)
+
+
+def test_every_name_is_in_the_table_of_symbols_with_its_unit():
+    found = {name: row for row in rows("symbol") for name in re.findall(r"`(\w+)`", row[1])}
+    known = {name: entry for name, entry in VOCABULARY.items() if entry.role in ROLES}
+    assert set(found) == set(known) | {"x"}
+    for name, entry in known.items():
+        *_, scale, physical = found[name]
+        plain = scale.strip("$").replace("^\\ast", "*").replace("E_2", "E2").replace("{-2}", "-2")
+        assert plain == entry.scale, name
+        assert physical == MICRONS.get(entry.unit[0], entry.unit[0]), name
+
+
+def test_every_number_of_an_equation_of_the_vocabulary_is_on_the_page():
+    named = {number for entry in VOCABULARY.values() for number in re.findall(r"\((\d+)\)", entry.equation)}
+    assert named and {f"({number})" for number in named} <= set(re.findall(r"\\qquad (\(\d+\))", PAGE))
+
+
+def test_the_statuses_are_those_of_the_solver():
+    table = {int(value): (name.strip("`"), meaning) for value, name, meaning in rows("value")}
+    assert {value: name for value, (name, _) in table.items()} == status_words()
+    for status in Status:
+        assert table[status][1] == status.meaning.replace(" (contact/budget.py)", "")
+
+
+def test_the_masks_and_thresholds_are_those_of_the_code():
+    table = {(int(mask), name.strip("`")) for mask, name, *_ in rows("mask")}
+    assert table == set(derived.ASSUMPTIONS.items())
+    text = "\n".join(row[2] for row in rows("mask"))
+    thresholds = re.findall(r"[<>] ([\d.]+)", text)
+    constants = ("NOT_THIN", "FEW_SPOTS", "SPOT_OVER_LAYER", "MERGING", "STEEP", "COMPRESSED", "COMPRESSED")
+    assert [float(value) for value in thresholds] == [getattr(derived, name) for name in constants]
+
+
+def test_defaults_of_the_table_are_those_of_the_solver():
+    default = {name: entry.default for name, entry in VOCABULARY.items()}
+    assert [default[name] for name in ("nu1", "nu2", "rtol", "accuracy")] == [0.3, 0.3, 1e-6, 0.01]
+    for name in ("bonding", "base", "micro", "scheme", "model_check"):
+        described = next(row[2] for row in rows("symbol") if f"`{name}`" in row[1])
+        assert f"`{default[name]}` (default)" in described
+        assert set(VOCABULARY[name].choices) <= set(re.findall(r"`(\w+)`", described))
+
+
+@pytest.mark.parametrize("n", [0.1, 0.5, 3.0])
+def test_series_of_the_kernels(n):
+    u = 2e-3
+    free = layered_kernel(u, n, 0.3, 0.3, False).L - (n + u / 2)
+    np.testing.assert_allclose(free / u**3, -(n**2) / 6, rtol=0.02, atol=0)
+    rubber = layered_kernel(u, n, 0.5, 0.5, True).L - n
+    np.testing.assert_allclose(rubber / u**3, 2 / 3 * (1 - n**2), rtol=0.02, atol=0)
+
+
+def test_alike_materials_are_no_layer():
+    assert np.all(np.abs(layered_kernel([0.1, 1.0, 10.0], 1.0, 0.3, 0.3, True).L1) < 1e-14)
+
+
+def test_no_numbers_is_nan_everywhere_but_in_what_was_given():
+    found = solve(Problem.of(P=1e-5, h=0.02, n=2.0, bonding="bonded", base="thin_layer", micro="smooth"))
+    assert found.status == Status.THIN_LAYER_NOT_APPLICABLE and found.P == 1e-5
+    assert np.isnan([found.a, found.D, found.p0, found.error, found.model_error]).all()
+
+
+def test_a_smooth_punch_on_a_layer_feels_a_modulus_whatever_its_shape():
+    contact = study.solve(a=[0.01, 0.0101], h=0.02, n=0.5, micro="smooth", rtol=1e-9)
+    secant = float(contact.P.diff("a").item() / contact.D.diff("a").item())
+    assert secant / (2 * 0.01005) == pytest.approx(derived.effective_modulus(contact).mean().item(), rel=1e-4)

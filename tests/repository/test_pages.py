@@ -1,0 +1,115 @@
+"""README and docs: what stands in a block runs, commands and links exist, numbers are those of the code."""
+
+import re
+import tomllib
+
+import pages
+import pytest
+from conftest import ROOT
+from test_repository import TARGETS
+
+from study import load, open_results
+from study.__main__ import parser
+from study.figures.sources import pick
+from study.spec.definition import from_tables
+from study.tables import tabulate
+
+TEXT = {page: pages.read(page) for page in pages.PAGES}
+
+
+def anchors(text: str) -> set[str]:
+    """Of the headings of a page, as GitHub makes them."""
+    heads = re.findall(r"^#+ (.*)$", re.sub(r"```.*?```", "", text, flags=re.DOTALL), flags=re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", head.lower()).replace(" ", "-") for head in heads}
+
+
+def test_the_readme_is_short():
+    assert len(TEXT["README.md"].splitlines()) <= 155
+
+
+@pytest.mark.parametrize("page", pages.PAGES)
+def test_links_lead_somewhere(page):
+    words = re.sub(r"```.*?```|\$[^$]*\$|`[^`]*`", "", TEXT[page], flags=re.DOTALL)
+    for path, anchor in re.findall(r"\]\((?!https?:)([^)#]*)#?([^)]*)\)", words):
+        target = (ROOT / page).parent / path if path else ROOT / page
+        assert target.exists(), path
+        if anchor:
+            assert anchor in anchors(target.read_text(encoding="utf-8")), f"{path}#{anchor}"
+
+
+@pytest.mark.parametrize("page", [page for page in pages.PAGES if page != "docs/mutants.md"])
+def test_what_a_page_names_exists(page):
+    text = re.sub(r"```(?!sh).*?```", "", TEXT[page], flags=re.DOTALL)
+    code = "\n".join(re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL))
+    assert set(re.findall(r"\bmake ([a-z0-9_]+)\b", code)) <= set(TARGETS)
+    files = re.findall(r"`((?:studies|study|solver|tests)/[\w/]+\.(?:py|toml|csv))`", text)
+    for path in set(files) - {"studies/mine.toml"}:
+        assert (ROOT / path).exists(), path
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
+def test_commands_parse(page):
+    found = [line for block in pages.blocks(page, "sh") for line in block.splitlines()]
+    found += re.findall(r"`(python -m study [^`]+)`", TEXT[page])
+    commands = [line.split("-m study ")[1].split() for line in found if "-m study " in line]
+    commands += [line.split() for line in re.findall(r"`((?:run|status|retry|clean) mine[^`|]*)`", TEXT[page])]
+    assert len(commands) >= 3
+    for command in commands:
+        parser().parse_args(["tcp://127.0.0.1:8786" if word == "ADDRESS" else word for word in command])
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
+def test_study_files_are_valid(page):
+    (text,) = pages.blocks(page, "toml")
+    definition = from_tables(tomllib.loads(text), "mine", text, page)
+    assert dict(definition.grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}
+
+
+@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md"])
+def test_python_prints_what_stands_there(page, tmp_path):
+    pages.check_examples(page, tmp_path)
+
+
+def test_python_of_the_studies_runs(results):
+    pages.check_examples("docs/studies.md", results.parent)
+    assert (results.parent / "coating.png").stat().st_size > 5000
+
+
+def test_table1_of_the_readme_is_what_make_prints(tmp_path):
+    load(ROOT / "studies/table1.toml", tmp_path / "results").run()
+    made = tabulate("table1", tmp_path / "results", tmp_path)[0].read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^`make table1`[^\n]*\n\n```text\n(.*?)^```", TEXT["README.md"], re.DOTALL | re.MULTILINE)
+    assert shown in made
+
+
+def test_of_softness_and_thickness(results):
+    contacts = open_results(results / "parameter_map.nc")
+    chosen = contacts.where(contacts.validity == 0).sel(Nbar=250000, Ra=0.002).sel(P=1e-5, method="nearest").p_max
+    assert (chosen.min("h") / chosen.max("h") > 0.8).all()
+    assert (chosen.min("n") / chosen.max("n") < 0.3).all()
+    fall = 1 - chosen.isel(h=-1) / chosen.isel(h=0)
+    assert (fall.sel(bonding="frictionless") < fall.sel(bonding="bonded")).all()
+
+
+def test_of_the_thin_layer_in_the_main_case(results):
+    main = open_results(results / "main_case.nc")
+    exact, thin = (pick(main, label=f"rough, {base}") for base in ("exact layer", "layered"))
+    for name, error in (("a", 0.092), ("p0", -0.045), ("D", 0.025)):
+        assert float(thin[name] / exact[name]) - 1 == pytest.approx(error, abs=6e-4)
+    assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in TEXT["docs/accuracy.md"]
+
+
+def microseconds(text: str, head: str, row: str, columns: int) -> dict[float, float]:
+    """The last columns of one row of a table, by the error in its head."""
+    found = [re.search(rf"^\| {start}.*$", text, flags=re.MULTILINE)[0] for start in (head, row)]
+    errors, times = ([cell.strip() for cell in line.strip("|").split("|")[-columns:]] for line in found)
+    units = {"": 1.0, "µs": 1.0, "ms": 1e3}
+    split = [time.partition(" ") for time in times]
+    return {float(error): float(number) * units[unit] for error, (number, _, unit) in zip(errors, split, strict=True)}
+
+
+@pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
+def test_times_are_those_of_tradeoff(ours, measured):
+    found = microseconds(TEXT["docs/accuracy.md"], "processor time", ours, 3)
+    known = microseconds(TEXT["docs/tradeoff.md"], "set ", rf"{measured} \| newton, rtol", 5)
+    assert found == pytest.approx({error: known[error] for error in (1e-3, 1e-6, 1e-9)}, rel=0.3)

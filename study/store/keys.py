@@ -3,7 +3,6 @@ another grid or in another run has the same key. Numpy only, a million cases in 
 """
 
 import hashlib
-from functools import lru_cache
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from ..spec.identity import along, counts
 from ..spec.vocabulary import PARAMETERS
 
 VERSION = 2
-"""Of the keys; blocks say with which they were made. Version 1, which says nothing, summed all of FIRST."""
+"""Of the keys; blocks say with which they were made. Version 1 summed all of FIRST, as results of that time do."""
 FIRST = (
     *("P", "a", "D", "h", "n", "nu1", "nu2", "bonding", "base", "Nbar", "Ra", "micro", "B", "beta"),
     *("scheme", "k", "rtol", "accuracy", "model_check", "nodes", "max_iterations"),
@@ -38,18 +37,6 @@ def first_keys(grid: Grid) -> np.ndarray:
     for name in FIRST:
         lanes += _hashed(name, along(grid, name))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
-
-
-def renewed(keys: np.ndarray, grid: Grid) -> np.ndarray:
-    """Keys (n, 2) of version 1 made anew; those of cases that are not on the grid stay, and serve nobody."""
-    first, new = _both(grid)
-    where = find(keys, first, np.zeros(len(first)))
-    return np.where((where >= 0)[:, np.newaxis], new[where], keys)
-
-
-@lru_cache(maxsize=1)  # for all blocks of a study
-def _both(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    return first_keys(grid), case_keys(grid)
 
 
 def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:

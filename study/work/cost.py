@@ -53,15 +53,15 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     memory += (AHEAD + WORKING) * count * block
     if definition.kind == "contact":
         memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
-    return Estimate(cases, present, seconds, memory, size, disk_for(definition) if missing else 0.0)
+    return Estimate(cases, present, seconds, memory, size, disk_for(definition, missing) if missing else 0.0)
 
 
-def disk_for(definition: Definition) -> float:
-    """Bytes of the results file, and of the blocks that it is written from: both are there when it is complete."""
+def disk_for(definition: Definition, missing: int) -> float:
+    """Bytes of the results file, and of the blocks of the missing cases: both are there when it is complete."""
     empty = not_run(definition, 1).values() if definition.kind == "contact" else ()
     block = KEY + sum(array.nbytes for array in empty)
     results = definition.numbers * np.dtype(definition.dtype).itemsize
-    return HEAD + ROOM * results + (block * definition.grid.size if empty else 0)
+    return HEAD + ROOM * results + (block * missing if empty else 0)
 
 
 def _matrices(definition: Definition) -> int:

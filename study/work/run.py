@@ -13,9 +13,8 @@ from ..data.dataset import NO_SOLUTION, labelled, status_words
 from ..files.examine import Condition, stamp
 from ..files.results_file import write
 from ..spec.definition import Definition
-from ..spec.vocabulary import NOT_RUN
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
-from ..store.earlier import adopt, at_hand, check_replaceable, earlier
+from ..store.earlier import check_replaceable, earlier
 from ..store.lock import held
 from ..store.tidy import tidy
 from ..store.writer import writing
@@ -82,7 +81,7 @@ def _computed(order: Order, found: Condition) -> Report:
 def _law(order: Order, found: Condition) -> Report:
     """Compute the law, which takes a moment, in place of another law only."""
     there = earlier(order.definition, found)
-    if there and (there.cases or not found.digest):
+    if there.cases or not found.digest:
         check_replaceable(order.store, there, np.empty((0, 2), dtype=np.uint64), order.force)
     write(micro_law.compute(order.definition, order.command), order.path, aside=found.kind == "damaged")
     kept = tidy(order.store, inventory(order.store, force=True))
@@ -97,7 +96,7 @@ def _last(order: Order, report: Report) -> Report:
         found = look(order.definition, order.path)
         if order.done(found):
             return replace(report, complete=True, kept=tidy(order.store, inventory(order.store, force=True)))
-        known = inventory(order.store, force=order.force)
+        known = prepared(replace(order, retry=()), found)
         with closing(_writing(order, known, found)) as steps:
             kept = _finish(order, known, steps)
         return order.report(known, computed=report.computed, failures=report.failures, kept=kept)
@@ -124,12 +123,10 @@ def prepared(order: Order, file: Condition) -> Inventory:
     """What is on disk, cases of an earlier results file included. Raises StudyError when these would be lost."""
     if not order.shared:
         remove_litter(order.store)
-    known, found = inventory(order.store, order.retry, order.force), earlier(order.definition, file)
-    if found is None:
-        return known
+    found = earlier(order.definition, file)
+    known = inventory(order.store, found.source, order.retry, order.force)
     check_replaceable(order.store, found, known.keys, order.force)
-    adopt(order.store, known, found, order.retry)
-    return inventory(order.store, order.retry, order.force)
+    return known
 
 
 def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dict[int, str]:
@@ -175,8 +172,8 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, order.path, yes):
         return estimate(definition, workers)
-    status = at_hand(inventory(order.store), earlier(definition, found))
-    return estimate(definition, workers, int(np.count_nonzero(status != NOT_RUN)))
+    known = inventory(order.store, earlier(definition, found).source)
+    return estimate(definition, workers, definition.grid.size - len(known.missing))
 
 
 def partial_dataset(definition: Definition, results) -> xr.Dataset:

@@ -58,7 +58,7 @@ class Example:
         known, size = inventory(store), self.opened.definition.block
         for index in np.split(known.missing, range(size, len(known.missing), size)):
             add(store, known, index, cases.compute(cases.parcel(self.opened.definition, index)))
-        self.blocks = {path.name: path.read_bytes() for path in known.files}
+        self.blocks = {path.name: path.read_bytes() for path in known.blocks}
 
     def restore(self, with_blocks: bool) -> None:
         """The folder as a run leaves it, or as one that was stopped before the end does."""

@@ -3,7 +3,6 @@
 import os
 import pickle
 import subprocess
-import sys
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 
 from ..spec.grid import Grid, windows
 from ..spec.vocabulary import names
+from .apart import python
 from .checksums import ATTRIBUTE, Rows, attribute, head, parsed, split_runs
 from .netcdf import Unusable, access, check_regular, closing, opened
 from .seal import LARGE, is_whole
@@ -90,13 +90,13 @@ def stamp(path: Path) -> tuple | None:
 @lru_cache(maxsize=16)
 def examined_apart(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
     """The same of a file without a whole seal, which may end the process that reads it: in another process."""
-    command = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
-    command += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
-    where = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
-    told = {"input": pickle.dumps((path, columns)), "env": os.environ | {"PYTHONPATH": where}, "capture_output": True}
+    statement = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
+    statement += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
+    command, environment = python(statement)
+    told = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
     patience = PATIENCE + path.stat().st_size / SLOWEST
     try:
-        child = subprocess.run([sys.executable, "-c", command], **told, timeout=patience)
+        child = subprocess.run(command, **told, timeout=patience)
         return pickle.loads(child.stdout)
     except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
         return Condition(path, "damaged", "is damaged: a program that reads it breaks down")

@@ -47,7 +47,7 @@ def _steps(file: netCDF4.Dataset, store: Store, known: Inventory, path: Path, co
     chunk = dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True))
     for window in windows(definition.grid, most, CHUNK):
         grid = cut_out(definition.grid, window)
-        while (known.file[start : start + grid.size] < 0).any():
+        while (known.source[start : start + grid.size] < 0).any():
             yield
         arrays = gather(store, known, start, start + grid.size)
         part = labelled(replace(definition, grid=grid), arrays, command)

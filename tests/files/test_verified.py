@@ -101,7 +101,7 @@ def runs(tmp_path_factory):
         patch.setattr(checksums, "RUN", 5)
         patch.setattr("study.files.examine.CHUNK", 5)
         patch.setattr("study.store.writer.CHUNK", 5)
-        patch.setattr("study.store.earlier.AT_ONCE", 5)
+        patch.setattr("study.store.earlier.CHUNK", 5)
         # another process would have the usual runs of cases
         patch.setattr("study.files.examine.examined_apart", lambda path, columns, _: examined(path, columns))
         found = load(folder / "line.toml")

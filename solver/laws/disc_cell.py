@@ -117,7 +117,6 @@ LAW = Law(
     from_pressure=spot_from_pressure,
     from_displacement=spot_from_displacement,
     guess=spot_guess,
-    sparse=lambda g: 2 / np.pi * g * np.sqrt(g),
 )
 
 

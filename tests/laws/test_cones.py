@@ -2,6 +2,7 @@
 
 import dataclasses
 import os
+import pickle
 import subprocess
 import sys
 
@@ -15,10 +16,11 @@ from scipy.special import ellipe, ellipk
 
 import study
 from solver import Problem, laws, solve
-from solver.parameters import PARAMETERS
+from solver.parameters import PARAMETERS, Parameter
 from study.spec.definition import from_tables
 from study.spec.laws import learn
 from study.store.keys import case_keys
+from study.work.cases import parcel
 
 CASE = {"h": 0.02, "n": 0.5, "Nbar": 250_000.0}
 ALPHA = [1.2, 1.4]
@@ -101,12 +103,22 @@ def test_against_rings_of_constant_pressure():
 
 
 def test_units():
-    """A parameter has the unit that its law says: the same case in metres."""
+    """A parameter has the unit that its law says: here the spacing of the cones, the same case in metres."""
+    spacing = {"spacing": Parameter(interval="(0, 1)", powers=(0, 1)), "alpha": cones.CONES.parameters["alpha"]}
+    spaced = dataclasses.replace(cones.CONES, name="spaced", parameters=spacing, scales=of_spacing)
     R, E2 = 0.01, 2e11
     one = solve(Problem.of(P=1e-5, micro=cones.CONES, alpha=1.3, **CASE))
-    many = CASE | {"h": CASE["h"] * R, "Nbar": CASE["Nbar"] / R**2}
-    s = solve(Problem.of(P=1e-5 * R * R * E2, micro="cones", alpha=1.3, **many, R=R, E2=E2))
+    many = {"h": CASE["h"] * R, "n": CASE["n"], "spacing": CASE["Nbar"] ** -0.5 * R, "alpha": 1.3}
+    s = solve(Problem.of(P=1e-5 * R * R * E2, micro=spaced, **many, R=R, E2=E2))
     assert_allclose([s.a, s.D, s.p_max], [one.a * R, one.D * R, one.p_max * E2], rtol=1e-12, atol=0)
+    found = study.solve(P=1e-5, micro=spaced, h=0.02, n=0.5, alpha=1.3, spacing=[0.002, 0.003], x=2)
+    physical = study.to_physical(found, R=R, E2_star=E2)
+    assert_allclose(physical.spacing, [20, 30], rtol=1e-14)
+    assert physical.spacing.attrs["units"] == "um" and np.isnan(study.derived.spot_radius(found)).all()
+
+
+def of_spacing(E, spacing, alpha):
+    return cones.scales(E, spacing**-2, alpha)
 
 
 def test_picard_solves_cones_too():
@@ -115,6 +127,19 @@ def test_picard_solves_cones_too():
     )
     newton = study.solve(P=1e-5, micro="cones", alpha=1.2, **CASE, rtol=1e-8, base="thin_layer")
     assert found.status == 0 and abs(found.a / newton.a - 1) < 1e-3
+
+
+@pytest.mark.parametrize("scheme", [{}, {"scheme": "picard", "k": 20.0, "rtol": 1e-3}], ids=["newton", "picard"])
+@pytest.mark.parametrize("base", ["half_space", "thin_layer"])
+def test_a_law_needs_no_inverses_of_its_own(base, scheme):
+    """The exact law without those it has: the same numbers, from isolated spots to nearly full contact."""
+    none = dict.fromkeys(("from_pressure", "from_displacement", "guess"))
+    plain = dataclasses.replace(laws.LAWS["disc_cell"], name="plain", version="1", **none)
+    given = CASE | {"a": [0.01, 0.04], "Ra": [0.0005, 0.004], "base": base, "x": 5, "rtol": 1e-9} | scheme
+    one, other = (study.solve(**given, micro=law) for law in (plain, "disc_cell"))
+    assert (one.status == other.status).all()
+    for name in ("P", "D", "p0", "p_max", "Ar_An", "p", "lam"):
+        assert_allclose(one[name], other[name], rtol=1e-10, atol=1e-13)
 
 
 def message(**given):
@@ -143,6 +168,9 @@ def test_a_law_can_be_registered_anew_with_other_bounds():
     laws.register(cones.CONES)
     narrow = cones.CONES.parameters | {"alpha": cones.CONES.parameters["alpha"]._replace(interval="(1, 1.5)")}
     assert message(micro=dataclasses.replace(cones.CONES, parameters=narrow), alpha=0.9).endswith("must be in (1, 1.5)")
+    laws.register(dataclasses.replace(cones.CONES, parameters={}))
+    assert '"alpha" is not a parameter' in message(micro="cones", alpha=1.2)
+    assert len(Problem.of(P=1e-5, micro="cones", base="half_space")) == 1  # alpha is not missed
 
 
 def test_keys_and_digests_carry_the_version():
@@ -190,23 +218,25 @@ def test_a_study_of_an_installed_law_in_processes(tmp_path):
         assert (found.status == 0).all() and found.attrs["micro_laws"] == "cones 1"
         same = study.solve(P=1e-5, base="half_space", micro=cones.CONES, alpha=found.alpha.values, Nbar=250_000.0)
         assert_allclose(found.a, same.a, rtol=1e-12, atol=0)
-        when = found.attrs["created"]
     newer = source.replace('version="1"', 'version="2"')
-    assert "outdated" in run("status", "mine.toml", text=newer).stdout
-    dry = run("run", "mine.toml", "--dry-run", text=newer)
-    assert when and "40" in dry.stdout, dry.stdout + dry.stderr
+    assert "outdated (0 of 40 cases can be used again)" in run("status", "mine.toml", text=newer).stdout
+    assert "40 of its 40 cases are not in this one" in run("run", "mine.toml", text=newer).stderr
     broken = run("run", "mine.toml", text="raise OSError('no disk')\n")
     assert broken.returncode == 2
     assert "entry point cones = cones:CONES of roughcoat.laws: no disk" in broken.stderr
 
 
 def test_a_law_given_as_an_object_travels_with_its_cases(tmp_path):
-    """To processes, which have not registered it."""
+    """To a process that has not registered it."""
     laws.register(cones.CONES)
     (tmp_path / "mine.toml").write_text(STUDY)
-    mine = study.load(tmp_path / "mine.toml", results=tmp_path / "results")
-    mine.run(workers=2)
-    assert (mine.open().status == 0).all()
+    definition = study.load(tmp_path / "mine.toml").definition
+    (tmp_path / "parcel").write_bytes(pickle.dumps(parcel(definition, np.arange(40))))
+    script = "import pickle, study.work.cases as w; print(w.compute(pickle.load(open('parcel', 'rb')))['status'].sum())"
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests/laws")])}
+    command = [sys.executable, "-c", script]
+    ran = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=120)
+    assert ran.stdout == "0\n", ran.stderr
 
 
 def test_the_page_shows_this_law(tmp_path):

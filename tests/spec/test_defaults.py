@@ -35,7 +35,7 @@ COUNTS = [
     ("nu2", CASE | {"bonding": "bonded"}, 0.4, "a"),
     ("bonding", CASE, "bonded", "a"),
     ("base", CASE, "thin_layer", "a"),
-    ("accuracy", CASE | {"base": "auto"}, 0.5, "a"),
+    ("accuracy", CASE | {"base": "auto", "h": 1e-4}, 1e-6, "a"),
     ("model_check", THIN, "first_order", "model_error"),
     ("micro", CASE, "smooth", "a"),
     ("scheme", APPROXIMATED | {"scheme": "newton"}, "picard", "P"),

@@ -11,8 +11,7 @@ from test_repository import TARGETS
 import solver
 import study
 from study import open_results
-from study.__main__ import parser
-from study.catalogue import tabulate
+from study.__main__ import main, parser
 from study.spec.definition import from_tables
 
 TEXT = {page: pages.read(page) for page in pages.PAGES}
@@ -81,7 +80,9 @@ def test_python_of_the_studies_runs(results):
 
 
 def test_table1_of_the_readme_is_what_make_prints(tmp_path):
-    made = tabulate("table1", tmp_path, tmp_path)[0].read_text(encoding="utf-8")
+    folders = "--results", str(tmp_path / "results"), "--tables", str(tmp_path)
+    assert main(["table", "table1", *folders]) == 0
+    made = (tmp_path / "table1.txt").read_text(encoding="utf-8")
     (shown,) = re.findall(r"^`make table1`[^\n]*\n\n```text\n(.*?)^```", TEXT["README.md"], re.DOTALL | re.MULTILINE)
     assert shown in made
 

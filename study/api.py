@@ -8,8 +8,8 @@ import numpy as np
 import xarray as xr
 
 from .data.dataset import command_line, labelled
+from .files.access import Unusable
 from .files.examine import Condition
-from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results
 from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .spec.given import Draft

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import NO_SOLUTION, labelled, status_words
+from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..files.results_file import write
 from ..spec.definition import Definition
@@ -64,9 +65,8 @@ def _computed(order: Order, found: Condition) -> Report:
     if order.done(found):
         return order.report(kept=tidy(order.store, inventory(order.store, force=True)))
     if found.kind == "damaged":
-        log.warning(
-            "%s: %s; computing again what is damaged, %s.damaged keeps it", order.path, found.reason, order.path
-        )
+        kept = f"computing again what is damaged, {target(order.path)}.damaged keeps it"
+        log.warning("%s: %s; %s", order.path, found.reason, kept)
     if order.definition.kind == "micro_law":
         return _law(order, found)
     known = prepared(order, found)

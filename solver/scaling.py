@@ -27,14 +27,23 @@ _UNITS = {
 def dimensionless(problem):
     """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
     R, E2 = problem.R, problem.E2
-    # divided one by one: R² or R⁻² may overflow where the quotient does not
-    value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
+    value = _without_unit(problem.value, (1, 2) if problem.control == "P" else (0, 1), R, E2)
     layered = problem.base != "half_space"
     h, n = problem.h / R, np.where(layered, problem.n, 1.0)
     springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
     C = np.where(problem.base == "thin_layer", springs, 0.0)
+    more = {name: _without_unit(v, PARAMETERS[name].powers, R, E2) for name, v in problem.more.items()}
+    own = {name: _without_unit(getattr(problem, name), PARAMETERS[name].powers, R, E2) for name in ("Nbar", "Ra")}
     one = np.ones(len(problem))
-    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
+    return replace(problem, value=value, h=h, n=n, R=one, E2=one, **own, more=more), C
+
+
+def _without_unit(value, powers, R, E2):
+    """`value` over E2^i R^j, (i, j) = `powers`; divided one by one, for R² may overflow where the quotient does not."""
+    for unit, power in zip((R, E2), powers[::-1], strict=True):
+        for _ in range(abs(power)):
+            value = value / unit if power > 0 else value * unit
+    return value
 
 
 def refused(problem, scaled):
@@ -45,8 +54,8 @@ def refused(problem, scaled):
 
 def as_cases(part, C):
     """:class:`~solver.contact.equation.Cases` of one law on one base."""
-    own = LAWS[str(part.micro[0])]
-    law = own.bind(part.n, **{name: getattr(part, name) for name in own.parameters})
+    law = LAWS[str(part.micro[0])]
+    law = law.bind(part.n, **{name: getattr(part, name) for name in law.parameters})
     none = np.zeros(len(part))
     layered = part.base[0] == "layered"
     layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None

@@ -9,7 +9,7 @@ from .contact.equation import evaluate
 from .contact.error import finish
 from .laws import LAWS
 from .models import auto
-from .models.model_error import closed_form
+from .models.model_error import closed_form, judged
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
 from .scaling import as_cases, dimensionless, refused, restore
@@ -108,7 +108,7 @@ def _auto(part, C, x):
 
 
 def _judged(part, C, x):
-    return vars(auto.judged(part, x, _of_a_model))
+    return vars(judged(part, x, _of_a_model))
 
 
 def _smooth_half_space(part, C, x):

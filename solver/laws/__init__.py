@@ -1,37 +1,97 @@
-"""Micro laws, one a file, and the registry of them: :func:`register` adds one (docs/extending.md)."""
+"""Micro laws, one a file, and the registry of them. docs/extending.md says how to add one."""
 
-from ..parameters import PARAMETERS
+import re
+from functools import cache
+
+import numpy as np
+
+from ..parameters import CONTROL, PARAMETERS
 from . import disc_cell, power_law, smooth
 from .law import Bound, Curve, Law, Spots
 
-__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "register"]
+__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "named", "register"]
 
-#: Name -> Law.
-LAWS = {}
+#: Entry points of this group are laws of installed packages.
+GROUP = "roughcoat.laws"
+#: Names that no parameter of a law can have; those of results come from the vocabulary of studies.
+RESERVED = {*CONTROL, "control", "value", "more"}
 
 
 def register(law):
     """Make a :class:`Law` known by its name, and its parameters like any other. Returns the law.
 
-    A law of the same name that was registered before is replaced.
+    Processes that are started later do not know it by itself: it travels to them with the cases, which needs functions
+    that have a name in a module. A law of the same name that was registered before is replaced.
 
     Raises
     ------
     ValueError
-        A parameter of it is known already, with other bounds or another default.
+        A name that is none or that of a law of this package; no version; a parameter that is known with other bounds.
     """
-    laws, declared = LAWS | {law.name: law}, {}
-    for one in laws.values():
-        for name, own in one.parameters.items():
-            earlier, names = declared.get(name, (own, ()))
-            if own != earlier or (name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"):
-                raise ValueError(f"micro law {law.name}: the parameter {name} is known already, with other bounds")
-            declared[name] = own, (*names, one.name)
+    if LAWS.get(law.name) is law:
+        return law
+    if LAWS.get(law.name, law) in BUILT_IN or not re.fullmatch(r"[A-Za-z]\w*", law.name):
+        raise ValueError(f'micro law "{law.name}": must have a name of its own, of letters, digits and _')
+    if not (law.version and isinstance(law.version, str)):
+        raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
+    _declare(LAWS | {law.name: law})
     LAWS[law.name] = law
-    for name, (own, names) in declared.items():
-        PARAMETERS[name] = own._replace(needed_by=("micro", names))
-    PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(LAWS))
     return law
 
 
-BUILT_IN = tuple(register(module.LAW) for module in (smooth, disc_cell, power_law))
+def _declare(laws):
+    """Put the parameters of `laws` (name -> Law) into the table, and the names to the choices of `micro`; `laws`."""
+    declared = {}
+    for law in laws.values():
+        for name, own in law.parameters.items():
+            known, names = declared.get(name, (own, ()))
+            taken = name in RESERVED or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"
+            if taken or own != known:
+                raise ValueError(f"micro law {law.name}: the name of the parameter {name} is that of something else")
+            declared[name] = known, (*names, law.name)
+    for name in [name for name, own in PARAMETERS.items() if own.needed_by[0] == "micro" and name not in declared]:
+        del PARAMETERS[name]  # of a law that has been replaced
+    PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
+    PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
+    return laws
+
+
+@cache
+def load():
+    """Register the laws of installed packages, once: what is loaded is a :class:`Law`, or a list of them.
+
+    Raises
+    ------
+    ValueError
+        One of them cannot be loaded or registered.
+    """
+    from importlib.metadata import entry_points  # takes a while, and most studies have no need of it
+
+    for found in entry_points(group=GROUP):
+        try:
+            named(found.load())
+        except Exception as error:
+            raise ValueError(f"entry point {found.name} = {found.value} of {GROUP}: {error}") from error
+
+
+def named(given):
+    """Names in place of laws: of one, or of each in a list. A law given as an object becomes known by its name."""
+    if isinstance(given, (list, tuple)):
+        return [named(one) for one in given]
+    return register(given).name if isinstance(given, Law) else given
+
+
+def known(parameters, micro):
+    """Whether all `parameters` (names) and all words of `micro` (one, or an array) are known without :func:`load`."""
+    return set(parameters) <= set(PARAMETERS) and set(np.ravel(micro).tolist()) <= set(LAWS)
+
+
+def identity(name):
+    """What tells the law of this name from others, as text: with its version if it was registered."""
+    law = LAWS.get(name)
+    return f"{name} {law.version}" if law and law.version else name
+
+
+BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW)
+#: Name -> Law.
+LAWS = _declare({law.name: law for law in BUILT_IN})

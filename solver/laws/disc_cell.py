@@ -13,10 +13,13 @@ g → 1/3).
 import numpy as np
 
 from ..parameters import Parameter
-from .law import Curve, Law, inverse
+from .law import Curve, Law, inverse, log_step, of_positive
 
 #: Asperities per unit area, in R⁻², and their radius, in R.
-PARAMETERS = {"Nbar": Parameter(interval="[1e-4, 1e18]"), "Ra": Parameter(interval="[1e-7, 1e2]")}
+PARAMETERS = {
+    "Nbar": Parameter(interval="[1e-4, 1e18]", powers=(0, -2)),
+    "Ra": Parameter(interval="[1e-7, 1e2]", powers=(0, 1)),
+}
 
 
 def cell_radius(Nbar):
@@ -82,8 +85,11 @@ def spot_guess(q):
 def spot_from_pressure(q):
     """y = cot θ with q(y) = q: the inverse of Eq. (7), to a few units of rounding for any q > 0; q <= 0 gives 0."""
     q = np.asarray(q, dtype=float)
-    # ln q against ln y has slopes from 3 to 1: from within 1 % three steps do
-    return inverse(lambda y: spot_curve(y)[0::2], q, spot_guess(np.maximum(q, 0.0)), steps=3)
+    target = np.where(q > 0, q, 1.0)
+    y = spot_guess(target)
+    for _ in range(3):  # ln q against ln y has slopes from 3 to 1: from within 1 % three steps do
+        y = y * np.exp(log_step(lambda y: spot_curve(y)[0::2], target, y))
+    return of_positive(q, y)
 
 
 def spot_from_displacement(g):
@@ -111,7 +117,6 @@ LAW = Law(
     from_pressure=spot_from_pressure,
     from_displacement=spot_from_displacement,
     guess=spot_guess,
-    sparse=lambda g: 2 / np.pi * g * np.sqrt(g),
 )
 
 

@@ -1,10 +1,12 @@
 """The error of a cheap model against the exact layer with its asperities, estimated from the solution of the cheap one.
 
-One Newton step of the exact equation (two, where asperities come in) begins at the pressure and the radius of the cheap
+One Newton step of the exact equation begins at the pressure and the radius of the cheap
 solution. It gives to first order what the exact model would have found under the same control. The largest relative
 difference over a, P, D, p(0), p_max, Ar/An is the estimate. A whole solution takes some ten steps on each of several
 meshes; this takes one, on few nodes.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,25 +14,34 @@ from ..contact.equation import State, evaluate, groups
 from ..contact.newton import advance
 from ..contact.results import quantities
 from ..numerics.mesh import mesh
+from ..scaling import as_cases
+from ..solution import Solution
 from .thin_layer_error import largest_error
 
 #: The quantities whose largest relative error is the model error.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
-#: The base "auto" multiplies the estimate by this. Below TRUSTED, the estimate is at least 0.85 of the true error on
-#: the grids of studies/validity.toml and validity_load.toml; tests/models/test_auto.py holds it to that.
-MARGIN = 1.25
-#: A larger estimate only says that the error is large: "auto" takes no cheap model there.
-TRUSTED = 0.3
-#: Nodes of the step for an accuracy of at least this; they need only resolve the error, not the solution.
-_NODES = ((5e-5, 16),)
+#: Nodes of the step: they need only resolve the error, not the solution.
+NODES = 24
 
 
-def nodes_for(accuracy):
-    """Number of nodes (B,) of the Newton step whose estimate is compared with `accuracy` (B,)."""
-    return np.select([accuracy >= limit for limit, _ in _NODES], [n for _, n in _NODES], 24)
+def judged(problem, x, solve):
+    """:class:`Solution` of thin layers in units R = E2* = 1, with the model error of first order.
+
+    problem : all of base "thin_layer"; x : (m,) radii; solve : ``solve(problem, x)``, without this estimate.
+    """
+    out = Solution.empty(len(problem), len(x))
+    for micro in np.unique(problem.micro):
+        index = np.flatnonzero(problem.micro == micro)
+        part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
+        found = vars(solve(part, np.concatenate([x, mesh(NODES).x])))
+        layered = replace(part, base=np.full(len(index), "layered"))
+        error = first_order(as_cases(layered, np.zeros(len(index))), found, found["p"][:, len(x) :])
+        shown = {name: found[name][:, : len(x)] for name in ("p", "lam")}
+        out.put(index, found | shown | {"model_error": error})
+    return out
 
 
-def first_order(cases, cheap, p, n, steps=1):
+def first_order(cases, cheap, p):
     """Estimated relative error (B,) of a cheap solution against the exact model `cases`, to first order.
 
     Parameters
@@ -39,25 +50,19 @@ def first_order(cases, cheap, p, n, steps=1):
         The exact equation of the B cases in units R = E2* = 1.
     cheap : dict
         The cheap solution: a, P, D, p0, p_max, Ar_An (B,) in the same units.
-    p : (B, n) float, E2*
-        Its nominal pressure at the nodes ``mesh(n).x``.
-    n : int
-        Number of nodes.
-    steps : int
-        Newton steps. Two, where the cheap solution is smooth and the exact one is not: asperities change the pressure
-        most at the edge, where the smooth one has a root, and one step does not follow.
+    p : (B, NODES) float, E2*
+        Its nominal pressure at the nodes ``mesh(NODES).x``.
 
     Returns
     -------
     (B,) float
         NaN for a case whose cheap solution has no numbers, inf where the step fails.
     """
-    grid = mesh(n)
+    grid = mesh(NODES)
     y = cases.law.from_pressure(p / cases.law.p_star[:, None])
-    state = State(y, np.log(cheap["a"]))
-    for _ in range(steps):
-        ev = evaluate(cases, state, grid)
-        (state, _), last = advance(cases, state, ev, grid), state
+    last = State(y, np.log(cheap["a"]))
+    ev = evaluate(cases, last, grid)
+    state, _ = advance(cases, last, ev, grid)
     curve = cases.law.evaluate(state.y)
     # to first order, as the step itself: the operator is not formed anew
     edge_q = (ev.base.edge(grid) * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from solver import NUMERICS_VERSION
+from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
 from ..files.access import Unusable
@@ -118,6 +119,11 @@ def _grid_in(file: File) -> Grid:
         if name in dims and name in coordinates_of(file):
             array = file.read(name)  # texts without the dimension of their characters
             values[name] = dims[name][: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
+    versions = str(file.attribute("micro_laws")).split("\n") if "micro_laws" in file.attributes() else []
+    if "micro" in values:  # a law of another version than the registered one is another law
+        own, words = values["micro"]
+        old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
+        values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
     return Grid({dim: file.sizes[dim] for dim in dims["status"]}, values)
 
 

@@ -9,8 +9,8 @@ import xarray as xr
 
 from .data.dataset import labelled
 from .data.provenance import command_line
+from .files.access import Unusable
 from .files.examine import Condition
-from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results
 from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .spec.given import Draft

@@ -18,6 +18,7 @@ import numpy as np
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import not_run
+from ..files.atomic import remove_temporary
 from ..spec.definition import Definition, StudyError
 from ..spec.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
@@ -64,6 +65,11 @@ class Store:
     @property
     def folder(self) -> Path:
         return self.results / f".{self.definition.name}.blocks"
+
+    @property
+    def path(self) -> Path:
+        """Of the results file."""
+        return self.results / f"{self.definition.name}.nc"
 
     @property
     def lock(self) -> Path:
@@ -232,6 +238,7 @@ def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, n
 
 
 def remove_litter(store: Store) -> None:
-    """Remove what runs that were killed while they wrote have left."""
+    """Remove what runs that were killed while they wrote have left, also beside a file that a link leads to."""
+    remove_temporary(store.path)
     for path in store.folder.glob(".*.tmp"):
         path.unlink(missing_ok=True)

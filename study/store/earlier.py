@@ -3,18 +3,18 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
-from ..files.checksums import ATTRIBUTE, attribute, identity, parsed
-from ..files.examine import BROKEN, CHUNK, Condition, cut_from, stamp
-from ..files.netcdf import Unusable, access, closing, opened
+from ..files.access import Unusable
+from ..files.checksums import ATTRIBUTE, identity, parsed
+from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
+from ..files.netcdf import File
 from ..spec.definition import Definition, StudyError
-from ..spec.grid import Grid, columns_at, windows
+from ..spec.grid import Grid, columns_at
 from ..spec.vocabulary import NOT_RUN, PARAMETERS
 from .block_file import Damaged
 from .blocks import Store, facts, usable
@@ -39,18 +39,16 @@ class Source:
         cannot is told apart by these."""
         given = columns_at(self.grid, rows)
         found = {name: given[name] for name in self.names if name in self.grid.values}
-        over, start = [name for name in self.names if name not in found], 0
-        with closing(opened(self.path), self.path) as file:
-            for window in windows(self.grid, CHUNK, CHUNK):
-                stop = start + int(np.prod([part.stop - part.start for part in window.values()]))
+        over = [name for name in self.names if name not in found]
+        with File(self.path) as file:
+            for start, stop, window in runs(self.grid):
                 here = np.flatnonzero((start <= rows) & (rows < stop))
                 for name in over if len(here) else ():
-                    piece = cut_from(self.path, file, name, window)
+                    piece = file.read(name, window)
                     piece = piece.reshape(stop - start, *piece.shape[len(self.grid.sizes) :])
                     if name not in found:
                         found[name] = np.empty((len(rows), *piece.shape[1:]), piece.dtype)
                     found[name][here] = piece[rows[here] - start]
-                start = stop
         if stamp(self.path) != self.seen:
             raise Damaged(f"{self.path}: has been replaced while its cases were read; the same command goes on")
         return found
@@ -76,7 +74,7 @@ def earlier(definition: Definition, found: Condition) -> Earlier:
     if found.kind in ("missing", "foreign", "unreadable") or not found.digest and not found.damage:
         return Earlier(found)
     try:
-        with closing(opened(found.path), found.path) as file:
+        with File(found.path) as file:
             return _described(definition, found, file)
     except Unusable:
         return Earlier(found)
@@ -84,32 +82,29 @@ def earlier(definition: Definition, found: Condition) -> Earlier:
         return Earlier(replace(found, kind="foreign", reason=f"is laid out as no results of ours ({error!r})"))
 
 
-def _described(definition: Definition, found: Condition, file: netCDF4.Dataset) -> Earlier:
-    with access(found.path):
-        if "status" not in file.variables:  # a micro law
-            return Earlier(found, numerics=found.numerics)
-        told = _told(definition, found, file)
-        if told is None:
-            return Earlier(found, Grid(found.sizes, {}).size)
-        grid, x, numerics = told
-        wanted = [name for name in not_run(definition, 0) if name in file.variables]
-        columns = {name: np.empty(0, file[name].dtype) for name in wanted}
-        columns |= {name: array[:0] for name, (_, array) in grid.values.items() if array.ndim}
-        if not usable(definition, facts(x) | {"numerics_version": numerics}, columns):
-            return Earlier(found, grid.size, True, numerics)
-        status = np.asarray(file["status"][...]).ravel()
-    status = status if found.intact is None else np.where(found.intact, status, np.int8(NOT_RUN))
+def _described(definition: Definition, found: Condition, file: File) -> Earlier:
+    if "status" not in file.variables:  # a micro law
+        return Earlier(found, numerics=found.numerics)
+    told = _told(definition, found, file)
+    if told is None:
+        return Earlier(found, Grid(found.sizes, {}).size)
+    grid, x, numerics = told
     names = tuple(not_run(definition, 0))
-    return Earlier(
-        found, grid.size, True, numerics, Source(found.path, grid, case_keys(grid), status, names, stamp(found.path))
-    )
+    columns = {name: np.empty(0, file.dtype(name)) for name in names if name in file.variables}
+    columns |= {name: array[:0] for name, (_, array) in grid.values.items() if array.ndim}
+    if not usable(definition, facts(x) | {"numerics_version": numerics}, columns):
+        return Earlier(found, grid.size, True, numerics)
+    status = file.read("status").ravel()
+    status = status if found.intact is None else np.where(found.intact, status, np.int8(NOT_RUN))
+    source = Source(found.path, grid, case_keys(grid), status, names, stamp(found.path))
+    return Earlier(found, grid.size, True, numerics, source)
 
 
-def _told(definition: Definition, found: Condition, file: netCDF4.Dataset) -> tuple | None:
+def _told(definition: Definition, found: Condition, file: File) -> tuple | None:
     """Grid, points x and numerics of the cases in a file: its own, or of the definition where those are damaged."""
     if not {*PARAMETERS, "x", "=structure", "@numerics_version"} & set(found.damage):
-        return _grid_in(file), np.asarray(file["x"][:]), found.numerics
-    lines = parsed(str(attribute(file, ATTRIBUTE))) if ATTRIBUTE in file.ncattrs() else {}
+        return _grid_in(file), file.read("x"), found.numerics
+    lines = parsed(str(file.attribute(ATTRIBUTE))) if ATTRIBUTE in file.attributes() else {}
     grid, x = definition.grid, definition.x
     same = list(grid.sizes.items()) == list(found.sizes.items())
     if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
@@ -117,27 +112,25 @@ def _told(definition: Definition, found: Condition, file: netCDF4.Dataset) -> tu
     return None
 
 
-def _grid_in(file: netCDF4.Dataset) -> Grid:
+def _grid_in(file: File) -> Grid:
     """The grid that a results file was computed on, from its coordinates."""
-    status = file["status"]
-    coordinates = {*status.dimensions, *getattr(status, "coordinates", "").split()}
-    values = {}
+    dims, values = file.variables, {}
     for name in PARAMETERS:
-        if name in coordinates and name in file.variables:
-            array = np.asarray(file[name][...])  # texts without the dimension of their characters
-            values[name] = file[name].dimensions[: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
-    versions = str(attribute(file, "micro_laws")).split("\n") if "micro_laws" in file.ncattrs() else []
+        if name in dims and name in coordinates_of(file):
+            array = file.read(name)  # texts without the dimension of their characters
+            values[name] = dims[name][: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
+    versions = str(file.attribute("micro_laws")).split("\n") if "micro_laws" in file.attributes() else []
     if "micro" in values:  # a law of another version than the registered one is another law
-        dims, words = values["micro"]
+        own, words = values["micro"]
         old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
-        values["micro"] = dims, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
-    return Grid({dim: len(file.dimensions[dim]) for dim in status.dimensions}, values)
+        values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
+    return Grid({dim: file.sizes[dim] for dim in dims["status"]}, values)
 
 
 def statuses(path: Path) -> np.ndarray:
     """The statuses in a results file of a contact study, an array over its grid."""
-    with closing(opened(path), path) as file, access(path):
-        return np.asarray(file["status"][...])
+    with File(path) as file:
+        return file.read("status")
 
 
 def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: bool = False) -> None:

@@ -13,6 +13,7 @@ import pickle
 import subprocess
 import sys
 import threading
+import traceback
 from collections.abc import Callable
 from contextlib import suppress
 from queue import SimpleQueue
@@ -38,10 +39,11 @@ class Processes:
 
     def call(self, function: Callable, *given) -> object:
         """function(*given), computed in the process of this thread; Failure when that was killed ATTEMPTS times."""
+        task = pickle.dumps((function, given))
         for _ in range(ATTEMPTS):
             try:
                 process = self._mine.process = getattr(self._mine, "process", None) or self._started()
-                pickle.dump((function, given), process.stdin)
+                pickle.dump(task, process.stdin)
                 process.stdin.flush()
                 return pickle.load(process.stdout)
             except (EOFError, OSError, pickle.UnpicklingError):  # nobody reads, nobody writes, or only a part
@@ -87,6 +89,11 @@ def serve() -> None:
 
     threading.Thread(target=receive, daemon=True).start()
     while True:
-        function, given = tasks.get()
-        pickle.dump(function(*given), answers)
+        task = tasks.get()
+        try:
+            function, given = pickle.loads(task)
+            found = function(*given)
+        except Exception as error:  # of a function, say, that is not defined here
+            found = Failure(f"{type(error).__name__}: {error}", traceback.format_exc())
+        pickle.dump(found, answers)
         answers.flush()

@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import NO_SOLUTION, labelled, status_words
+from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..spec.definition import Definition
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
@@ -62,9 +63,8 @@ def _computed(order: Order, found: Condition) -> Report:
     if order.done(found):
         return order.report(kept=tidy(order.store, inventory(order.store, force=True)))
     if found.kind == "damaged":
-        log.warning(
-            "%s: %s; computing again what is damaged, %s.damaged keeps it", order.path, found.reason, order.path
-        )
+        kept = f"computing again what is damaged, {target(order.path)}.damaged keeps it"
+        log.warning("%s: %s; %s", order.path, found.reason, kept)
     known = prepared(order, found)
     missing = len(known.missing)
     writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))

@@ -142,7 +142,7 @@ def test_nobody_is_invited_to_destroy_what_is_damaged_or_not_ours(tmp_path, foun
 @pytest.mark.parametrize("chunk", [1, 3, 8192])
 def test_cases_of_an_earlier_file_are_read_from_it(ran, tmp_path, monkeypatch, chunk):
     """In another order, beside cases that are new, whatever the windows in which the file is read."""
-    monkeypatch.setattr(module, "CHUNK", chunk)
+    monkeypatch.setattr("study.files.examine.CHUNK", chunk)
     store = Store(line((3e-6, 5e-6, 1e-6)), tmp_path)
     source = earlier(store.definition, ran.results / "line.nc").source
     known = inventory(store, source)

@@ -94,6 +94,14 @@ def test_what_a_task_prints_is_no_answer():
         assert [found.submit(print, word).result(PATIENCE) for word in ("one", "two")] == [None, None]
 
 
+def test_what_a_process_does_not_know_is_said(monkeypatch):
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    with engine(2, None, 8) as found:
+        failure = found.submit(note_and_die, Path()).result(PATIENCE)
+        assert failure.message == "ModuleNotFoundError: No module named 'test_worker_processes'"
+        assert found.submit(abs, -1).result(PATIENCE) == 1
+
+
 @pytest.fixture
 def importable(monkeypatch):
     """Worker processes can import this file."""

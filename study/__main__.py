@@ -12,12 +12,11 @@ import logging
 import os
 import sys
 from importlib import import_module
-from pathlib import Path
 
 from .commands import ending
 from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part
 from .commands.ending import INTERRUPTED
-from .terminal import answer, empty_buffers, open_the_closed, say
+from .terminal import empty_buffers, open_the_closed, say
 
 # The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
 # others at all, of which each worker process would have one for each processor.
@@ -95,13 +94,11 @@ def main(arguments=None) -> int:
 
 def perform(options, kept: str) -> int:
     """Largest exit code of a command on its items; what is wrong with one does not keep the others from their turn."""
-    items = sorted(Path(options.folder).glob("*.toml")) if options.command == "list" else options.items
-    if not items:
-        return answer(f"no study files in {options.folder}")
     module, name = options.action
-    act = getattr(import_module(f".commands.{module}", __package__), name)
+    commands = import_module(f".commands.{module}", __package__)
+    items = commands.items(options) if hasattr(commands, "items") else options.items
     ending.now.working = True  # all imports have been made
-    return max((_attempt(act, options, item, kept) for item in items), default=0)
+    return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
 
 
 def _attempt(act, options, item, kept: str) -> int:

@@ -10,8 +10,8 @@ import xarray as xr
 
 from .data.dataset import labelled
 from .data.provenance import command_line
+from .files.access import Unusable
 from .files.examine import Condition
-from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results
 from .in_words import doubts
 from .physical import read as read_scene
@@ -20,7 +20,7 @@ from .spec.given import Draft
 from .spec.grid import LONGEST_AXIS
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
-from .store.earlier import at_hand, earlier, statuses
+from .store.earlier import earlier, statuses
 from .store.tidy import clean
 from .work.cases import compute, parcel
 from .work.cost import Estimate
@@ -130,8 +130,8 @@ class Study:
         elif not check_countable(Store(self.definition, self.results), path, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
-            known = inventory(Store(self.definition, self.results))
-            counts = count_statuses(at_hand(known, earlier(self.definition, found)))
+            known = inventory(Store(self.definition, self.results), earlier(self.definition, found).source)
+            counts = count_statuses(known.status)
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         return {
             "state": state, "cases": self.definition.grid.size, "counts": counts, "path": path, "reason": found.reason

@@ -6,9 +6,19 @@ from pathlib import Path
 from ..api import Study, load
 from ..files.examine import examine
 from ..terminal import answer, say
-from ..work.plan import Report, status_values
+from ..work.plan import status_values
 from .answers import cost_line, count_lines, failure_lines, report_line, state_line, verified_line
 from .arguments import study_file
+
+
+def items(options) -> list:
+    """What the command is for: the files that were given, or those of a folder."""
+    if options.command != "list":
+        return options.items
+    files = sorted(Path(options.folder).glob("*.toml"))
+    if not files:
+        answer(f"no study files in {options.folder}")
+    return files
 
 
 def list_(options, file: Path) -> int:
@@ -56,11 +66,12 @@ def _opened(options, file: str) -> Study:
 
 def _compute(study: Study, options, **more) -> int:
     chosen = {name: getattr(options, name) for name in ("workers", "scheduler", "fail_fast", "yes")}
-    return reported(study.run(**chosen, **more, processes=True, stream=sys.stderr), study.definition.name)
+    return completed(study, **chosen, **more)
 
 
-def reported(report: Report, name: str) -> int:
-    """Say what a run of the study NAME has done; returns the exit code."""
+def completed(study: Study, **options) -> int:
+    """Run a study and say what came of it; returns the exit code."""
+    name, report = study.definition.name, study.run(**options, processes=True, stream=sys.stderr)
     if report.failures:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1

@@ -1,29 +1,36 @@
 """The commands that draw and tabulate results. Each does it for one name and returns an exit code."""
 
-import sys
-
 from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
 from ..evidence import tradeoff as measured
 from ..terminal import answer
 from .arguments import study_file
-from .computing import reported
+from .computing import completed
+
+
+def items(options) -> list[str]:
+    """Names of figures or tables; "all" stands for those that no long study is needed for."""
+    known = catalogue.FIGURES if options.command == "plot" else catalogue.TABLES
+    return catalogue.usual(known) if options.items == ["all"] else options.items
 
 
 def plot(options, name: str) -> int:
-    """Draw a figure, or "all", and say which files it is in."""
+    """Draw a figure, and say which files it is in."""
     return _write(options, name, catalogue.FIGURES, catalogue.draw)
 
 
 def table(options, name: str) -> int:
-    """Write a table, or "all", and say which files it is in."""
+    """Write a table, and say which files it is in."""
     return _write(options, name, catalogue.TABLES, catalogue.tabulate)
 
 
+def tradeoff(options, _) -> int:
+    """Measure error against time, and say in which file it is."""
+    return _measured(options, options.force)
+
+
 def _write(options, name: str, known: dict, make) -> int:
-    if name == "all":
-        return max(_write(options, one, known, make) for one in catalogue.usual(known))
     if options.run:
         code = max((_ready(options, study) for study in catalogue.needed(name, known)), default=0)
         if code or not catalogue.outdated(name, known, options.results, options.folder):
@@ -38,14 +45,8 @@ def _ready(options, study: str) -> int:
     if study not in codes and study == "tradeoff":
         codes[study] = _measured(options, force=False)
     elif study not in codes:
-        report = load(study_file(study), options.results).run(force=True, processes=True, stream=sys.stderr)
-        codes[study] = reported(report, study)
+        codes[study] = completed(load(study_file(study), options.results), force=True)
     return codes[study]
-
-
-def tradeoff(options, _) -> int:
-    """Measure error against time, and say in which file it is."""
-    return _measured(options, options.force)
 
 
 def _measured(options, force: bool) -> int:

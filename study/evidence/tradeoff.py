@@ -18,13 +18,12 @@ import numpy as np
 import xarray as xr
 
 from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
-from solver.parameters import BASES
 
 from ..data.provenance import provenance
 from ..files.examine import examine
 from ..files.results_file import open_results, write
 from ..paper import paper_error
-from ..paper.uniform import Found, solve_uniform, uniform_mesh
+from ..paper.uniform import solve_uniform, uniform_mesh
 from .problem_sets import SETS
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
@@ -35,7 +34,6 @@ PATIENCE = 1.0
 """Seconds after which a measurement is not repeated."""
 
 PAPERS = ("paper, layer", "paper, half-space")
-PAPERS_BASES = ("thin_layer", "half_space")
 TOLERANCES = tuple(10.0**-i for i in range(2, 10))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
 SLOW, COPIES = 20, 10
@@ -48,7 +46,7 @@ FINE = (390.0, 640.0, 1100.0)
 class Way:
     """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
 
-    sets : where it is measured; bases : the cases it takes part in; most : of these it takes no more, for slow ones;
+    sets : where it is measured; most : of their cases it takes no more, for slow ones;
     copies : of the paper's cases in the batch that is timed, for what solves a hundred in no time;
     prepare : what is done once for a setting, however many cases follow, and not timed
     """
@@ -57,15 +55,13 @@ class Way:
     varied: str
     settings: tuple[float, ...]
     sets: tuple[str, ...] = tuple(SETS)
-    bases: tuple[str, ...] = BASES
     most: int = 10**6
     copies: int = 1
     prepare: Callable[[float], object] = lambda setting: None
 
-    def index(self, cases: dict) -> np.ndarray:
-        """The cases that it takes."""
-        fits = np.flatnonzero(np.isin(cases["base"], self.bases))
-        return fits[np.unique(np.linspace(0, len(fits) - 1, min(self.most, len(fits))).round().astype(int))]
+    def index(self, size: int) -> np.ndarray:
+        """Which of `size` cases it takes."""
+        return np.unique(np.linspace(0, size - 1, min(self.most, size)).round().astype(int))
 
 
 def changed(**parameters) -> Callable[[dict, float], Solution]:
@@ -97,13 +93,10 @@ def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
     """The paper's way with one k, on meshes of `settings` intervals; all is iterated until the mesh is the largest
     error."""
 
-    def mesh(intervals: float):
-        return uniform_mesh(int(intervals))
-
-    def run(cases: dict, intervals: float) -> Found:
+    def run(cases: dict, intervals: float):
         return solve_uniform(Problem.of(**cases), int(intervals), k, 0.3 / intervals**2)
 
-    return Way(run, "intervals", settings, sets, PAPERS_BASES, most, prepare=mesh)
+    return Way(run, "intervals", settings, sets, most, prepare=lambda intervals: uniform_mesh(int(intervals)))
 
 
 WAYS = {
@@ -146,7 +139,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, com
         for j, way in enumerate(ways.values()):
             if name not in way.sets:
                 continue
-            cases, reference = taken(*everything, way.index(everything[0]))
+            cases, reference = taken(*everything, way.index(len(everything[1].a)))
             counts[i, j] = len(reference.a)
             for step, setting in enumerate(way.settings):
                 copies = way.copies if name in PAPERS else 1

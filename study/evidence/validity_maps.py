@@ -22,6 +22,7 @@ WORDS = (
     "more than 10 % too large",
 )
 ESTIMATE = {"colors": "black", "linestyles": [(0, (2, 1.5))], "linewidths": 0.9}
+REFUSED = {"facecolor": "0.93", "edgecolor": "0.5", "hatch": "////", "linewidth": 0}
 TITLES = {
     "frictionless": "frictionless",
     "bonded, ν = 0": r"bonded, $\nu = 0$",
@@ -96,7 +97,7 @@ def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.Dat
     n = case["n"].broadcast_like(h_a)
     drawn = np.isfinite(error.values).any(axis=1)
     if not drawn.all():
-        axes.axhspan(float(case["n"][drawn].max()), 1, facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0)
+        axes.axhspan(float(case["n"][drawn].max()), 1, **REFUSED)
     grid = h_a.values[drawn], n.values[drawn], error.values[drawn]
     axes.contourf(*grid, LEVELS, colors=COLOURS)
     axes.contour(*grid, LEVELS[1:-1], colors="0.25", linewidths=[0.9, 0.5, 0.5, 0.9], linestyles="solid")
@@ -120,36 +121,25 @@ def main_case(axes, case: xr.Dataset) -> None:
 
 def legend(panels, *, estimate: bool) -> None:
     """One legend for the whole figure, below it."""
-    handles = [
-        Patch(facecolor=colour, edgecolor="0.25", linewidth=0.5, label=word)
-        for colour, word in zip(COLOURS, WORDS, strict=True)
-    ]
-    handles.append(
-        Patch(facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0, label=r"does not apply, $C \leq 0$")
-    )
+    edge = {"edgecolor": "0.25", "linewidth": 0.5}
+    handles = [Patch(facecolor=colour, label=word, **edge) for colour, word in zip(COLOURS, WORDS, strict=True)]
+    handles.append(Patch(label=r"does not apply, $C \leq 0$", **REFUSED))
     handles.append(Line2D([], [], color="black", marker="*", linestyle="", label="the paper's main case"))
     if estimate:
-        handles.append(
-            Line2D(
-                [], [], color="black", linestyle=(0, (2, 1.5)), linewidth=0.9, label=r"estimate, $\pm 1$ and $\pm 10$ %"
-            )
-        )
+        line = {"color": "black", "linestyle": ESTIMATE["linestyles"][0], "linewidth": 0.9}
+        handles.append(Line2D([], [], label=r"estimate, $\pm 1$ and $\pm 10$ %", **line))
     panels[0][0].figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, handlelength=1.8)
 
 
 def long(rows, parts) -> Columns:
-    """Long columns: material, quantity (number of the row), h/a, n, error."""
-    columns = {name: [] for name in ("row", "material", "h/a", "n", "error")}
+    """Long columns: quantity (number of the row), material, h/a, n, error."""
+    found, per_row = [], len(parts) // len(rows)
     for i, (h_a, error) in enumerate(parts):
-        finite = np.isfinite(error.values)
-        count = int(finite.sum())
-        per_row = len(parts) // len(rows)
-        columns["row"].append(np.full(count, i // per_row))
-        columns["material"].append(np.full(count, i % per_row))
-        columns["h/a"].append(h_a.values[finite])
-        columns["n"].append(error["n"].broadcast_like(error).values[finite])
-        columns["error"].append(error.values[finite])
-    return {name: np.concatenate(part) for name, part in columns.items()}
+        n, finite = error["n"].broadcast_like(error).values, np.isfinite(error.values)
+        place = np.full((2, finite.sum()), [[i // per_row], [i % per_row]])
+        found.append([*place, *(array[finite] for array in (h_a.values, n, error.values))])
+    names = ("row", "material", "h/a", "n", "error")
+    return {name: np.concatenate(column) for name, column in zip(names, zip(*found, strict=True), strict=True)}
 
 
 MATERIALS = ("frictionless", "nu=0", "nu=0.3", "nu=0.45")

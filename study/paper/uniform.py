@@ -7,8 +7,8 @@ the pressure at the radius before, which halves their number. It serves for comp
 the nodes and of the steps.
 """
 
+from collections import namedtuple
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ellipkm1
@@ -22,16 +22,12 @@ ROWS = 64
 """Rows of the operator that are formed together: on 1100 intervals all at once would take 0.5 GB."""
 
 
-class UniformMesh(NamedTuple):
-    """Nodes x = i/n from the centre, all but x = 1, where p = 0; arrays (n,), K (n, n).
+UniformMesh = namedtuple("UniformMesh", "x w K")
+"""Nodes x = i/n from the centre, all but x = 1, where p = 0; x, w (n,), K (n, n).
 
-    For a pressure linear between the nodes, in units R = E2* = 1: u(x) - u(1) = 4 a/π K p is the displacement of the
-    half-space; 2 π a² w·p is the load, by the trapezoidal rule.
-    """
-
-    x: np.ndarray
-    w: np.ndarray
-    K: np.ndarray
+For a pressure linear between the nodes, in units R = E2* = 1: u(x) - u(1) = 4 a/π K p is the displacement of the
+half-space; 2 π a² w·p is the load, by the trapezoidal rule.
+"""
 
 
 @lru_cache(maxsize=16)
@@ -68,18 +64,8 @@ def elliptic(x: np.ndarray, source: np.ndarray) -> np.ndarray:
     return ellipkm1(np.abs(x - source) * (x + source) / outer**2) * source / outer
 
 
-class Found(NamedTuple):
-    """What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
-
-    a: np.ndarray
-    P: np.ndarray
-    D: np.ndarray
-    p0: np.ndarray
-    p_max: np.ndarray
-    Ar_An: np.ndarray
-    A0: np.ndarray
-    status: np.ndarray
-    iterations: np.ndarray
+Found = namedtuple("Found", "a P D p0 p_max Ar_An A0 status iterations")
+"""What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
 
 
 def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None) -> Found:
@@ -161,16 +147,12 @@ class Contact:
                 break
         return settled
 
-    def load(self, a: np.ndarray, index) -> np.ndarray:
-        """P of the last pressure, Eq. (5)."""
-        return 2 * np.pi * a**2 * (self.p[index] @ self.mesh.w)
-
     def missed(self, eta: np.ndarray, index: np.ndarray) -> np.ndarray:
-        """Logarithm of the load at ln a over the given one."""
+        """Logarithm of the load (5) at ln a over the given one."""
         settled = self.approximate(np.exp(eta), index)
-        found = np.log(self.load(np.exp(eta), index) / self.value[index])
+        load = 2 * np.pi * np.exp(2 * eta) * (self.p[index] @ self.mesh.w)
         self.p[index[~settled]] = 0.0  # no cycle is handed on
-        return found
+        return np.log(load / self.value[index])
 
     def start(self) -> np.ndarray:
         """Radii to begin with: under the load of the half-space, of the layer and of asperities A ~ p^β alone."""
@@ -186,8 +168,8 @@ class Contact:
         a = self.value
         if self.given == "P":
             a = np.exp(halved(self.missed, np.log(self.start()), self.tolerance))
-        settled = self.approximate(a, every)
-        p, P = self.p, self.load(a, every)
+        settled, p = self.approximate(a, every), self.p
+        P = 2 * np.pi * a**2 * (p @ mesh.w)  # (5)
         if self.given == "P":
             settled &= np.abs(np.log(P / self.value)) < 10 * self.tolerance
             P = self.value  # exactly as given

@@ -21,12 +21,7 @@ LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a
 MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
-KEYS = {
-    "numerics": (*NUMERICS, "block"),
-    "output": ("x", "profiles", "dtype"),
-    "model": None,
-    "axes": None,
-}
+KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype"), "model": None, "axes": None}
 """Of the tables of a study file; None: names of parameters."""
 PER_CASE = 16  # numbers per case besides the profiles, roughly
 SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")

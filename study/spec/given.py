@@ -19,8 +19,8 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x be
 class Draft:
     """Collects parameters; `finish` makes the Grid of them.
 
-    errors : messages, no file name; sizes, values, labels : as of the Grid; sections :
-    where each parameter was given; claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
+    errors : messages, no file name; sizes, values, labels : as of the Grid; sections : where each parameter was given;
+    claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
     """
 
     errors: list[str] = field(default_factory=list)
@@ -66,7 +66,7 @@ class Draft:
             if name == "label":
                 self._label_cases([row.get("label", "") for row in rows])
             elif self._accept(name, "[[cases]]"):
-                default = VOCABULARY[name].default
+                default = VOCABULARY[name].own.default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
                 self.values[name] = ("case",), self._checked(name, raw, gaps=True)
         if len(self.errors) == before:  # else the values are of any size and kind
@@ -104,7 +104,7 @@ class Draft:
             self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
         self._check_dimensions()
         for name in PARAMETERS:
-            default = VOCABULARY[name].default
+            default = VOCABULARY[name].own.default
             if name not in self.sections and default is not None:
                 self.values[name] = (), np.array(default)
         grid = Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
@@ -115,7 +115,7 @@ class Draft:
     def _accept(self, name: str, section: str) -> bool:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
-        if name not in PARAMETERS and not is_parameter(name):
+        if not is_parameter(name):
             near = suggest(name, PARAMETERS) if len(self.errors) < MOST_MESSAGES else ""  # somebody will read it
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
@@ -131,7 +131,13 @@ class Draft:
         """The values as an array, with messages for those that are not allowed, and for `distinct` ones that are
         twins."""
         before = len(self.errors)
-        array = as_array(VOCABULARY[name], raw, name, self.errors, gaps)
+        if name == "micro":
+            try:
+                raw = law_names(raw)
+            except ValueError as error:
+                self.errors.append(f"{name}: {error}")
+                return np.empty(len(raw))
+        array = as_array(VOCABULARY[name].own, raw, name, self.errors, gaps)
         if distinct and len(self.errors) == before:
             self._distinct(name, array.tolist())
         return array
@@ -178,13 +184,13 @@ def missing_parameters(grid: Grid) -> list[str]:
     """Messages for parameters that some case needs and does not have."""
     messages = []
     for name in PARAMETERS:
-        selector, words = VOCABULARY[name].needed_by
-        if VOCABULARY[name].default is not None or (name in CONTROLS and name not in grid.values):
+        selector, words = VOCABULARY[name].own.needed_by
+        if VOCABULARY[name].own.default is not None or (name in CONTROLS and name not in grid.values):
             continue
         gaps = np.isnan(along(grid, name)) & having(name, partial(along, grid))
         if gaps.any():
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")] if name in grid.values else ""
-            found = [shown(word) for word in words if selector in grid.values and word in grid.values[selector][1]]
+            found = [shown(word) for word in words if word in along(grid, selector)]
             reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
             messages.append(f"{name} is missing{f' in case {case}' if name in grid.values else ''}{reason}")
     return messages
@@ -198,6 +204,6 @@ def lost_scheme(grid: Grid) -> list[str]:
     asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
     if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
         return []
-    others = " or ".join(shown(name) for name in VOCABULARY["micro"].choices if name not in smooth)
+    others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
     names = " or ".join(map(shown, smooth))
     return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']

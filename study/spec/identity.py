@@ -21,7 +21,7 @@ from .vocabulary import PARAMETERS, VOCABULARY
 
 def counts(grid: Grid, name: str) -> np.ndarray:
     """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
-    value, default = along(grid, name), VOCABULARY[name].default
+    value, default = along(grid, name), VOCABULARY[name].own.default
     given = ~np.isnan(value) if default is None else value != default
     return given & uses(name, partial(along, grid))
 

@@ -37,7 +37,7 @@ def clean(store: Store, done: bool) -> list[str]:
         if not alone:
             raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
         known = inventory(store, force=True)
-        used = set() if done else {known.files[number] for number in set(known.file[known.file >= 0].tolist())}
+        used = set() if done else {known.sources[number].path for number in set(known.source[known.source >= 0])}
         gone = [path for path in known.blocks if path not in used and path.is_file()]
         for path in gone:
             path.unlink(missing_ok=True)

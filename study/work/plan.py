@@ -46,11 +46,12 @@ class Report:
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `cluster.engine`; processes : workers may be processes, which begin by importing the main
-    module of this one; part : (i, n), only the i-th of n parts, whichever ends last writes the
-    results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds a
-    case that has failed (one without a solution has not); force : replace a results file of which cases would be lost;
-    yes : go on however large the study is; command : for the history of the results; stream : text stream for progress
+    workers, scheduler : see `workers.engine`; processes : workers may be processes, which know what is installed but
+    nothing that the calling program has defined; part : (i, n), only the i-th of n parts, whichever ends last writes
+    the results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds
+    a case that has failed (one without a solution has not); force : replace a results file of which cases would be
+    lost; yes : go on however large the study is; command : for the history of the results; stream : text stream for
+    progress
     """
 
     definition: Definition

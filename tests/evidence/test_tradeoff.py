@@ -67,12 +67,10 @@ def test_a_long_run_is_not_repeated(monkeypatch):
     assert timed(lambda: "answer", 5) == (100.0, "answer")
 
 
-def test_slow_ways_take_a_spread_sample_of_the_bases_they_know():
-    cases = SETS["extremes"](90, 1)
-    cases["base"][::3] = "layered"
-    index = replace(WAYS["paper k = 5"], most=7).index(cases)
-    assert len(index) == 7 and (np.diff(index) > 0).all() and not (cases["base"][index] == "layered").any()
-    assert len(WAYS["newton, rtol"].index(cases)) == 90
+def test_slow_ways_take_a_spread_sample():
+    index = replace(WAYS["paper k = 5"], most=7).index(90)
+    assert len(index) == 7 and index[0] == 0 and index[-1] == 89 and np.ptp(np.diff(index)) <= 1
+    assert len(WAYS["newton, rtol"].index(90)) == 90
 
 
 @pytest.fixture

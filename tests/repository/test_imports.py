@@ -135,9 +135,9 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 
 
 def test_light_modules_stay_light():
-    """Complaints about a study file come at once, and worker processes, which import `blocks`, start soon."""
+    """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
     alone(f"import study.spec.vocabulary, study.spec.grid, study.spec.given, study.spec.definition; {NOT_HEAVY}")
-    alone(f"import study.commands.arguments, study.work.cases; {NOT_HEAVY}")
+    alone(f"import study.commands.arguments, study.work.processes; {NOT_HEAVY}")
     alone(f"import study.scene.materials; {NOT_HEAVY}")
 
 

@@ -288,5 +288,5 @@ def test_defaults_of_the_vocabulary_are_allowed_values():
 
     for name in PARAMETERS:
         entry = VOCABULARY[name]
-        assert entry.default is None or not check(entry, entry.default)
-        assert entry.interval or entry.choices
+        assert entry.own.default is None or not check(entry.own, entry.own.default)
+        assert entry.own.interval or entry.own.choices

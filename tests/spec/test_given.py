@@ -1,11 +1,11 @@
 """From tables to a grid: the order of its dimensions, defaults, gaps, and values just outside of what is allowed."""
 
 import tomllib
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from solver.parameters import Parameter
 from study import StudyError
 from study.spec.definition import Definition, from_tables
 from study.spec.grid import as_array
@@ -89,17 +89,17 @@ def test_an_axis_that_only_some_points_need_is_asked_of_all():
 
 def test_a_value_between_a_single_one_and_the_interval_is_refused():
     """Also where floats are checked by their extremes."""
-    entry = replace(VOCABULARY["rtol"], interval="[4, 256]", also=(0,), default=None)
+    own = Parameter(interval="[4, 256]", also=(0,))
     errors = []
-    as_array(entry, [0.0, 2.0, 8.0], "q", errors)
+    as_array(own, [0.0, 2.0, 8.0], "q", errors)
     assert errors == ["q[1] = 2.0: must be 0 or in [4, 256]"]
-    assert as_array(entry, [0.0, 8.0], "q", errors).tolist() == [0, 8] and len(errors) == 1
+    assert as_array(own, [0.0, 8.0], "q", errors).tolist() == [0, 8] and len(errors) == 1
 
 
 def test_nothing_is_a_value_only_where_gaps_are_allowed():
     errors = []
-    assert np.isnan(as_array(VOCABULARY["h"], [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
-    as_array(VOCABULARY["h"], [None, 1.0], "h", errors)
+    assert np.isnan(as_array(VOCABULARY["h"].own, [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
+    as_array(VOCABULARY["h"].own, [None, 1.0], "h", errors)
     assert errors == ["h[0] = nothing: must be a finite number, in [1e-12, 1e6]"]
 
 

@@ -161,21 +161,21 @@ def test_every_parameter_has_limits_or_choices():
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits(name):
-    entry, (low, below, *ends) = VOCABULARY[name], LIMITS[name]
+    own, (low, below, *ends) = VOCABULARY[name].own, LIMITS[name]
     high, above = ends or (1e300, INF)
-    assert [check(entry, value) for value in (low, high)] == ["", ""]
-    assert all(check(entry, value) for value in (below, above, float("nan"), True, "1", None))
+    assert [check(own, value) for value in (low, high)] == ["", ""]
+    assert all(check(own, value) for value in (below, above, float("nan"), True, "1", None))
 
 
 @pytest.mark.parametrize("name", CHOICES)
 def test_choices(name):
-    entry = VOCABULARY[name]
-    assert set(entry.choices) == CHOICES[name]
-    assert all(check(entry, value) == "" for value in CHOICES[name])
-    assert all(check(entry, value) for value in ("glued", "", 1, None))
+    own = VOCABULARY[name].own
+    assert set(own.choices) == CHOICES[name]
+    assert all(check(own, value) == "" for value in CHOICES[name])
+    assert all(check(own, value) for value in ("glued", "", 1, None))
 
 
 def test_zero_leaves_nodes_and_iterations_to_the_solver():
     for name in ("nodes", "max_iterations"):
-        assert check(VOCABULARY[name], 0) == "" and check(VOCABULARY[name], 16.0) == ""
-        assert check(VOCABULARY[name], 16.5) == "must be a whole number"
+        assert check(VOCABULARY[name].own, 0) == "" and check(VOCABULARY[name].own, 16.0) == ""
+        assert check(VOCABULARY[name].own, 16.5) == "must be a whole number"

@@ -5,7 +5,6 @@ makes no result unusable.
 """
 
 import hashlib
-import math
 import struct
 from dataclasses import replace
 
@@ -14,7 +13,7 @@ import pytest
 import xarray as xr
 from line_study import store_block
 from numpy.testing import assert_array_equal
-from same import assert_same, assert_same_numbers
+from same import assert_same
 
 import solver
 import study
@@ -24,8 +23,8 @@ from study.spec.definition import Definition, from_tables
 from study.spec.grid import Grid
 from study.spec.identity import digest_of
 from study.spec.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
-from study.store import blocks, keys
-from study.store.keys import case_keys, first_keys
+from study.store import keys
+from study.store.keys import case_keys
 from study.work.cases import compute, parcel
 
 OF_ALL = CONTROL | solver.parameters.PARAMETERS
@@ -121,7 +120,7 @@ def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given(monkeypatch):
     """A tilt of the punch, say, 0 by default. Results and blocks of today stay those of their cases."""
     today = defined()
     monkeypatch.setitem(solver.parameters.PARAMETERS, "tilt", Parameter(0.0, interval="[0, 1]"))
-    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "", "tilt of the punch", "material", default=0.0))
+    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "", "tilt of the punch", "material"))
     for module in (identity, keys):
         monkeypatch.setattr(module, "PARAMETERS", (*PARAMETERS, "tilt"))
     for tilt, same in ((None, True), (0.0, True), (0.5, False)):
@@ -190,13 +189,6 @@ def test_a_key_is_the_sum_of_the_hashes_of_what_counts():
     assert case_keys(defined().grid).tolist() == [summed(one)]
     law = one | {"micro": "power_law", "B": 0.2, "beta": 0.53, "rtol": 1e-9}
     assert case_keys(defined(**law).grid).tolist() == [summed(law)]
-
-
-def test_keys_of_version_1():
-    """They were of all parameters of that time, NaN for what was not given."""
-    values = {name: two[0] for name, two in TWO.items() if name not in ("a", "D")} | {"a": math.nan, "D": math.nan}
-    assert first_keys(defined().grid).tolist() == [summed(values)]
-    assert set(values) == set(keys.FIRST)
 
 
 def test_a_nan_is_a_nan():
@@ -330,45 +322,3 @@ def test_an_edit_of_what_no_case_uses_is_of_no_account(load):
     half_way = load(model="nu1 = 0.2\nB = 0.1", numerics="rtol = 1e-7")
     store_block(half_way, 0, 1)
     assert load(model="B = 0.3", numerics="rtol = 1e-7").run(force=True).computed == 1
-
-
-@pytest.fixture
-def version_1(monkeypatch):
-    """Everything is written as by the version before."""
-    with monkeypatch.context() as patch:
-        patch.setattr(blocks, "case_keys", first_keys)
-        patch.setattr(blocks, "facts", lambda x: {"numerics_version": solver.NUMERICS_VERSION, "x": x.tolist()})
-        patch.setattr(blocks, "renewed", lambda keys, _: keys)
-        patch.setattr(study.spec.definition, "digest_of", lambda _: "of version 1")
-        yield patch
-
-
-def test_blocks_of_version_1_are_used(load, version_1, tmp_path):
-    old = load()
-    store_block(old, 0, 1)
-    expected = old.open(partial=True)
-    version_1.undo()
-    assert load().dry_run().present == 1
-    assert_same_numbers(load().open(partial=True), expected)
-    assert load().run().computed == 1
-    assert_same(load().open(), fresh(load(), tmp_path / "fresh"))
-
-
-def test_results_of_version_1_are_used(load, version_1, tmp_path):
-    load().run()
-    version_1.undo()
-    assert load().status()["state"] == "outdated" and load().dry_run().present == 2
-    assert load().run().computed == 0
-    assert_same(load().open(), fresh(load(), tmp_path / "fresh"))
-
-
-def test_damaged_results_of_version_1_are_told_by_their_cases(load, version_1):
-    """As those of today are: a damaged coordinate is the study's, when the line of the cases is."""
-    load().run()
-    version_1.undo()
-    path, raw = load().verify().path, np.array([1e-7, 1e-3]).tobytes()
-    content = path.read_bytes()
-    assert content.count(raw) == 1
-    path.write_bytes(content.replace(raw, raw[::-1]))
-    assert load().verify().damage == ("P",)
-    assert load().run().computed == 0

@@ -41,8 +41,8 @@ class Source(Protocol):
 
 
 @dataclass(frozen=True, eq=False)
-class Stored:
-    """A source that is the block in a file."""
+class BlockSource:
+    """The cases of a block, in the file that holds it."""
 
     path: Path
     keys: np.ndarray
@@ -163,7 +163,7 @@ def inventory(
             if not force:
                 raise StudyError([_of_other_numerics(store, block.facts)])
         elif usable(store.definition, block.facts, block.arrays):
-            sources.append(Stored(path, block.keys, block.arrays["status"]))
+            sources.append(BlockSource(path, block.keys, block.arrays["status"]))
     sources += [earlier] if earlier else []
     return Inventory(keys, sources, *_places(keys, sources, retry), blocks, inside)
 
@@ -193,7 +193,7 @@ def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.
     path = put(store, Block(facts(store.definition.x), known.keys[index], arrays))
     known.source[index], known.row[index] = len(known.sources), np.arange(len(index))
     known.status[index] = arrays["status"]
-    known.sources.append(Stored(path, known.keys[index], arrays["status"]))
+    known.sources.append(BlockSource(path, known.keys[index], arrays["status"]))
     known.blocks[path] = len(index)
     known.inside.add(path)
 

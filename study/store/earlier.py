@@ -24,8 +24,8 @@ MEND = "run the study as it was (its text is the attribute study), which mends i
 
 
 @dataclass(frozen=True, eq=False)
-class Source:
-    """A source that is a results file, of N cases on a `grid`. seen : the file as it was, see `stamp`."""
+class ResultsSource:
+    """The N cases of a results file, on a `grid`. names : of the columns; seen : the file as it was, see `stamp`."""
 
     path: Path
     grid: Grid
@@ -66,7 +66,7 @@ class Earlier:
     cases: int = 0
     told: bool = False
     numerics: str = ""
-    source: Source | None = None
+    source: ResultsSource | None = None
 
 
 def earlier(definition: Definition, found: Condition) -> Earlier:
@@ -96,7 +96,7 @@ def _described(definition: Definition, found: Condition, file: File) -> Earlier:
         return Earlier(found, grid.size, True, numerics)
     status = file.read("status").ravel()
     status = status if found.intact is None else np.where(found.intact, status, np.int8(NOT_RUN))
-    source = Source(found.path, grid, case_keys(grid), status, names, stamp(found.path))
+    source = ResultsSource(found.path, grid, case_keys(grid), status, names, stamp(found.path))
     return Earlier(found, grid.size, True, numerics, source)
 
 

@@ -8,8 +8,9 @@ from .blocks import Inventory, Store, inventory, remove_litter
 from .lock import held
 
 
-def tidy(store: Store, known: Inventory) -> str:
+def tidy(store: Store, known: Inventory | None = None) -> str:
     """Remove the blocks of which the results file holds everything; says what else lies there, "" if nothing does."""
+    known = known or inventory(store, force=True)
     for path in known.inside:
         path.unlink(missing_ok=True)
     remove_litter(store)

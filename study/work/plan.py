@@ -1,6 +1,5 @@
 """What a run is asked for, what it reports, and what it checks before it begins."""
 
-import os
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import TextIO
 import numpy as np
 
 from ..data.dataset import status_words
-from ..files.atomic import make_folder
+from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
 from ..spec.definition import LARGE, Definition, StudyError
 from ..spec.vocabulary import NOT_RUN, suggest
@@ -124,24 +123,18 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 def check_writable(path: Path) -> None:
     """Raise CannotWrite when the folder of the results cannot be made or written, or that which a link leads to."""
-    if not _is_utf8(str(path.absolute())):
-        raise StudyError([f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"])
     folder = path.parent
     try:
+        str(path.absolute()).encode()
         make_folder(folder)
-        if path.is_symlink():
-            folder = Path(os.path.realpath(path)).parent
+        folder = target(path).parent
         with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
             pass
     except OSError as error:
         raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
-
-
-def _is_utf8(text: str) -> bool:
-    try:
-        return bool(text.encode())
     except UnicodeEncodeError:  # Python keeps other bytes of a path as lone surrogates
-        return False
+        wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
+        raise StudyError([wrong]) from None
 
 
 def check_countable(store: Store, path: Path, yes: bool) -> bool:

@@ -61,7 +61,7 @@ def run(definition: Definition, results="results", **options) -> Report:
 def _computed(order: Order, found: Condition) -> Report:
     """Compute what is missing, and write the results unless others compute too."""
     if order.done(found):
-        return order.report(kept=tidy(order.store, inventory(order.store, force=True)))
+        return order.report(kept=tidy(order.store))
     if found.kind == "damaged":
         kept = f"computing again what is damaged, {target(order.path)}.damaged keeps it"
         log.warning("%s: %s; %s", order.path, found.reason, kept)
@@ -81,7 +81,7 @@ def _last(order: Order, report: Report) -> Report:
             return report
         found = look(order.definition, order.path)
         if order.done(found):
-            return replace(report, complete=True, kept=tidy(order.store, inventory(order.store, force=True)))
+            return replace(report, complete=True, kept=tidy(order.store))
         known = prepared(replace(order, retry=()), found)
         with closing(_writing(order, known, found)) as steps:
             kept = _finish(order, known, steps)

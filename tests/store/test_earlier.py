@@ -14,7 +14,7 @@ from study.spec.definition import Definition, from_tables
 from study.store import earlier as module
 from study.store.block_file import Damaged
 from study.store.blocks import Store, gather, inventory
-from study.store.earlier import Earlier, Source, check_replaceable
+from study.store.earlier import Earlier, ResultsSource, check_replaceable
 from study.store.keys import case_keys
 
 
@@ -82,7 +82,7 @@ def replaced(tmp_path, kind="sound", digest="other", force=False, **found) -> No
     given = {"numerics": NUMERICS_VERSION, "keys": keys, "cases": 6, "told": True} | found
     condition, known = Condition(tmp_path / "f.nc", kind, "is so and so", digest), given.pop("keys")
     status = np.zeros(6, np.int8)
-    given["source"] = None if known is None else Source(condition.path, definition.grid, known, status, (), None)
+    given["source"] = None if known is None else ResultsSource(condition.path, definition.grid, known, status, (), None)
     check_replaceable(Store(definition, tmp_path), Earlier(condition, **given), keys, force)
 
 

@@ -22,7 +22,7 @@ from ..files.atomic import remove_temporary
 from ..spec.definition import Definition, StudyError
 from ..spec.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
-from .keys import VERSION, case_keys, find
+from .keys import case_keys, find
 
 log = logging.getLogger(__name__)
 
@@ -106,9 +106,8 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray) -> dict:
-    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles; and the version
-    of the keys."""
-    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist(), "keys": VERSION}
+    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles."""
+    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
 
 
 def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:

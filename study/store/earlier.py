@@ -18,7 +18,7 @@ from ..spec.grid import Grid, columns_at
 from ..spec.vocabulary import NOT_RUN, PARAMETERS
 from .block_file import Damaged
 from .blocks import Store, facts, usable
-from .keys import case_keys, find, first_keys
+from .keys import case_keys, find
 
 MEND = "run the study as it was (its text is the attribute study), which mends it, or use --results DIR"
 
@@ -107,7 +107,7 @@ def _told(definition: Definition, found: Condition, file: File) -> tuple | None:
     lines = parsed(str(file.attribute(ATTRIBUTE))) if ATTRIBUTE in file.attributes() else {}
     grid, x = definition.grid, definition.x
     same = list(grid.sizes.items()) == list(found.sizes.items())
-    if same and lines.get("=cases") in [identity(NUMERICS_VERSION, x, keys(grid)) for keys in (case_keys, first_keys)]:
+    if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
         return grid, x, NUMERICS_VERSION
     return None
 

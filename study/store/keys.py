@@ -1,5 +1,6 @@
 """One 128-bit key per case, made of the values that count for it alone: the same case in another order of the axes, on
-another grid or in another run has the same key. Numpy only, a million cases in a fraction of a second.
+another grid or in another run has the same key. Numpy only, a million cases in a fraction of a second. Whoever makes
+other keys of the same cases changes NUMERICS_VERSION: blocks and results of before are found by nobody.
 """
 
 import hashlib
@@ -12,13 +13,6 @@ from ..spec.grid import Grid, along
 from ..spec.identity import counts
 from ..spec.vocabulary import PARAMETERS
 
-VERSION = 2
-"""Of the keys; blocks say with which they were made. Version 1 summed all of FIRST, as results of that time do."""
-FIRST = (
-    *("P", "a", "D", "h", "n", "nu1", "nu2", "bonding", "base", "Nbar", "Ra", "micro", "B", "beta"),
-    *("scheme", "k", "rtol", "accuracy", "model_check", "nodes", "max_iterations"),
-)
-
 
 def case_keys(grid: Grid) -> np.ndarray:
     """(B, 2) uint64: two independent sums of a hash of (name, value), over the parameters whose value counts.
@@ -30,14 +24,6 @@ def case_keys(grid: Grid) -> np.ndarray:
         counted = counts(grid, name)
         if counted.any():
             lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
-    return np.ascontiguousarray(lanes.reshape(2, -1).T)
-
-
-def first_keys(grid: Grid) -> np.ndarray:
-    """(B, 2) uint64: keys as version 1 made them, of all parameters of that time whether or not a case uses them."""
-    lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
-    for name in FIRST:
-        lanes += _hashed(name, along(grid, name))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
 
 

@@ -84,8 +84,7 @@ class Order:
         """Whether a results file that was examined is that of this study, and holds no case to be tried again."""
         if not belongs(self.definition, found):
             return False
-        again = self.retry and self.definition.kind == "contact"
-        return not (again and np.isin(statuses(self.path), self.retry).any())
+        return not (self.retry and np.isin(statuses(self.path), self.retry).any())
 
     def report(self, known: Inventory | None = None, **what) -> Report:
         counts = count_statuses(known.status) if known else {}

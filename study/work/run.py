@@ -12,7 +12,6 @@ import xarray as xr
 from ..data.dataset import NO_SOLUTION, labelled, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
-from ..files.results_file import write
 from ..spec.definition import Definition
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.earlier import check_replaceable, earlier
@@ -20,7 +19,6 @@ from ..store.lock import held
 from ..store.tidy import tidy
 from ..store.writer import writing
 from ..terminal import say
-from . import micro_law
 from .cases import Failure, cut, guarded, parcel
 from .cost import Estimate, estimate
 from .plan import Order, Report, check_countable, check_size, check_writable, look
@@ -67,8 +65,6 @@ def _computed(order: Order, found: Condition) -> Report:
     if found.kind == "damaged":
         kept = f"computing again what is damaged, {target(order.path)}.damaged keeps it"
         log.warning("%s: %s; %s", order.path, found.reason, kept)
-    if order.definition.kind == "micro_law":
-        return _law(order, found)
     known = prepared(order, found)
     missing = len(known.missing)
     writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))
@@ -76,16 +72,6 @@ def _computed(order: Order, found: Condition) -> Report:
         failures = compute_blocks(order, known, steps)
         kept = "" if order.shared else _finish(order, known, steps)
     return order.report(known, computed=missing - len(known.missing), failures=failures, kept=kept)
-
-
-def _law(order: Order, found: Condition) -> Report:
-    """Compute the law, which takes a moment, in place of another law only."""
-    there = earlier(order.definition, found)
-    if there.cases or not found.digest:
-        check_replaceable(order.store, there, np.empty((0, 2), dtype=np.uint64), order.force)
-    write(micro_law.compute(order.definition, order.command), order.path, aside=found.kind == "damaged")
-    kept = tidy(order.store)
-    return order.report(computed=order.definition.grid.size, kept=kept)
 
 
 def _last(order: Order, report: Report) -> Report:
@@ -168,7 +154,7 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
     """
     order = Order(definition, Path(results))
     found = look(definition, order.path)
-    if definition.kind == "micro_law" or order.done(found):
+    if order.done(found):
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, order.path, yes):
         return estimate(definition, workers)

@@ -13,7 +13,7 @@ from study.spec.definition import Definition, from_tables
 from study.store import blocks
 from study.store.block_file import Block, Damaged, read_block, write_block
 from study.store.blocks import Store, add, count_statuses, facts, gather, inventory, put, usable
-from study.store.keys import VERSION, case_keys
+from study.store.keys import case_keys
 
 
 def line(**output) -> Definition:
@@ -128,7 +128,7 @@ def test_a_block_without_a_column_does_not_serve(wanted, name):
 def test_what_serves_a_study(wanted):
     scalars, half, other = line(profiles=False), line(dtype="float32"), np.array([0, 0.4, 1])
     here = facts(wanted.x)
-    assert here == {"numerics_version": blocks.NUMERICS_VERSION, "x": [0, 0.5, 1], "keys": VERSION}
+    assert here == {"numerics_version": blocks.NUMERICS_VERSION, "x": [0, 0.5, 1]}
     for definition, given, arrays, expected in (
         (wanted, here, columns(wanted), True),
         (wanted, facts(other), columns(wanted), False),

@@ -15,6 +15,7 @@ from scipy.special import ellipkm1
 
 from solver import Problem, Status
 from solver.laws import LAWS
+from solver.threads import one_blas_thread
 
 LIMIT, LIMIT_RELAXED = 200, 40
 """Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle."""
@@ -68,6 +69,7 @@ Found = namedtuple("Found", "a P D p0 p_max Ar_An A0 status iterations")
 """What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
 
 
+@one_blas_thread()
 def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None) -> Found:
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 

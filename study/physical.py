@@ -12,7 +12,7 @@ import xarray as xr
 from xarray.indexes import PandasIndex
 
 from .data.units import reduced_modulus
-from .scene.quantities import READABLE, Quantity, has_unit, quantity
+from .scene.quantities import READABLE, has_unit, quantity
 from .spec.definition import StudyError
 from .spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 
@@ -27,6 +27,7 @@ SCENE = {
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
+_PARTS = ("value", "spread")  # of a Quantity
 #: Powers of E2* and R -> SI unit.
 UNITS = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
 #: Part of a spread by which an input is moved for its derivative: small against what is not linear, large against rtol.
@@ -164,7 +165,7 @@ def _add(scene: Scene, name: str, given: Any) -> None:
             found = [quantity(f"{name}[{i}]", one, unit) for i, one in enumerate(given)]
             dim = "case" if isinstance(given, Row) else name if unit == "1" else f"{name} in SI"
             scene.dims |= {} if dim == "case" else {dim: name}
-            value, spread = (xr.DataArray([pick(one) for one in found], dims=dim) for pick in (_value, _spread))
+            value, spread = (xr.DataArray([getattr(one, part) for one in found], dims=dim) for part in _PARTS)
         else:
             found = quantity(name, given, unit)
             value, spread = found.value, found.spread
@@ -174,14 +175,6 @@ def _add(scene: Scene, name: str, given: Any) -> None:
     scene.given[name] = value
     if np.any(np.asarray(spread) > 0):
         scene.spreads[name] = spread
-
-
-def _value(found: Quantity) -> float:
-    return found.value
-
-
-def _spread(found: Quantity) -> float:
-    return found.spread
 
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:

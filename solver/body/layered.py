@@ -186,8 +186,8 @@ def _sampled(layer, eta, k, weight, level):
     for low in range(0, len(eta), rows):  # a block at a time: the temporaries of the kernel stay in the cache
         part = slice(low, low + rows)
         L1, uL = decaying_part(k * eta[part, None], *(field[part, None] for field in layer.material))
-        yields = layer.m[part].any()  # most punches are rigid, and this is the inner loop
-        L1, uL = (v / (1 + layer.m[part, None]) for v in (L1, uL)) if yields else (L1, uL)
+        if layer.m[part].any():  # most punches are rigid, and this is the inner loop
+            L1, uL = L1 / (1 + layer.m[part, None]), uL / (1 + layer.m[part, None])
         np.multiply(weight, L1 - (level[part] if np.ndim(level) else level), out=W[part])
         np.multiply(-weight, uL, out=dW[part])
     return W, dW

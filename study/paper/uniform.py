@@ -89,7 +89,7 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
 
     Raises
     ------
-    ValueError : a base that the paper does not have, or smooth cases on the half-space
+    ValueError : a base that the paper does not have, smooth cases on the half-space, or an elastic punch
 
     Examples
     --------
@@ -103,6 +103,8 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
     wrong = [kind for kind in kinds if kind[0] not in ("thin_layer", "half_space") or kind == ("half_space", "smooth")]
     if wrong:
         raise ValueError(f"thin_layer, or rough cases on half_space, not {sorted(wrong)}")
+    if (problem.m > 0).any():
+        raise ValueError("the punch of the paper is rigid: m must be 0")
     invalid = problem.invalid()
     whole = Found(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
     for base, micro in kinds:

@@ -104,7 +104,8 @@ def test_a_ratio_of_moduli_in_place_of_the_layer():
 def test_laws_of_others_have_units_as_well():
     from laws import cones
 
-    found = quiet(R="1 mm", E2="200 GPa", base="half_space", micro=cones.CONES, alpha=1.3, Nbar="10 1/mm^2", P="1 N", x=2)
+    given = {"R": "1 mm", "E2": "200 GPa", "base": "half_space", "Nbar": "10 1/mm^2", "P": "1 N", "x": 2}
+    found = quiet(**given, micro=cones.CONES, alpha=1.3)
     assert found.status == 0 and found.alpha == 1.3 and found.Nbar == pytest.approx(1e7, rel=1e-15)
 
 

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 
 from .body.layered import Layer
-from .body.springs import local_compliance, thin_layer_coefficients
+from .body.springs import layer_modulus, local_compliance, thin_layer_coefficients
 from .contact.equation import Cases
 from .laws import LAWS
 from .parameters import PARAMETERS, allowed
 from .status import Status
+
+#: n of a base that stands for a rigid one; its square and cube are still far from the least float.
+_STIFF = 1e-50
 
 #: Power of R and of E2* in the unit of each quantity.
 _UNITS = {
@@ -62,12 +65,24 @@ def with_rigid_punch(problem):
     moved = (m > 0) & ((base == "half_space") | thin)
     return replace(
         problem,
-        E2=np.where(moved, problem.E2 * n / (n + m), problem.E2),
+        E2=np.where(moved, problem.E2 * layer_modulus(n) / (n + m), problem.E2),
         n=np.where(moved, (n + m) / (1 + m), problem.n),
         h=np.where(moved, 2 * A2 * problem.h / (1 + m), problem.h),
         bonding=np.where(moved, "frictionless", problem.bonding),
         m=np.where(moved, 0.0, m),
     )
+
+
+def with_a_stiff_base(problem):
+    """The problem with a thin layer on a rigid base, n = 0, as that on a half-space whose part is below rounding.
+
+    The equation divides by the half-space's part, X, which must not be 0. At n = _STIFF it is below 1e-20 of that of
+    the springs for every h and a within the bounds. Layers that are judged by the exact one stay as they are.
+    """
+    stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
+    if not stiff.any():
+        return problem
+    return replace(problem, n=np.where(stiff, _STIFF, problem.n), E2=np.where(stiff, problem.E2 / _STIFF, problem.E2))
 
 
 def refused(problem, scaled):
@@ -79,12 +94,12 @@ def refused(problem, scaled):
 def as_cases(part, C):
     """:class:`~solver.contact.equation.Cases` of one law on one base."""
     law = LAWS[str(part.micro[0])]
-    law = law.bind(part.n / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
+    E = layer_modulus(part.n) / (1 + part.m)
+    law = law.bind(E, **{name: getattr(part, name) for name in law.parameters})
     none = np.zeros(len(part))
     layered = part.base[0] == "layered"
     layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded", part.m) if layered else None
-    E = part.n / (1 + part.m) if layered else none + 1
-    return Cases(part.control, law, layer, part.value, E, C, reach=none, coarse=none > 0)
+    return Cases(part.control, law, layer, part.value, E if layered else none + 1, C, reach=none, coarse=none > 0)
 
 
 def restore(solution, problem, without=()):

@@ -14,7 +14,7 @@ MOST_CASES = 20  # that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: In a smooth contact the real pressure is the nominal one, and the real area all of it.
 _OF_ASPERITIES = ("p_max", "Ar_An")
-INPUTS = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "n", "m", "h", "bonding", "Nbar", "Ra")
+INPUTS = ("R1", "R2", "R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "n", "m", "h", "bonding", "Nbar", "Ra")
 MODELS = {
     "half_space": "a half-space under the asperities",
     "smooth_half_space": "a half-space, without asperities",
@@ -86,8 +86,8 @@ def _one(case: xr.Dataset, dims=()) -> str:
     """The text of one case."""
     rough = str(case["micro"].values) != "smooth"
     inputs = [name for name in INPUTS if name in case and name not in dims and _matters(case, name, rough)]
-    given = ["a rigid punch"] if case.get("m", 0.0) == 0 else []
-    lines = ["Given: " + ", ".join(given + [_given(case, name) for name in inputs]), ""]
+    rigid = ["a rigid punch"] * _is_rigid(case, "punch") + ["a rigid base"] * _is_rigid(case, "base")
+    lines = ["Given: " + ", ".join(rigid + [_given(case, name) for name in inputs]), ""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:
@@ -95,9 +95,21 @@ def _one(case: xr.Dataset, dims=()) -> str:
     return "\n".join([*lines, "", *_sentences(case)])
 
 
+def _is_rigid(case: xr.Dataset, body: str) -> bool:
+    """Whether the punch, or the base under a layer, is rigid."""
+    if body == "punch":
+        return bool(case.get("m", 0.0) == 0)
+    return bool(case.get("n", 1.0) == 0) and str(case["base"].values) != "half_space"
+
+
 def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
     """Whether a parameter has a value that the case uses."""
     value = case[name].values
+    of_the_rigid = {"nu_punch": "punch", "nu2": "base"}
+    if name in of_the_rigid and _is_rigid(case, of_the_rigid[name]) or name == "n" and _is_rigid(case, "base"):
+        return False
+    if name == "R" and "R1" in case:
+        return False
     if name in ("Nbar", "Ra"):
         return rough
     if name in ("E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":

@@ -12,8 +12,8 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
 
     Parameters
     ----------
-    n : (B,) float, > 0
-        E1*/E2*.
+    n : (B,) float, >= 0
+        E1*/E2*; 0 on a rigid base.
     nu1, nu2 : (B,) float, (-1, 0.5]
         Poisson ratios of the layer and of the half-space; not used without friction.
     bonded : (B,) bool
@@ -47,4 +47,9 @@ def local_compliance(h, n, nu1, nu2, bonded):
     """C = 2 A2 h/E1* of Eq. (3), in R/E2*; <= 0 where the thin-layer equation does not apply. Shapes as above, h in
     R."""
     _, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
-    return 2 * A2 * h / n
+    return 2 * A2 * h / layer_modulus(n)
+
+
+def layer_modulus(n):
+    """E1* in the unit of moduli, which is E2*: n. On a rigid base, n = 0, the unit is E1* itself: 1."""
+    return n + (n == 0)

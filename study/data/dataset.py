@@ -6,6 +6,7 @@ import xarray as xr
 from solver import Model, Status
 
 from ..spec.definition import Definition
+from ..spec.given import is_rigid
 from ..spec.grid import unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
@@ -38,14 +39,15 @@ def assembled(
 ) -> xr.Dataset:
     """Dataset of flat arrays: (B,) over the grid, (B, m) over the grid and the dimension `last` with its m points."""
     grid = definition.grid
-    known = {name: attributes(name) for name in (*PARAMETERS, *names("coordinate"))}
+    rigid = bool(is_rigid(grid).any())  # then all layers are on a rigid base
+    known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate"))}
     coordinates = {
         name: (dims, array, known.get(name, {})) for name, (dims, array) in (grid.values | grid.labels).items()
     }
     coordinates[last] = (last,), points, attributes(last)
     dims = tuple(grid.sizes)
     variables = {
-        name: (dims + (last,) * (flat.ndim - 1), unflatten(grid, flat), attributes(name))
+        name: (dims + (last,) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
         for name, flat in arrays.items()
         if name not in grid.values
     }

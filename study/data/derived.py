@@ -7,6 +7,7 @@ vocabulary.
 import numpy as np
 import xarray as xr
 
+from solver.body.springs import layer_modulus
 from solver.laws import LAWS
 
 from ..spec.vocabulary import attributes
@@ -47,7 +48,7 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     v = dataset.variables  # a DataArray compares its coordinates at every step, 20 ms in all
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
-    compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * n)
+    compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
     violated = {
         1: _used_a_thin_layer(v["model_used"]) & (v["model_error"] > NOT_THIN),
         2: rough & (_spots(v) < FEW_SPOTS),
@@ -100,7 +101,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
     profile p; NaN for a law that is not registered.
     """
-    E1 = xr.where(dataset["base"] == "half_space", 1.0, _given(dataset, "n"))
+    E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch together
     found = xr.full_like(dataset["p"], np.nan)
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
@@ -159,5 +160,5 @@ def named(array: xr.DataArray, name: str) -> xr.DataArray:
             f"{name} is derived from dimensionless datasets: derive first, then convert with study.to_physical"
         )
     array = array.rename(name)
-    array.attrs = attributes(name)
+    array.attrs = attributes(name, rigid="n" in array.coords and bool((array.coords["n"] == 0).any()))
     return array

@@ -1,5 +1,7 @@
 """Physical and dimensionless quantities: lengths in R, pressures in E2*, loads in E2* R², asperity densities in R⁻²."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -23,6 +25,19 @@ def factor(name: str, R: float, E2_star: float) -> float:
     return E2_star**i * R**j / entry.unit[1]
 
 
+def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """An SI value over unit^i R^j, (i, j) = `powers`."""
+    return with_unit(value, (-powers[0], -powers[1]), unit, R)
+
+
+def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """A dimensionless value times unit^i R^j."""
+    for factor, power in ((unit, powers[0]), (R, powers[1])):
+        for _ in range(abs(power)):
+            value = value * factor if power > 0 else value / factor
+    return value
+
+
 def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     """The dataset in physical units: P in N, lengths in µm, pressures in MPa, Nbar in mm⁻², stiffness in N/m.
 
@@ -36,7 +51,7 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     """
     if DONE in dataset.attrs:
         raise ValueError(f"the dataset is in physical units already: {dataset.attrs[DONE]}")
-    if any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
+    if "status" not in dataset and any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
         raise ValueError("pressures of a micro-law study are in E1*, not in E2*: no half-space is defined there")
     changed = {}
     for name, array in dataset.variables.items():

@@ -1,7 +1,7 @@
 """From the parameters of `study.solve`, with units, to a scene and its dimensionless parameters.
 
-The scene has the radius R of the punch, Young's moduli E1 of the layer, E2 of the body below and E_punch of the punch,
-with Poisson ratios nu1, nu2 and nu_punch. The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1.
+The scene has the radius R of the punch (or R1 and R2 of two bodies), Young's moduli E1 of the layer, E2 of the body
+below and E_punch of the punch, with Poisson ratios nu1, nu2 and nu_punch.
 """
 
 from typing import Any
@@ -9,18 +9,19 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.units import reduced_modulus
 from ..scene.quantities import READABLE, has_unit, quantity
 from ..spec.definition import StudyError
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from .names import SCENE, unit_of
+from .names import SCENE, si, unit_of
+from .scales import make_dimensionless, over_dimensions
 from .scene import MOVED, STEP, Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 _PARTS = ("value", "spread")  # of a Quantity
+_RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
 def is_physical(parameters: dict) -> bool:
@@ -51,12 +52,7 @@ def read(parameters: dict, cases: list | None = None) -> Scene | None:
     if not any(is_physical(given) for given in (parameters, *rows)):
         return None
     scene, errors = Scene(), []
-    for name in dict.fromkeys(name for row in rows for name in row):
-        lacking = [i for i, row in enumerate(rows) if name not in row]
-        if name in parameters or lacking:
-            errors.append(f"{name} must be given in every case, or once for all")
-        else:
-            parameters = parameters | {name: Row([row[name] for row in rows])}
+    parameters = _with_rows(parameters, rows, errors)
     for name, given in parameters.items():
         if name == "label" and isinstance(given, Row):
             scene.labels = list(map(str, given))
@@ -69,41 +65,54 @@ def read(parameters: dict, cases: list | None = None) -> Scene | None:
                 errors.append(str(error))
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, Row) else given
-    errors += _missing(scene, parameters)
+    errors += _missing(parameters)
+    errors += [] if errors else _impossible(scene)
     if errors:
         raise StudyError(errors)
     _move(scene)
-    _make_dimensionless(scene)
+    make_dimensionless(scene)
     return scene
+
+
+def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
+    """The parameters, with those of the rows as a :class:`Row` each; first, as their dimension comes first."""
+    found = {}
+    for name in dict.fromkeys(name for row in rows for name in row):
+        if name in parameters or not all(name in row for row in rows):
+            errors.append(f"{name} must be given in every case, or once for all")
+        else:
+            found[name] = Row([row[name] for row in rows])
+    return found | {name: given for name, given in parameters.items() if name not in found}
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:
     """Put SI values and spreads of a parameter into the scene."""
-    unit = unit_of(name)
     if isinstance(given, xr.DataArray):
-        value, spread = _of_array(name, given, unit), 0.0
+        value, spread = _of_array(name, given, unit_of(name)), 0.0
     else:
         given = given.tolist() if isinstance(given, np.ndarray) else given
         given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
         if isinstance(given, (list, tuple, range)):
             if not len(given):
                 raise ValueError(f"{name} is empty: must have at least one value")
-            found = [quantity(f"{name}[{i}]", one, unit) for i, one in enumerate(given)]
-            dim = "case" if isinstance(given, Row) else name if unit == "1" else f"{name} in SI"
+            found = [si(name, one, f"{name}[{i}]") for i, one in enumerate(given)]
+            dim = "case" if isinstance(given, Row) else name if unit_of(name) == "1" else f"{name} in SI"
             scene.dims |= {} if dim == "case" else {dim: name}
             value, spread = (xr.DataArray([getattr(one, part) for one in found], dims=dim) for part in _PARTS)
         else:
-            found = quantity(name, given, unit)
+            found = si(name, given)
             value, spread = found.value, found.spread
+    if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
+        raise ValueError(f"{name} = {given}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
-    reach = STEP * np.asarray(spread)
     if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
         raise ValueError(f"{name} = {given}: {limits}")
-    if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
-        raise ValueError(f"{name} = {given}: with its spread it {limits}; at the limit itself give no spread")
-    scene.given[name] = value
     if np.any(np.asarray(spread) > 0):
+        reach = STEP * np.asarray(spread)
+        if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
+            raise ValueError(f"{name} = {given}: with its spread it {limits}; at the limit itself give no spread")
         scene.spreads[name] = spread
+    scene.given[name] = value
 
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
@@ -115,10 +124,16 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
 
 
-def _missing(scene: Scene, parameters: dict) -> list[str]:
-    """Messages for what a physical scene cannot do without."""
-    asked = {"R": "the radius of the punch", "E2": "Young's modulus of the body (under the layer, if there is one)"}
-    messages = [f"{name} is missing: {what}" for name, what in asked.items() if name not in parameters]
+def _missing(parameters: dict) -> list[str]:
+    """Messages for what a physical scene cannot do without, and for what cannot be given together."""
+    pair = [name for name in ("R1", "R2") if name in parameters]
+    messages = [_RADIUS] if "R" not in parameters and not pair else []
+    if len(pair) == 1:
+        messages.append(f"{'R2' if pair == ['R1'] else 'R1'} is missing: R1 and R2 go together")
+    if pair and "R" in parameters:
+        messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
+    if "E2" not in parameters:
+        messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
     layered = not isinstance(parameters.get("base"), str) or parameters["base"] != "half_space"
     if layered and "E1" not in parameters and "n" not in parameters:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
@@ -131,6 +146,25 @@ def _missing(scene: Scene, parameters: dict) -> list[str]:
     return messages
 
 
+def _impossible(scene: Scene) -> list[str]:
+    """Messages for bodies that cannot touch as they are given."""
+    given, messages = scene.given, []
+    if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
+        R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
+        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
+    rigid = np.isinf(given["E2"])
+    if np.any(rigid & (over_dimensions(scene.parameters.get("base", "layered"), "base") == "half_space")):
+        swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
+        messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
+    if np.any(rigid) and "n" in scene.parameters:
+        messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
+    return messages
+
+
+def _shown(value: Any) -> str:
+    return ", ".join(f"{one:g}" for one in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)
+
+
 def _move(scene: Scene) -> None:
     """Give inputs with spreads the dimension along which they are moved: as given, then each up and down."""
     count = len(scene.spreads)
@@ -138,28 +172,3 @@ def _move(scene: Scene) -> None:
         steps = np.zeros(1 + 2 * count)
         steps[1 + 2 * i : 3 + 2 * i] = STEP, -STEP
         scene.given[name] = scene.given[name] + spread * xr.DataArray(steps, dims=MOVED)
-
-
-def _make_dimensionless(scene: Scene) -> None:
-    """The parameters of the solver, in R and E2*."""
-    given = scene.given
-
-    def modulus(name: str, nu: str) -> Any:
-        return reduced_modulus(given[name], given.get(nu, 0.3))
-
-    scene.R, scene.E2_star = given["R"], modulus("E2", "nu2")
-    if "E1" in given:
-        scene.parameters["n"] = modulus("E1", "nu1") / scene.E2_star
-    if "E_punch" in given:
-        n = given["n"] if "n" in given else _along(scene.parameters.get("n", 1.0), "n")
-        surface = xr.where(_along(scene.parameters.get("base", "layered"), "base") == "half_space", 1.0, n)
-        scene.parameters["m"] = surface * scene.E2_star / modulus("E_punch", "nu_punch")
-    for name, value in given.items():
-        if name not in SCENE:
-            i, j = VOCABULARY[name].powers
-            scene.parameters[name] = value / (scene.E2_star**i * scene.R**j)
-
-
-def _along(given: Any, name: str) -> Any:
-    """Values of a parameter without a unit, as an array over the dimension of its name where they are several."""
-    return xr.DataArray(list(given), dims=name) if isinstance(given, (list, tuple, range, np.ndarray)) else given

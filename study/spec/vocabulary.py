@@ -128,10 +128,14 @@ def having(name: str, values) -> np.ndarray:
     return among(VOCABULARY[name].own.needed_by, values)
 
 
-def attributes(name: str) -> dict:
-    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation."""
+def attributes(name: str, rigid: bool = False) -> dict:
+    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation.
+
+    rigid : of layers on a rigid base, where E1* is the unit of moduli
+    """
     entry = VOCABULARY[name]
-    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    scale = entry.scale.replace("E2*", "E1*") if rigid else entry.scale
+    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": scale, "equation": entry.equation}
     if not entry.own.choices and entry.role != "flag" and name != "label":
         found["units"] = "1"
     return {key: text for key, text in found.items() if text}

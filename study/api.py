@@ -15,7 +15,10 @@ from .files.examine import Condition
 from .files.results_file import open_lazily, open_results
 from .in_words import doubts
 from .physical.reading import read as read_scene
-from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
+from .physical.scene import shown
+from .physical.study_file import complete as complete_scene
+from .physical.study_file import read
+from .spec.definition import LARGE, POINTS, Definition, StudyError, complete
 from .spec.given import Draft
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
@@ -26,7 +29,6 @@ from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look, results_path
 from .work.run import dry_run, partial_dataset, run
 
-DIMENSIONLESS = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
 
@@ -71,24 +73,22 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
     scene = read_scene(parameters, cases)
-    draft.physical = bool(scene)
+    about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
-        parameters, cases = scene.parameters, None
-    if cases is not None:
-        draft.cases(cases)
-    for name, given in parameters.items():
-        draft.of_any_form(name, given)
-    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
-    try:
-        definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
-    except StudyError as error:
-        raise StudyError([*error.messages, *([DIMENSIONLESS] if scene else [])]) from None
+        definition = complete_scene(draft, scene, [], about, most=LARGE)
+    else:
+        if cases is not None:
+            draft.cases(cases)
+        for name, given in parameters.items():
+            draft.of_any_form(name, given)
+        definition = complete(draft, *about, LARGE)
     found = labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
     if not scene:
         return found
-    found = scene.dressed(found)
-    if doubts(found):
-        warnings.warn("\n".join(["this contact is beyond what the model describes:", *doubts(found)]), stacklevel=2)
+    found = shown(definition, found)
+    beyond = doubts(found)
+    if beyond:
+        warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
 
 

@@ -31,6 +31,6 @@ def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
     for name in dataset.dims:
         known = name in SCENE or name in VOCABULARY
-        if known and name in dataset.coords and unit_of(name) != "1":
+        if known and dataset[name].attrs.get("units", "1") == unit_of(name) != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset

@@ -1,7 +1,7 @@
 """What a physical scene has, in which SI unit each of its numbers is."""
 
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..scene.quantities import Quantity, quantity
 from ..spec.vocabulary import VOCABULARY
@@ -20,6 +20,23 @@ SCENE = {
 RIGID, RIGID_TEXTS = ("E2", "E_punch"), ("rigid", "inf", "infinite")
 #: Powers of E2* and R -> SI unit.
 UNITS = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
+
+
+class Row(list):
+    """The values of a parameter over the dimension `case`."""
+
+
+class Known(NamedTuple):
+    """Values of a parameter in its SI unit, along a dimension."""
+
+    quantities: list[Quantity]
+    dim: str
+
+
+def dim_of(name: str) -> str:
+    """The dimension, while cases are solved, of several values of a parameter: not its name, which stands for the
+    dimensionless numbers, and these may lie along other dimensions too."""
+    return name if unit_of(name) == "1" else f"{name} in SI"
 
 
 def unit_of(name: str) -> str:

@@ -9,24 +9,28 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..scene.quantities import READABLE, has_unit, quantity
+from ..scene.quantities import READABLE, Quantity, has_unit, quantity
 from ..spec.definition import StudyError
+from ..spec.grid import shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from .names import SCENE, si, unit_of
+from ..terminal import on_one_line
+from .bodies import BODIES, with_materials
+from .names import SCENE, Known, Row, dim_of, si, unit_of
 from .scales import make_dimensionless, over_dimensions
 from .scene import MOVED, STEP, Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
+LONGEST_SHOWN = 60  # characters of a value in a message
 _PARTS = ("value", "spread")  # of a Quantity
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
 def is_physical(parameters: dict) -> bool:
     """Whether parameters of `study.solve` describe a physical scene: one has a unit, or is only in such a scene."""
-    return any(name in SCENE or _has_unit(given) for name, given in parameters.items())
+    return any(name in SCENE or name in BODIES or _has_unit(given) for name, given in parameters.items())
 
 
 def _has_unit(given: Any) -> bool:
@@ -36,14 +40,11 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
-class Row(list):
-    """The values of a parameter over the dimension `case`."""
-
-
-def read(parameters: dict, cases: list | None = None) -> Scene | None:
+def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> Scene | None:
     """The scene of physical parameters of `study.solve`; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
+    spreads : whether materials given by name have those of the table
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
@@ -53,11 +54,12 @@ def read(parameters: dict, cases: list | None = None) -> Scene | None:
         return None
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)
+    parameters, scene.names = with_materials(parameters, spreads, errors)
     for name, given in parameters.items():
         if name == "label" and isinstance(given, Row):
             scene.labels = list(map(str, given))
         elif name not in SCENE and not is_parameter(name):
-            errors.append(f'"{name}" is not a parameter{suggest(name, [*PARAMETERS, *SCENE])}')
+            errors.append(f"{shown(name)} is not a parameter{suggest(name, [*PARAMETERS, *SCENE, *BODIES])}")
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)
@@ -90,29 +92,45 @@ def _add(scene: Scene, name: str, given: Any) -> None:
     if isinstance(given, xr.DataArray):
         value, spread = _of_array(name, given, unit_of(name)), 0.0
     else:
-        given = given.tolist() if isinstance(given, np.ndarray) else given
-        given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
-        if isinstance(given, (list, tuple, range)):
-            if not len(given):
-                raise ValueError(f"{name} is empty: must have at least one value")
-            found = [si(name, one, f"{name}[{i}]") for i, one in enumerate(given)]
-            dim = "case" if isinstance(given, Row) else name if unit_of(name) == "1" else f"{name} in SI"
-            scene.dims |= {} if dim == "case" else {dim: name}
-            value, spread = (xr.DataArray([getattr(one, part) for one in found], dims=dim) for part in _PARTS)
+        found = given if isinstance(given, (Known, Quantity)) else _quantities(name, given)
+        if isinstance(found, Known):
+            scene.dims |= {found.dim: name} if found.dim == dim_of(name) else {}
+            columns = ([getattr(one, part) for one in found.quantities] for part in _PARTS)
+            value, spread = (xr.DataArray(column, dims=found.dim) for column in columns)
+            if found.dim == dim_of(name):
+                _check_distinct(name, value.values.tolist())
         else:
-            found = si(name, given)
             value, spread = found.value, found.spread
     if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
-        raise ValueError(f"{name} = {given}: must not be 0")
+        raise ValueError(f"{name} = {_text(given)}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
     if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
-        raise ValueError(f"{name} = {given}: {limits}")
+        raise ValueError(f"{name} = {_text(given)}: {limits}")
     if np.any(np.asarray(spread) > 0):
         reach = STEP * np.asarray(spread)
         if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
-            raise ValueError(f"{name} = {given}: with its spread it {limits}; at the limit itself give no spread")
+            text = f"with its spread it {limits}; at the limit itself give no spread"
+            raise ValueError(f"{name} = {_text(given)}: {text}")
         scene.spreads[name] = spread
     scene.given[name] = value
+
+
+def _check_distinct(name: str, values: list) -> None:
+    for i, j in twins(values):
+        text = f"{values[i]:g} {unit_of(name)}".removesuffix(" 1")
+        raise ValueError(f"{name}[{i}] and {name}[{j}] are both {text}: values of an axis must differ")
+
+
+def _quantities(name: str, given: Any) -> Known | Quantity:
+    """The quantities in a list, array or single value."""
+    given = given.tolist() if isinstance(given, np.ndarray) else given
+    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
+    if not isinstance(given, (list, tuple, range)):
+        return si(name, given)
+    if not len(given):
+        raise ValueError(f"{name} is empty: must have at least one value")
+    found = [si(name, one, f"{name}[{i}]") for i, one in enumerate(given)]
+    return Known(found, "case" if isinstance(given, Row) else dim_of(name))
 
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
@@ -122,6 +140,10 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
+
+
+def _text(given: Any) -> str:
+    return on_one_line(str(given), LONGEST_SHOWN)
 
 
 def _missing(parameters: dict) -> list[str]:

@@ -8,6 +8,7 @@ import xarray as xr
 
 from ..data.dataset import plainly_written
 from ..data.units import DONE, with_unit
+from ..spec.definition import Definition
 from ..spec.vocabulary import VOCABULARY
 from .index import searchable
 from .names import SCENE, unit_of
@@ -26,16 +27,30 @@ class Scene:
 
     given : name -> SI values, a float or a DataArray; spreads : the same of the inputs that have spreads;
     R, unit : the radius, m, and the modulus, Pa, that are 1 for the solver: E2*, or E1* on a rigid base;
-    dims : dimension while solving -> name of the parameter; labels : of the dimension `case`
+    dims : dimension while solving -> name of the parameter; labels : of the dimension `case`;
+    names : punch, layer, body -> (dimension or "", names of materials along it)
     """
 
     given: dict = field(default_factory=dict)
     spreads: dict = field(default_factory=dict)
     dims: dict = field(default_factory=dict)
     labels: list = field(default_factory=list)
+    names: dict = field(default_factory=dict)
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
     unit: Any = 1.0
+
+    def sizes(self, axes: list[str]) -> dict[str, int]:
+        """Dimension while solving -> its length, of `case` and of the axes in their order."""
+        names, found = {name: dim for dim, name in self.dims.items()}, {}
+        arrays = [v for v in (*self.given.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
+        known = {dim: size for array in arrays for dim, size in array.sizes.items()}
+        for dim in ("case", *(names.get(axis, axis) for axis in axes)):
+            if dim in known:
+                found[dim] = known[dim]
+            elif isinstance(self.parameters.get(dim), list):
+                found[dim] = len(self.parameters[dim])
+        return found
 
     def within(self, window: dict[str, slice]) -> "Scene":
         """The scene of the cases within a window, a slice for each dimension while solving."""
@@ -47,21 +62,19 @@ class Scene:
 
         given, spreads = ({name: cut(v) for name, v in table.items()} for table in (self.given, self.spreads))
         labels = self.labels[window["case"]] if self.labels else []
-        return replace(self, given=given, spreads=spreads, labels=labels, R=cut(self.R), unit=cut(self.unit))
-
-    def named(self, of_dims: dict) -> dict:
-        """The dictionary of dimensions under the names that these have in the results."""
-        return {self.dims.get(dim, dim): value for dim, value in of_dims.items()}
+        names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
+        return replace(
+            self, given=given, spreads=spreads, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit)
+        )
 
     def dressed(self, dataset: xr.Dataset) -> xr.Dataset:
         """The dimensionless results of `parameters` in SI units, the inputs as given, with spreads of the results."""
-        unit, R = _variable(self.unit), _variable(self.R)
         results, coords = {}, {}
         for name, variable in dataset.variables.items():
             if name in self.given or name == MOVED:
                 continue
             known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
-            found = _in_si(name, variable, unit, R) if known else variable
+            found = _in_si(name, variable, self.unit, self.R) if known else variable
             if MOVED in found.dims:
                 results |= _spread(name, found)
                 found = found.isel({MOVED: 0})
@@ -70,6 +83,9 @@ class Scene:
         coords |= {name: self._coordinate(name, value) for name, value in self.given.items()}
         for name, value in self.spreads.items():
             coords[f"{name}_spread"] = self._coordinate(name, value, f"standard deviation of {name}, as given")
+        for body, (dim, texts) in self.names.items():
+            values = texts if dim else texts[0]
+            coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
         if self.labels:
             coords["label"] = xr.Variable("case", self.labels)
         attributes = dataset.attrs | {DONE: "SI; R, E1, E2 and E_punch are coordinates"}
@@ -89,13 +105,23 @@ class Scene:
         return xr.Variable(dims, variable.data, variable.attrs, variable.encoding)
 
 
+def shown(definition: Definition, dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset of a study as users see it: in SI units, if the study has units."""
+    return definition.scene.dressed(dataset) if definition.scene else dataset
+
+
 def _variable(value: Any) -> xr.Variable:
     return value.variable if isinstance(value, xr.DataArray) else xr.Variable((), value)
 
 
-def _in_si(name: str, variable: xr.Variable, unit: xr.Variable, R: xr.Variable) -> xr.Variable:
+def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
-    found = with_unit(variable, VOCABULARY[name].powers, unit, R).transpose(*variable.dims, ...)
+    powers = VOCABULARY[name].powers
+    if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
+        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
+    else:  # most often; arithmetic of labelled arrays takes as long as a contact
+        found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
+    found = found.astype(variable.dtype, copy=False)
     found.attrs = {key: text for key, text in variable.attrs.items() if key != "scale"} | {"units": unit_of(name)}
     found.encoding = variable.encoding
     return found

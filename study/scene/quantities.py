@@ -8,8 +8,10 @@ import numbers
 import re
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
+
+from ..terminal import on_one_line
 
 #: SI unit -> what it measures, and the multiples in which it is read most easily (name, size), the largest first.
 READABLE = {
@@ -60,12 +62,15 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
     if isinstance(given, numbers.Real) and not isinstance(given, bool):
         if unit != "1":
-            raise ValueError(f"{name} = {given!r} has no unit: {wanted}")
-        return Quantity(float(given))
+            raise ValueError(f"{name} = {_shown(given)} has no unit: {wanted}")
+        try:
+            return Quantity(float(given))
+        except OverflowError as error:
+            raise ValueError(f"{name} = {_shown(given)}: must be finite") from error
     if isinstance(given, str):
         return _from_text(name, given.strip(), unit, wanted)
     if not has_unit(given):
-        raise ValueError(f"{name} = {given!r}: {wanted}")
+        raise ValueError(f"{name} = {_shown(given)}: {wanted}")
     try:
         return Quantity(float(given.to(_pint_name(unit)).magnitude))
     except Exception as error:  # of whatever registry the quantity is
@@ -76,12 +81,12 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     """The quantity in a text; a unit behind the spread holds for the value as well."""
     head, *spread = _SPREAD.split(text)
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
-        raise ValueError(f'{name} = "{text[:LONGEST]}": {wanted}')
+        raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": {wanted}')
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
     if not number:
-        raise ValueError(f'{name} = "{text}": behind ± must be a number')
+        raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind ± must be a number')
     if spread[0].endswith("%"):
         value = _si(name, head, unit, wanted)
         return Quantity(value, abs(value) * float(number[0]) / 100)
@@ -90,20 +95,30 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     return Quantity(_si(name, head, unit, wanted), abs(_si(name, spread[0], unit, wanted)))
 
 
+@lru_cache(maxsize=4096)  # to read a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """A text without spread in the SI unit, rounded once: "3 um" is the number 3e-6."""
+    said = on_one_line(text, LONGEST)
     try:
         found = _registry().Quantity(text.replace("⁻²", "^-2").replace("²", "^2"))
     except Exception as error:  # pint raises of many kinds
-        raise ValueError(f'{name} = "{text}": no unit is called like this; {wanted}') from error
+        raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
-        raise ValueError(f'{name} = "{text}" has no unit: {wanted}')
+        raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
     if not found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
-        raise ValueError(f'{name} = "{text}" is {_understood(found)}: {wanted}')
+        raise ValueError(f'{name} = "{said}" is {_understood(found)}: {wanted}')
     value = float(found.to(_pint_name(unit)).magnitude)
     if not math.isfinite(value):
-        raise ValueError(f'{name} = "{text}": must be finite')
+        raise ValueError(f'{name} = "{said}": must be finite')
     return value
+
+
+def _shown(given: Any) -> str:
+    """What was given, on a line."""
+    try:
+        return on_one_line(repr(given), LONGEST)
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return "a number of more than 4300 digits"
 
 
 def _understood(found: Any) -> str:

@@ -75,7 +75,7 @@ class Draft:
             self.errors.append("cases is empty: must have at least one case")
             return
         before = len(self.errors)
-        self._number_cases(len(rows))
+        self.number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
                 self._label_cases([row.get("label", "") for row in rows])
@@ -95,7 +95,7 @@ class Draft:
             self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
             return
         for name, values in draw(known if given else table, self.errors).items():
-            self._number_cases(len(values))
+            self.number_cases(len(values))
             self.values[name] = ("case",), self._checked(name, values)
 
     def array(self, name: str, given) -> None:
@@ -162,7 +162,8 @@ class Draft:
                 f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
             )
 
-    def _number_cases(self, count: int) -> None:
+    def number_cases(self, count: int) -> None:
+        """Make the dimension `case`."""
         self.sizes["case"] = count
         self.labels["case"] = ("case",), np.arange(count, dtype=np.int32)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .data.dataset import labelled
+from .data.dataset import parts
 from .data.provenance import command_line
 from .files.access import Unusable
 from .files.examine import Condition
@@ -82,10 +82,10 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         for name, given in parameters.items():
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
-    found = labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
+    arrays = compute(parcel(definition, np.arange(definition.grid.size)))
+    found = shown(definition, parts(definition, arrays, "study.solve"))
     if not scene:
         return found
-    found = shown(definition, found)
     beyond = doubts(found)
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)

@@ -4,6 +4,8 @@ Every function takes an opened dimensionless dataset and returns a DataArray who
 vocabulary.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 
@@ -45,7 +47,15 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that need none. int32 over the
     dimensions of `status`.
     """
-    v = dataset.variables  # a DataArray compares its coordinates at every step, 20 ms in all
+    found = validity_of(dataset.variables)
+    flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
+    flags.attrs = found.attrs
+    return flags
+
+
+def validity_of(v: Mapping) -> xr.Variable:
+    """:func:`validity` of the variables of a dataset: a DataArray compares its coordinates at every step, 20 ms in
+    all."""
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
@@ -59,9 +69,10 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     }
     none = xr.zeros_like(v["status"], dtype=np.int32)
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), none)
-    flags = named(xr.DataArray(flags, dataset["status"].coords), "validity")
-    flags.attrs["flag_masks"] = np.array(list(ASSUMPTIONS), dtype=np.int32)
-    flags.attrs["flag_meanings"] = " ".join(ASSUMPTIONS.values())
+    flags.attrs = attributes("validity") | {
+        "flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32),
+        "flag_meanings": " ".join(ASSUMPTIONS.values()),
+    }
     return flags
 
 

@@ -25,7 +25,7 @@ def make_dimensionless(scene: Scene) -> None:
         scene.parameters["n"] = layer / body
     if "E_punch" in given:
         base = over_dimensions(scene.parameters.get("base", "layered"), "base")
-        surface = xr.where(base == "half_space", body, layer)
+        surface = _where(base == "half_space", body, layer)
         scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
     for name, value in given.items():
         if name not in SCENE:
@@ -37,7 +37,12 @@ def moduli(given: dict, parameters: dict) -> tuple:
     body = _reduced(given, "E2", "nu2")
     n = over_dimensions(given["n"] if "n" in given else parameters.get("n", 1.0), "n")
     layer = _reduced(given, "E1", "nu1") if "E1" in given else n * body
-    return (xr.where(np.isinf(body), layer, body) if np.any(np.isinf(body)) else body), layer, body
+    return _where(np.isinf(body), layer, body), layer, body
+
+
+def _where(condition: Any, yes: Any, no: Any) -> Any:
+    """xr.where, which takes a millisecond, where it is needed."""
+    return xr.where(condition, yes, no) if np.ndim(condition) else yes if condition else no
 
 
 def _reduced(given: dict, name: str, nu: str) -> Any:

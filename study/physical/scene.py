@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.dataset import plainly_written
+from ..data.dataset import Parts
 from ..data.units import DONE, with_unit
 from ..spec.definition import Definition
 from ..spec.vocabulary import VOCABULARY
@@ -67,10 +67,10 @@ class Scene:
             self, given=given, spreads=spreads, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit)
         )
 
-    def dressed(self, dataset: xr.Dataset) -> xr.Dataset:
+    def dressed(self, parts: Parts) -> xr.Dataset:
         """The dimensionless results of `parameters` in SI units, the inputs as given, with spreads of the results."""
         results, coords = {}, {}
-        for name, variable in dataset.variables.items():
+        for name, variable in (parts.variables | parts.coords).items():
             if name in self.given or name == MOVED:
                 continue
             known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
@@ -78,7 +78,7 @@ class Scene:
             if MOVED in found.dims:
                 results |= _spread(name, found)
                 found = found.isel({MOVED: 0})
-            (coords if name in dataset.coords else results)[name] = self._renamed(found)
+            (coords if name in parts.coords else results)[name] = self._renamed(found)
         results = {name: self._renamed(variable) for name, variable in results.items()}
         coords |= {name: self._coordinate(name, value) for name, value in self.given.items()}
         for name, value in self.spreads.items():
@@ -88,8 +88,8 @@ class Scene:
             coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
         if self.labels:
             coords["label"] = xr.Variable("case", self.labels)
-        attributes = dataset.attrs | {DONE: "SI; R, E1, E2 and E_punch are coordinates"}
-        return plainly_written(searchable(xr.Dataset(results, coords, attributes)))
+        attributes = parts.attributes | {DONE: "SI; R, E1, E2 and E_punch are coordinates"}
+        return searchable(Parts(results, coords, attributes).dataset())
 
     def _coordinate(self, name: str, value: Any, long_name: str = "") -> xr.Variable:
         """SI values of an input, with the unit of the parameter `name`."""
@@ -105,9 +105,9 @@ class Scene:
         return xr.Variable(dims, variable.data, variable.attrs, variable.encoding)
 
 
-def shown(definition: Definition, dataset: xr.Dataset) -> xr.Dataset:
+def shown(definition: Definition, parts: Parts) -> xr.Dataset:
     """The dataset of a study as users see it: in SI units, if the study has units."""
-    return definition.scene.dressed(dataset) if definition.scene else dataset
+    return definition.scene.dressed(parts) if definition.scene else parts.dataset()
 
 
 def _variable(value: Any) -> xr.Variable:

@@ -28,6 +28,9 @@ _SURE = 1e-5  # relative spread of a number that is not worth a ±
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
+#: A number and a unit, which is a product of powers: what it is in SI is the number times a size that is kept.
+_PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -98,9 +101,13 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
 @lru_cache(maxsize=4096)  # to read a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """A text without spread in the SI unit, rounded once: "3 um" is the number 3e-6."""
-    said = on_one_line(text, LONGEST)
+    said, text = on_one_line(text, LONGEST), text.replace("⁻²", "^-2").replace("²", "^2")
+    plain = _PLAIN.fullmatch(text)
+    size = _size(plain[2], unit) if plain else None
+    if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):
+        return value
     try:
-        found = _registry().Quantity(text.replace("⁻²", "^-2").replace("²", "^2"))
+        found = _registry().Quantity(text)
     except Exception as error:  # pint raises of many kinds
         raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
@@ -111,6 +118,16 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f'{name} = "{said}": must be finite')
     return value
+
+
+@lru_cache(maxsize=256)
+def _size(word: str, unit: str) -> Decimal | None:
+    """A unit such as "um" or "1/mm^2" in the SI `unit`; None if it is none, or one of something else."""
+    try:
+        found = _registry().Quantity(word).to(_pint_name(unit)).magnitude
+    except Exception:  # the whole text will be read, and what is wrong with it said
+        return None
+    return found if isinstance(found, Decimal) and unit != "1" else None
 
 
 def _shown(given: Any) -> str:

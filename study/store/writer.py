@@ -6,7 +6,7 @@ from pathlib import Path
 
 from solver import NUMERICS_VERSION
 
-from ..data.dataset import assembled, labelled
+from ..data.dataset import assembled, parts
 from ..files.atomic import replacing
 from ..files.checksums import Rows, identity
 from ..files.examine import CHUNK
@@ -50,7 +50,7 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
             yield
         arrays = gather(store, known, start, start + grid.size)
         here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))
-        part, place = shown(here, labelled(here, arrays, command)), definition.named(window)
+        part, place = shown(here, parts(here, arrays, command)), definition.named(window)
         if not start:
             whole = shown(definition, assembled(definition, {}, "x", definition.x, command))
             create(file, part, whole, chunk)

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ..data.dataset import NO_SOLUTION, labelled, status_words
+from ..data.dataset import NO_SOLUTION, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..physical.scene import shown
@@ -167,4 +167,4 @@ def partial_dataset(definition: Definition, results) -> xr.Dataset:
     """The grid with the blocks computed so far; the rest is NaN with status 127, not run."""
     store = Store(definition, Path(results))
     arrays = gather(store, inventory(store), 0, definition.grid.size)
-    return shown(definition, labelled(definition, arrays, "partial results"))
+    return shown(definition, parts(definition, arrays, "partial results"))

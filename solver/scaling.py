@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .body.layered import Layer
+from .body import BODIES
 from .body.springs import local_compliance
 from .contact.equation import Cases
 from .laws import LAWS
@@ -25,16 +25,13 @@ _UNITS = {
 
 
 def dimensionless(problem):
-    """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
+    """The problem in units R = E2* = 1; n is 1 on the half-space alone."""
     R, E2 = problem.R, problem.E2
     # divided one by one: R² or R⁻² may overflow where the quotient does not
     value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
-    layered = problem.base != "half_space"
-    h, n = problem.h / R, np.where(layered, problem.n, 1.0)
-    springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
-    C = np.where(problem.base == "thin_layer", springs, 0.0)
-    one = np.ones(len(problem))
-    return replace(problem, value=value, h=h, n=n, Ra=problem.Ra / R, Nbar=problem.Nbar * R * R, R=one, E2=one), C
+    n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
+    lengths = {"h": problem.h / R, "Ra": problem.Ra / R, "Nbar": problem.Nbar * R * R}
+    return replace(problem, value=value, n=n, R=one, E2=one, **lengths)
 
 
 def refused(problem, scaled):
@@ -43,27 +40,38 @@ def refused(problem, scaled):
     return scaled.invalid() | units[0] | units[1]
 
 
-def as_cases(part, C):
+def without_springs(scaled):
+    """(B,) bool: thin layers to which Eq. (3) does not apply, C <= 0."""
+    return (scaled.base == "thin_layer") & ~(local_compliance(*_layer(scaled)) > 0)
+
+
+def as_cases(part):
     """:class:`~solver.contact.equation.Cases` of one law on one base."""
+    body = BODIES[str(part.base[0])](*_layer(part))
+    return Cases(part.control, law_of(part), body, part.value)
+
+
+def law_of(part):
+    """The law of cases of one law, bound to their numbers."""
     own = LAWS[str(part.micro[0])]
-    law = own.bind(part.n, **{name: getattr(part, name) for name in own.parameters})
-    none = np.zeros(len(part))
-    layered = part.base[0] == "layered"
-    layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded") if layered else None
-    E = part.n if layered else none + 1
-    return Cases(part.control, law, layer, part.value, E, C, reach=none, coarse=none > 0)
+    return own.bind(part.n, **{name: getattr(part, name) for name in own.parameters})
+
+
+def _layer(problem):
+    return problem.h, problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
 
 
 def restore(solution, problem, without=()):
-    """The end of every way to solve: back to the units of the problem, the controlled quantity exactly as given.
+    """The solution in the units of the problem: the end of every way to solve; the controlled quantity is as given.
 
     A case with a number that cannot be is not converged, nor is one with a number that its unit makes infinite.
     `without`: names of the numbers that this way to solve does not give.
     """
-    solution.refuse(solution.out_of_range(without), Status.DIVERGED)
+    solution = solution.refused(solution.out_of_range(without), Status.DIVERGED)
+    arrays = {}
     for name, (of_R, of_E2) in _UNITS.items():
-        array = getattr(solution, name)
-        factor = problem.R**of_R * problem.E2**of_E2
-        array *= factor.reshape(-1, *[1] * (array.ndim - 1))
-    solution.refuse(solution.not_finite(without), Status.DIVERGED)
-    getattr(solution, problem.control)[:] = problem.value
+        array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
+        arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
+    solution = replace(solution, **arrays)
+    solution = solution.refused(solution.not_finite(without), Status.DIVERGED)
+    return replace(solution, **{problem.control: problem.value * 1.0})

@@ -1,33 +1,38 @@
-"""The layered operator: the half-space of E1* plus a Hankel integral over L - 1.
+"""The exact layer of E1* on an elastic half-space: the half-space of E1* plus a Hankel integral over L - 1.
 
-    (E1* π/(4a)) u = H[q] + (π/2) Λ[q],
+    K q = H[q] + (π/2) Λ[q], both less their values at the edge,
     Λ_ij(η) = ∫₀^∞ (L(kη) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
 
-k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity; L - 1 decays
-like e^(-2u), so Λ is a smooth kernel for every η. What depends on k and the mesh alone is tabulated for an
-octave of η (:mod:`.tables`). For a batch, Λ is then one matrix product of the values of L - 1 with that table;
-its products with q, and their derivatives by η from u dL/du, do without it. L - 1 of soft layers is evaluated at the
-few nodes that determine it (:mod:`.wave_rule`). The octaves agree to the error of the quadrature where they
-meet. Films, below the last octave, all share one quadrature, which ends at k = CUT; what lies beyond is in
-:mod:`.film`.
+k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1 decays
+like e^(-2u), so Λ is smooth for every η. What depends on k and the mesh alone is tabulated for an octave of η
+(:mod:`.tables`). For a batch, the matrix is then one product of the values of L - 1 with that table; the derivatives
+by ln a come from u dL/du. The octaves agree to the error of the quadrature where they meet. Films, below the last
+octave, all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
 """
 
-from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics.mesh import Mesh
 from . import film
 from .kernel import decaying_part, whole
-from .tables import between, felt, table
-from .wave_rule import COARSE, CUT, FILM, OCTAVES, few, quadrature
+from .operator import fitted_nodes
+from .springs import thin_layer
+from .tables import between, felt, film_rows, table
+from .wave_rule import CUT, FILM, OCTAVES, few, quadrature
 
-#: Numbers in one block of kernel values.
+#: Numbers in one block of kernel values: its temporaries stay in the cache.
 _BLOCK = 16384
+#: Relative change of the radius that is less than the rounding of the operator: its kernel need not be formed anew.
+_SAME = 1e-12
+#: Layers thinner than this times the radius are nearly thin layers.
+_THIN = 0.02
 
 
-class Layer(NamedTuple):
-    """Material of layered cases, arrays (B,): h in R, n, nu1, nu2, bonded (bool)."""
+class Layered(NamedTuple):
+    """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
+    Poisson ratios nu1, nu2 of layer and half-space, and whether they are bonded (bool)."""
 
     h: np.ndarray
     n: np.ndarray
@@ -35,58 +40,56 @@ class Layer(NamedTuple):
     nu2: np.ndarray
     bonded: np.ndarray
 
-    def take(self, index):
-        """The sub-batch at `index`."""
-        return Layer(*(field[index] for field in self))
-
-
-class Weights(NamedTuple):
-    """Part of a batch in one octave: its cases `index` (b,), the key of its table, w (L - 1), -w u dL/du (b, G).
-
-    They are those at `radius` (b,); the contact is `step` (b,) of ln a farther, where they hold to first order. Films
-    have w χ (L - n') there; c of the convolution and its derivative (b, T), and n' - 1 (b, 1).
-    """
-
-    index: np.ndarray
-    octave: int
-    depth: int
-    coarse: bool
-    radius: np.ndarray
-    step: np.ndarray
-    W: np.ndarray
-    dW: np.ndarray
-    film: np.ndarray | None
-    d_film: np.ndarray | None
-    level: np.ndarray | None
+    @property
+    def E(self):
+        """E1* (B,) in E2*: K is relative to the half-space of the layer's material."""
+        return self.n
 
     @property
-    def table(self):
-        """The key of its table, without the mesh."""
-        return self.octave, self.depth, self.coarse
+    def C(self):
+        """0 (B,): no springs."""
+        return np.zeros_like(self.n)
 
-    def take(self, rows, index):
-        """The sub-batch at `rows`, ascending, as the cases `index`."""
-        if len(rows) == len(self.index):
-            return self._replace(index=index)
-        arrays = (None if v is None else v[rows] for v in self[4:])
-        return Weights(index, *self.table, *arrays)
+    def take(self, index):
+        """The sub-batch at `index`."""
+        return Layered(*(field[index] for field in self))
 
-    def moved(self, nodes=slice(None)):
-        """W at some nodes, and film, `step` farther."""
-        if not self.step.any():
-            return self.W[:, nodes], self.film
-        step = self.step[:, None]
-        film = None if self.film is None else self.film + step * self.d_film
-        return self.W[:, nodes] + step * self.dW[:, nodes], film
+    def at(self, a, mesh, near=None):
+        """The :class:`LayeredOperator` at the radii a (B,); where those of `near` are the same, so is its kernel."""
+        parts, far = [], np.ones(len(a), dtype=bool)
+        for part in () if near is None else near.parts:
+            same = np.flatnonzero(np.abs(a[part.index] / part.radius - 1) <= _SAME)
+            if len(same):
+                far[part.index[same]] = False
+                parts.append(part.take(same, part.index[same]))
+        parts += _parts(self, a, np.flatnonzero(far))
+        return LayeredOperator(mesh, parts, *_matrix_and_edge(parts, mesh))
 
+    def softness(self, a):
+        """L (B,) at the wave number 1.5/a: about what the contact feels."""
+        return whole(1.5 * self.h / a, *self[1:])
 
-class LayerProducts(NamedTuple):
-    """Λ[q] less its value at the edge (B, n), that value (B,), and the derivatives of both by ln a."""
+    def error(self, a, nodes):
+        """Error (B,) of the operator: rounding, and for films what the convolution leaves out."""
+        L = whole(10 * self.h / a, *self[1:])
+        octave, _ = octave_of(self, a)
+        local = np.abs(L - self.n) / np.maximum(L, self.n)
+        return 1e-14 * nodes / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
-    rows_q: np.ndarray
-    edge_q: np.ndarray
-    d_rows_q: np.ndarray
-    d_edge_q: np.ndarray
+    def order(self, a):
+        """Permutation (B,) that puts cases with one table together: fewer, larger matrix products."""
+        return np.lexsort(octave_of(self, a))
+
+    def alike(self, a):
+        """The thin layer in place of a film, if there is one."""
+        thin = thin_layer(*self)
+        return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
+
+    def first_nodes(self, rtol, a, rise=None):
+        """Number of nodes (B,): under asperities as on a half-space; of a smooth punch, the fewer the thicker."""
+        if rise is None:
+            return fitted_nodes(rtol, 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3)
+        return fitted_nodes(rtol, rise, 1.1)
 
 
 def octave_of(layer, a):
@@ -100,170 +103,170 @@ def octave_of(layer, a):
     return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
 
 
-def operator_error(layer, a, nodes, coarse=False):
-    """Relative error (B,) of the operator itself: rounding, for films what the convolution leaves out, and that of the
-    coarse quadrature, if it is."""
-    L = whole(10 * layer.h / a, *layer[1:])
-    octave, _ = octave_of(layer, a)
-    local = np.abs(L - layer.n) / np.maximum(L, layer.n)
-    error = (1e-14 * nodes + np.where(coarse, COARSE * np.maximum(layer.n, 1.0), 0.0)) / np.minimum(L, 1.0)
-    return error + np.where(octave == FILM, local / CUT**2, 0.0)
+class Part(NamedTuple):
+    """The kernel of cases that share a table: their places `index` (b,) in the batch, the table, the radius a (b,), and
+    L - 1 and -u dL/du (b, M) at the few nodes k of the table.
 
-
-def layer_weights(layer, a, known=(), reach=0.0, coarse=False):
-    """Weights of a batch at contact radii a (B,): a list of :class:`Weights`, one for each octave present.
-
-    `known` are weights of cases of the batch: where ln a has changed by no more than `reach` (B,) they serve to
-    first order; the others are formed anew. coarse (B,) bool: on half the nodes in k.
+    Films have χ (L - n') in place of L - 1, their convolution c and its derivative by ln a (b, T), and n' (b, 1).
     """
-    parts, far, reach = [], np.ones(len(a), dtype=bool), reach * np.ones(len(a))
-    for part in known:
-        step = np.log(a[part.index] / part.radius)
-        near = np.flatnonzero(np.abs(step) <= reach[part.index])
-        if len(near):
-            far[part.index[near]] = False
-            parts.append(part.take(near, part.index[near])._replace(step=step[near]))
-    new = np.flatnonzero(far)
-    octave, depth = octave_of(layer.take(new), a[new])
-    coarse = (coarse & np.ones(len(a), dtype=bool))[new] & (octave != FILM)
-    for o, d, c in sorted(set(zip(octave.tolist(), depth.tolist(), coarse.tolist(), strict=True))):
-        parts.append(_weights(layer, a, o, d, c, new[(octave == o) & (depth == d) & (coarse == c)]))
+
+    index: np.ndarray
+    octave: int
+    depth: int
+    radius: np.ndarray
+    L1: np.ndarray
+    uL: np.ndarray
+    film: np.ndarray | None = None
+    d_film: np.ndarray | None = None
+    level: np.ndarray | None = None
+
+    def table(self, mesh):
+        """Its :class:`~solver.body.tables.Table` on a mesh."""
+        return table(mesh, self.octave, self.depth)
+
+    @property
+    def share(self):
+        """The share (b, 1) of the half-space that stands beside Λ: 1 but for films."""
+        return 1.0 if self.level is None else self.level
+
+    def take(self, rows, index):
+        """The sub-batch at `rows`, at the places `index` in another batch."""
+        return Part(index, self.octave, self.depth, *(None if v is None else v[rows] for v in self[3:]))
+
+
+class LayeredOperator(NamedTuple):
+    """The :class:`~solver.body.operator.Operator` of layers: a mesh, the kernel (list of :class:`Part`), the matrix K
+    (B, n, n), of which the cases lie next to each other in memory, and the row of the edge (B, n)."""
+
+    mesh: Mesh
+    parts: list
+    K: np.ndarray
+    edge: np.ndarray
+
+    def take(self, index):
+        """The sub-batch at `index`, ascending."""
+        place = np.full(len(self.edge), -1)
+        place[index] = np.arange(len(index))
+        rows = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
+        parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, rows, strict=True) if len(r)]
+        K = np.take(self.K.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
+        return LayeredOperator(self.mesh, parts, K, self.edge[index])
+
+    def join(self, operators, places):
+        """The batch of sub-batches, each at its places (b,)."""
+        size, n = sum(len(place) for place in places), self.mesh.n
+        K, edge, groups = np.empty((n, n, size)).transpose(2, 0, 1), np.empty((size, n)), {}
+        for operator, place in zip(operators, places, strict=True):
+            K[place], edge[place] = operator.K, operator.edge
+            for part in operator.parts:
+                groups.setdefault(part[1:3], []).append(part._replace(index=place[part.index]))
+        parts = []
+        for key, found in groups.items():
+            index, _, _, *arrays = zip(*found, strict=True)
+            arrays = (None if v[0] is None else np.concatenate(v) for v in arrays)
+            parts.append(Part(np.concatenate(index), *key, *arrays))
+        return LayeredOperator(self.mesh, parts, K, edge)
+
+    def products(self, q):
+        """K q (B, n) and edge @ q (B,)."""
+        return np.einsum("bij,bj->bi", self.K, q), np.einsum("bj,bj->b", self.edge, q)
+
+    def slopes(self, q):
+        """Derivatives of the products by ln a: (B, n) and (B,)."""
+        d_Kq, d_edge_q = np.empty(q.shape), np.empty(len(q))
+        for part in self.parts:
+            tab, own = part.table(self.mesh), q[part.index]
+            moved = tab.weights(part.uL) * (own @ tab.phi.T)
+            d_Kq[part.index], d_edge_q[part.index] = moved @ tab.J, moved @ tab.J_edge
+            if part.film is not None:
+                K, edge = _film(part.d_film, tab, self.mesh.n)
+                d_Kq[part.index] += np.matmul(K, own[..., None])[..., 0]
+                d_edge_q[part.index] += (edge * own).sum(axis=1)
+        return d_Kq, d_edge_q
+
+    def between(self, q, s, half_space):
+        """K q (B, m) at points s (m,) between the nodes; half_space (B, m) is H[q] - H[q](edge) there."""
+        out, x = np.empty(half_space.shape), np.sqrt((1 - s) * (1 + s))
+        for part in self.parts:
+            index, tab = part.index, part.table(self.mesh)
+            values = (tab.weights(part.L1) * (q[index] @ tab.phi.T)) @ between(self.mesh, part.octave, part.depth, x)
+            if part.film is not None:
+                near = felt(self.mesh, x)
+                rows = film_rows(self.mesh, s[near].tobytes())
+                values -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
+                values[:, near] += np.matmul(rows.of(part.film), q[index][:, :, None])[..., 0]
+            out[index] = part.share * half_space[index] + values
+        return out
+
+
+def _parts(layer, a, index):
+    """The kernel of the cases `index` at radii a (B,): a list of :class:`Part`, one for each table."""
+    octave, depth = octave_of(layer.take(index), a[index])
+    parts = []
+    for key in sorted(set(zip(octave.tolist(), depth.tolist(), strict=True))):
+        own = index[(octave == key[0]) & (depth == key[1])]
+        make = _film_part if key[0] == FILM else _plain_part
+        parts.append(Part(own, *key, a[own], *make(layer.take(own), layer.h[own] / a[own], *key)))
     return parts
 
 
-def take_weights(parts, index):
-    """Weights of the sub-batch at `index`."""
-    if not parts or not len(index):
-        return []
-    place = np.full(1 + max(index.max(), *(part.index.max() for part in parts)), -1)
-    place[index] = np.arange(len(index))
-    rows = [np.flatnonzero(place[part.index] >= 0) for part in parts]
-    return [part.take(r, place[part.index[r]]) for part, r in zip(parts, rows, strict=True) if len(r)]
+def _plain_part(layer, eta, octave, depth):
+    k, _ = quadrature(octave, depth)
+    own = few(octave, depth)
+    return _kernel(layer, eta, k if own is None else k[own.nodes])
 
 
-def place_weights(parts, index):
-    """Weights of a sub-batch as those of the cases `index` of the whole."""
-    return [part._replace(index=index[part.index]) for part in parts]
-
-
-def _weights(layer, a, octave, depth, coarse, index):
-    k, weight = quadrature(octave, depth, coarse)
-    radius, part = a[index], layer.take(index)
-    eta, key = part.h / radius, (index, octave, depth, coarse, radius, np.zeros(len(index)))
-    own = few(octave, depth, coarse)
-    if own is not None:
-        values = _sampled(part, eta, k[own.nodes], np.ones(len(own.nodes)), 0.0)
-        return Weights(*key, *(v @ own.spread for v in values), None, None, None)
-    if octave != FILM:
-        return Weights(*key, *_sampled(part, eta, k, weight, 0.0), None, None, None)
-    level = whole(CUT * eta / 2, *part[1:])[:, None] - 1
+def _film_part(layer, eta, octave, depth):
+    k, _ = quadrature(octave, depth)
+    level = whole(CUT * eta / 2, *layer[1:])[:, None]
     kappa, _, _ = film.waves()
-    below = _sampled(part, eta, k, weight * film.step(k / CUT), level)
-    beyond, d_beyond = _sampled(part, eta, CUT * kappa, 1 - film.step(kappa), level)
-    p = CUT * eta[:, None]
-    return Weights(*key, *below, film.transform(beyond, level, p), film.transform(d_beyond, 0 * level, p), level)
+    below = _kernel(layer, eta, k, level, film.step(k / CUT))
+    beyond, d_beyond = _kernel(layer, eta, CUT * kappa, level, 1 - film.step(kappa))
+    p, end = CUT * eta[:, None], level - 1
+    return *below, np.pi / 2 * film.transform(beyond, end, p), np.pi / 2 * film.transform(d_beyond, 0 * end, p), level
 
 
-def _sampled(layer, eta, k, weight, level):
-    """w (L - 1 - level) and -w u dL/du (b, G) at the nodes k."""
-    W, dW = np.empty((len(eta), len(k))), np.empty((len(eta), len(k)))
+def _kernel(layer, eta, k, level=None, factor=1.0):
+    """L less `level` (b, 1), or less 1, and -u dL/du, both times a factor (M,), at the nodes k: (b, M) each."""
+    L1, uL = np.empty((2, len(eta), len(k)))
     rows, material = max(1, _BLOCK // len(k)), layer[1:]
-    for low in range(0, len(eta), rows):  # a block at a time: the temporaries of the kernel stay in the cache
+    for low in range(0, len(eta), rows):
         part = slice(low, low + rows)
-        L1, uL = decaying_part(k * eta[part, None], *(field[part, None] for field in material))
-        np.multiply(weight, L1 - (level[part] if np.ndim(level) else level), out=W[part])
-        np.multiply(-weight, uL, out=dW[part])
-    return W, dW
+        above, slope = decaying_part(k * eta[part, None], *(field[part, None] for field in material))
+        np.multiply(factor, above if level is None else above - (level[part] - 1), out=L1[part])
+        np.multiply(-factor, slope, out=uL[part])
+    return L1, uL
 
 
-def layer_products(weights, q, grid):
-    """:class:`LayerProducts` of a batch from its weights, for q (B, n) on a mesh."""
-    out = LayerProducts(np.empty(q.shape), np.empty(len(q)), np.empty(q.shape), np.empty(len(q)))
-    for part in weights:
-        index, tab = part.index, table(grid, *part.table)
-        qk = q[index] @ tab.phi.T
-        here, moved = part.W * qk, np.multiply(part.dW, qk, out=qk)
-        out.rows_q[index], out.edge_q[index] = here @ tab.J, here @ tab.J_edge
-        out.d_rows_q[index], out.d_edge_q[index] = moved @ tab.J, moved @ tab.J_edge
-        if part.film is not None:
-            _add_film(out, part, tab, q[index])
-        out.rows_q[index] += part.step[:, None] * out.d_rows_q[index]
-        out.edge_q[index] += part.step * out.d_edge_q[index]
-    return out
-
-
-def _add_film(out, part, tab, q):
-    """Add the convolution to the products of films, in place."""
-    index, (nodes, near, edge) = part.index, tab.film
-    here = np.ix_(index, nodes)
-    for rows_q, edge_q, c in ((out.rows_q, out.edge_q, part.film), (out.d_rows_q, out.d_edge_q, part.d_film)):
-        at_edge = ((c @ edge) * q).sum(axis=1)
-        edge_q[index] += at_edge
-        rows_q[index] -= at_edge[:, None]
-        rows_q[here] += np.matmul(near.of(c), q[:, :, None])[..., 0]
-
-
-def layer_edge(weights, grid):
-    """Λ at the edge of a batch on a mesh, (B, n)."""
-    row = np.empty((sum(len(part.index) for part in weights), grid.n))
-    for part in weights:
-        tab = table(grid, *part.table)
-        W, film = part.moved(tab.nodes)
-        row[part.index] = W @ tab.edge
-        if film is not None:
-            row[part.index] += film @ tab.film[2]
-    return row
-
-
-def layer_matrix(weights, grid):
-    """Λ - Λ(edge) of a batch on a mesh, (B, n, n); the cases lie next to each other in memory."""
-    order = np.concatenate([part.index for part in weights])
-    flat, end = np.empty((grid.n**2, len(order))), 0
-    for part in weights:
-        tab = table(grid, *part.table)
-        W, film = part.moved(tab.nodes)
-        own = flat[:, end : end + len(W)]
-        rows, end = own.reshape(grid.n, grid.n, -1).transpose(2, 0, 1), end + len(W)
+def _matrix_and_edge(parts, mesh):
+    """K (B, n, n), its cases next to each other in memory, and the row of the edge (B, n)."""
+    order, n = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n
+    flat, edge, end = np.empty((n * n, len(order))), np.empty((len(order), n)), 0
+    for part in parts:
+        tab, begin, end = part.table(mesh), end, end + len(part.index)
+        own = flat[:, begin:end]
+        rows = own.reshape(n, n, -1).transpose(2, 0, 1)
         if tab.product is not None:
-            np.matmul(tab.product.T, W.T, out=own)
+            np.matmul(tab.product.T, part.L1.T, out=own)
         else:
-            for row, w in zip(rows, W, strict=True):
+            for row, w in zip(rows, tab.weights(part.L1), strict=True):
                 row[:] = (tab.J * w[:, None]).T @ tab.phi
-        if film is not None:
-            nodes, near, edge = tab.film
-            rows -= (film @ edge)[:, None]
-            rows[:, nodes] += near.of(film)
+        row = part.L1 @ tab.edge + part.share * mesh.edge
+        own += mesh.K.reshape(-1, 1) * np.transpose(part.share)
+        if part.film is not None:
+            K, at_edge = _film(part.film, tab, n)
+            rows += K
+            row += at_edge
+        edge[part.index] = row
     if np.any(np.diff(order) < 0):
         flat = np.take(flat, np.argsort(order), axis=1)
-    return flat.reshape(grid.n, grid.n, -1).transpose(2, 0, 1)
+    return flat.reshape(n, n, -1).transpose(2, 0, 1), edge
 
 
-def half_space_share(weights):
-    """The share (B,) of the half-space that stands beside Λ: 1 but for films."""
-    share = np.ones(sum(len(part.index) for part in weights))
-    for part in weights:
-        if part.level is not None:
-            share[part.index] += part.level[:, 0]
-    return share
-
-
-def layer_displacement(weights, q, grid, x, half_space):
-    """K[q] = H[q] + (π/2) Λ[q], less its value at the edge, (B, m) at radii x (m,) for q (B, n) on a mesh.
-
-    half_space (B, m) is H[q](x) - H[q](1).
-    """
-    out = np.empty((len(q), len(x)))
-    for part in weights:
-        index, tab, (W, film) = part.index, table(grid, *part.table), part.moved()
-        out[index] = (W * (q[index] @ tab.phi.T)) @ between(grid, *part.table, x)
-        if film is not None:
-            near = felt(grid, x)
-            rows = _film_rows(grid, np.sqrt((1 - x[near]) * (1 + x[near])).tobytes())
-            out[index] -= ((film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
-            out[np.ix_(index, near)] += np.matmul(rows.of(film), q[index][:, :, None])[..., 0]
-    return half_space_share(weights)[:, None] * half_space + (np.pi / 2) * out
-
-
-@lru_cache(maxsize=8)
-def _film_rows(grid, s_bytes):
-    return film.convolution(grid, np.frombuffer(s_bytes), CUT)
+def _film(c, tab, n):
+    """What a convolution c (b, T) adds to the matrix (b, n, n) and to the row of the edge (b, n)."""
+    nodes, near, edge = tab.film
+    K, at_edge = np.zeros((len(c), n, n)), c @ edge
+    K -= at_edge[:, None]
+    K[:, nodes] += near.of(c)
+    return K, at_edge

@@ -6,6 +6,7 @@ of all soft layers, at all h/a of an octave, it lies within rounding in a space 
 """
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -19,31 +20,20 @@ FILM = OCTAVES[0] - 1
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
 _WIDEST = 200.0
 #: Random layers from whose L - 1 and u dL/du the few nodes are found, and what is left out of them, over the largest.
-_SAMPLES, _LEFT_OUT = 200, {False: 3e-16, True: 1e-11}
+_SAMPLES, _LEFT_OUT = 200, 3e-16
 
 
-class Rule(NamedTuple):
-    """Of the quadrature in k: nodes of a panel beside those its oscillation takes, factor of the root of its width,
-    fewest nodes of panels below and above u = 1/2, where u ends, at most and at octave 0; nodes less a digit of e^-2u.
-    """
-
-    more: int
-    root: float
-    least: tuple
-    end: tuple
-    less: float
+#: The rule on a panel of the width w between low and high, in u at octave 0: _MORE + w/2 + _ROOT w^(1/3) points, the
+#: fewest of _LEAST below and above u = 1/2, _LESS fewer a digit by which e^-2u has decayed there. With it the operator
+#: is right to rounding, to 1e-11 below h/a = 1/64 (tests/body/test_wave_rule.py).
+_MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
+#: Where the integral over u may end, at most and at octave 0: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1.
+_END, _END_MIDDLE = 17.0, 15.0
 
 
-#: To rounding (1e-11 below h/a = 1/64, where it ends), and to COARSE of the larger of L(0) and L(inf) with half the
-#: nodes (tests/body/test_wave_rule.py).
-_RULES = {False: Rule(9, 3.0, (11, 15), (17.0, 15.0), 0.8), True: Rule(4, 2.5, (8, 10), (15.0, 14.5), 1.0)}
-COARSE = 1e-9
-
-
-def _end(octave, coarse=False):
-    """Where the integral over u may end: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1, their product below the error."""
-    most, middle = _RULES[coarse].end
-    return min(most, middle + 0.7 * octave)
+def _end(octave):
+    """Where the integral over u ends: what lies beyond is below the error."""
+    return min(_END, _END_MIDDLE + 0.7 * octave)
 
 
 #: Largest k of the quadrature of films.
@@ -51,17 +41,17 @@ CUT = _end(FILM) * 2.0**-FILM
 
 
 @lru_cache(maxsize=128)
-def quadrature(octave, depth, coarse=False):
+def quadrature(octave, depth):
     """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
-    rule, scale, cut = _RULES[coarse], 2.0**-octave, _end(octave, coarse)
+    scale, cut = 2.0**-octave, _end(octave)
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
-    for low, high in zip(ends[:-1], ends[1:], strict=True):
+    for low, high in pairwise(ends):
         pieces = int(np.ceil((high - low) * scale / _WIDEST))
         width = (high - low) * scale / pieces
-        order = max(rule.least[int(high >= 0.5)], int(width / 2 + rule.root * np.cbrt(width)) + rule.more)
+        order = max(_LEAST[int(high >= 0.5)], int(width / 2 + _ROOT * np.cbrt(width)) + _MORE)
         decayed = 2 * (low - np.log1p(low)) / np.log(10)
-        t, w = gauss_legendre(max(7, order - int(rule.less * decayed)))
+        t, w = gauss_legendre(max(7, order - int(_LESS * decayed)))
         for piece in range(pieces):
             k.append(low * scale + (piece + t) * width)
             weight.append(width * w)
@@ -76,19 +66,20 @@ class Few(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def few(octave, depth, coarse):
+def few(octave, depth):
     """The :class:`Few` nodes for n <= 2, by interpolative decomposition of random samples; None for others.
 
-    What is left out of L - 1 is below 2e-14, on the coarse quadrature 3e-10 (tests/body/test_wave_rule.py). They
-    are chosen without BLAS: with its rounding on another worker the choice might be another.
+    What is left out of L - 1 is below 2e-14 (tests/body/test_wave_rule.py). A batch of 4,000 such layers is solved in
+    two thirds of the time that it takes without. They are chosen without BLAS: with its rounding on another worker the
+    choice might be another.
     """
     if depth or octave == FILM:
         return None
-    _, weight = quadrature(octave, depth, coarse)
-    rest, nodes, rows = _samples(octave, coarse), [], []
+    _, weight = quadrature(octave, depth)
+    rest, nodes, rows = _samples(octave), [], []
     left = np.sum(rest**2, axis=0)
     most = left.max()
-    while left.max() > _LEFT_OUT[coarse] ** 2 * most:
+    while left.max() > _LEFT_OUT**2 * most:
         nodes.append(np.argmax(left))
         direction = rest[:, nodes[-1]] / np.sqrt(left[nodes[-1]])
         rows.append(np.einsum("i,ij->j", direction, rest))
@@ -99,11 +90,11 @@ def few(octave, depth, coarse):
     return Few(np.array(nodes), np.linalg.solve(np.triu(R[:, nodes]), R) * weight)
 
 
-def _samples(octave, coarse):
+def _samples(octave):
     """L - 1 and u dL/du (2 _SAMPLES, G) of random layers with n <= 2 and h/a in an octave."""
     random, size = np.random.default_rng(0), _SAMPLES
     n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), 10 ** random.uniform(-4, 0, size))
     eta, bonded = 2.0 ** (octave + random.random(size)), random.random(size) < 0.67
     material = n, *random.uniform(0, 0.5, (2, size)), bonded
-    k, _ = quadrature(octave, 0, coarse)
+    k, _ = quadrature(octave, 0)
     return np.concatenate(decaying_part(k * eta[:, None], *(v[:, None] for v in material)))

@@ -13,11 +13,11 @@ import numpy as np
 
 from ..body.kernel import layered_kernel
 from ..body.springs import local_compliance
-from ..contact.equation import guess_radius
+from ..contact.start import guess_radius
 from ..laws import LAWS, smooth
 from ..numerics.mesh import mesh
 from ..numerics.quadrature import gauss_legendre
-from ..scaling import as_cases
+from ..scaling import as_cases, law_of
 from ..solution import Model, Solution
 from ..status import Status
 from .model_error import MARGIN, TRUSTED, closed_form, first_order, nodes_for
@@ -53,61 +53,59 @@ def cheapest(problem, x, solve):
 
     problem : all of base "auto"; x : (m,) radii; solve : ``solve(problem, x)`` for the bases with a name.
     """
-    out = Solution.empty(len(problem), len(x))
-    nodes = nodes_for(problem.accuracy)
+    nodes, pieces = nodes_for(problem.accuracy), []
     for micro, n in sorted(set(zip(problem.micro.tolist(), nodes.tolist(), strict=True))):
         index = np.flatnonzero((problem.micro == micro) & (nodes == n))
-        _descend(problem.take(index), index, n, x, solve, out)
-    return out
+        pieces += [(index[rows], found) for rows, found in _descend(problem.take(index), n, x, solve)]
+    return Solution.join(len(problem), len(x), pieces)
 
 
 def judged(problem, x, solve):
     """:class:`Solution` of thin layers in units R = E2* = 1, with the model error of first order, no margin."""
-    out = Solution.empty(len(problem), len(x))
+    pieces, n = [], int(nodes_for(np.zeros(1))[0])
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
         part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
-        n = int(nodes_for(np.zeros(1))[0])
-        found = vars(solve(part, np.concatenate([x, mesh(n).x])))
-        error = _model_error(part, found, n, found["p"][:, len(x) :])
-        out.put(index, _shown(found, len(x)) | {"model_error": error})
-    return out
+        found = solve(part, np.concatenate([x, mesh(n).x]))
+        error = _model_error(part, found, n, found.p[:, len(x) :])
+        pieces.append((index, replace(_shown(found, len(x)), model_error=error)))
+    return Solution.join(len(problem), len(x), pieces)
 
 
-def _descend(part, index, n, x, solve, out):
-    """Solve the cases `part` of one micro law, judged on n nodes, into `out` at `index`."""
+def _descend(part, n, x, solve):
+    """Solve the cases `part` of one micro law, judged on n nodes: list of (index, Solution)."""
     expected, law = _expected_errors(part), LAWS[str(part.micro[0])]
-    left = np.arange(len(part))
+    left, pieces = np.arange(len(part)), []
     for rung in RUNGS:
         if rung.model == Model.LAYERED or not (law.rough or rung.smooth):
             continue
         tried = left[MARGIN * expected[rung.model][left] < part.accuracy[left]]
         if len(tried):
             found = _on_rung(rung, part.take(tried), n, x, solve)
-            good = (found["status"] == Status.CONVERGED) & (
-                found["model_error"] <= np.minimum(part.accuracy[tried], MARGIN * TRUSTED)
-            )
-            out.put(index[tried[good]], {name: value[good] for name, value in found.items()})
+            allowed = np.minimum(part.accuracy[tried], MARGIN * TRUSTED)
+            good = np.flatnonzero((found.status == Status.CONVERGED) & (found.model_error <= allowed))
+            pieces.append((tried[good], found.take(good)))
             left = np.setdiff1d(left, tried[good], assume_unique=True)
     if len(left):
-        dear = solve(_with(part.take(left), base="layered"), x)
-        out.put(index[left], vars(dear))
+        pieces.append((left, solve(_with(part.take(left), base="layered"), x)))
+    return pieces
 
 
 def _on_rung(rung, part, n, x, solve):
-    """Output arrays (dict) of the cases `part` on one rung, its asperities and model error included."""
+    """:class:`Solution` of the cases `part` on one rung, with its asperities and model error."""
     asperities = rung.smooth and LAWS[str(part.micro[0])].rough
     s, weight = _area_rule()
     points = [x, mesh(n).x, np.sqrt((1 - s) * (1 + s))]
     problem = rung.problem(part)
     if asperities:
         problem = _with(problem, micro=smooth.LAW.name, scheme="newton")
-    found = vars(solve(problem, np.concatenate(points)))
-    _, at_nodes, at_area = np.split(found["p"], np.cumsum([len(v) for v in points[:-1]]), axis=1)
+    found = solve(problem, np.concatenate(points))
+    _, at_nodes, at_area = np.split(found.p, np.cumsum([len(v) for v in points[:-1]]), axis=1)
     if asperities:
-        found = found | _asperities(part, found, at_area, weight)
+        found = replace(found, **_asperities(part, found, at_area, weight))
     error = MARGIN * _model_error(part, found, n, at_nodes, 1 + asperities)
-    return _shown(found, len(x)) | {"model_error": error, "model_used": np.full(len(part), rung.model)}
+    model = np.full(len(part), rung.model, dtype=np.int8)
+    return replace(_shown(found, len(x)), model_error=error, model_used=model)
 
 
 def _area_rule():
@@ -118,25 +116,25 @@ def _area_rule():
 
 def _asperities(part, found, p, weight):
     """What Eqs (6), (11)-(13) make of the pressure of a smooth solution; p (B, m) at the points of the area rule."""
-    law = as_cases(part, np.zeros(len(part))).law
-    centre = law.at(found["p0"][:, None])
+    law = law_of(part)
+    centre = law.at(found.p0[:, None])
     return {
         "A0": centre.A[:, 0],
         "p_max": centre.p_max[:, 0],
         "Ar_An": 2 * law.at(p).lam @ weight,
-        "lam": law.at(found["p"]).lam,
+        "lam": law.at(found.p).lam,
     }
 
 
 def _model_error(part, found, n, p, steps=1):
     """Estimated model error (B,) without margin of the solution `found` of the cases `part`; p at the nodes."""
-    cases = as_cases(_with(part, base="layered"), np.zeros(len(part)))
+    cases = as_cases(_with(part, base="layered"))
     return first_order(cases, found, p, n, steps)
 
 
 def _shown(found, m):
-    """The output arrays with the profiles at the first m radii only."""
-    return found | {name: found[name][:, :m] for name in ("p", "lam")}
+    """The solution with the profiles at the first m radii only."""
+    return replace(found, p=found.p[:, :m], lam=found.lam[:, :m])
 
 
 # ---- what the rungs solve, and what closed forms expect of them
@@ -185,7 +183,7 @@ RUNGS = (
 
 def _expected_errors(part):
     """Error (B,) expected of each model (dict), from closed forms at the first guess of the radius: a screening."""
-    cases = as_cases(_with(part, base="layered"), np.zeros(len(part)))
+    cases = as_cases(_with(part, base="layered"))
     a = guess_radius(cases)
     x = part.h / a
     material = part.n, part.nu1, part.nu2, part.bonding == "bonded"

@@ -1,6 +1,8 @@
 """The ladder of meshes: each case starts on the mesh its tolerance is likely to need and climbs until its estimated
 error meets it."""
 
+from collections import deque
+
 import numpy as np
 
 from .mesh import mesh, panel_mesh
@@ -37,7 +39,7 @@ def finer_mesh(grid):
     return panel_mesh(grid.order + grid.order // 3, grid.breaks)
 
 
-def climb(rtol, nodes, solve_on, first=None, order=None, stack=STACK):
+def climb(rtol, nodes, solve_on, first=None, order=None):
     """Let every case climb to the mesh that meets its tolerance.
 
     Parameters
@@ -46,29 +48,33 @@ def climb(rtol, nodes, solve_on, first=None, order=None, stack=STACK):
     nodes : (B,) int
         A fixed mesh, or 0: begin on `first`.
     solve_on : callable
-        ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their
-        estimated errors (NaN: no use going on).
+        ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. error (b,): their
+        estimated errors, NaN where there is no use in going on; finer: what the next finer mesh begins with, or None;
+        ``finer.take(rows)`` of it is the `start` there. On the first mesh that is None.
     first : (B,) int, optional
         The mesh to begin on; else chosen by rtol.
     order : (B,) int, optional
         Permutation of the cases; neighbours in it are solved together.
-    stack : int
-        Most unknowns solved together.
 
     Returns
     -------
-    (B,) bool
-        The cases whose error still exceeds rtol on the last mesh.
+    list of (index, found)
+        Of each stack that was solved. The last one that has a case has its answer.
     """
     rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
-    unmet = np.zeros(len(rtol), dtype=bool)
     order = np.arange(len(rtol)) if order is None else order
-    while (rung > 0).any():
-        n = int(rung[rung > 0].min())
-        batch = order[rung[order] == n]
-        for index in np.array_split(batch, -(-len(batch) * n // stack)):
-            missed = solve_on(index, n) > rtol[index]
-            last = (nodes[index] > 0) | (n >= LADDER[-1])
-            unmet[index] = missed & last
-            rung[index] = np.where(missed & ~last, next_rung(n), 0)
-    return unmet
+    batches = [(order[rung[order] == n], n) for n in np.unique(rung).tolist()]
+    todo = deque((index, n, None) for batch, n in batches for index in _stacks(batch, n))
+    pieces = []
+    while todo:
+        index, n, start = todo.popleft()
+        error, finer, found = solve_on(index, n, start)
+        pieces.append((index, found))
+        on = np.flatnonzero((error > rtol[index]) & (nodes[index] == 0))
+        if len(on) and n < LADDER[-1]:
+            todo.append((index[on], next_rung(n), None if finer is None else finer.take(on)))
+    return pieces
+
+
+def _stacks(batch, n):
+    return np.array_split(batch, -(-len(batch) * n // STACK))

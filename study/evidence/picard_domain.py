@@ -10,7 +10,6 @@ from matplotlib.ticker import LogFormatterMathtext
 
 from solver import Problem, solve
 from solver.contact import picard
-from solver.contact.equation import operate
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases, dimensionless
 
@@ -91,12 +90,11 @@ def theory(case: dict, h: np.ndarray, beta: float, nodes: int) -> tuple[np.ndarr
     alone, and of the asperities alone where p/p(0) is each of SHARES, A'(p)/C."""
     grid = mesh(nodes)
     problem = Problem.of(**case, beta=beta, h=h, rtol=1e-6)
-    cases = as_cases(*dimensionless(problem))
-    K = operate(cases, np.log(cases.value), np.zeros((len(h), grid.n)), grid).matrix(grid)
-    largest = np.linalg.eigvals(K[0]).real.max()
-    whole = 4 / np.pi * cases.value * largest / (cases.E * cases.C)
+    cases = as_cases(dimensionless(problem))
+    largest = np.linalg.eigvals(cases.body.at(cases.value, grid).K[0]).real.max()
+    whole = 4 / np.pi * cases.value * largest / (cases.body.E * cases.body.C)
     p0, B = solve(problem).p0, float(case["B"]) * float(case["Ra"]) / float(case["n"]) ** beta
-    return whole, [beta * B * (share * p0) ** (beta - 1) / cases.C for share in SHARES]
+    return whole, [beta * B * (share * p0) ** (beta - 1) / cases.body.C for share in SHARES]
 
 
 def cycle(axes, case: dict) -> None:
@@ -105,10 +103,10 @@ def cycle(axes, case: dict) -> None:
     grid = mesh(case.pop("nodes"))
     k = np.array([case.pop("k")])
     problem = Problem.of(**case, nodes=grid.n, rtol=1e-9)
-    cases = as_cases(*dimensionless(problem))
+    cases = as_cases(dimensionless(problem))
     eta = np.log(cases.value)
     for count, mark in ((1000, "o"), (1001, "s")):
-        q = picard.approximate(cases, eta, grid, k, np.zeros(1), count).q[0]
+        q = picard.approximate(cases, eta, grid, k, np.zeros(1), count).at.q[0]
         axes.plot(grid.x, 1e3 * cases.law.p_star * q, f"-{mark}", markersize=3, linewidth=0.9, label=f"iterate {count}")
     x = np.linspace(0.98, 1, 201)
     axes.plot(x, 1e3 * solve(problem, x).p[0], "k-", linewidth=0.9, label="solution")

@@ -71,12 +71,11 @@ class Way:
 def papers_way(cases: dict, k: float, intervals: float) -> Solution:
     """The paper's, in batches of one base and law; everything is iterated until the mesh is the largest error."""
     problem = Problem.of(**cases)
-    solution = Solution.empty(len(problem), 0)
+    pieces = []
     for base, micro in {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}:
         index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
-        part = solve_uniform(problem.take(index), int(intervals), k, 0.3 / intervals**2)
-        solution.put(index, {name: getattr(part, name) for name in (*JUDGED, "status")})
-    return solution
+        pieces.append((index, solve_uniform(problem.take(index), int(intervals), k, 0.3 / intervals**2)))
+    return Solution.join(len(problem), 0, pieces)
 
 
 def changed(**parameters) -> Callable[[dict, float], Solution]:

@@ -14,11 +14,10 @@ import numpy as np
 from scipy.special import ellipkm1
 
 from solver.contact import picard
-from solver.contact.equation import evaluate
 from solver.contact.results import quantities
 from solver.numerics.bracket import bisection
 from solver.numerics.quadrature import gauss_legendre
-from solver.scaling import as_cases, dimensionless, refused, restore
+from solver.scaling import as_cases, dimensionless, refused, restore, without_springs
 from solver.solution import Solution
 from solver.status import Status
 from solver.threads import one_blas_thread
@@ -133,30 +132,27 @@ def solve_uniform(problem, intervals, k, tolerance, limit=None):
     kinds = set(zip(problem.base.tolist(), problem.micro.tolist(), strict=True))
     if len(kinds) != 1 or kinds & {("layered", micro) for _, micro in kinds} or kinds == {("half_space", "smooth")}:
         raise ValueError(f"one micro law on thin_layer, or a rough one on half_space, not {sorted(kinds)}")
-    solution = Solution.empty(len(problem), 0)
-    scaled, C = dimensionless(problem)
+    scaled = dimensionless(problem)
     invalid = refused(problem, scaled)
-    none = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
-    solution.status[invalid], solution.status[none] = Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE
+    none = ~invalid & without_springs(scaled)
+    status = np.select([invalid, none], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)
+    pieces = [(np.arange(len(problem)), Solution.of(len(problem), 0, status=status))]
     index = np.flatnonzero(~(invalid | none))
     if len(index):
-        cases = as_cases(scaled.take(index), C[index])
-        solution.put(index, _solve(cases, uniform_mesh(intervals), k, tolerance, limit))
-    restore(solution, problem, without=("dP_dD", "error"))
-    return solution
+        pieces.append((index, _solve(as_cases(scaled.take(index)), uniform_mesh(intervals), k, tolerance, limit)))
+    return restore(Solution.join(len(problem), 0, pieces), problem, without=("dP_dD", "error"))
 
 
 def _solve(cases, grid, k, tolerance, limit):
-    """Output arrays (dict) of :class:`~solver.contact.equation.Cases`."""
+    """:class:`~solver.solution.Solution` of :class:`~solver.contact.equation.Cases`."""
     one = np.ones(len(cases.value))
     limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
     way = {"search": bisection, "follow": True, "budget": np.iinfo(int).max}  # for comparison: at any cost
-    state, status, count = picard.solve(cases, grid, k * one, tolerance * one, limit, **way)
-    ev = evaluate(cases, state, grid)
-    values = quantities(cases, state, ev.curve, ev.X[:, 0], ev.base.edge_q, grid)
+    (ev, _, count), status = picard.solve(cases, grid, k * one, tolerance * one, limit, **way)
+    found = quantities(ev)
     line = np.append(np.ones(grid.n - 1), 0.5) / grid.n
-    integral = values["a"] * cases.law.p_star * (ev.curve.q @ line)
-    values["D"] = 2 * integral + cases.C * values["p0"] + values["A0"]  # (14)
-    lost = status == Status.DIVERGED
-    values = {name: np.where(lost, np.nan, value) for name, value in values.items()}
-    return values | {"residual": ev.residual, "status": status, "iterations": count, "nodes": 0 * count + grid.n}
+    integral = found.a * cases.law.p_star * (ev.curve.q @ line)
+    D = 2 * integral + cases.body.C * found.p0 + found.A0  # (14)
+    ends = {"residual": ev.residual, "status": status, "iterations": count, "nodes": grid.n}
+    solution = Solution.of(len(one), 0, **found._replace(D=D)._asdict(), **ends)
+    return solution.refused(status == Status.DIVERGED, Status.DIVERGED)

@@ -239,7 +239,7 @@ def test_a_lax_accuracy_buys_no_estimate_of_first_order_where_it_says_nothing():
 def test_a_step_of_first_order_that_fails_refuses_the_cheap_model():
     """From a pressure of NaN it has no numbers; a case without cheap numbers has no estimate at all."""
     problem = Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT)
-    cases = as_cases(problem, np.zeros(3))
+    cases = as_cases(problem)
     cheap = vars(solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh(16).x))
     p = cheap["p"].copy()
     p[1] = np.nan

@@ -77,12 +77,12 @@ def test_what_does_not_settle_says_so():
 @pytest.mark.parametrize("base", ["thin_layer", "half_space"])
 def test_to_follow_the_pressure_saves_approximations_and_changes_nothing_else(base):
     problem = Problem.of(**(MAIN | {"micro": "power_law", "P": [LOAD, 0.3 * LOAD], "base": base}))
-    cases = as_cases(*dimensionless(problem))
+    cases = as_cases(dimensionless(problem))
     given = cases, uniform_mesh(40), np.full(2, 20.0), np.full(2, 1e-6), 2000, bisection
-    (anew, status, many), (state, same, few) = picard.solve(*given), picard.solve(*given, follow=True)
+    (anew, status), (followed, same) = picard.solve(*given), picard.solve(*given, follow=True)
     assert (status == Status.CONVERGED).all() and (same == Status.CONVERGED).all()
-    assert_allclose(state.eta, anew.eta, rtol=0, atol=1e-6)
-    assert (few < 0.7 * many).all()
+    assert_allclose(followed.at.state.eta, anew.at.state.eta, rtol=0, atol=1e-6)
+    assert (followed.count < 0.7 * anew.count).all()
 
 
 def test_a_mesh_of_several_blocks_of_rows_is_that_of_one(monkeypatch):

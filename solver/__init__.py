@@ -1,5 +1,8 @@
-"""Batched solver of the two-scale model of a rough punch on a coated body (Goryacheva & Yakovenko 2024): numpy and
-scipy only, and threadpoolctl, which keeps BLAS on one thread."""
+"""Batched solver of the contact of a rough sphere with a coated body (Goryacheva & Yakovenko 2024).
+
+``solve(Problem.of(...), x)`` gives a `Solution`: arrays of cases in, arrays out. The equations, symbols, statuses and
+limits are in docs/model.md. It needs numpy, scipy, and threadpoolctl, which keeps BLAS on one thread.
+"""
 
 from . import closed_forms
 from .laws import disc_cell as micro

@@ -28,6 +28,8 @@ class Parameter(NamedTuple):
     needed_by : (name of another parameter, some of its choices): the cases that have this one. There it is checked,
         and must be given if it has no default. ("", ()): all have it.
     used_by : the same again: those of them whose answer depends on it.
+    powers : (i, j), its unit is E2*^i R^j; of the parameters that laws declare.
+    symbol, long_name : how tables and figures call what a registered law declares.
     """
 
     default: float | int | str | None = None
@@ -37,6 +39,9 @@ class Parameter(NamedTuple):
     also: tuple = ()
     needed_by: tuple[str, tuple[str, ...]] = EVERY
     used_by: tuple[str, tuple[str, ...]] = EVERY
+    powers: tuple[int, int] = (0, 0)
+    symbol: str = ""
+    long_name: str = ""
 
 
 #: The cases that have a layer, and a bonded layer.

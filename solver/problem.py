@@ -1,10 +1,10 @@
 """What is asked: arrays over a batch of cases."""
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 
 import numpy as np
 
-from .laws import LAWS
+from . import laws
 from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
 
 
@@ -38,7 +38,8 @@ class Problem:
     model_check : "closed_form" (default) or "first_order"
         How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
     micro : "smooth", "disc_cell" (default) or "power_law"
-        No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer).
+        No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer); or the name of
+        a registered law, or such a :class:`~solver.laws.Law` itself.
     B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
     scheme : "newton" (default) or "picard"
@@ -54,6 +55,8 @@ class Problem:
         Most steps on a mesh, or approximations at one radius; 0: the limit of the scheme.
     R, E2 : > 0; 1
         Radius of the punch, and reduced modulus E2* of the half-space; any units.
+    more : name -> (B,)
+        The parameters of registered laws that are not above; each is an attribute as well.
     """
 
     control: str
@@ -78,6 +81,13 @@ class Problem:
     max_iterations: np.ndarray
     R: np.ndarray
     E2: np.ndarray
+    more: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def __getattr__(self, name):
+        """A parameter of `more`; NaN of a law that was registered later."""
+        if name not in PARAMETERS:
+            raise AttributeError(f"Problem has no {name}")
+        return self.more.get(name, np.full(len(self), np.nan))
 
     @classmethod
     def of(cls, *, P=None, a=None, D=None, **parameters):
@@ -107,6 +117,9 @@ class Problem:
         if len(given) != 1:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()
+        parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
+        if not laws.known(parameters, parameters["micro"]):
+            laws.load()
         unknown = sorted(set(parameters) - set(PARAMETERS))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")
@@ -118,18 +131,21 @@ class Problem:
         missing = [message for name in PARAMETERS if name not in parameters for message in _missing(name, arrays)]
         if missing:
             raise ValueError("; ".join(missing))
-        return cls(control, **{name: np.broadcast_to(v, shape) for name, v in arrays.items()})
+        arrays = {name: np.broadcast_to(v, shape) for name, v in arrays.items()}
+        own = [f.name for f in fields(cls) if f.name in arrays]
+        return cls(control, *(arrays.pop(name) for name in own), more=arrays)
 
     def __len__(self):
         return len(self.value)
 
     def take(self, index):
         """The sub-batch at `index`."""
-        return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:]))
+        more = {name: values[index] for name, values in self.more.items()}
+        return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:-1]), more)
 
     def rough(self):
         """(B,) bool: the case has asperities."""
-        return np.all([self.micro != name for name, law in LAWS.items() if not law.rough], axis=0)
+        return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
 
     def without_scheme(self):
         """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""

@@ -27,11 +27,19 @@ _UNITS = {
 def dimensionless(problem):
     """The problem in units R = E2* = 1; n is 1 on the half-space alone."""
     R, E2 = problem.R, problem.E2
-    # divided one by one: R² or R⁻² may overflow where the quotient does not
-    value = problem.value / R / R / E2 if problem.control == "P" else problem.value / R
+    value = _without_unit(problem.value, (1, 2) if problem.control == "P" else (0, 1), R, E2)
     n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
-    lengths = {"h": problem.h / R, "Ra": problem.Ra / R, "Nbar": problem.Nbar * R * R}
-    return replace(problem, value=value, n=n, R=one, E2=one, **lengths)
+    more = {name: _without_unit(v, PARAMETERS[name].powers, R, E2) for name, v in problem.more.items()}
+    own = {name: _without_unit(getattr(problem, name), PARAMETERS[name].powers, R, E2) for name in ("Nbar", "Ra")}
+    return replace(problem, value=value, h=problem.h / R, n=n, R=one, E2=one, **own, more=more)
+
+
+def _without_unit(value, powers, R, E2):
+    """`value` over E2^i R^j, (i, j) = `powers`; divided one by one, for R² may overflow where the quotient does not."""
+    for unit, power in zip((R, E2), powers[::-1], strict=True):
+        for _ in range(abs(power)):
+            value = value / unit if power > 0 else value * unit
+    return value
 
 
 def refused(problem, scaled):
@@ -53,8 +61,8 @@ def as_cases(part):
 
 def law_of(part):
     """The law of cases of one law, bound to their numbers."""
-    own = LAWS[str(part.micro[0])]
-    return own.bind(part.n, **{name: getattr(part, name) for name in own.parameters})
+    law = LAWS[str(part.micro[0])]
+    return law.bind(part.n, **{name: getattr(part, name) for name in law.parameters})
 
 
 def _layer(problem):

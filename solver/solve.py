@@ -10,7 +10,7 @@ from .contact import adaptive, picard, smooth
 from .contact.answer import answer
 from .laws import LAWS
 from .models import auto
-from .models.model_error import closed_form
+from .models.model_error import closed_form, judged
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
 from .scaling import as_cases, dimensionless, refused, restore, without_springs
@@ -107,7 +107,7 @@ def _auto(part, x):
 
 
 def _judged(part, x):
-    return auto.judged(part, x, _of_a_model)
+    return judged(part, x, _of_a_model)
 
 
 def _smooth_half_space(part, x):

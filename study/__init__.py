@@ -1,8 +1,8 @@
 """Parameter studies of rough coated contacts: labelled grids, results that resume, figures and tables.
 
-`solve` and `load` are the entrance; `python -m study` is the same from a shell. `study.derived`, `study.units` and
-`study.vocabulary` are there without an import of their own. Names are imported when they are first used, so that
-`python -m study --help` and complaints about a study file answer at once.
+`solve` and `load` are the entrance; `python -m study` is the same from a shell. `study.derived`, `study.materials`,
+`study.roughness`, `study.units` and `study.vocabulary` are there without an import of their own. Names are imported
+when they are first used, so that `python -m study --help` and complaints about a study file answer at once.
 """
 
 from importlib import import_module
@@ -17,7 +17,13 @@ _HOME = {
     "from_physical": "data.units",
     "reduced_modulus": "data.units",
 }
-_MODULES = {"derived": "data.derived", "units": "data.units", "vocabulary": "spec.vocabulary"}
+_MODULES = {
+    "derived": "data.derived",
+    "materials": "scene.materials",
+    "roughness": "scene.roughness",
+    "units": "data.units",
+    "vocabulary": "spec.vocabulary",
+}
 __all__ = list(_HOME)
 
 

@@ -11,12 +11,13 @@ import argparse
 import logging
 import os
 import sys
+from importlib import import_module
 from pathlib import Path
 
 from .commands import ending
-from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part, study_file
+from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part
 from .commands.ending import INTERRUPTED
-from .terminal import FULL, empty_buffers, open_the_closed, say
+from .terminal import answer, empty_buffers, open_the_closed, say
 
 # The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
 # others at all, of which each worker process would have one for each processor.
@@ -34,194 +35,40 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    def command(function, text: str, *arguments: str) -> argparse.ArgumentParser:
-        sub = commands.add_parser(function.__name__.removesuffix("_"), help=text, description=text)
-        sub.set_defaults(function=function)
-        for argument in arguments:
-            sub.add_argument(argument, nargs="+", metavar=argument.upper().removesuffix("S"))
+    def command(module: str, name: str, text: str, items: str = "") -> argparse.ArgumentParser:
+        sub = commands.add_parser(name.removesuffix("_"), help=text, description=text)
+        sub.set_defaults(action=(module, name), items=[name])
+        if items:
+            sub.add_argument("items", nargs="+", metavar=items)
         sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
-    sub = command(list_, "list the study files, their size and state")
+    sub = command("computing", "list_", "list the study files, their size and state")
     sub.add_argument("folder", type=folder, nargs="?", default=STUDIES)
-    command(check, "check study files without computing", "files")
-    sub = command(run, "compute what is missing and write the results", "files")
+    command("checking", "check", "check study files without computing", "FILE")
+    sub = command("computing", "run", "compute what is missing and write the results", "FILE")
     add_engine(sub)
     sub.add_argument("--part", type=part, default=(1, 1), metavar="I/N", help="compute the I-th of N parts only")
     sub.add_argument("--force", action="store_true", help="replace results of which cases would be lost")
     sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
-    sub = command(retry, "compute cases of some status again", "files")
+    sub = command("computing", "retry", "compute cases of some status again", "FILE")
     add_engine(sub)
     sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
-    sub = command(status, "say what has been computed", "files")
+    sub = command("computing", "status", "say what has been computed", "FILE")
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
-    command(verify, "compare results with their checksums: exit code 1 for what is damaged or has none", "files")
-    command(clean, "remove blocks that do not serve a study as it is now, say which; never results", "files")
-    sub = command(plot, "draw figures from results", "names")
+    text = "compare results with their checksums: exit code 1 for what is damaged or has none"
+    command("computing", "verify", text, "FILE")
+    text = "remove blocks that do not serve a study as it is now, say which; never results"
+    command("computing", "clean", text, "FILE")
+    sub = command("drawing", "plot", "draw figures from results", "NAME")
     sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
-    sub = command(table, "write tables from results", "names")
+    sub = command("drawing", "table", "write tables from results", "NAME")
     sub.add_argument("--tables", default="tables", **DIR, help="folder of the tables (default: tables)")
-    sub = command(tradeoff, "measure error against time of every way to solve, and write the page about it")
+    text = "measure error against time of every way to solve, and write the page about it"
+    sub = command("drawing", "tradeoff", text)
     sub.add_argument("--docs", default="docs", **DIR, help="folder of the page (default: docs)")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
-
-
-def list_(options) -> int:
-    from .api import load
-    from .commands.answers import state_line
-
-    files = sorted(Path(options.folder).glob("*.toml"))
-    if not files:
-        return _answer(f"no study files in {options.folder}")
-
-    def one(file):
-        study = load(file, options.results)
-        return _answer(state_line(study.definition, study.status()))
-
-    return _each(files, one)
-
-
-def check(options) -> int:
-    from .spec.definition import read
-
-    def one(file):
-        definition = read(study_file(file))
-        dims = " x ".join(f"{name} {size}" for name, size in definition.grid.sizes.items()) or "one case"
-        return _answer(f"{file}: {definition.grid.size} cases ({dims}), digest {definition.digest[:16]}")
-
-    return _each(options.files, one)
-
-
-def run(options) -> int:
-    from .api import load
-    from .commands.answers import cost_line
-
-    def one(file):
-        study = load(study_file(file), options.results)
-        if options.dry_run:
-            return _answer(cost_line(study.definition.name, study.dry_run(options.workers, options.yes)))
-        return _compute(study, options, part=options.part, force=options.force)
-
-    return _each(options.files, one, KEPT)
-
-
-def retry(options) -> int:
-    from .api import load
-    from .work.plan import status_values
-
-    def one(file):
-        return _compute(load(study_file(file), options.results), options, retry=status_values(options.status))
-
-    return _each(options.files, one, KEPT)
-
-
-def _compute(study, options, **more) -> int:
-    names = ("workers", "scheduler", "fail_fast", "yes")
-    chosen = {name: getattr(options, name) for name in names}
-    return _print_report(study.run(**chosen, **more, processes=True, stream=sys.stderr), study.definition.name)
-
-
-def status(options) -> int:
-    from .api import load
-    from .commands.answers import count_lines, state_line
-
-    def one(file):
-        study = load(study_file(file), options.results)
-        state = study.status(options.yes)
-        return _answer(state_line(study.definition, state), *count_lines(state["counts"]))
-
-    return _each(options.files, one)
-
-
-def verify(options) -> int:
-    from .api import load
-    from .commands.answers import verified_line
-    from .files.examine import examine
-
-    def one(file):
-        results = Path(file).suffix == ".nc"
-        found = examine(file) if results else load(study_file(file), options.results).verify()
-        print(verified_line(found.path, found), file=sys.stdout if found.good else sys.stderr)
-        return 0 if found.kind == "sound" else 2 if found.kind == "missing" else 1
-
-    return _each(options.files, one)
-
-
-def clean(options) -> int:
-    from .api import load
-
-    return _each(options.files, lambda file: _print_lines(load(study_file(file), options.results).clean()))
-
-
-def plot(options) -> int:
-    from .catalogue import draw
-
-    return _each(options.names, lambda name: _print_lines(draw(name, options.results, options.figures)))
-
-
-def table(options) -> int:
-    from .tables import tabulate
-
-    return _each(options.names, lambda name: _print_lines(tabulate(name, options.results, options.tables)))
-
-
-def tradeoff(options) -> int:
-    from .data.dataset import command_line
-    from .evidence.tradeoff import results
-    from .evidence.tradeoff_page import page
-    from .figures.sources import write_text
-
-    def one(_):
-        found = results(options.results, force=options.force, command=command_line())
-        return _print_lines([write_text(Path(options.docs) / "tradeoff.md", page(found))])
-
-    return _each(["tradeoff"], one)
-
-
-def _each(items, action, hint: str = "") -> int:
-    """Largest exit code of the actions; what is wrong with one item does not keep the others from their turn."""
-    ending.now.working = True  # all imports have been made
-    return max((_attempt(action, item, hint) for item in items), default=0)
-
-
-def _attempt(action, item, hint: str) -> int:
-    from .spec.definition import StudyError
-
-    try:
-        return action(item)
-    except StudyError as error:
-        text, code = str(error), error.code
-    except OSError as error:  # a full disk, say, or a scheduler that is gone
-        text, code = f"{item}: {error}{hint}", 1
-    if ending.now.came:  # and has been taken for something else on its way here
-        raise KeyboardInterrupt
-    say(text, sys.stderr)
-    return code
-
-
-def _print_report(report, name: str) -> int:
-    from .commands.answers import failure_lines, report_line
-
-    if report.failures:
-        say("\n".join(failure_lines(report, name)), sys.stderr)
-        return 1
-    _answer(report_line(report, name))
-    return 0
-
-
-def _print_lines(lines) -> int:
-    _answer(*lines)
-    return 0
-
-
-def _answer(*lines) -> int:
-    """Say what was asked for. Returns the exit code if that is all that was: 1 when a disk has no room for it."""
-    lost = say("\n".join(map(str, lines)), sys.stdout)
-    if lost is None or lost.errno not in FULL:  # else nobody wants to know it, any more
-        return 0
-    say(f"standard output cannot be written: {lost.strerror}", sys.stderr)
-    return 1
 
 
 def main(arguments=None) -> int:
@@ -231,8 +78,8 @@ def main(arguments=None) -> int:
         options = parser().parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
-        kept = KEPT if options.function in (run, retry) else ""
-        code = options.function(options)
+        kept = KEPT if options.command in ("run", "retry") else ""
+        code = perform(options, kept)
         ending.now.code = code
     except SystemExit as ended:  # of the parser
         ending.now.code = ended.code
@@ -244,6 +91,32 @@ def main(arguments=None) -> int:
         code = INTERRUPTED
     finally:
         empty_buffers()
+    return code
+
+
+def perform(options, kept: str) -> int:
+    """Largest exit code of a command on its items; what is wrong with one does not keep the others from their turn."""
+    items = sorted(Path(options.folder).glob("*.toml")) if options.command == "list" else options.items
+    if not items:
+        return answer(f"no study files in {options.folder}")
+    module, name = options.action
+    act = getattr(import_module(f".commands.{module}", __package__), name)
+    ending.now.working = True  # all imports have been made
+    return max((_attempt(act, options, item, kept) for item in items), default=0)
+
+
+def _attempt(act, options, item, kept: str) -> int:
+    from .spec.definition import StudyError
+
+    try:
+        return act(options, item)
+    except StudyError as error:
+        text, code = str(error), error.code
+    except OSError as error:  # a full disk, say, or a scheduler that is gone
+        text, code = f"{item}: {error}{kept}", 1
+    if ending.now.came:  # and has been taken for something else on its way here
+        raise KeyboardInterrupt
+    say(text, sys.stderr)
     return code
 
 

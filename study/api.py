@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .data.dataset import command_line, labelled
+from .data.dataset import labelled
+from .data.provenance import command_line
 from .files.examine import Condition
 from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results
@@ -32,9 +33,9 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     Parameters
     ----------
     **parameters : exactly one of P, a, D, and any of h, n, nu1, nu2, bonding, base, Nbar, Ra, micro, B, beta, scheme,
-        k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see study.vocabulary). Each a scalar,
-        a 1-D sequence (which makes a dimension of that name, in the order given) or a DataArray over dimensions of its
-        own.
+        k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see study.vocabulary), and those of
+        registered laws. Each a scalar, a 1-D sequence (which makes a dimension of that name, in the order given) or a
+        DataArray over dimensions of its own. `micro` may be a `solver.laws.Law` itself (docs/extending.md).
     cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
         which comes first
     x : number of points r/a of the profiles, or the points, from 0 to 1
@@ -57,13 +58,15 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
+    rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     draft = Draft()
+    draft.laws([given.get("micro") for given in (parameters, *rows)])
     if cases is not None:
         draft.cases(cases)
     for name, given in parameters.items():
         _add(draft, name, given)
-    whole = {"name": "solve", "kind": "contact", "title": title, "text": "", "fit": {}, "most": LARGE}
-    definition = complete(draft, "solve", x=x, profiles=profiles, **whole)
+    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
+    definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
     return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
 
 

@@ -40,6 +40,15 @@ def say(text: str, stream: TextIO | None) -> OSError | None:
     return None
 
 
+def answer(*lines) -> int:
+    """Say what was asked for. Returns the exit code if that is all that was: 1 when a disk has no room for it."""
+    lost = say("\n".join(map(str, lines)), sys.stdout)
+    if lost is None or lost.errno not in FULL:  # else nobody wants to know it, any more
+        return 0
+    say(f"standard output cannot be written: {lost.strerror}", sys.stderr)
+    return 1
+
+
 def open_the_closed() -> None:
     """Open those of the three standard streams that the shell has closed (`>&-`), to nowhere.
 

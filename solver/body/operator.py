@@ -62,8 +62,8 @@ class Body(Protocol):
         """The body of the sub-batch at `index`."""
 
     def at(self, a, mesh, near=None):
-        """The :class:`Operator` at the radii a (B,). `near`: one of these cases at other radii or on another mesh, of which
-        what holds here is not computed again."""
+        """The :class:`Operator` at the radii a (B,). `near`: one of these cases, perhaps at other radii or on another
+        mesh; what of it holds here is not computed again."""
 
     def softness(self, a):
         """Compliance (B,) under a contact of radius a over that of a half-space of E, about."""

@@ -3,14 +3,18 @@
 import re
 from functools import cache
 
+import numpy as np
+
 from ..parameters import CONTROL, PARAMETERS
 from . import disc_cell, power_law, smooth
 from .law import Bound, Curve, Law, Spots
 
-__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "load", "named", "register"]
+__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "named", "register"]
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
+#: Names that no parameter of a law can have; those of results come from the vocabulary of studies.
+RESERVED = {*CONTROL, "control", "value", "more"}
 
 
 def register(law):
@@ -36,14 +40,14 @@ def register(law):
 
 
 def _declare(laws):
-    """Put the parameters of `laws` (name -> Law) into the table, their names into the choices of `micro`. Returns them."""
+    """Put the parameters of `laws` (name -> Law) into the table, and the names to the choices of `micro`; `laws`."""
     declared = {}
     for law in laws.values():
         for name, own in law.parameters.items():
             known, names = declared.get(name, (own, ()))
-            taken = name in CONTROL or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"
+            taken = name in RESERVED or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"
             if taken or own != known:
-                raise ValueError(f"micro law {law.name}: the parameter {name} is known already, as another one")
+                raise ValueError(f"micro law {law.name}: the name of the parameter {name} is that of something else")
             declared[name] = known, (*names, law.name)
     for name in [name for name, own in PARAMETERS.items() if own.needed_by[0] == "micro" and name not in declared]:
         del PARAMETERS[name]  # of a law that has been replaced
@@ -75,6 +79,11 @@ def named(given):
     if isinstance(given, (list, tuple)):
         return [named(one) for one in given]
     return register(given).name if isinstance(given, Law) else given
+
+
+def known(parameters, micro):
+    """Whether all `parameters` (names) and all words of `micro` (one, or an array) are known without :func:`load`."""
+    return set(parameters) <= set(PARAMETERS) and set(np.ravel(micro).tolist()) <= set(LAWS)
 
 
 def identity(name):

@@ -16,7 +16,10 @@ from ..parameters import Parameter
 from .law import Curve, Law, inverse, log_step, of_positive
 
 #: Asperities per unit area, in R⁻², and their radius, in R.
-PARAMETERS = {"Nbar": Parameter(interval="[1e-4, 1e18]"), "Ra": Parameter(interval="[1e-7, 1e2]")}
+PARAMETERS = {
+    "Nbar": Parameter(interval="[1e-4, 1e18]", powers=(0, -2)),
+    "Ra": Parameter(interval="[1e-7, 1e2]", powers=(0, 1)),
+}
 
 
 def cell_radius(Nbar):
@@ -114,7 +117,6 @@ LAW = Law(
     from_pressure=spot_from_pressure,
     from_displacement=spot_from_displacement,
     guess=spot_guess,
-    sparse=lambda g: 2 / np.pi * g * np.sqrt(g),
 )
 
 

@@ -3,7 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import minimize_scalar
+from scipy.optimize import brentq
 
 from ..threads import one_blas_thread
 from .disc_cell import displacement
@@ -58,18 +58,21 @@ def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", 
     p = pressures(p_min, p_max, step, mesh)
     A = displacement(p, 1.0, Nbar_Ra2, 1.0)
     scale = np.sqrt(p_min * p_max)  # powers of p/scale, so that B and β are not nearly dependent
+    logarithm = np.log(p / scale)
 
-    def coefficient(beta):  # the best B for a given β
-        power = (p / scale) ** beta
-        return power, (A @ power) / (power @ power)
+    def best(beta):
+        """(p/scale)^β, its best factor, and what it leaves of A."""
+        power = np.exp(beta * logarithm)
+        factor = (A @ power) / (power @ power)
+        return power, factor, A - factor * power
 
-    def misfit(beta):
-        power, b = coefficient(beta)
-        return np.sum((A - b * power) ** 2) / np.sum(A * A)
+    def slope(beta):
+        """The misfit falls with β where this is positive. Its root is β to rounding, which no minimiser finds."""
+        power, _, rest = best(beta)
+        return rest @ (power * logarithm)
 
-    beta = minimize_scalar(misfit, bounds=(0.05, 1.5), method="bounded", options={"xatol": 1e-12}).x
-    beta = _polish(beta, p, scale, A)
-    B = coefficient(beta)[1] / scale**beta
+    beta = brentq(slope, -1.0, 1.5, xtol=1e-15)  # A grows, by no more than p^(2/3)
+    B = best(beta)[1] / scale**beta
     return Fit(float(B), float(beta), power_law_error(B, beta, Nbar_Ra2, check))
 
 
@@ -77,21 +80,6 @@ def power_law_error(B, beta, Nbar_Ra2, check=(0.0025, 0.025)):
     """Largest relative error |B p^β/A[p] - 1| of a power law over `check` (unit E1*), B in Ra/E1*^β."""
     p = np.linspace(*check, 2001)
     return float(np.max(np.abs(B * p**beta / displacement(p, 1.0, Nbar_Ra2, 1.0) - 1)))
-
-
-def _polish(beta, p, scale, A):
-    """Gauss-Newton on (B, β): a minimiser alone finds β only to the root of the rounding error."""
-    log_p = np.log(p / scale)
-    b = None
-    for _ in range(30):
-        power = np.exp(beta * log_p)
-        b = (A @ power) / (power @ power) if b is None else b
-        columns = np.stack([power, b * log_p * power], axis=1)
-        step = np.linalg.lstsq(columns, A - b * power, rcond=None)[0]
-        b, beta = b + step[0], beta + step[1]
-        if abs(step[1]) < 1e-15:
-            break
-    return beta
 
 
 def _check(Nbar_Ra2, p_min, p_max, step, mesh, check):

@@ -45,5 +45,4 @@ LAW = Law(
     edge=lambda beta, ratio: (1.0, beta),
     from_pressure=_from_pressure,
     from_displacement=lambda g, beta, ratio: np.sqrt(np.maximum(g, 0.0)),
-    guess=_from_pressure,
 )

@@ -13,7 +13,4 @@ LAW = Law(
     edge=lambda: (1.0, 1.0),
     rough=False,
     from_pressure=lambda q: q,
-    from_displacement=lambda g: np.full_like(g, np.nan),
-    guess=lambda q: q,
-    sparse=lambda g: g,
 )

@@ -1,10 +1,12 @@
 """The error of a cheap model against the exact layer with its asperities, estimated from the solution of the cheap one.
 
-One Newton step of the exact equation (two, where asperities come in) begins at the pressure and the radius of the cheap
+One Newton step of the exact equation begins at the pressure and the radius of the cheap
 solution. It gives to first order what the exact model would have found under the same control. The largest relative
 difference over a, P, D, p(0), p_max, Ar/An is the estimate. A whole solution takes some ten steps on each of several
 meshes; this takes one, on few nodes.
 """
+
+from dataclasses import replace
 
 import numpy as np
 
@@ -13,23 +15,32 @@ from ..contact.error import nearby
 from ..contact.newton import advance
 from ..contact.results import difference, quantities
 from ..numerics.mesh import mesh
+from ..scaling import as_cases
+from ..solution import Solution
 from .thin_layer_error import largest_error
 
-#: The base "auto" multiplies the estimate by this. Below TRUSTED, the estimate is at least 0.85 of the true error on
-#: the grids of studies/validity.toml and validity_load.toml; tests/models/test_auto.py holds it to that.
-MARGIN = 1.25
-#: A larger estimate only says that the error is large: "auto" takes no cheap model there.
-TRUSTED = 0.3
-#: Nodes of the step for an accuracy of at least this; they need only resolve the error, not the solution.
-_NODES = ((5e-5, 16),)
+#: Nodes of the step: they need only resolve the error, not the solution.
+NODES = 24
 
 
-def nodes_for(accuracy):
-    """Number of nodes (B,) of the Newton step whose estimate is compared with `accuracy` (B,)."""
-    return np.select([accuracy >= limit for limit, _ in _NODES], [n for _, n in _NODES], 24)
+def judged(problem, x, solve):
+    """:class:`Solution` of thin layers in units R = E2* = 1, with the model error of first order.
+
+    problem : all of base "thin_layer"; x : (m,) radii; solve : ``solve(problem, x)``, without this estimate.
+    """
+    pieces = []
+    for micro in np.unique(problem.micro):
+        index = np.flatnonzero(problem.micro == micro)
+        part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
+        found = solve(part, np.concatenate([x, mesh(NODES).x]))
+        layered = replace(part, base=np.full(len(index), "layered"))
+        error = first_order(as_cases(layered), found, found.p[:, len(x) :])
+        shown = {"p": found.p[:, : len(x)], "lam": found.lam[:, : len(x)]}
+        pieces.append((index, replace(found, **shown, model_error=error)))
+    return Solution.join(len(problem), len(x), pieces)
 
 
-def first_order(cases, cheap, p, n, steps=1):
+def first_order(cases, cheap, p):
     """Estimated relative error (B,) of a cheap solution against the exact model `cases`, to first order.
 
     Parameters
@@ -38,13 +49,8 @@ def first_order(cases, cheap, p, n, steps=1):
         The exact equation of the B cases in units R = E2* = 1.
     cheap : Solution
         The cheap solution in the same units.
-    p : (B, n) float, E2*
-        Its nominal pressure at the nodes ``mesh(n).x``.
-    n : int
-        Number of nodes.
-    steps : int
-        Newton steps. Two, where the cheap solution is smooth and the exact one is not: asperities change the pressure
-        most at the edge, where the smooth one has a root, and one step does not follow.
+    p : (B, NODES) float, E2*
+        Its nominal pressure at the nodes ``mesh(NODES).x``.
 
     Returns
     -------
@@ -52,10 +58,9 @@ def first_order(cases, cheap, p, n, steps=1):
         NaN for a case whose cheap solution has no numbers, inf where the step fails.
     """
     state = State(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
-    for _ in range(steps):
-        ev = evaluate(cases, state, mesh(n))
-        state, _ = advance(ev)
-    exact = quantities(nearby(ev, state, cases.law.evaluate(state.y)))  # to first order, as the step itself
+    ev = evaluate(cases, state, mesh(NODES))
+    state, _ = advance(ev)
+    exact = quantities(nearby(ev, state, cases.law.evaluate(state.y)))
     error = difference(cheap, exact)
     return np.where(np.isfinite(cheap.a) & ~np.isfinite(error), np.inf, error)
 

@@ -23,8 +23,7 @@ class Version(argparse.Action):
     """Print the versions of the program and of its numerics, and end."""
 
     def __call__(self, parser, *_) -> None:
-        from ..data.dataset import package_version
-        from ..spec.definition import NUMERICS_VERSION
+        from ..data.provenance import NUMERICS_VERSION, package_version
 
         say(f"roughcoat {package_version('roughcoat')}, numerics {NUMERICS_VERSION}", sys.stdout)
         parser.exit()

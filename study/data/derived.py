@@ -7,6 +7,8 @@ vocabulary.
 import numpy as np
 import xarray as xr
 
+from solver.laws import LAWS
+
 from ..spec.vocabulary import attributes
 
 FEW_SPOTS = 100.0
@@ -42,30 +44,29 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that need none. int32 over the
     dimensions of `status`.
     """
-    layered, rough = dataset["base"] != "half_space", dataset["micro"] != "smooth"
-    thin = _used_a_thin_layer(dataset["model_used"])
-    h, n = _given(dataset, "h"), _given(dataset, "n")
-    compressed = (dataset["D"] > COMPRESSED * h) & (dataset["p0"] > COMPRESSED * n)
+    v = dataset.variables  # a DataArray compares its coordinates at every step, 20 ms in all
+    layered, rough = v["base"] != "half_space", _rough(v["micro"])
+    h, n = _given(v, "h"), _given(v, "n")
+    compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * n)
     violated = {
-        1: thin & (dataset["model_error"] > NOT_THIN),
-        2: rough & (_spots(dataset) < FEW_SPOTS),
-        4: layered & rough & (_spot_radius(dataset) > SPOT_OVER_LAYER * h),
-        8: (dataset["base"] == "thin_layer") & (n >= 1),
-        16: rough & (dataset["lam0"] > MERGING),
-        32: (dataset["a"] > STEEP) | layered & compressed,
+        1: _used_a_thin_layer(v["model_used"]) & (v["model_error"] > NOT_THIN),
+        2: rough & (_spots(v) < FEW_SPOTS),
+        4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
+        8: (v["base"] == "thin_layer") & (n >= 1),
+        16: rough & (v["lam0"] > MERGING),
+        32: (v["a"] > STEEP) | layered & compressed,
     }
-    flags = xr.zeros_like(dataset["status"], dtype=np.int32)
-    for mask, where in violated.items():
-        flags = flags + np.int32(mask) * where.astype(np.int32)
-    flags = _named(flags, "validity")
+    none = xr.zeros_like(v["status"], dtype=np.int32)
+    flags = sum((np.int32(mask) * where for mask, where in violated.items()), none)
+    flags = _named(xr.DataArray(flags, dataset["status"].coords), "validity")
     flags.attrs["flag_masks"] = np.array(list(ASSUMPTIONS), dtype=np.int32)
     flags.attrs["flag_meanings"] = " ".join(ASSUMPTIONS.values())
     return flags
 
 
-def _used_a_thin_layer(model_used: xr.DataArray) -> xr.DataArray:
+def _used_a_thin_layer(model_used: xr.Variable) -> xr.Variable:
     words = zip(model_used.attrs["flag_values"], model_used.attrs["flag_meanings"].split(), strict=True)
-    return model_used.isin([value for value, word in words if word.endswith("thin_layer")])
+    return sum(model_used == value for value, word in words if word.endswith("thin_layer")) > 0
 
 
 def nominal_area(dataset: xr.Dataset) -> xr.DataArray:
@@ -85,24 +86,32 @@ def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return _named(_spots(dataset).where(dataset["micro"] != "smooth"), "spots")
+    return _named(_spots(dataset).where(_rough(dataset["micro"])), "spots")
 
 
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return _named(_spot_radius(dataset).where(dataset["micro"] != "smooth"), "b0")
+    return _named(_spot_radius(dataset).where(_rough(dataset["micro"])), "b0")
 
 
 def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
-    profiles p and lam.
+    profile p; NaN for a law that is not registered.
     """
-    b = np.sqrt(dataset["lam"] / (np.pi * _given(dataset, "Nbar")))
     E1 = xr.where(dataset["base"] == "half_space", 1.0, _given(dataset, "n"))
-    spot = 2 / np.pi * (E1 * b / _given(dataset, "Ra") + dataset["p"] * np.arcsin(np.sqrt(dataset["lam"])))
-    return _named(xr.where(dataset["micro"] == "smooth", dataset["p"], spot).max("x"), "p_peak")
+    found = xr.full_like(dataset["p"], np.nan)
+    for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
+        given = [_given(dataset, name) for name in law.parameters]
+        spots = xr.apply_ufunc(_largest(law), dataset["p"], E1, *given, dask="parallelized", output_dtypes=[float])
+        found = xr.where(dataset["micro"] == law.name, spots, found)
+    return _named(found.max("x"), "p_peak")
+
+
+def _largest(law):
+    """p_max of nominal pressures, of the modulus that the asperities feel, and of the parameters of the law."""
+    return lambda p, E, *given: law.at(p, E, **dict(zip(law.parameters, given, strict=True))).p_max
 
 
 def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
@@ -124,19 +133,22 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
     return error
 
 
-def _spots(dataset: xr.Dataset) -> xr.DataArray:
-    return _given(dataset, "Nbar") * np.pi * dataset["a"] ** 2
+def _rough(micro):
+    """Whether there are asperities; a law that is not registered has some."""
+    return sum(micro == name for name, law in LAWS.items() if not law.rough) == 0
 
 
-def _spot_radius(dataset: xr.Dataset) -> xr.DataArray:
-    return np.sqrt(dataset["lam0"] / (np.pi * _given(dataset, "Nbar")))
+def _spots(values):
+    return _given(values, "Nbar") * np.pi * values["a"] ** 2
 
 
-def _given(dataset: xr.Dataset, name: str) -> xr.DataArray:
-    """A parameter, NaN when the study does not have it."""
-    if name not in dataset:
-        return xr.DataArray(np.nan)
-    return dataset[name]
+def _spot_radius(values):
+    return np.sqrt(values["lam0"] / (np.pi * _given(values, "Nbar")))
+
+
+def _given(values, name: str):
+    """A parameter of a dataset, or of its variables; NaN when the study does not have it."""
+    return values.get(name, xr.Variable((), np.nan))
 
 
 def _named(array: xr.DataArray, name: str) -> xr.DataArray:

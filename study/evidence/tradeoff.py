@@ -20,7 +20,7 @@ import xarray as xr
 from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
 from solver.parameters import BASES
 
-from ..data.dataset import provenance
+from ..data.provenance import provenance
 from ..files.examine import examine
 from ..files.results_file import open_results, write
 from ..paper import paper_error

@@ -1,7 +1,9 @@
 """How many cases a block has where a study does not say: the longer a case may take, the fewer, for a kill costs the
 blocks in the making."""
 
-from .grid import Grid
+import numpy as np
+
+from .grid import Grid, along
 
 #: Ordinary cases: some seconds of work. Cases of some milliseconds each. Cases of up to ten seconds.
 USUAL, SLOW, SLOWEST = 8000, 1000, 100
@@ -13,14 +15,9 @@ _MANY = 96
 
 def usual_block(grid: Grid) -> int:
     """Number of cases of a block of a grid, by the dearest that it may hold; the same whatever is already computed."""
-
-    def has(name: str, *words: str) -> bool:
-        return any((grid.values[name][1] == word).any() for word in words)
-
-    if "base" not in grid.values:  # a micro law
-        return USUAL
-    layered, approximated = has("base", "layered", "auto"), has("scheme", "picard")
-    n, rtol, nodes = (grid.values[name][1] if name in grid.values else None for name in ("n", "rtol", "nodes"))
-    if layered and (approximated or (n is not None and (n > _STIFF).any()) or (rtol < _FINE).any()):
+    n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
+    layered = np.isin(along(grid, "base"), ("layered", "auto")).any()
+    approximated = (along(grid, "scheme") == "picard").any()
+    if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
         return SLOWEST
     return SLOW if approximated or (nodes > _MANY).any() else USUAL

@@ -14,7 +14,7 @@ from .given import MOST_MESSAGES, Draft
 from .grid import Grid, shown
 from .identity import digest_of
 from .toml_text import text_in
-from .vocabulary import MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, check, finite, names, suggest
+from .vocabulary import NUMERICS, VOCABULARY, check, finite, names, suggest
 
 POINTS = 33
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
@@ -22,6 +22,14 @@ MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
 FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
+KEYS = {
+    "numerics": (*NUMERICS, "block"),
+    "output": ("x", "profiles", "dtype"),
+    "fit": (*FIT, "check"),
+    "model": None,
+    "axes": None,
+}
+"""Of the tables of a study file; None: names of parameters."""
 PER_CASE = 16  # numbers per case besides the profiles, roughly
 SECTIONS = {
     "contact": ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output"),
@@ -95,55 +103,52 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     kind = tables.get("kind", "contact")
     if not isinstance(kind, str) or kind not in SECTIONS:
         raise StudyError([f'{where}: kind = {shown(kind)}: must be one of "contact", "micro_law"'])
-    draft = Draft(known=PARAMETERS if kind == "contact" else MICRO_LAW_PARAMETERS)
+    draft = Draft(kind)
     draft.errors += [
         f"{shown(key)} is not a section{suggest(key, SECTIONS[kind])}"
         for key in islice((key for key in tables if key not in SECTIONS[kind]), MOST_MESSAGES)
     ]
-    numerics = _table(tables, "numerics", (*NUMERICS, "block"), draft)
-    for key, value in _table(tables, "model", None, draft).items():
+    given = tables | {section: _table(tables, section, keys, draft.errors) for section, keys in KEYS.items()}
+    for key, value in given["model"].items():
         draft.scalar(key, value, "[model]")
     for key in NUMERICS:
-        if key in numerics:
-            draft.scalar(key, numerics[key], "[numerics]")
+        if key in given["numerics"]:
+            draft.scalar(key, given["numerics"][key], "[numerics]")
     if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
         draft.cases(tables["cases"])
     if "sample" in tables:
         draft.sample(tables["sample"])
-    for key, value in _table(tables, "axes", None, draft).items():
+    for key, value in given["axes"].items():
         draft.axis(key, value, "[axes]")
-    output = _table(tables, "output", ("x", "profiles", "dtype"), draft)
-    fit = fit_arguments(_table(tables, "fit", (*FIT, "check"), draft), draft.errors) if kind == "micro_law" else {}
-    whole = {"name": name, "kind": kind, "title": tables.get("title", ""), "text": text, "fit": fit}
-    whole |= {"x": output.get("x", POINTS), "profiles": output.get("profiles", True)}
-    whole |= {"dtype": output.get("dtype", DTYPES[0])}
-    return complete(draft, where, block=numerics.get("block"), **whole)
+    return complete(draft, given, name, text, where)
 
 
-def complete(
-    draft: Draft, where: str, *, name, kind, title, text, x, profiles, fit, dtype=DTYPES[0], block=None,
-    most=MOST_VALUES,
-) -> Definition:  # fmt: skip
-    """Finish a draft: the checks of the whole, and the digest. Raises StudyError with every message collected."""
+def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
+    """Finish a draft with what else the `tables` say: the checks of the whole, and the digest.
+
+    most : numbers that the results may hold. Raises StudyError with every message collected.
+    """
+    errors, kind, title = draft.errors, tables.get("kind", "contact"), tables.get("title", "")
+    output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
+    fit = fit_arguments(tables["fit"], errors) if kind == "micro_law" else {}
     grid = draft.finish()
-    x = profile_points(x, draft.errors) if kind == "contact" else law_points(fit, draft.errors)
+    x = profile_points(output["x"], errors) if kind == "contact" else law_points(fit, errors)
     if not isinstance(title, str):
-        draft.errors.append(f"title = {shown(title)}: must be text")
-    if block is None:  # not said
-        block = 1 if draft.errors else usual_block(grid)
+        errors.append(f"title = {shown(title)}: must be text")
+    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
-        draft.errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    profiles = profile_names(profiles, draft.errors)
+        errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
+    profiles, dtype = profile_names(output["profiles"], errors), output["dtype"]
     if dtype not in DTYPES:
-        draft.errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
+        errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
     made = Definition(name, kind, title, text, grid, x, profiles, dtype, fit, block, "")
     if made.numbers > most:
-        draft.errors.append(
+        errors.append(
             f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
         )
-    if draft.errors:
-        more = len(draft.errors) - MOST_MESSAGES
-        shortened = draft.errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
+    if errors:
+        more = len(errors) - MOST_MESSAGES
+        shortened = errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
         raise StudyError(f"{where}: {message}" for message in shortened)
     return replace(made, digest=digest_of(made))
 
@@ -200,12 +205,12 @@ def law_points(fit: dict, errors: list[str]) -> np.ndarray:
     return np.linspace(fit["p_min"], fit["p_max"], 1 + round(steps))
 
 
-def _table(tables: dict, section: str, known: tuple[str, ...] | None, draft: Draft) -> dict:
+def _table(tables: dict, section: str, known: tuple[str, ...] | None, errors: list[str]) -> dict:
     """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller looks)."""
     found = tables.get(section, {})
     if not isinstance(found, dict):
-        draft.errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
+        errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
         return {}
     unknown = [key for key in found if known and key not in known]
-    draft.errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
+    errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
     return found

@@ -1,13 +1,16 @@
 """A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
 
-import math
+from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
+from functools import partial
 
 import numpy as np
 
-from .grid import Grid, as_array, axis_values, shown, twins
+from .grid import Grid, along, as_array, axis_values, shown, twins
+from .laws import is_parameter, law_names, learn, smooth_laws
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
+from .vocabulary import CONTROLS, MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
 
 MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
@@ -15,9 +18,13 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x be
 
 @dataclass
 class Draft:
-    """Collects parameters; `finish` makes the Grid. `known`: the names allowed; `errors`: messages, no file name."""
+    """Collects parameters; `finish` makes the Grid of them.
 
-    known: tuple[str, ...] = PARAMETERS
+    kind : "contact" or "micro_law"; errors : messages, no file name; sizes, values, labels : as of the Grid; sections :
+    where each parameter was given; claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
+    """
+
+    kind: str = "contact"
     errors: list[str] = field(default_factory=list)
     sizes: dict[str, int] = field(default_factory=dict)
     values: dict = field(default_factory=dict)
@@ -25,25 +32,32 @@ class Draft:
     sections: dict[str, str] = field(default_factory=dict)
     claims: list = field(default_factory=list)
 
+    def __post_init__(self):
+        learn()
+
+    @property
+    def known(self) -> Sequence[str]:
+        """The names allowed."""
+        return PARAMETERS if self.kind == "contact" else MICRO_LAW_PARAMETERS
+
+    def laws(self, given: list) -> None:
+        """Make micro laws that are given as objects known before their parameters come; `micro` tells what is wrong."""
+        with suppress(ValueError):
+            law_names([law for one in given for law in (one if isinstance(one, list) else [one])])
+
     def scalar(self, name: str, raw, section: str) -> None:
         """One value for all cases."""
-        if not self._accept(name, section):
-            return
-        if section and isinstance(raw, (list, dict)):
-            self.errors.append(f"{section} {name} has several values: these belong in [axes]")
-        else:
-            self.values[name] = (), as_array(VOCABULARY[name], [raw], name, self.errors).reshape(())
+        if self._accept(name, section):
+            if section and isinstance(raw, (list, dict)):
+                self.errors.append(f"{section} {name} has several values: these belong in [axes]")
+            else:
+                self.values[name] = (), self._checked(name, [raw]).reshape(())
 
     def axis(self, name: str, raw, section: str) -> None:
         """A dimension called like its parameter."""
-        if not self._accept(name, section):
-            return
-        before = len(self.errors)
-        array = as_array(VOCABULARY[name], axis_values(raw, name, self.errors), name, self.errors)
-        if len(self.errors) == before:
-            self._distinct(name, array.tolist())
-        self.sizes[name] = len(array)
-        self.values[name] = (name,), array
+        if self._accept(name, section):
+            array = self._checked(name, axis_values(raw, name, self.errors), distinct=True)
+            self.sizes[name], self.values[name] = len(array), ((name,), array)
 
     def cases(self, rows) -> None:
         """Points that are no product: the dimension `case`. What a row leaves out takes its default, or NaN."""
@@ -57,15 +71,14 @@ class Draft:
         self._number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
-                self._case_labels([row.get("label", "") for row in rows])
+                self._label_cases([row.get("label", "") for row in rows])
             elif self._accept(name, "[[cases]]"):
                 default = VOCABULARY[name].default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
-                self.values[name] = ("case",), as_array(VOCABULARY[name], raw, name, self.errors, gaps=True)
-        if len(self.errors) > before:  # values of any size and kind
-            return
-        points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
-        self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)[:1]]
+                self.values[name] = ("case",), self._checked(name, raw, gaps=True)
+        if len(self.errors) == before:  # else the values are of any size and kind
+            points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
+            self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)]
 
     def sample(self, table) -> None:
         """Random points, drawn as the table says: the dimension `case`."""
@@ -76,7 +89,7 @@ class Draft:
             return
         for name, values in draw(known if given else table, self.errors).items():
             self._number_cases(len(values))
-            self.values[name] = ("case",), as_array(VOCABULARY[name], values, name, self.errors)
+            self.values[name] = ("case",), self._checked(name, values)
 
     def array(self, name: str, given) -> None:
         """A DataArray: values over its own dimensions, which may be shared with other parameters."""
@@ -88,16 +101,15 @@ class Draft:
             if dim not in self.known and coordinate is not None:
                 self.labels.setdefault(dim, ((dim,), coordinate))
             self.claims.append((name, dim, size, coordinate))
-        flat = as_array(VOCABULARY[name], given.values.ravel().tolist(), name, self.errors)
+        flat = self._checked(name, given.values.ravel().tolist(), distinct=given.dims == (name,))
         self.values[name] = tuple(map(str, given.dims)), flat.reshape(given.shape)
-        if given.dims == (name,):
-            self._distinct(name, flat.tolist())
 
     def finish(self) -> Grid:
         """Fill in the defaults and check what concerns several parameters."""
-        if self.known == PARAMETERS:
-            self._one_control()
-        self._dimensions()
+        given = [name for name in CONTROLS if name in self.sections]
+        if self.kind == "contact" and len(given) != 1:
+            self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
+        self._check_dimensions()
         for name in self.known:
             default = VOCABULARY[name].default
             if name not in self.sections and default is not None:
@@ -110,8 +122,9 @@ class Draft:
     def _accept(self, name: str, section: str) -> bool:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
-        if name not in self.known:
-            self.errors.append(f"{place}{shown(str(name))} is not a parameter{self._near(name)}")
+        if name not in self.known and not (self.kind == "contact" and is_parameter(name)):
+            near = suggest(name, self.known) if len(self.errors) < MOST_MESSAGES else ""  # somebody will read it
+            self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
         elif section == "[model]" and name in NUMERICS:
@@ -121,27 +134,33 @@ class Draft:
             return True
         return False
 
-    def _near(self, name: str) -> str:
-        """What may have been meant, as long as somebody will read it."""
-        return suggest(name, self.known) if len(self.errors) < MOST_MESSAGES else ""
+    def _checked(self, name: str, raw: list, gaps: bool = False, distinct: bool = False) -> np.ndarray:
+        """The values as an array, with messages for those that are not allowed, and for `distinct` ones that are
+        twins."""
+        before = len(self.errors)
+        array = as_array(VOCABULARY[name], raw, name, self.errors, gaps)
+        if distinct and len(self.errors) == before:
+            self._distinct(name, array.tolist())
+        return array
 
-    def _one_control(self) -> None:
-        given = [name for name in CONTROLS if name in self.sections]
-        if len(given) != 1:
-            self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
+    def _distinct(self, name: str, values: list) -> None:
+        for i, j in twins(values):
+            self.errors.append(
+                f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
+            )
 
     def _number_cases(self, count: int) -> None:
         self.sizes["case"] = count
         self.labels["case"] = ("case",), np.arange(count, dtype=np.int32)
 
-    def _case_labels(self, labels: list) -> None:
+    def _label_cases(self, labels: list) -> None:
         if not all(isinstance(label, str) for label in labels):
             self.errors.append("[[cases]] label: must be text")
             return
         self._distinct("label", [label for label in labels if label])
         self.labels["label"] = ("case",), np.array(labels, dtype=str)
 
-    def _dimensions(self) -> None:
+    def _check_dimensions(self) -> None:
         """Dimensions of DataArrays: names that are free, sizes and coordinates that agree with the other parameters."""
         if len(self.sizes) > MOST_DIMENSIONS:
             self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
@@ -161,32 +180,20 @@ class Draft:
             elif coordinate is not None and owner is not None and not np.array_equal(owner[1], coordinate):
                 self.errors.append(f"{name} has other values of {dim} than another parameter")
 
-    def _distinct(self, name: str, values: list) -> None:
-        for i, j in twins(values)[:1]:
-            self.errors.append(
-                f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
-            )
 
-
-def missing_parameters(grid: Grid, known: tuple[str, ...]) -> list[str]:
+def missing_parameters(grid: Grid, known: Sequence[str]) -> list[str]:
     """Messages for parameters that some case needs and does not have."""
     messages = []
     for name in known:
-        dims, array = grid.values.get(name, ((), np.array(math.nan)))
-        gaps = np.isnan(array) if array.dtype.kind == "f" else np.zeros(array.shape, dtype=bool)
-        selector, needing = VOCABULARY[name].needed_by
-        reason = ""
-        if name in CONTROLS or known != PARAMETERS:  # needed by every case
-            gaps = gaps & (name in grid.values or name not in CONTROLS)
-        elif selector:
-            chosen_dims, chosen = grid.values[selector]
-            needs = np.isin(chosen, needing)
-            gaps = needs & gaps if dims == chosen_dims else gaps & needs.any()
-            reason = f": {selector} = {' or '.join(shown(word) for word in needing if word in chosen)} needs it"
-        else:
+        selector, words = VOCABULARY[name].needed_by
+        if VOCABULARY[name].default is not None or (name in CONTROLS and name not in grid.values):
             continue
+        gaps = np.isnan(along(grid, name)) & having(name, partial(along, grid))
         if gaps.any():
-            messages.append(f"{name} is missing{f' in case {int(np.argmax(gaps))}' if dims else ''}{reason}")
+            case = np.argwhere(gaps)[0][list(grid.sizes).index("case")] if name in grid.values else ""
+            found = [shown(word) for word in words if selector in grid.values and word in grid.values[selector][1]]
+            reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
+            messages.append(f"{name} is missing{f' in case {case}' if name in grid.values else ''}{reason}")
     return messages
 
 
@@ -195,11 +202,9 @@ def lost_scheme(grid: Grid) -> list[str]:
 
     In a grid that has them for asperities too, the smooth cases are refused one by one, by their status.
     """
-    if "scheme" not in grid.values:  # a micro law
+    asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
+    if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
         return []
-    (scheme_dims, scheme), (micro_dims, micro) = grid.values["scheme"], grid.values["micro"]
-    asked, rough = scheme == "picard", micro != "smooth"
-    served = (asked & rough).any() if scheme_dims == micro_dims else asked.any() and rough.any()
-    if served or not asked.any():
-        return []
-    return ['scheme = "picard" has no case to solve: micro must be "disc_cell" or "power_law" there, not "smooth"']
+    others = " or ".join(shown(name) for name in VOCABULARY["micro"].choices if name not in smooth)
+    names = " or ".join(map(shown, smooth))
+    return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']

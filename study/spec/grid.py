@@ -8,7 +8,8 @@ from itertools import product
 import numpy as np
 
 from ..terminal import on_one_line
-from .vocabulary import Entry, check, finite
+from .laws import law_names
+from .vocabulary import VOCABULARY, Entry, check, finite
 
 LONGEST_AXIS = 1_000_000
 SHOWN = 3  # messages of one kind for one parameter; the rest is counted
@@ -35,6 +36,15 @@ class Grid:
     def size(self) -> int:
         """Number of cases B, as a Python integer that cannot overflow."""
         return math.prod(self.sizes.values())
+
+
+def along(grid: Grid, name: str) -> np.ndarray:
+    """Values of a parameter with all dimensions of the grid, in its order, of length 1 where the parameter has none;
+    the default, or NaN, when it is not given."""
+    default = VOCABULARY[name].default
+    dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
+    array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
+    return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
 
 
 def columns(grid: Grid, start: int, stop: int) -> dict[str, np.ndarray]:
@@ -108,6 +118,12 @@ def as_array(entry: Entry, raw: list, key: str, errors: list[str], gaps: bool = 
     errors : messages are appended here
     gaps : None stands for "not given" and becomes NaN
     """
+    if entry.name == "micro":
+        try:
+            raw, entry = law_names(raw), VOCABULARY["micro"]
+        except ValueError as error:
+            errors.append(f"{key}: {error}")
+            return np.empty(len(raw))
     if set(map(type, raw)) == {float} and _all_allowed(entry, np.array(raw)):
         return np.array(raw)
     found = []
@@ -180,13 +196,13 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
 
 
 def twins(values: list) -> list[tuple[int, int]]:
-    """Pairs of places that hold the same value: a coordinate with twins cannot be selected from."""
-    first, pairs = {}, []
-    for i, value in enumerate(values):
-        j = first.setdefault(value, i)
-        if j != i:
-            pairs.append((j, i))
-    return pairs
+    """The first two places that hold the same value, if any do: a coordinate with twins cannot be selected from."""
+    first = {}
+    for j, value in enumerate(values):
+        i = first.setdefault(value, j)
+        if i != j:
+            return [(i, j)]
+    return []
 
 
 def shown(value) -> str:

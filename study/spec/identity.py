@@ -7,30 +7,29 @@ is. Who changes a default changes NUMERICS_VERSION, which is in the digest and b
 
 import hashlib
 import json
+from functools import partial
 
 import numpy as np
 
 from solver import NUMERICS_VERSION
+from solver.laws import identity
 from solver.parameters import uses
 
-from .grid import Grid
+from .grid import Grid, along
 from .vocabulary import PARAMETERS, VOCABULARY
-
-
-def along(grid: Grid, name: str) -> np.ndarray:
-    """Values of a parameter with all dimensions of the grid, in its order, of length 1 where the parameter has none;
-    the default, or NaN, when it is not given."""
-    default = VOCABULARY[name].default
-    dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
-    array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
-    return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
 
 
 def counts(grid: Grid, name: str) -> np.ndarray:
     """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
     value, default = along(grid, name), VOCABULARY[name].default
     given = ~np.isnan(value) if default is None else value != default
-    return given & uses(name, lambda other: along(grid, other))
+    return given & uses(name, partial(along, grid))
+
+
+def law_versions(grid: Grid) -> list[str]:
+    """Name and version of the registered laws in the grid, one text each; of this package's own none."""
+    words = set(grid.values["micro"][1].ravel().tolist()) if "micro" in grid.values else ()
+    return sorted(identity(word) for word in words if identity(word) != word)
 
 
 def digest_of(definition) -> str:
@@ -53,6 +52,7 @@ def digest_of(definition) -> str:
         "fit": definition.fit,
     }
     content["values"] = {name: found for name, found in content["values"].items() if found}
+    content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

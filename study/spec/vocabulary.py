@@ -5,10 +5,12 @@ import math
 import numbers
 from dataclasses import dataclass, replace
 
-from solver.parameters import CONTROL, ends
-from solver.parameters import PARAMETERS as BESIDE_IT
+import numpy as np
 
-OF_THE_SOLVER = CONTROL | BESIDE_IT
+from solver.parameters import CONTROL, among
+from solver.parameters import PARAMETERS as BESIDE_IT
+from solver.parameters import allowed as within
+
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers, and as what they are kept."""
 NOT_RUN = 127
@@ -16,6 +18,8 @@ NOT_RUN = 127
 
 MICRON, PRESSURE = ("um", 1e-6), ("MPa", 1e6)
 FORCE, STIFFNESS, DENSITY = ("N", 1.0), ("N m-1", 1.0), ("mm-2", 1e6)
+UNITS = {(0, 0): ("1", 1.0), (0, 1): MICRON, (0, -2): DENSITY, (1, 0): PRESSURE}
+"""Units of the parameters of registered laws, by their powers of E2* and R; of others SI."""
 
 
 @dataclass(frozen=True)
@@ -116,15 +120,16 @@ _ENTRIES = (
 # fmt: on
 
 
-def _completed(entry: Entry) -> Entry:
+def completed(entry: Entry) -> Entry:
     """With what the solver knows of a parameter."""
-    if entry.name not in OF_THE_SOLVER:
+    known = CONTROL.get(entry.name) or BESIDE_IT.get(entry.name)
+    if not known:
         return entry
-    known = OF_THE_SOLVER[entry.name]
-    return replace(entry, **known._asdict() | {"interval": entry.interval or known.interval})
+    told = known._asdict() | {"interval": entry.interval or known.interval}
+    return replace(entry, **{name: told[name] for name in told if name not in ("powers", "symbol", "long_name")})
 
 
-VOCABULARY = {entry.name: _completed(entry) for entry in _ENTRIES}
+VOCABULARY = {entry.name: completed(entry) for entry in _ENTRIES}
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -134,8 +139,14 @@ def names(*roles: str) -> tuple[str, ...]:
 
 CONTROLS = names("control")
 NUMERICS = names("numerics")
-PARAMETERS = names("control", "material", "roughness", "numerics")
+PARAMETERS = list(names("control", "material", "roughness", "numerics"))
+"""Names of parameters; :func:`study.spec.laws.learn` adds those of registered laws here and to VOCABULARY."""
 MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
+
+
+def having(name: str, values) -> np.ndarray:
+    """bool: the cases that have a parameter, by `needed_by`; `values(name)` gives the texts of another one."""
+    return among(VOCABULARY[name].needed_by, values)
 
 
 def attributes(name: str) -> dict:
@@ -166,10 +177,7 @@ def check(entry: Entry, value) -> str:
         return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
     if entry.whole and value != int(value):
         return "must be a whole number"
-    low, high, with_low, with_high = ends(entry.interval)
-    above = value > low or (value == low and with_low)
-    below = value < high or (value == high and with_high)
-    return "" if value in entry.also or (above and below) else allowed(entry)
+    return "" if within(entry, value) else allowed(entry)
 
 
 def finite(value) -> bool:

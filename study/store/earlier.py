@@ -7,6 +7,7 @@ import netCDF4
 import numpy as np
 
 from solver import NUMERICS_VERSION
+from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
 from ..files.checksums import ATTRIBUTE, attribute, identity, parsed
@@ -154,6 +155,11 @@ def _grid_in(file: netCDF4.Dataset) -> Grid:
         if name in coordinates and name in file.variables:
             array = np.asarray(file[name][...])  # texts without the dimension of their characters
             values[name] = file[name].dimensions[: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
+    versions = str(attribute(file, "micro_laws")).split("\n") if "micro_laws" in file.ncattrs() else []
+    if "micro" in values:  # a law of another version than the registered one is another law
+        dims, words = values["micro"]
+        old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
+        values["micro"] = dims, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
     return Grid({dim: len(file.dimensions[dim]) for dim in status.dimensions}, values)
 
 

@@ -7,8 +7,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from ..spec.grid import Grid
-from ..spec.identity import along, counts
+from solver.laws import identity as law_identity
+
+from ..spec.grid import Grid, along
+from ..spec.identity import counts
 from ..spec.vocabulary import PARAMETERS
 
 VERSION = 2
@@ -68,10 +70,11 @@ def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
 def _hashed(name: str, array: np.ndarray) -> np.ndarray:
     """(2, *shape) uint64 from a parameter's values, a seed of its name in each lane."""
     if array.dtype.kind == "U":
+        word = law_identity if name == "micro" else str
         bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
         while left.any():  # word by word: there are few, and to sort a million takes seconds
             here = array == array.flat[left.argmax()]
-            bits[here] = _digest(str(array[here][0]), 8)[0]
+            bits[here] = _digest(word(str(array[here][0])), 8)[0]
             left &= ~here
     else:
         numbers = array.astype(np.float64) + 0.0

@@ -8,7 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver import NUMERICS_VERSION, Problem, Solution, solve
+from solver import NUMERICS_VERSION, Problem, Solution, laws, solve
+from solver.laws import Law
 
 from ..spec.definition import Definition
 from ..spec.grid import columns_at
@@ -20,7 +21,7 @@ class Parcel:
     """Cases to be solved.
 
     first, last : numbers of its first and last case; parameters : name -> (n,) or (1,) for all its cases; x : (m,);
-    numerics : version of the solver's numerics that is wanted
+    numerics : version of the solver's numerics that is wanted; laws : those that a worker may not have registered
     """
 
     first: int
@@ -29,6 +30,7 @@ class Parcel:
     x: np.ndarray
     profiles: tuple[str, ...]
     numerics: str
+    laws: tuple[Law, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -43,11 +45,14 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     """The cases at `index` (n,), n > 0."""
     found = columns_at(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
-    return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION)
+    own = tuple(laws.LAWS[name] for name in set(found["micro"].tolist()) if laws.LAWS[name].version)
+    return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION, own)
 
 
 def compute(wanted: Parcel) -> dict[str, np.ndarray]:
     """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
+    for law in wanted.laws:
+        laws.register(law)
     return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
 
 

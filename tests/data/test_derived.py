@@ -109,14 +109,15 @@ def test_smooth_cases_have_no_spots():
 
 @pytest.mark.parametrize(("base", "E1"), [("half_space", 1.0), ("layered", 0.5)])
 def test_peak_pressure_is_the_largest_of_the_spots(base, E1):
-    """Eq. (13) where λ = 1/2: sin² of 45°, half of the nominal pressure goes through the ring around the spot."""
-    profiles = {"p": ("x", [0.01, 0.08, 0.0]), "lam": ("x", [0.25, 0.5, 0.0])}
+    """Eq. (13) where λ = 1/2, at the pressure that Eq. (7) has there: arccos(b/B̄) = arcsin(b/B̄) = π/4."""
+    cell, b = 1 / np.sqrt(np.pi * 1e6), np.sqrt(0.5 / (np.pi * 1e6))
+    p = 2 * E1 * b**3 / (3 * 0.004) / (cell**2 * np.pi / 4 + b * np.sqrt(cell**2 - b**2))
+    profiles = {"p": ("x", [0.1 * p, p, 0.0])}
     rough = made(base=base, Ra=0.004).assign(profiles)
-    b = np.sqrt(0.5 / (np.pi * 1e6))
     found = derived.peak_pressure(rough)
-    assert found.item() == pytest.approx(2 * E1 * b / (np.pi * 0.004) + 2 * 0.08 / np.pi * np.pi / 4, rel=1e-14)
+    assert found.item() == pytest.approx(2 * E1 * b / (np.pi * 0.004) + 2 * p / np.pi * np.pi / 4, rel=1e-14)
     assert found.dims == () and found.attrs == attributes("p_peak")
-    assert derived.peak_pressure(made(base=base, micro="smooth", Ra=0.004).assign(profiles)).item() == 0.08
+    assert derived.peak_pressure(made(base=base, micro="smooth", Ra=0.004).assign(profiles)).item() == p
 
 
 def test_peak_pressure_of_a_smooth_study_needs_no_roughness():

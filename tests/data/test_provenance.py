@@ -8,7 +8,7 @@ import pytest
 
 import study
 from solver import NUMERICS_VERSION
-from study.data import dataset
+from study.data import provenance
 from study.spec.definition import from_tables
 
 TEXT = """title = "A line"
@@ -39,11 +39,11 @@ def test_provenance_of_a_run(opened):
         "study_name": "line",
         "study_digest": opened.definition.digest,
         "numerics_version": NUMERICS_VERSION,
-        "command": dataset.command_line(),
-        "history": f"{created} {dataset.command_line()}",
-        "git_commit": dataset.git_commit(),
-        "cpu": dataset.cpu(),
-        "blas": dataset.blas(),
+        "command": provenance.command_line(),
+        "history": f"{created} {provenance.command_line()}",
+        "git_commit": provenance.git_commit(),
+        "cpu": provenance.cpu(),
+        "blas": provenance.blas(),
     }
     assert {name: found[name] for name in expected} == expected
     assert set(found) == {*expected, "created", "source", "versions"}
@@ -63,11 +63,11 @@ def test_provenance_of_a_call():
 
 def test_a_file_without_a_title_has_its_name():
     untitled = from_tables({"model": {"P": 1, "micro": "smooth", "base": "half_space"}}, "line", "", "line")
-    assert dataset.provenance(untitled, "command")["title"] == "line"
+    assert provenance.provenance(untitled, "command")["title"] == "line"
 
 
 def test_the_machine_is_named():
-    assert len(dataset.cpu()) > 3 and dataset.blas().split()[0] not in ("", "unknown")
+    assert len(provenance.cpu()) > 3 and provenance.blas().split()[0] not in ("", "unknown")
 
 
 @pytest.fixture
@@ -81,33 +81,33 @@ def checkout(monkeypatch, tmp_path):
 
     git("init", "-q")
     (tmp_path / "study" / "data").mkdir(parents=True)
-    (tmp_path / "study" / "data" / "dataset.py").touch()
+    (tmp_path / "study" / "data" / "provenance.py").touch()
     git("add", ".")
     git("commit", "-q", "-m", "x")
-    monkeypatch.setattr(dataset, "__file__", str(tmp_path / "study" / "data" / "dataset.py"))
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "study" / "data" / "provenance.py"))
     return git
 
 
 def test_the_commit_is_that_of_the_checkout_whatever_its_tags(checkout):
     checkout("tag", "-a", "v1", "-m", "x")
-    assert dataset.git_commit() == checkout("rev-parse", "HEAD") and len(dataset.git_commit()) == 40
+    assert provenance.git_commit() == checkout("rev-parse", "HEAD") and len(provenance.git_commit()) == 40
 
 
 def test_changed_code_is_marked(checkout, tmp_path):
-    clean = dataset.git_commit()
+    clean = provenance.git_commit()
     (tmp_path / "notes").touch()
-    assert dataset.git_commit() == clean, "a file that is not tracked changes no number"
-    (tmp_path / "study" / "data" / "dataset.py").write_text("changed", encoding="utf-8")
-    assert dataset.git_commit() == f"{clean}-dirty"
+    assert provenance.git_commit() == clean, "a file that is not tracked changes no number"
+    (tmp_path / "study" / "data" / "provenance.py").write_text("changed", encoding="utf-8")
+    assert provenance.git_commit() == f"{clean}-dirty"
 
 
 def test_the_commit_is_unknown_outside_a_checkout(checkout, monkeypatch, tmp_path):
     """Also when the environment lies inside somebody else's repository, or there is no git."""
-    monkeypatch.setattr(dataset, "__file__", str(tmp_path / "site-packages" / "study" / "data" / "dataset.py"))
-    assert dataset.git_commit() == "unknown"
-    monkeypatch.setattr(dataset, "__file__", str(tmp_path / "study" / "data" / "dataset.py"))
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "site-packages" / "study" / "data" / "provenance.py"))
+    assert provenance.git_commit() == "unknown"
+    monkeypatch.setattr(provenance, "__file__", str(tmp_path / "study" / "data" / "provenance.py"))
     monkeypatch.setenv("PATH", "")
-    assert dataset.git_commit() == "unknown"
+    assert provenance.git_commit() == "unknown"
 
 
 @pytest.mark.parametrize(
@@ -118,5 +118,15 @@ def test_the_commit_is_unknown_outside_a_checkout(checkout, monkeypatch, tmp_pat
     ],
 )
 def test_command_line_without_machine_paths(monkeypatch, program, expected):
-    monkeypatch.setattr(dataset.sys, "argv", [program, "run", "a b.toml"])
-    assert dataset.command_line() == expected
+    monkeypatch.setattr(provenance.sys, "argv", [program, "run", "a b.toml"])
+    assert provenance.command_line() == expected
+
+
+def test_code_and_machine_are_looked_at_once(monkeypatch):
+    """Not at each call of `study.solve`, which takes less time itself."""
+    first = study.solve(P=1e-6, micro="smooth", base="half_space").attrs
+    for name in ("git_commit", "package_version", "cpu", "blas"):
+        monkeypatch.setattr(provenance, name, lambda *_: pytest.fail("is read again"))
+    again = study.solve(P=1e-6, micro="smooth", base="half_space").attrs
+    same = ("source", "git_commit", "versions", "cpu", "blas")
+    assert {name: again[name] for name in same} == {name: first[name] for name in same}

@@ -7,7 +7,7 @@ import pages
 import pytest
 
 import study
-from solver import Problem, Status, solve
+from solver import Model, Problem, Status, solve
 from solver.body.kernel import layered_kernel
 from study.data import derived
 from study.data.dataset import status_words
@@ -19,7 +19,7 @@ MICRONS = {"um": "µm", "mm2": "mm²", "mm-2": "mm⁻²", "N m-1": "N/m", "1": "
 
 
 def rows(head: str) -> list[list[str]]:
-    """Cells of the table whose first line begins with `head`."""
+    """Cells of the table whose first line begins with `head`, as "value | name"."""
     table = re.search(rf"^\| {re.escape(head)}.*\n\|[-|]+\|\n((?:\|.*\n)+)", PAGE, flags=re.MULTILINE)[1]
     return [[cell.strip() for cell in line.strip("|").split("|")] for line in table.splitlines()]
 
@@ -46,10 +46,15 @@ def test_every_number_of_an_equation_of_the_vocabulary_is_on_the_page():
 
 
 def test_the_statuses_are_those_of_the_solver():
-    table = {int(value): (name.strip("`"), meaning) for value, name, meaning in rows("value")}
+    table = {int(value): (name.strip("`"), meaning) for value, name, meaning in rows("value | name | meaning")}
     assert {value: name for value, (name, _) in table.items()} == status_words()
     for status in Status:
         assert table[status][1] == status.meaning.replace(" (contact/budget.py)", "")
+
+
+def test_the_models_are_those_of_the_solver():
+    table = {int(value): name.strip("`") for value, name, _ in rows("value | name | model")}
+    assert table == {int(model): model.name.lower() for model in Model}
 
 
 def test_the_masks_and_thresholds_are_those_of_the_code():

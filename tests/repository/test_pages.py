@@ -8,11 +8,11 @@ import pytest
 from conftest import ROOT
 from test_repository import TARGETS
 
-from study import load, open_results
-from study.__main__ import parser
-from study.figures.sources import pick
+import solver
+import study
+from study import open_results
+from study.__main__ import main, parser
 from study.spec.definition import from_tables
-from study.tables import tabulate
 
 TEXT = {page: pages.read(page) for page in pages.PAGES}
 
@@ -45,6 +45,10 @@ def test_what_a_page_names_exists(page):
     files = re.findall(r"`((?:studies|study|solver|tests)/[\w/]+\.(?:py|toml|csv))`", text)
     for path in set(files) - {"studies/mine.toml"}:
         assert (ROOT / path).exists(), path
+    for package, names in re.findall(r"`(study|solver|derived)((?:\.[a-z_]\w*)+)", code):
+        found = {"study": study, "solver": solver, "derived": study.derived}[package]
+        for name in names.strip(".").split("."):
+            found = getattr(found, name)
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
@@ -76,8 +80,10 @@ def test_python_of_the_studies_runs(results):
 
 
 def test_table1_of_the_readme_is_what_make_prints(tmp_path):
-    load(ROOT / "studies/table1.toml", tmp_path / "results").run()
-    made = tabulate("table1", tmp_path / "results", tmp_path)[0].read_text(encoding="utf-8")
+    folders = "--results", str(tmp_path / "results")
+    assert main(["run", str(ROOT / "studies/table1.toml"), *folders]) == 0
+    assert main(["table", "table1", *folders, "--tables", str(tmp_path)]) == 0
+    made = (tmp_path / "table1.txt").read_text(encoding="utf-8")
     (shown,) = re.findall(r"^`make table1`[^\n]*\n\n```text\n(.*?)^```", TEXT["README.md"], re.DOTALL | re.MULTILINE)
     assert shown in made
 
@@ -92,8 +98,8 @@ def test_of_softness_and_thickness(results):
 
 
 def test_of_the_thin_layer_in_the_main_case(results):
-    main = open_results(results / "main_case.nc")
-    exact, thin = (pick(main, label=f"rough, {base}") for base in ("exact layer", "layered"))
+    cases = open_results(results / "main_case.nc").set_index(case="label")
+    exact, thin = (cases.sel(case=f"rough, {base}") for base in ("exact layer", "layered"))
     for name, error in (("a", 0.092), ("p0", -0.045), ("D", 0.025)):
         assert float(thin[name] / exact[name]) - 1 == pytest.approx(error, abs=6e-4)
     assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in TEXT["docs/accuracy.md"]

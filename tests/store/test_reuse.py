@@ -140,10 +140,10 @@ def test_wrong_outputs_are_named(load):
 
 
 def renumber(monkeypatch, version: str) -> None:
-    from study.data import dataset
+    from study.data import provenance
     from study.work import cases
 
-    for module in (identity, blocks, earlier, cases, dataset):
+    for module in (identity, blocks, earlier, cases, provenance):
         monkeypatch.setattr(module, "NUMERICS_VERSION", version)
 
 

@@ -169,7 +169,7 @@ def test_disk_stays_just_below_the_estimate(tmp_path, monkeypatch, before, dtype
         return real(store, known)
 
     def opened(num):
-        axes = {"P": {"start": 1e-6, "stop": 2e-6, "num": num}, "nu1": [0.1, 0.3]}
+        axes = {"P": {"start": 1e-6, "stop": 2e-6, "num": num}, "rtol": [1e-6, 1e-7]}
         model, output = {"base": "half_space", "micro": "smooth"}, {"dtype": dtype}
         tables = {"model": model, "axes": axes, "numerics": {"block": 800}, "output": output}
         return study.Study(from_tables(tables, "s", "", "s"), tmp_path)

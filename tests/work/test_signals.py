@@ -146,7 +146,7 @@ def test_one_that_comes_too_late_changes_nothing(opened, tmp_path, number):
 
 AT_EXIT = """
 import atexit, os, runpy, signal, sys
-from study import ending
+from study.commands import ending
 
 class Last:
     def __del__(self, write=os.write):

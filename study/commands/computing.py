@@ -1,0 +1,65 @@
+"""The commands that compute studies and look at results. Each does it for one file and returns an exit code."""
+
+import sys
+from pathlib import Path
+
+from ..api import Study, load
+from ..files.examine import examine
+from ..terminal import answer, say
+from ..work.plan import status_values
+from .answers import cost_line, count_lines, failure_lines, report_line, state_line, verified_line
+from .arguments import study_file
+
+
+def list_(options, file: Path) -> int:
+    """Say the size and the state of a study."""
+    study = load(file, options.results)
+    return answer(state_line(study.definition, study.status()))
+
+
+def status(options, file: str) -> int:
+    """Say what has been computed."""
+    study = _opened(options, file)
+    state = study.status(options.yes)
+    return answer(state_line(study.definition, state), *count_lines(state["counts"]))
+
+
+def run(options, file: str) -> int:
+    """Compute what is missing, or say what that would cost."""
+    study = _opened(options, file)
+    if options.dry_run:
+        return answer(cost_line(study.definition.name, study.dry_run(options.workers, options.yes)))
+    return _compute(study, options, part=options.part, force=options.force)
+
+
+def retry(options, file: str) -> int:
+    """Compute cases of some status again."""
+    return _compute(_opened(options, file), options, retry=status_values(options.status))
+
+
+def verify(options, file: str) -> int:
+    """Compare results with their checksums."""
+    found = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
+    say(verified_line(found.path, found), sys.stdout if found.good else sys.stderr)
+    return 0 if found.kind == "sound" else 2 if found.kind == "missing" else 1
+
+
+def clean(options, file: str) -> int:
+    """Remove blocks that serve nothing, and say which."""
+    answer(*_opened(options, file).clean())
+    return 0
+
+
+def _opened(options, file: str) -> Study:
+    return load(study_file(file), options.results)
+
+
+def _compute(study: Study, options, **more) -> int:
+    names, name = ("workers", "scheduler", "fail_fast", "yes"), study.definition.name
+    chosen = {name: getattr(options, name) for name in names}
+    report = study.run(**chosen, **more, processes=True, stream=sys.stderr)
+    if report.failures:
+        say("\n".join(failure_lines(report, name)), sys.stderr)
+        return 1
+    answer(report_line(report, name))
+    return 0

@@ -1,0 +1,96 @@
+"""Where results come from: the study, the command, the code and the machine."""
+
+import json
+import os
+import platform
+import shlex
+import subprocess
+import sys
+from datetime import UTC, datetime
+from functools import cache
+from importlib import metadata
+from pathlib import Path
+
+import numpy as np
+
+from solver import NUMERICS_VERSION
+
+from ..spec.definition import Definition
+
+REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
+
+
+def provenance(definition: Definition, command: str) -> dict:
+    """Global attributes: what was computed, by which code, on what machine."""
+    created = datetime.now(UTC).isoformat(timespec="seconds")
+    return {
+        "Conventions": "CF-1.11",
+        "title": definition.title or definition.name,
+        "references": REFERENCE,
+        "history": f"{created} {command}",
+        "study": definition.text,
+        "study_name": definition.name,
+        "study_digest": definition.digest,
+        "numerics_version": NUMERICS_VERSION,
+        "command": command,
+        **machine(),
+        "created": created,
+    }
+
+
+@cache  # reading versions and asking git takes 10 ms; they are those of the code that was imported
+def machine() -> dict:
+    """The attributes that do not change while a program runs."""
+    packages = ("numpy", "scipy", "xarray", "dask", "netCDF4")
+    versions = {"python": platform.python_version()} | {name: package_version(name) for name in packages}
+    return {
+        "source": f"roughcoat {package_version('roughcoat')}",
+        "git_commit": git_commit(),
+        "versions": json.dumps(versions),
+        "cpu": cpu(),
+        "blas": blas(),
+    }
+
+
+def command_line() -> str:
+    """The command that is running, without the folder of the interpreter."""
+    program = Path(sys.argv[0])
+    first = "python -m study" if program.name == "__main__.py" and program.parent.name == "study" else program.name
+    text = f"{first} {shlex.join(sys.argv[1:])}".strip()
+    return text.encode("utf-8", "backslashreplace").decode()  # a path may be other bytes, an attribute may not
+
+
+def git_commit() -> str:
+    """Commit of the checkout that holds this package, "-dirty" if tracked files were changed; "unknown" without one."""
+    root = Path(__file__).resolve().parents[2]
+    if not (root / ".git").exists():  # installed: a repository further up would be another project's
+        return "unknown"
+    command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
+    try:
+        return subprocess.run(command, capture_output=True, text=True, timeout=10, check=True).stdout.strip()
+    except (OSError, subprocess.SubprocessError):
+        return "unknown"
+
+
+def cpu() -> str:
+    """Name of the processor."""
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        lines = []
+    found = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return f"{found[0]} ({os.cpu_count()} logical)" if found else platform.processor() or platform.machine()
+
+
+def blas() -> str:
+    """Name and version of the BLAS library that numpy was built with."""
+    found = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
+    return f"{found.get('name', 'unknown')} {found.get('version', '')}".strip()
+
+
+def package_version(package: str) -> str:
+    """Of an installed package; "unknown" without one."""
+    try:
+        return metadata.version(package)
+    except metadata.PackageNotFoundError:
+        return "unknown"

@@ -1,0 +1,1 @@
+"""The physical scene: materials, roughness, quantities with units."""

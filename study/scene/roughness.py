@@ -1,0 +1,102 @@
+"""Roughness as people have it, and the model's: asperities per unit area `Nbar`, and their radius `Ra`.
+
+From a design: `square_lattice`, `hexagonal_lattice`, `area_fraction`, `cap_radius`. From a scan: `read` (a file),
+`profile`, `height_map` (arrays), then `measure`. `Ra` is the radius of an asperity everywhere here, never the roughness
+Ra of ISO 21920 (formerly ISO 4287), which is a mean height: `looks_like_iso_ra`. docs/roughness.md has the method.
+"""
+
+import math
+
+import numpy as np
+
+from .measured import Roughness, measure
+from .scan import Scan, height_map, profile
+from .scan_files import read
+
+__all__ = [
+    "Roughness",
+    "Scan",
+    "area_fraction",
+    "cap_radius",
+    "height_map",
+    "hexagonal_lattice",
+    "looks_like_iso_ra",
+    "measure",
+    "profile",
+    "read",
+    "square_lattice",
+]
+
+#: Circles that do not overlap cover at most this fraction of a plane, in a hexagonal lattice.
+DENSEST = math.pi / (2 * math.sqrt(3))
+#: Least Ra √Nbar that asperities have. On a random surface Ra √Nbar = 0.116/s with s the rms slope of its profiles, so
+#: 0.1 asks for 49°; on a designed one, even half-spheres of this size cover only π/100 of the area. The ISO Ra of a
+#: random surface in the place of Ra gives 0.14 √α s, below 0.1 on most (docs/roughness.md has examples).
+SHARPEST = 0.1
+
+
+def square_lattice(pitch):
+    """Asperities per unit area of a square lattice, Nbar = 1/pitch², in 1/[pitch]². Geometry."""
+    return 1 / _positive("pitch", pitch) ** 2
+
+
+def hexagonal_lattice(pitch):
+    """Asperities per unit area of a hexagonal lattice, Nbar = 2/(√3 pitch²), in 1/[pitch]².
+
+    pitch is the distance of nearest neighbours; each has a cell of √3/2 pitch². Geometry.
+    """
+    return 2 / (math.sqrt(3) * _positive("pitch", pitch) ** 2)
+
+
+def area_fraction(fraction, base_radius):
+    """Asperities per unit area whose circular bases cover a fraction of it, Nbar = fraction/(π base_radius²).
+
+    In 1/[base_radius]². Geometry. Circles cover at most π/(2√3) = 0.907 without overlap; more is refused.
+    """
+    if not np.all(np.asarray(_positive("fraction", fraction)) <= DENSEST):
+        raise ValueError(f"fraction = {fraction}: circles that do not overlap cover at most {DENSEST:.4f} of a plane")
+    return fraction / (math.pi * _positive("base_radius", base_radius) ** 2)
+
+
+def cap_radius(height, width):
+    """Radius Ra of an asperity that is a spherical cap, Ra = (width²/4 + height²)/(2 height), in the unit of both.
+
+    width is the diameter of its base. Geometry: Pythagoras on Ra, Ra - height and width/2. A cap is at most a
+    half-sphere, so height may be at most width/2; a taller bump has sides that no cap has, and is refused.
+    """
+    if not np.all(_positive("height", height) <= _positive("width", width) / 2):
+        raise ValueError(
+            f"height = {height} on a base of width = {width}: a spherical cap is at most half as high as wide. "
+            "For a taller bump give the radius of its tip as Ra."
+        )
+    return (width**2 / 4 + height**2) / (2 * height)
+
+
+def _positive(name: str, value):
+    """The value, as an array if it is a list, if all of it is positive and finite."""
+    value = np.asarray(value) if isinstance(value, list | tuple) else value
+    if not (np.all(value > 0) and np.all(np.isfinite(value))):
+        raise ValueError(f"{name} = {value}: must be > 0 and finite")
+    return value
+
+
+def looks_like_iso_ra(Ra, Nbar) -> str | None:
+    """What is to be said if Ra is too small to be the radius of asperities so dense; None if it can be one.
+
+    Parameters
+    ----------
+    Ra, Nbar : in units of one length, or in R; arrays are compared with each other, the sharpest is named
+
+    The test is Ra √Nbar < 0.1 (see `SHARPEST`). A sparse design of small half-spheres may have it and be right.
+    """
+    sharpness = np.asarray(Ra * np.sqrt(Nbar), dtype=float)
+    if not np.any(sharpness < SHARPEST):
+        return None
+    i = np.unravel_index(np.nanargmin(sharpness), sharpness.shape)
+    Ra, Nbar = (float(np.broadcast_to(value, sharpness.shape)[i]) for value in (Ra, Nbar))
+    return (
+        f"Ra = {Ra:.4g} is small for Nbar = {Nbar:.4g}: the asperities are {1 / math.sqrt(Nbar) / Ra:.3g} radii apart, "
+        f"and even as half-spheres they cover {100 * math.pi * Ra**2 * Nbar:.2g} % of the area. Ra is the radius of an "
+        "asperity here, often 1 to 1000 µm; the roughness Ra of ISO 21920 (ISO 4287) is a mean height, often 0.01 to "
+        "10 µm. study.roughness.cap_radius gives the radius from height and width, study.roughness.measure from a scan."
+    )

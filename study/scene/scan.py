@@ -1,0 +1,138 @@
+"""A measured surface: heights on a uniform grid, in metres. What cannot be a measured surface is refused."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+#: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
+MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
+UNITS = {"m": 1.0, "mm": 1e-3, **MICRO, "nm": 1e-9, "pm": 1e-12, "angstrom": 1e-10, "Å": 1e-10}
+#: Points in a direction: two bumps of eight points. Fewer say nothing about the next two.
+FEWEST = 16
+#: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
+#: atomic force microscope up to 2.7: a scan beyond is in other units than was said, or full of spikes.
+STEEPEST = 3.0
+#: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much; positions written
+#: with one digit less than the step stay within.
+UNEVEN = 0.1
+
+
+@dataclass(frozen=True, eq=False)
+class Scan:
+    """Heights of a surface. Made by `profile`, `height_map` and `read`, which check them.
+
+    Attributes
+    ----------
+    z : heights in m, shape (x) of a profile or (y, x) of a map
+    steps : distance of the points along each axis of z, m
+    name : the file, or what the caller calls it
+    """
+
+    z: np.ndarray
+    steps: tuple[float, ...]
+    name: str
+
+    @property
+    def sizes(self) -> tuple[float, ...]:
+        """Lengths of the scan along the axes of z, from the first point to the last, m."""
+        return tuple((n - 1) * step for n, step in zip(self.z.shape, self.steps, strict=True))
+
+
+def profile(z, *, x=None, dx=None, unit="m", height_unit=None, name="the profile") -> Scan:
+    """A profile, from its heights and either their positions or their distance.
+
+    Parameters
+    ----------
+    z : heights, in height_unit (None: as `unit`)
+    x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
+    unit, height_unit : one of m, mm, um, nm, pm, angstrom
+
+    Raises
+    ------
+    ValueError : neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them
+    """
+    if (x is None) == (dx is None):
+        raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
+    step = dx if x is None else _step(np.asarray(x, dtype=float), np.shape(z), name)
+    return _checked(z, (step,), unit, height_unit, name)
+
+
+def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") -> Scan:
+    """A map of heights z, shape (y, x), in height_unit (None: as `unit`).
+
+    Parameters
+    ----------
+    dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
+    unit, height_unit : one of m, mm, um, nm, pm, angstrom
+
+    Raises
+    ------
+    ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
+        positive, an unknown unit, or heights so large that their unit must be another
+    """
+    return _checked(z, (dx if dy is None else dy, dx), unit, height_unit, name)
+
+
+def metres(unit: str, name: str) -> float:
+    """Metres in a unit of length."""
+    if unit not in UNITS:
+        raise ValueError(f"{name}: the unit {unit!r} is unknown; allowed are {', '.join(UNITS)}")
+    return UNITS[unit]
+
+
+def _step(x: np.ndarray, shape: tuple, name: str) -> float:
+    """Distance of the points of a uniform grid; refuses any other."""
+    if x.shape != shape or x.ndim != 1 or x.size < 2:
+        raise ValueError(f"{name}: {x.shape} positions for {shape} heights; one column of each is needed")
+    if not np.isfinite(x).all():
+        raise ValueError(f"{name}: {np.sum(~np.isfinite(x))} of {x.size} positions x are not numbers")
+    step = (x[-1] - x[0]) / (x.size - 1)
+    off = np.abs(x - (x[0] + step * np.arange(x.size)))
+    if not (step != 0 and off.max() <= UNEVEN * abs(step)):
+        i = int(np.argmax(off))
+        raise ValueError(
+            f"{name}: the positions x are not uniform: they run from {x[0]:g} to {x[-1]:g}, on average {step:.4g} "
+            f"a step, but x = {x[i]:g} in row {i + 1} is {off[i]:.3g} off; at most {UNEVEN:g} steps are allowed. "
+            "Interpolate to equal steps, or choose other columns."
+        )
+    return abs(step)
+
+
+def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str) -> Scan:
+    """The scan in metres, if it can be one."""
+    try:
+        z = np.asarray(z, dtype=float)
+    except (TypeError, ValueError) as error:
+        raise ValueError(f"{name}: the heights are not an array of numbers: {error}") from error
+    if z.ndim != len(steps):
+        raise ValueError(f"{name}: the heights have shape {z.shape}; {len(steps)} dimension(s) are needed")
+    if min(z.shape) < FEWEST:
+        read = " × ".join(map(str, z.shape))
+        raise ValueError(f"{name}: {read} heights; at least {FEWEST} in each direction are needed")
+    bad = np.argwhere(~np.isfinite(z))
+    if bad.size:
+        where = ", ".join(f"{axis} {i + 1}" for axis, i in zip(("row", "column"), bad[0], strict=False))
+        raise ValueError(
+            f"{name}: {len(bad)} of {z.size} heights are not numbers (NaN), the first in {where}; "
+            "fill them in or cut them away"
+        )
+    if not all(np.isfinite(step) and step > 0 for step in steps):
+        raise ValueError(f"{name}: the distances of its points are {steps}; they must be positive")
+    if np.ptp(z) == 0:
+        raise ValueError(f"{name}: all {z.size} heights equal {z.flat[0]:g}: there is no roughness to measure")
+    lateral = metres(unit, name)
+    scan = Scan(z * metres(height_unit or unit, name), tuple(float(step) * lateral for step in steps), name)
+    _plausible(scan, unit, height_unit or unit)
+    return scan
+
+
+def _plausible(scan: Scan, unit: str, height_unit: str) -> None:
+    """Refuses heights that no instrument measures on lengths like these: their unit is another."""
+    span = np.ptp(scan.z)
+    slope = max(np.sqrt(np.mean(np.diff(scan.z, axis=i) ** 2)) / step for i, step in enumerate(scan.steps))
+    if span > max(scan.sizes) or slope > STEEPEST:
+        raise ValueError(
+            f"{scan.name}: heights span {span:.3g} m on a scan {max(scan.sizes):.3g} m long, with an rms slope of "
+            f"{slope:.3g}; no instrument measures slopes above {STEEPEST:g}. Lengths were taken to be in {unit}, "
+            f"heights in {height_unit}: give unit and height_unit as the file has them, or cut away its spikes."
+        )

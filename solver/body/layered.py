@@ -20,7 +20,7 @@ from .kernel import decaying_part, whole
 from .operator import fitted_nodes
 from .springs import thin_layer
 from .tables import between, felt, film_rows, table
-from .wave_rule import CUT, FILM, OCTAVES, few, quadrature
+from .wave_rule import CUT, FILM, few, octave_of, quadrature
 
 #: Numbers in one block of kernel values: its temporaries stay in the cache.
 _BLOCK = 16384
@@ -32,7 +32,7 @@ _THIN = 0.02
 
 class Layered(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
-    Poisson ratios nu1, nu2 of layer and half-space, and whether they are bonded (bool)."""
+    Poisson ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
 
     h: np.ndarray
     n: np.ndarray
@@ -48,7 +48,7 @@ class Layered(NamedTuple):
     @property
     def C(self):
         """0 (B,): no springs."""
-        return np.zeros_like(self.n)
+        return 0 * self.n
 
     def take(self, index):
         """The sub-batch at `index`."""
@@ -87,20 +87,8 @@ class Layered(NamedTuple):
 
     def first_nodes(self, rtol, a, rise=None):
         """Number of nodes (B,): under asperities as on a half-space; of a smooth punch, the fewer the thicker."""
-        if rise is None:
-            return fitted_nodes(rtol, 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3)
-        return fitted_nodes(rtol, rise, 1.1)
-
-
-def octave_of(layer, a):
-    """Octave of h/a, or FILM, and depth of the quadrature for the stiffness of the layer, (B,) int each."""
-    eta = layer.h / a
-    octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
-    # a stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n
-    ratio = np.maximum(np.where(layer.bonded, layer.n, np.cbrt(layer.n)), 1.0)
-    ratio = np.where(octave == FILM, ratio * eta * 2.0**-FILM, ratio)
-    wanted = np.ceil(np.log2(np.maximum(3.5 * ratio, 1.0)))  # 0.5 2^-depth <= 0.15/ratio
-    return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
+        smooth = 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3
+        return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))
 
 
 class Part(NamedTuple):
@@ -251,8 +239,8 @@ def _matrix_and_edge(parts, mesh):
         else:
             for row, w in zip(rows, tab.weights(part.L1), strict=True):
                 row[:] = (tab.J * w[:, None]).T @ tab.phi
-        row = part.L1 @ tab.edge + part.share * mesh.edge
         own += mesh.K.reshape(-1, 1) * np.transpose(part.share)
+        row = part.L1 @ tab.edge + part.share * mesh.edge
         if part.film is not None:
             K, at_edge = _film(part.film, tab, n)
             rows += K

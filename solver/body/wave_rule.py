@@ -40,6 +40,17 @@ def _end(octave):
 CUT = _end(FILM) * 2.0**-FILM
 
 
+def octave_of(layer, a):
+    """Octave of h/a, or FILM, and depth of the quadrature for the stiffness of the layer, (B,) int each."""
+    eta = layer.h / a
+    octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
+    # a stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n
+    ratio = np.maximum(np.where(layer.bonded, layer.n, np.cbrt(layer.n)), 1.0)
+    ratio = np.where(octave == FILM, ratio * eta * 2.0**-FILM, ratio)
+    wanted = np.ceil(np.log2(np.maximum(3.5 * ratio, 1.0)))  # 0.5 2^-depth <= 0.15/ratio
+    return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
+
+
 @lru_cache(maxsize=128)
 def quadrature(octave, depth):
     """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""

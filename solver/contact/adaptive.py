@@ -98,7 +98,7 @@ def _on_panels(case, before, rtol, x):
         if not found.gap[0] and found.solution.error[0] < np.nan_to_num(best.error[0], nan=np.inf):
             best = found.solution
         missed = (best.status == Status.CONVERGED) & (best.error > rtol)
-        if best.status[0] == Status.CONVERGED and not missed[0]:
+        if best.status[0] == Status.CONVERGED and (not missed[0] or _hopeless(case, found, rtol)[0]):
             break
     best = replace(best, iterations=count.astype(np.int32))
     return _ended(best, missed, lifted | before._replace(solution=best, tension=np.zeros(1)).lifted, left <= 0)

@@ -47,7 +47,8 @@ def solve_on_panels(case, rtol, budget):
         if found.closed[0]:
             grid, start = found.at.mesh, found.at.state
     found = solve_on(evaluate(case, start or first_guess(case, grid), grid))
-    for goal in np.maximum(rtol, _GOALS):
+    least = max(rtol, case.body.error(guess_radius(case), ORDER)[0])  # panels do not take the operator's own error away
+    for goal in np.maximum(least, _GOALS):
         count, found = count + found.count, found._replace(count=0 * found.count)
         if found.at.lost[0]:
             break

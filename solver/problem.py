@@ -28,7 +28,7 @@ class Problem:
         Poisson ratios of layer and half-space. Without friction between them these change nothing.
     bonding : "frictionless" (default) or "bonded"
         The interface of layer and half-space.
-    Nbar, Ra : needed by every micro law but "smooth"
+    Nbar, Ra : needed by the micro laws that declare them; of this package's all but "smooth"
         Asperities per unit area, and their radius.
     base : "half_space", "thin_layer", "layered" (default) or "auto"
         The half-space alone, with the thin layer of Eq. (3), with the exact layer, or the cheapest that is accurate

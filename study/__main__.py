@@ -12,12 +12,11 @@ import logging
 import os
 import sys
 from importlib import import_module
-from pathlib import Path
 
 from .commands import ending
 from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part
 from .commands.ending import INTERRUPTED
-from .terminal import answer, empty_buffers, open_the_closed, say
+from .terminal import empty_buffers, open_the_closed, say
 
 # The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
 # others at all, of which each worker process would have one for each processor.
@@ -60,13 +59,12 @@ def parser() -> argparse.ArgumentParser:
     command("computing", "verify", text, "FILE")
     text = "remove blocks that do not serve a study as it is now, say which; never results"
     command("computing", "clean", text, "FILE")
-    sub = command("drawing", "plot", "draw figures from results", "NAME")
-    sub.add_argument("--figures", default="figures", **DIR, help="folder of the figures (default: figures)")
-    sub = command("drawing", "table", "write tables from results", "NAME")
-    sub.add_argument("--tables", default="tables", **DIR, help="folder of the tables (default: tables)")
-    text = "measure error against time of every way to solve, and write the page about it"
-    sub = command("drawing", "tradeoff", text)
-    sub.add_argument("--docs", default="docs", **DIR, help="folder of the page (default: docs)")
+    for name, text in (("plot", "draw figures from results"), ("table", "write tables from results")):
+        kind = text.split()[1]
+        sub = command("drawing", name, f"{text}; all: those that no long study is needed for", "NAME")
+        sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
+        sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
+    sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
 
@@ -96,13 +94,11 @@ def main(arguments=None) -> int:
 
 def perform(options, kept: str) -> int:
     """Largest exit code of a command on its items; what is wrong with one does not keep the others from their turn."""
-    items = sorted(Path(options.folder).glob("*.toml")) if options.command == "list" else options.items
-    if not items:
-        return answer(f"no study files in {options.folder}")
     module, name = options.action
-    act = getattr(import_module(f".commands.{module}", __package__), name)
+    commands = import_module(f".commands.{module}", __package__)
+    items = commands.items(options) if hasattr(commands, "items") else options.items
     ending.now.working = True  # all imports have been made
-    return max((_attempt(act, options, item, kept) for item in items), default=0)
+    return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
 
 
 def _attempt(act, options, item, kept: str) -> int:

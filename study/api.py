@@ -1,6 +1,7 @@
 """The public functions: `solve` for a grid given in Python, `load` for a study file."""
 
 import os
+import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -9,21 +10,24 @@ import xarray as xr
 
 from .data.dataset import labelled
 from .data.provenance import command_line
+from .files.access import Unusable
 from .files.examine import Condition
-from .files.netcdf import Unusable
 from .files.results_file import open_lazily, open_results
+from .in_words import doubts
+from .physical import read as read_scene
 from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .spec.given import Draft
 from .spec.grid import LONGEST_AXIS
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
-from .store.earlier import at_hand, earlier, statuses
+from .store.earlier import earlier, statuses
 from .store.tidy import clean
 from .work.cases import compute, parcel
 from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look, results_path
 from .work.run import dry_run, partial_dataset, run
 
+DIMENSIONLESS = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
 
@@ -36,6 +40,9 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see study.vocabulary), and those of
         registered laws. Each a scalar, a 1-D sequence (which makes a dimension of that name, in the order given) or a
         DataArray over dimensions of its own. `micro` may be a `solver.laws.Law` itself (docs/extending.md).
+        Or physical: R, E2, E1 (the radius of the punch, Young's moduli of body and layer) and the others as texts with
+        units ("5 mm", "200 ± 10 GPa"), as quantities of pint, or as DataArrays with an attribute `units`. n follows
+        from E1, nu1, E2 and nu2. One without a unit among them is refused.
     cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
         which comes first
     x : number of points r/a of the profiles, or the points, from 0 to 1
@@ -45,7 +52,9 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     Returns
     -------
     xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
-    is raised for it.
+    is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
+    spreads: one standard deviation, to first order. `study.summary` says it in words. A warning tells of cases that
+    violate an assumption of the model.
 
     Raises
     ------
@@ -58,6 +67,9 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
+    scene = read_scene(parameters, cases)
+    if scene:
+        parameters, cases = scene.parameters, None
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
@@ -66,8 +78,17 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     for name, given in parameters.items():
         _add(draft, name, given)
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
-    definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
-    return labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
+    try:
+        definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
+    except StudyError as error:
+        raise StudyError([*error.messages, *([DIMENSIONLESS] if scene else [])]) from None
+    found = labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
+    if not scene:
+        return found
+    found = scene.dressed(found)
+    if doubts(found):
+        warnings.warn("\n".join(["this contact is beyond what the model describes:", *doubts(found)]), stacklevel=2)
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,15 +123,15 @@ class Study:
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
-        if self.definition.kind == "contact" and state == "done":
+        if state == "done":
             counts = count_statuses(statuses(path))
-        elif self.definition.kind != "contact" or state not in ("new", "outdated"):
+        elif state not in ("new", "outdated"):
             pass
         elif not check_countable(Store(self.definition, self.results), path, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
-            known = inventory(Store(self.definition, self.results))
-            counts = count_statuses(at_hand(known, earlier(self.definition, found)))
+            known = inventory(Store(self.definition, self.results), earlier(self.definition, found).source)
+            counts = count_statuses(known.status)
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         return {
             "state": state, "cases": self.definition.grid.size, "counts": counts, "path": path, "reason": found.reason
@@ -138,7 +159,7 @@ class Study:
         found = look(self.definition, path, ())
         if belongs(self.definition, found):
             return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
-        if partial and self.definition.kind == "contact":
+        if partial:
             return partial_dataset(self.definition, self.results)
         if found.good or found.kind == "missing":
             reason = "holds results of another definition" if found.good else "does not exist"

@@ -1,96 +1,100 @@
-"""All figures by name: which studies each needs, who draws it, its size; `draw` writes the files of one."""
+"""All figures and tables by name: what each needs, whether it is up to date, and the files that it is written to."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
-from functools import partial
+from importlib import import_module
 from importlib.resources import as_file, files
 from pathlib import Path
+from pkgutil import iter_modules
 
 import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 
-from .evidence.extremes_map import maps
-from .evidence.picard_domain import domain
-from .evidence.tradeoff_view import work_precision
-from .evidence.validity_maps import given_load, given_radius
-from .figures.coatings import master_curves
-from .figures.sources import csv_text, open_studies, write_text
-from .paper.curves import PAPERS_FIGURES, laws
-from .paper.schemes import contact_scheme, spot_scheme
+import solver
 
-ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
+from . import evidence, figures, paper
+from .figures.formats import as_csv, as_latex, as_text, csv_text, write_text
+from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
 
-
-@dataclass(frozen=True)
-class Recipe:
-    """`draw(axes, *datasets)` takes the datasets of the `studies` and returns the columns of numbers that it drew;
-    several `panels` (rows, columns) make axes an array."""
-
-    studies: tuple[str, ...]
-    draw: Callable[..., dict[str, np.ndarray]]
-    size: tuple[float, float] = (ONE_COLUMN, 2.6)
-    panels: tuple[int, int] = (1, 1)
+SCHEMES = ("fig01", "fig02")
+"""Figures 1 and 2 of the paper: the contact and one asperity. They show no results, and are kept as drawings."""
+for _room in (figures, paper, evidence):
+    for _module in iter_modules(_room.__path__, f"{_room.__name__}."):
+        import_module(_module.name)  # which registers what it has
 
 
-PAPERS_STUDIES = {
-    "fig03": ("main_case",),
-    "fig04": ("load_sweep", "main_case"),
-    "fig05": ("load_sweep", "main_case"),
-    "fig06": ("load_sweep", "main_case"),
-    "fig07": ("main_case",),
-    "fig08": ("load_sweep", "main_case"),
-    "fig10": ("spot_density",),
-}
-RECIPES = {
-    "fig01": Recipe(("main_case",), contact_scheme, (5.2, 2.9)),
-    "fig02": Recipe(("main_case",), spot_scheme, (ONE_COLUMN, 2.3)),
-    "fig09": Recipe(("table1",), laws, (TWO_COLUMNS, 2.7), (1, 2)),
-    "validity": Recipe(("validity",), given_load, (TWO_COLUMNS, 7.4), (5, 5)),
-    "validity_load": Recipe(("validity_load",), given_radius, (TWO_COLUMNS, 3.7), (2, 5)),
-    "coatings": Recipe(("coatings",), master_curves, (TWO_COLUMNS, 7.0), (3, 2)),
-    "extremes": Recipe(("extremes", "extremes_layered"), maps, (TWO_COLUMNS, 9.2), (5, 3)),
-    "picard_domain": Recipe(("picard_domain",), domain, (TWO_COLUMNS, 4.6), (2, 3)),
-    "tradeoff": Recipe(("tradeoff",), work_precision, (TWO_COLUMNS, 6.4), (2, 2)),
-}
-for _name, _draw in PAPERS_FIGURES.items():
-    _size = (ONE_COLUMN, 3.2 if _name == "fig08" else 2.6)
-    RECIPES[_name] = Recipe(PAPERS_STUDIES[_name], _draw, _size)
-    RECIPES[f"{_name}_layered"] = Recipe(PAPERS_STUDIES[_name], partial(_draw, exact=True), _size)
+FIGURE, SCHEME, TABLE = ("csv", "pdf", "png"), ("svg", "pdf", "png"), ("txt", "csv", "tex")
+"""Kinds of files that are written."""
+LONG = ("extremes", "extremes_layered", "picard_domain", "tradeoff")
+"""Studies that take minutes to compute: `make figures` goes without them."""
 
 
-def compose(name: str, results="results") -> tuple[Figure, dict[str, np.ndarray], str]:
+def usual(known: dict) -> list[str]:
+    """Names of the FIGURES, with the schemes, or of the TABLES, that no long study is needed for."""
+    names = [name for name, entry in known.items() if not set(entry.studies) & set(LONG)]
+    return sorted([*names, *SCHEMES] if known is FIGURES else names)
+
+
+def needed(name: str, known: dict) -> tuple[str, ...]:
+    """The studies that a figure or table needs. Raises StudyError if there is none of this name."""
+    return () if name in SCHEMES and known is FIGURES else entry(name, known).studies
+
+
+def outdated(name: str, known: dict, results, folder) -> bool:
+    """Whether a file of a figure or table is missing, or older than its results or than a file of the program."""
+    kinds = TABLE if known is TABLES else SCHEME if name in SCHEMES else FIGURE
+    written = [Path(folder) / f"{name}.{kind}" for kind in kinds]
+    inputs = [Path(results) / f"{study}.nc" for study in needed(name, known)]
+    for package in (Path(solver.__file__).parent, Path(__file__).parent):
+        inputs += [file for file in package.rglob("*.*") if file.suffix in (".py", ".mplstyle")]
+    newest = max(file.stat().st_mtime for file in inputs)
+    return not all(file.exists() and file.stat().st_mtime >= newest for file in written)
+
+
+def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     """A figure as it will be written, the columns of numbers that it shows, and the title that its files carry.
 
     Raises
     ------
     StudyError : there is no such figure, or a study it needs has no results
     """
-    recipe, datasets = open_studies(name, RECIPES, results)
-    digests = " ".join(dataset.attrs["study_digest"][:16] for dataset in datasets)
+    recipe, datasets = entry(name, FIGURES), open_studies(name, FIGURES, results)
+    digests = [dataset.attrs["study_digest"][:16] for dataset in datasets]
     with style():
         figure = Figure(figsize=recipe.size, layout="constrained")
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
-    return figure, columns, f"{name}, studies {digests}"
+    return figure, columns, f"{name}, studies {' '.join(digests)}".removesuffix(", studies ")
 
 
 @contextmanager
 def style() -> Iterator[None]:
     """Draw, and write, in the style of all figures."""
-    with as_file(files(__package__) / "figures" / "roughcoat.mplstyle") as sheet, matplotlib.style.context(sheet):
+    with as_file(files(figures) / "roughcoat.mplstyle") as sheet, matplotlib.style.context(sheet):
         yield
 
 
-def draw(name: str, results="results", figures="figures") -> list[Path]:
-    """Write a figure as figures/NAME.pdf and .png, and its numbers as .csv; returns the three paths.
+def draw(name: str, results="results", folder="figures") -> list[Path]:
+    """Write a figure as FOLDER/NAME.csv, its numbers, .pdf and .png; returns the three paths.
 
-    The same datasets give the same bytes: no file carries a date. Raises what `compose` raises.
+    A scheme is copied as .svg, .pdf and .png. The same datasets give the same bytes: no file carries a date. Raises
+    what `compose` raises.
     """
-    return save(Path(figures) / name, *compose(name, results))
+    if name in SCHEMES:
+        return copied(name, Path(folder))
+    return save(Path(folder) / name, *compose(name, results))
 
 
-def save(stem: Path, figure: Figure, columns: dict[str, np.ndarray], title: str) -> list[Path]:
+def copied(name: str, folder: Path) -> list[Path]:
+    """Copies of a scheme, which stands in the package as it is: the .svg is the original, to be edited by hand."""
+    folder.mkdir(parents=True, exist_ok=True)
+    paths = [folder / f"{name}.{kind}" for kind in SCHEME]
+    for path in paths:
+        path.write_bytes((files(paper) / "schemes" / path.name).read_bytes())
+    return paths
+
+
+def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
     """Write what `compose` gives as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
     paths = [write_text(stem.with_suffix(".csv"), csv_text(columns, rows))]
@@ -99,3 +103,16 @@ def save(stem: Path, figure: Figure, columns: dict[str, np.ndarray], title: str)
         with style():
             figure.savefig(paths[-1], metadata={"Title": title} | dated)
     return paths
+
+
+def tabulate(name: str, results="results", folder="tables") -> list[Path]:
+    """Write a table as FOLDER/NAME.txt, .csv and .tex; returns the three paths.
+
+    Raises
+    ------
+    StudyError : there is no such table, or a study it needs has no results
+    """
+    table, datasets = entry(name, TABLES), open_studies(name, TABLES, results)
+    rows = table.rows(*datasets)
+    texts = {"txt": as_text(table, rows), "csv": as_csv(table, rows), "tex": as_latex(table, rows)}
+    return [write_text(Path(folder) / f"{name}.{suffix}", text) for suffix, text in texts.items()]

@@ -1,5 +1,6 @@
 """Runs of a study in processes of their own, which tests kill. What they compute is written down, block by block."""
 
+import importlib
 import multiprocessing
 import os
 import runpy
@@ -17,8 +18,8 @@ SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 def child(file: Path, log: Path, at: str = "", locks: bool = True, **options) -> multiprocessing.Process:
     """A started process that runs the study of a file into the folder beside it, and logs to `log`.
 
-    at : "module.name" of a function of `study` at whose first call the process kills itself; locks : whether the file
-        system has them; options : of `Study.run`
+    at : "room.module.name" of a function of `study` at whose first call the process kills itself; locks : whether the
+        file system has them; options : of `Study.run`
     """
     return started(_run, file, log, at, locks, options)
 
@@ -45,8 +46,8 @@ def _run(file: Path, log: Path, at: str, locks: bool, options: dict) -> None:
     if not locks:
         lock.fcntl = None
     if at:
-        module, name = at.split(".")
-        setattr(getattr(study, module), name, lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL))
+        module, _, name = at.rpartition(".")
+        setattr(importlib.import_module(f"study.{module}"), name, lambda *_, **__: os.kill(os.getpid(), signal.SIGKILL))
     note(log, "begun")
     report = study.load(file, file.parent / "results").run(**options)
     note(log, "ended" if report.counts else "nothing to do")

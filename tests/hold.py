@@ -1,7 +1,7 @@
 """Runs that do not end before a test has done its thing: the blocks of case HOLD_FROM (an environment variable) and of
 later ones are computed when the file HOLD_UNTIL exists. Who waits writes a line with its process id to HOLD_UNTIL.log.
 
-Importing this module makes it so, as the main module of a run whose worker processes import it too, or as the
+Importing this module makes it so, as the main module of a run, whose worker processes import it too, or as the
 `--preload` of a dask worker; `python hold.py ...` is `python -m study ...`.
 """
 
@@ -9,7 +9,7 @@ import os
 import runpy
 import time
 
-from study.work import cases
+from study.work import cases, processes
 
 FROM, UNTIL = int(os.environ["HOLD_FROM"]), os.environ["HOLD_UNTIL"]
 cases.unheld = getattr(cases, "unheld", cases.compute)  # dask loads this file twice
@@ -25,6 +25,7 @@ def compute(wanted):
 
 
 cases.compute = compute
+processes.SERVE = f"import hold; {processes.SERVE}"
 
 if __name__ == "__main__":
     runpy.run_module("study", run_name="__main__")

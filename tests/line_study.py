@@ -74,7 +74,7 @@ def store_block(opened, start: int, stop: int) -> Path:
     store.folder.mkdir(parents=True, exist_ok=True)
     known = inventory(store)
     add(store, known, index, cases.compute(parcel(opened.definition, index)))
-    return known.files[-1]
+    return known.sources[-1].path
 
 
 def present(opened) -> int:

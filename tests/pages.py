@@ -27,9 +27,9 @@ def examples(page: str) -> list[tuple[str, str]]:
     return re.findall(r"^```python\n(.*?)^```\n(?:\n```text\n(.*?)^```)?", read(page), flags=re.DOTALL | re.MULTILINE)
 
 
-def check_examples(page: str, folder: Path) -> None:
-    """Run the Python of a page in `folder`, in one process, and compare what it prints with the page."""
-    found = examples(page)
+def check_examples(page: str, folder: Path, most: int | None = None) -> None:
+    """Run the Python of a page, or its first blocks, in `folder`, in one process; compare what it prints."""
+    found = examples(page)[:most]
     script = "".join(f"{code}\nprint({_END!r})\n" for code, _ in found)
     environment = os.environ | {"MPLBACKEND": "agg", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error::FutureWarning"}
     command = [sys.executable, "-c", script]

@@ -20,13 +20,14 @@ RESERVED = {*CONTROL, "control", "value", "more"}
 def register(law):
     """Make a :class:`Law` known by its name, and its parameters like any other. Returns the law.
 
-    Processes that are started later do not know it by itself: it travels to them with the cases, which needs functions
-    that have a name in a module. A law of the same name that was registered before is replaced.
+    It travels to worker processes with the cases; for that its functions must have a name in a module that can be
+    imported there. A law of the same name that was registered before is replaced.
 
     Raises
     ------
     ValueError
-        A name that is none or that of a law of this package; no version; a parameter that is known with other bounds.
+        The name is none, or that of a law of this package; there is no version; a parameter is called like another
+        one, like one of another law with other bounds, or like a result.
     """
     if LAWS.get(law.name) is law:
         return law
@@ -40,7 +41,10 @@ def register(law):
 
 
 def _declare(laws):
-    """Put the parameters of `laws` (name -> Law) into the table, and the names to the choices of `micro`; `laws`."""
+    """Put the parameters of `laws` (name -> Law) into the table, and add their names to the choices of `micro`.
+
+    Returns `laws`. Raises ValueError, and changes nothing, where a parameter cannot have its name.
+    """
     declared = {}
     for law in laws.values():
         for name, own in law.parameters.items():
@@ -87,7 +91,7 @@ def known(parameters, micro):
 
 
 def identity(name):
-    """What tells the law of this name from others, as text: with its version if it was registered."""
+    """Text that tells the law of this name from others: the name, and the version of a registered law."""
     law = LAWS.get(name)
     return f"{name} {law.version}" if law and law.version else name
 

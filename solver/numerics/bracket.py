@@ -41,21 +41,6 @@ def false_position(evaluate, start, tolerance, steps=80):
     return x, g
 
 
-def bisection(evaluate, start, tolerance):
-    """As :func:`false_position`, by halving the bracket until it is below the tolerance."""
-    low, g = _outwards(evaluate, start, -1)
-    high, g_high = _outwards(evaluate, start, +1)
-    x = 0.5 * (low + high)
-    active = np.flatnonzero(np.isfinite(g + g_high))
-    while len(active):
-        g[active] = value = evaluate(x[active], active)
-        below = value < 0
-        low[active], high[active] = np.where(below, x[active], low[active]), np.where(below, high[active], x[active])
-        x[active] = 0.5 * (low[active] + high[active])
-        active = active[(high[active] - low[active] > tolerance[active]) & ~np.isnan(value)]
-    return x, g
-
-
 def _outwards(evaluate, start, sign):
     """An end of the bracket on the side `sign` of the start, and the function there."""
     end, step = start + 0.1 * sign, np.full(len(start), 0.1)

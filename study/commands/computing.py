@@ -11,6 +11,16 @@ from .answers import cost_line, count_lines, failure_lines, report_line, state_l
 from .arguments import study_file
 
 
+def items(options) -> list:
+    """What the command is for: the files that were given, or those of a folder."""
+    if options.command != "list":
+        return options.items
+    files = sorted(Path(options.folder).glob("*.toml"))
+    if not files:
+        answer(f"no study files in {options.folder}")
+    return files
+
+
 def list_(options, file: Path) -> int:
     """Say the size and the state of a study."""
     study = load(file, options.results)
@@ -55,9 +65,13 @@ def _opened(options, file: str) -> Study:
 
 
 def _compute(study: Study, options, **more) -> int:
-    names, name = ("workers", "scheduler", "fail_fast", "yes"), study.definition.name
-    chosen = {name: getattr(options, name) for name in names}
-    report = study.run(**chosen, **more, processes=True, stream=sys.stderr)
+    chosen = {name: getattr(options, name) for name in ("workers", "scheduler", "fail_fast", "yes")}
+    return completed(study, **chosen, **more)
+
+
+def completed(study: Study, **options) -> int:
+    """Run a study and say what came of it; returns the exit code."""
+    name, report = study.definition.name, study.run(**options, processes=True, stream=sys.stderr)
     if report.failures:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1

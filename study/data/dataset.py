@@ -49,8 +49,9 @@ def assembled(
         for name, flat in arrays.items()
         if name not in grid.values
     }
-    told = {"micro_laws": "\n".join(found)} if (found := law_versions(grid)) else {}
-    return plainly_written(xr.Dataset(variables, coordinates, provenance(definition, command) | told))
+    laws = law_versions(grid)
+    about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
+    return plainly_written(xr.Dataset(variables, coordinates, about))
 
 
 def plainly_written(dataset: xr.Dataset) -> xr.Dataset:

@@ -58,7 +58,7 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     }
     none = xr.zeros_like(v["status"], dtype=np.int32)
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), none)
-    flags = _named(xr.DataArray(flags, dataset["status"].coords), "validity")
+    flags = named(xr.DataArray(flags, dataset["status"].coords), "validity")
     flags.attrs["flag_masks"] = np.array(list(ASSUMPTIONS), dtype=np.int32)
     flags.attrs["flag_meanings"] = " ".join(ASSUMPTIONS.values())
     return flags
@@ -71,27 +71,27 @@ def _used_a_thin_layer(model_used: xr.Variable) -> xr.Variable:
 
 def nominal_area(dataset: xr.Dataset) -> xr.DataArray:
     """Nominal contact area An = πa², in R²."""
-    return _named(np.pi * dataset["a"] ** 2, "An")
+    return named(np.pi * dataset["a"] ** 2, "An")
 
 
 def nominal_area_ratio(dataset: xr.Dataset, a0) -> xr.DataArray:
     """Nominal contact area over that of the radius a0, An/(π a0²)."""
-    return _named((dataset["a"] / a0) ** 2, "An_ratio")
+    return named((dataset["a"] / a0) ** 2, "An_ratio")
 
 
 def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Mean nominal pressure P/An, in E2*."""
-    return _named(dataset["P"] / (np.pi * dataset["a"] ** 2), "p_mean")
+    return named(dataset["P"] / (np.pi * dataset["a"] ** 2), "p_mean")
 
 
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return _named(_spots(dataset).where(_rough(dataset["micro"])), "spots")
+    return named(_spots(dataset).where(_rough(dataset["micro"])), "spots")
 
 
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return _named(_spot_radius(dataset).where(_rough(dataset["micro"])), "b0")
+    return named(_spot_radius(dataset).where(_rough(dataset["micro"])), "b0")
 
 
 def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
@@ -106,7 +106,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         given = [_given(dataset, name) for name in law.parameters]
         spots = xr.apply_ufunc(_largest(law), dataset["p"], E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
-    return _named(found.max("x"), "p_peak")
+    return named(found.max("x"), "p_peak")
 
 
 def _largest(law):
@@ -120,7 +120,7 @@ def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
     A smooth punch on a half-space has E_eff = E*. On a layer E_eff is that of a flat punch of radius a, whatever the
     shape of the smooth punch, since dP/dD at p(a) = 0 does not change with a; roughness lowers it.
     """
-    return _named(dataset["dP_dD"] / (2 * dataset["a"]), "E_eff")
+    return named(dataset["dP_dD"] / (2 * dataset["a"]), "E_eff")
 
 
 def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
@@ -151,7 +151,8 @@ def _given(values, name: str):
     return values.get(name, xr.Variable((), np.nan))
 
 
-def _named(array: xr.DataArray, name: str) -> xr.DataArray:
+def named(array: xr.DataArray, name: str) -> xr.DataArray:
+    """The array under a name of the vocabulary, with its attributes. Raises ValueError for physical units."""
     if any(coordinate.attrs.get("units", "1") != "1" for coordinate in array.coords.values()):
         raise ValueError(
             f"{name} is derived from dimensionless datasets: derive first, then convert with study.to_physical"

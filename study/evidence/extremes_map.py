@@ -10,6 +10,7 @@ from matplotlib.lines import Line2D
 from solver import Status
 
 from ..data.dataset import NO_SOLUTION
+from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 
 BASES = {"half_space": "half-space", "thin_layer": "thin layer", "layered": "exact layer"}
 LAWS = ("smooth", "disc_cell", "power_law")
@@ -28,9 +29,9 @@ _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
 COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"), strict=True)) | FAILED
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
-Columns = dict[str, np.ndarray]
 
 
+@figure("extremes", "extremes", "extremes_layered", size=(TWO_COLUMNS, 9.2), panels=(5, 3))
 def maps(panels, *studies: xr.Dataset) -> Columns:
     """Rows: a base and two of its parameters; columns: every case as a point, by its status; of the converged cases of
     a cell the median error over rtol, and the largest number of iterations. The numbers are those of the cells that
@@ -116,6 +117,27 @@ def legend(panels, images, present: np.ndarray) -> None:
     figure.legend(handles=handles, loc="outside lower left", ncols=2, fontsize=7)
 
 
+@table(
+    "extremes",
+    "extremes",
+    "extremes_layered",
+    caption="""Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not
+    apply, the punch lifts off), shares of the others, error over rtol and iterations of the converged ones.""",
+    columns="""
+    base
+    law
+    cases | d
+    n/a | .2%
+    lift-off | .2%
+    converged | .2%
+    above rtol | .2%
+    failed | .2%
+    error 50% | .1e
+    error 99.9% | .1e
+    error max | .1e
+    iterations | .0f
+    max | .0f""",
+)
 def shares(*studies: xr.Dataset) -> list[tuple]:
     """Rows of the table: for each base and law the cases, the shares that have no solution, and of the others those
     that converged, missed rtol, failed otherwise; of the converged ones the median, 99.9 % and largest error over

@@ -18,7 +18,6 @@ import numpy as np
 import xarray as xr
 
 from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
-from solver.parameters import BASES
 
 from ..data.provenance import provenance
 from ..files.examine import examine
@@ -35,7 +34,6 @@ PATIENCE = 1.0
 """Seconds after which a measurement is not repeated."""
 
 PAPERS = ("paper, layer", "paper, half-space")
-PAPERS_BASES = ("thin_layer", "half_space")
 TOLERANCES = tuple(10.0**-i for i in range(2, 10))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
 SLOW, COPIES = 20, 10
@@ -48,7 +46,7 @@ FINE = (390.0, 640.0, 1100.0)
 class Way:
     """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
 
-    sets : where it is measured; bases : the cases it takes part in; most : of these it takes no more, for slow ones;
+    sets : where it is measured; most : of their cases it takes no more, for slow ones;
     copies : of the paper's cases in the batch that is timed, for what solves a hundred in no time;
     prepare : what is done once for a setting, however many cases follow, and not timed
     """
@@ -57,25 +55,13 @@ class Way:
     varied: str
     settings: tuple[float, ...]
     sets: tuple[str, ...] = tuple(SETS)
-    bases: tuple[str, ...] = BASES
     most: int = 10**6
     copies: int = 1
     prepare: Callable[[float], object] = lambda setting: None
 
-    def index(self, cases: dict) -> np.ndarray:
-        """The cases that it takes."""
-        fits = np.flatnonzero(np.isin(cases["base"], self.bases))
-        return fits[np.unique(np.linspace(0, len(fits) - 1, min(self.most, len(fits))).round().astype(int))]
-
-
-def papers_way(cases: dict, k: float, intervals: float) -> Solution:
-    """The paper's, in batches of one base and law; everything is iterated until the mesh is the largest error."""
-    problem = Problem.of(**cases)
-    pieces = []
-    for base, micro in {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}:
-        index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
-        pieces.append((index, solve_uniform(problem.take(index), int(intervals), k, 0.3 / intervals**2)))
-    return Solution.join(len(problem), 0, pieces)
+    def index(self, size: int) -> np.ndarray:
+        """Which of `size` cases it takes."""
+        return np.unique(np.linspace(0, size - 1, min(self.most, size)).round().astype(int))
 
 
 def changed(**parameters) -> Callable[[dict, float], Solution]:
@@ -104,12 +90,13 @@ def _picard(k: float) -> Way:
 
 
 def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
-    """The paper's way with one k, on meshes of `settings` intervals."""
+    """The paper's way with one k, on meshes of `settings` intervals; all is iterated until the mesh is the largest
+    error."""
 
-    def mesh(intervals: float):
-        return uniform_mesh(int(intervals))
+    def run(cases: dict, intervals: float):
+        return solve_uniform(Problem.of(**cases), int(intervals), k, 0.3 / intervals**2)
 
-    return Way(lambda cases, n: papers_way(cases, k, n), "intervals", settings, sets, PAPERS_BASES, most, prepare=mesh)
+    return Way(run, "intervals", settings, sets, most, prepare=lambda intervals: uniform_mesh(int(intervals)))
 
 
 WAYS = {
@@ -152,7 +139,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, com
         for j, way in enumerate(ways.values()):
             if name not in way.sets:
                 continue
-            cases, reference = taken(*everything, way.index(everything[0]))
+            cases, reference = taken(*everything, way.index(len(everything[1].a)))
             counts[i, j] = len(reference.a)
             for step, setting in enumerate(way.settings):
                 copies = way.copies if name in PAPERS else 1
@@ -217,13 +204,14 @@ def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, 
     title, text = "Work and precision of every way to solve the model", plan(ways, size)
     whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
     coordinates = {"set": list(SETS), "way": list(ways)}
-    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.iterates())
+    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.measured())
 
 
 def plan(ways: dict[str, Way], size: int) -> str:
     """What is measured, as text."""
     settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
-    return json.dumps({"size": size, "seed": SEED, "ways": settings})
+    iterates = [paper_error.INTERVALS, paper_error.STEPS]
+    return json.dumps({"size": size, "seed": SEED, "ways": settings, "iterates": iterates})
 
 
 def digest(text: str) -> str:

@@ -1,8 +1,10 @@
-"""The work-precision study as a figure and as a table."""
+"""The work-precision study as a figure and as tables."""
 
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
+
+from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 
 FLOOR = 1e-12
 """Smaller errors are those of the reference."""
@@ -29,9 +31,14 @@ MODELS = {"the other law": "power law for the exact law", "the other layer": "th
 MODEL_LINE = {"color": "0.35", "linewidth": 0.8, "linestyle": (0, (4, 2)), "zorder": 0}
 SETTLED = 0.99
 """Share of ended cases from which on a mark is filled."""
-Columns = dict[str, np.ndarray]
+REACHED = 0.95
+"""A setting reaches a target when this share of the cases ends and 95 % of all are within it."""
+TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
+"""Where the paper's way is set beside Newton."""
 
 
+@figure("tradeoff", "tradeoff", size=(TWO_COLUMNS, 6.4), panels=(2, 2))
 def work_precision(panels, found: xr.Dataset) -> Columns:
     """Error of 95 % of the cases against time per case; a panel a set. Models that differ are lines at their median."""
     for axes, name in zip(panels.ravel(), found["set"].values.tolist(), strict=True):
@@ -94,6 +101,22 @@ def label(way: str) -> str:
     return NAMES.get(way, way.replace("picard", "(8), (10) on Newton's nodes,").replace("k =", "$k$ ="))
 
 
+@table(
+    "tradeoff",
+    "tradeoff",
+    caption="""Work and precision: time per case on one thread, error of half and of 95% of the cases, largest error,
+    share of the cases that ended.""",
+    columns=r"""
+    set
+    way
+    setting
+    cases | d
+    time/us | .1f | time/\textmu s
+    error 50% | .1e
+    error 95% | .1e
+    largest | .1e
+    ended | .1%""",
+)
 def rows(found: xr.Dataset) -> list[tuple]:
     """Set, way, cases, setting, time per case (µs), median, 95 % and largest error, share ended."""
     table = []
@@ -108,6 +131,54 @@ def rows(found: xr.Dataset) -> list[tuple]:
                 table.append(
                     (name, words, setting, int(here["cases"]), 1e6 * float(here["time"]), *errors, float(here["ended"]))
                 )
+    return table
+
+
+@table(
+    "tradeoff_cheapest",
+    "tradeoff",
+    caption="""Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
+    none.""",
+    columns="\n".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]),
+)
+def cheapest(found: xr.Dataset) -> list[tuple]:
+    """Set, way, and the time per case (µs) for each of TARGETS."""
+    table = []
+    for name in found["set"].values.tolist():
+        for way in STYLES:
+            part = found.sel(set=name, way=way)
+            if int(part["cases"]):
+                times = (time_to(part, target) for target in TARGETS)
+                table.append((name, way, *(time if np.isfinite(time) else "-" for time in times)))
+    return table
+
+
+def time_to(part: xr.Dataset, target: float) -> float:
+    """µs per case of the cheapest setting of one way that reaches the target; inf when none does."""
+    reached = (part["most"].values <= target) & (part["ended"].values >= REACHED)
+    return 1e6 * float(np.min(part["time"].values[reached], initial=np.inf))
+
+
+@table(
+    "tradeoff_factors",
+    "tradeoff",
+    caption="On the paper's layer: the paper's way at its cheapest beside Newton (rtol), time per case in us.",
+    columns="""
+    error | g
+    the paper's way | .3g
+    with
+    Newton | .3g
+    factor | .0f""",
+)
+def factors(found: xr.Dataset) -> list[tuple]:
+    """Error, time of the paper's way and which k, time of Newton, their ratio; where the paper's way gets there."""
+    layer, table = found.sel(set="paper, layer"), []
+    ways = [way for way in layer["way"].values.tolist() if way.startswith("paper") and int(layer["cases"].sel(way=way))]
+    for target in ERRORS:
+        theirs, way = min((time_to(layer.sel(way=way), target), way) for way in ways)
+        newton = time_to(layer.sel(way="newton, rtol"), target)
+        if np.isfinite(theirs):
+            table.append((target, theirs, way.removeprefix("paper "), newton, theirs / newton))
     return table
 
 

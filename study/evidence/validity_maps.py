@@ -9,6 +9,8 @@ from matplotlib.ticker import NullFormatter
 from solver.models.thin_layer_error import thin_layer_error
 
 from ..data.derived import from_layered
+from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from ..spec.vocabulary import VOCABULARY
 
 LEVELS = (-10.0, -0.1, -0.01, 0.01, 0.1, 10.0)
 COLOURS = ("#4f9bcb", "#c6dcee", "white", "#fbd9b5", "#f0914a")
@@ -20,6 +22,7 @@ WORDS = (
     "more than 10 % too large",
 )
 ESTIMATE = {"colors": "black", "linestyles": [(0, (2, 1.5))], "linewidths": 0.9}
+REFUSED = {"facecolor": "0.93", "edgecolor": "0.5", "hatch": "////", "linewidth": 0}
 TITLES = {
     "frictionless": "frictionless",
     "bonded, ν = 0": r"bonded, $\nu = 0$",
@@ -28,9 +31,9 @@ TITLES = {
     "bonded, ν1 = 0.45, ν2 = 0.3": "bonded, $\\nu_1 = 0.45$,\n$\\nu_2 = 0.3$",
 }
 MAIN_CASE = {"h": 0.02, "n": 0.5}
-Columns = dict[str, np.ndarray]
 
 
+@figure("validity", "validity", size=(TWO_COLUMNS, 7.4), panels=(5, 5))
 def given_load(panels, found: xr.Dataset) -> Columns:
     """Errors of a, p(0), D, Ar/An, p_max under one load, paper's main roughness; a row each, a column per material."""
     rough = found.sel(micro="disc_cell")
@@ -41,6 +44,7 @@ def given_load(panels, found: xr.Dataset) -> Columns:
     return columns
 
 
+@figure("validity_load", "validity_load", size=(TWO_COLUMNS, 3.7), panels=(2, 5))
 def given_radius(panels, found: xr.Dataset) -> Columns:
     """Error of the load at one contact radius: smooth punch, with the estimate dashed, and the paper's roughness."""
     rows = [(micro, found.sel(micro=micro), "P") for micro in ("smooth", "disc_cell")]
@@ -72,7 +76,7 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
         )
     for axes in panels[-1]:
         axes.set_xlabel("$h/a$")
-    return table(rows, parts)
+    return long(rows, parts)
 
 
 def materials(dataset: xr.Dataset) -> list[xr.Dataset]:
@@ -80,15 +84,20 @@ def materials(dataset: xr.Dataset) -> list[xr.Dataset]:
     return [dataset.isel(case=i) for i in range(dataset.sizes["case"])]
 
 
-def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.DataArray]:
-    """Bands of the error over h/a (of the exact layer) and n; hatched where the thin-layer equation does not apply."""
+def error_over_thickness(case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """h/a, with the a of the exact layer, and the relative error of a quantity on the thin layer; both over (n, h)."""
     error = from_layered(case, quantity).transpose("n", "h")
     a = case["a"].sel(base="layered", drop=True) if "base" in case["a"].dims else case["a"]
-    h_a = (case["h"] / a).broadcast_like(error).transpose("n", "h")
+    return (case["h"] / a).broadcast_like(error).transpose("n", "h"), error
+
+
+def one_map(axes, case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.DataArray]:
+    """Bands of the error over h/a (of the exact layer) and n; hatched where the thin-layer equation does not apply."""
+    h_a, error = error_over_thickness(case, quantity)
     n = case["n"].broadcast_like(h_a)
     drawn = np.isfinite(error.values).any(axis=1)
     if not drawn.all():
-        axes.axhspan(float(case["n"][drawn].max()), 1, facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0)
+        axes.axhspan(float(case["n"][drawn].max()), 1, **REFUSED)
     grid = h_a.values[drawn], n.values[drawn], error.values[drawn]
     axes.contourf(*grid, LEVELS, colors=COLOURS)
     axes.contour(*grid, LEVELS[1:-1], colors="0.25", linewidths=[0.9, 0.5, 0.5, 0.9], linestyles="solid")
@@ -112,33 +121,63 @@ def main_case(axes, case: xr.Dataset) -> None:
 
 def legend(panels, *, estimate: bool) -> None:
     """One legend for the whole figure, below it."""
-    handles = [
-        Patch(facecolor=colour, edgecolor="0.25", linewidth=0.5, label=word)
-        for colour, word in zip(COLOURS, WORDS, strict=True)
-    ]
-    handles.append(
-        Patch(facecolor="0.93", edgecolor="0.5", hatch="////", linewidth=0, label=r"does not apply, $C \leq 0$")
-    )
+    edge = {"edgecolor": "0.25", "linewidth": 0.5}
+    handles = [Patch(facecolor=colour, label=word, **edge) for colour, word in zip(COLOURS, WORDS, strict=True)]
+    handles.append(Patch(label=r"does not apply, $C \leq 0$", **REFUSED))
     handles.append(Line2D([], [], color="black", marker="*", linestyle="", label="the paper's main case"))
     if estimate:
-        handles.append(
-            Line2D(
-                [], [], color="black", linestyle=(0, (2, 1.5)), linewidth=0.9, label=r"estimate, $\pm 1$ and $\pm 10$ %"
-            )
-        )
+        line = {"color": "black", "linestyle": ESTIMATE["linestyles"][0], "linewidth": 0.9}
+        handles.append(Line2D([], [], label=r"estimate, $\pm 1$ and $\pm 10$ %", **line))
     panels[0][0].figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, handlelength=1.8)
 
 
-def table(rows, parts) -> Columns:
-    """Long columns: material, quantity (number of the row), h/a, n, error."""
-    columns = {name: [] for name in ("row", "material", "h/a", "n", "error")}
+def long(rows, parts) -> Columns:
+    """Long columns: quantity (number of the row), material, h/a, n, error."""
+    found, per_row = [], len(parts) // len(rows)
     for i, (h_a, error) in enumerate(parts):
-        finite = np.isfinite(error.values)
-        count = int(finite.sum())
-        per_row = len(parts) // len(rows)
-        columns["row"].append(np.full(count, i // per_row))
-        columns["material"].append(np.full(count, i % per_row))
-        columns["h/a"].append(h_a.values[finite])
-        columns["n"].append(error["n"].broadcast_like(error).values[finite])
-        columns["error"].append(error.values[finite])
-    return {name: np.concatenate(part) for name, part in columns.items()}
+        n, finite = error["n"].broadcast_like(error).values, np.isfinite(error.values)
+        place = np.full((2, finite.sum()), [[i // per_row], [i % per_row]])
+        found.append([*place, *(array[finite] for array in (h_a.values, n, error.values))])
+    names = ("row", "material", "h/a", "n", "error")
+    return {name: np.concatenate(column) for name, column in zip(names, zip(*found, strict=True), strict=True)}
+
+
+MATERIALS = ("frictionless", "nu=0", "nu=0.3", "nu=0.45")
+"""The first cases of the validity studies: without friction, and bonded with equal Poisson ratios."""
+
+
+@table(
+    "validity",
+    "validity",
+    "validity_load",
+    caption="""Largest h/a (0.01 or more) up to which the thin-layer model errs by less than 1% and 10%, n from 0.01 to
+    0.95; nu: bonded.""",
+    columns="\n".join(
+        ["punch", "error in", "given"]
+        + [rf"{name} {level}% | .3g | {name}, {level}\%" for name in MATERIALS for level in (1, 10)]
+    ),
+)
+def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
+    """Largest h/a up to which the thin-layer model errs by less than 1 % and 10 %, whatever n from 0.01 to 0.95."""
+    rows = []
+    for micro, names in (("smooth", ("P", "a", "p0", "D")), ("disc_cell", ("P", "a", "p0", "D", "Ar_An", "p_max"))):
+        for name in names:
+            found = (given_radius if name == "P" else given_load).sel(micro=micro)
+            cases = (found.isel(case=i) for i in range(len(MATERIALS)))
+            largest = [round(largest_thickness(case, name, level), 3) for case in cases for level in (0.01, 0.1)]
+            punch, given = "smooth" if micro == "smooth" else "rough", "a" if name == "P" else "P"
+            rows.append((punch, VOCABULARY[name].symbol, given, *largest))
+    return rows
+
+
+def largest_thickness(case: xr.Dataset, name: str, level: float) -> float:
+    """Smallest h/a, over all n, at which |error| of a quantity exceeds `level`; the error is linear in ln(h/a) between
+    the points of the grid."""
+    h_a, error = error_over_thickness(case, name)
+    crossings = [np.inf]
+    for x, e in zip(np.log(h_a.values), error.values, strict=True):
+        i = int(np.argmax(np.abs(e) > level))
+        if abs(e[i]) > level:
+            limit = np.copysign(level, e[i])
+            crossings.append(x[i - 1] + (limit - e[i - 1]) * (x[i] - x[i - 1]) / (e[i] - e[i - 1]) if i else x[0])
+    return float(np.exp(min(crossings)))

@@ -5,15 +5,16 @@ import xarray as xr
 from matplotlib.lines import Line2D
 
 from ..data.derived import effective_modulus, peak_pressure
+from .registry import TWO_COLUMNS, Columns, figure
 
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
 }  # fmt: skip
 """By n, from soft (blue) to hard (red)."""
 RANGE = (0.05, 20.0)
-Columns = dict[str, np.ndarray]
 
 
+@figure("coatings", "coatings", size=(TWO_COLUMNS, 7.0), panels=(3, 2))
 def master_curves(panels, found: xr.Dataset) -> Columns:
     """Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two
     interfaces.

@@ -4,6 +4,7 @@ import os
 import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager
+from glob import escape
 from pathlib import Path
 
 
@@ -14,8 +15,8 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
     folder : where the temporary file is, on the file system of `path`; default beside it. The name is random, not the
         process id: two machines that share a folder may have the same.
     """
-    if path.is_symlink():  # what it points to is replaced, on whatever file system that is
-        path, folder = Path(os.path.realpath(path)), None
+    if path.is_symlink():
+        path, folder = target(path), None
     temporary = (folder or path.parent) / f".{path.name}.{secrets.token_hex(4)}.tmp"
     try:
         yield temporary
@@ -26,6 +27,18 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
         raise
     flush_folder(path.parent)  # and what comes after, such as removing blocks, before the rename
+
+
+def target(path: Path) -> Path:
+    """The file that a path stands for: of a symbolic link what it leads to, on whatever file system that is."""
+    return Path(os.path.realpath(path)) if path.is_symlink() else path
+
+
+def remove_temporary(path: Path) -> None:
+    """Remove what writers of `path` that were killed have left beside it."""
+    path = target(path)
+    for found in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
+        found.unlink(missing_ok=True)
 
 
 def make_folder(path: Path) -> None:

@@ -16,8 +16,10 @@ So what is damaged can be named, and the cases that are not damaged can be told 
 import hashlib
 import json
 
-import netCDF4
 import numpy as np
+
+from .access import Unusable
+from .netcdf import File
 
 ATTRIBUTE = "checksums"
 NOT_SUMMED = (ATTRIBUTE, "history")
@@ -81,43 +83,28 @@ def identity(numerics: str, x: np.ndarray, keys: np.ndarray) -> str:
     return digest(numerics, np.asarray(x, dtype=np.float64), keys)
 
 
-def head(file: netCDF4.Dataset, whole: list[str], over: list[str], attributes: list[str]) -> dict[str, str]:
+def head(file: File, whole: list[str], over: list[str], attributes: list[str]) -> dict[str, str]:
     """The lines of the attributes, the structure and the variables read `whole`; "lost" for what cannot be read."""
 
     def line(make, *arguments) -> str:
         try:
-            return make(*arguments)
-        except (RuntimeError, AttributeError, IndexError, UnicodeDecodeError):
+            return digest(make(*arguments))
+        except (Unusable, RuntimeError, AttributeError, IndexError, UnicodeDecodeError):
             return "lost"
 
-    found = {f"@{name}": line(lambda name: digest(str(attribute(file, name))), name) for name in attributes}
+    found = {f"@{name}": line(lambda name: str(file.attribute(name)), name) for name in attributes}
     found["=structure"] = line(structure, file, [*whole, *over])
-    return found | {name: line(lambda name: digest(_stored(file[name])), name) for name in whole}
+    return found | {name: line(lambda name: file.read(name, characters=True), name) for name in whole}
 
 
-def _stored(variable: netCDF4.Variable) -> np.ndarray:
-    """All of a variable, texts as the characters that are in the file."""
-    variable.set_auto_chartostring(False)
-    return np.asarray(variable[...])
-
-
-def structure(file: netCDF4.Dataset, names: list[str]) -> str:
-    """Digest of dimensions, types and attributes of the variables `names`."""
-    found = {}
+def structure(file: File, names: list[str]) -> str:
+    """Dimensions, types and attributes of the variables `names`, as JSON."""
+    found, sizes, dims = {}, file.sizes, file.variables
     for name in names:
-        variable = file[name]
-        kind = "str" if variable.dtype is str else variable.dtype.str
-        attributes = {key: plain(attribute(variable, key)) for key in variable.ncattrs()}
-        found[name] = [kind, variable.dimensions, variable.shape, attributes]
-    return digest(json.dumps(found, sort_keys=True))
-
-
-def attribute(thing, name: str):
-    """An attribute of a file or of a variable, whatever bytes its text consists of."""
-    try:
-        return thing.getncattr(name)
-    except UnicodeDecodeError:
-        return thing.getncattr(name, encoding="latin-1")
+        kind = "str" if file.dtype(name) is str else file.dtype(name).str
+        attributes = {key: plain(file.attribute(key, name)) for key in file.attributes(name)}
+        found[name] = [kind, dims[name], [sizes[dim] for dim in dims[name]], attributes]
+    return json.dumps(found, sort_keys=True)
 
 
 def plain(value) -> list:

@@ -1,20 +1,22 @@
 """What a results file is: sound, damaged and where, of an earlier version, or none of ours."""
 
+import math
 import os
 import pickle
 import subprocess
-import sys
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from functools import lru_cache
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 
 from ..spec.grid import Grid, windows
 from ..spec.vocabulary import names
-from .checksums import ATTRIBUTE, Rows, attribute, head, parsed, split_runs
-from .netcdf import Unusable, access, check_regular, closing, opened
+from .access import Unusable
+from .apart import python
+from .checksums import ATTRIBUTE, Rows, head, parsed, split_runs
+from .netcdf import File, check_regular
 from .seal import LARGE, is_whole
 
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
@@ -90,13 +92,13 @@ def stamp(path: Path) -> tuple | None:
 @lru_cache(maxsize=16)
 def examined_apart(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
     """The same of a file without a whole seal, which may end the process that reads it: in another process."""
-    command = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
-    command += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
-    where = os.pathsep.join([str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH", "")]).rstrip(os.pathsep)
-    told = {"input": pickle.dumps((path, columns)), "env": os.environ | {"PYTHONPATH": where}, "capture_output": True}
+    statement = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
+    statement += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
+    command, environment = python(statement)
+    told = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
     patience = PATIENCE + path.stat().st_size / SLOWEST
     try:
-        child = subprocess.run([sys.executable, "-c", command], **told, timeout=patience)
+        child = subprocess.run(command, **told, timeout=patience)
         return pickle.loads(child.stdout)
     except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
         return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
@@ -105,34 +107,30 @@ def examined_apart(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
 def examined(path: Path, columns: tuple[str, ...] | None = None) -> Condition:
     """:func:`examine`, in this process."""
     try:
-        file = opened(path)
+        with File(path) as file:
+            return _examined(file, columns)
     except FileNotFoundError:
         return Condition(path, "missing")
     except Unusable as error:
         return Condition(path, error.kind, error.reason)
-    with closing(file, path):
-        try:
-            return _examined(path, file, columns)
-        except Unusable as error:
-            return Condition(path, error.kind, error.reason)
-        except BROKEN as error:
-            return Condition(path, "damaged", f"is damaged: no results are laid out like this ({error})")
+    except BROKEN as error:
+        return Condition(path, "damaged", f"is damaged: no results are laid out like this ({error})")
 
 
-def _examined(path: Path, file: netCDF4.Dataset, columns: tuple[str, ...] | None) -> Condition:
-    with access(path):
-        about = {name: str(attribute(file, name)) for name in file.ncattrs() if name in WHOSE}
-        lines = parsed(about.pop(ATTRIBUTE)) if ATTRIBUTE in about else {}
-        if not lines and len(about) < 2:
-            return Condition(path, "foreign", "is a netCDF file of another program")
-        whole, over = _split(file, lines)
-        sizes = {dim: len(file.dimensions[dim]) for dim in file["status"].dimensions} if over else {}
-        strange = [] if lines else [name for name in over if not _in_place(file[name].dimensions, tuple(sizes))]
-        if strange:
-            reason = f"another program has changed it: its dimensions are {file[strange[0]].dimensions} in {strange[0]}"
-            return Condition(path, "foreign", reason)
-        found = head(file, whole, over, [line[1:] for line in lines if line.startswith("@")])
-    rows, lost = _read(path, file, [name for name in over if columns is None or name in columns], sizes)
+def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
+    about = {name: str(file.attribute(name)) for name in file.attributes() if name in WHOSE}
+    lines = parsed(about.pop(ATTRIBUTE)) if ATTRIBUTE in about else {}
+    if not lines and len(about) < 2:
+        return Condition(file.path, "foreign", "is a netCDF file of another program")
+    whole, over = _split(file, lines)
+    dims = file.variables
+    sizes = {dim: file.sizes[dim] for dim in dims["status"]} if over else {}
+    strange = [] if lines else [name for name in over if not _in_place(dims[name], tuple(sizes))]
+    if strange:
+        reason = f"another program has changed it: its dimensions are {dims[strange[0]]} in {strange[0]}"
+        return Condition(file.path, "foreign", reason)
+    found = head(file, whole, over, [line[1:] for line in lines if line.startswith("@")])
+    rows, lost = _read(file, [name for name in over if columns is None or name in columns], sizes)
     damage = [f"#{name}" for name in lost]
     if lines:
         found |= rows.lines(runs=columns is None)
@@ -141,21 +139,28 @@ def _examined(path: Path, file: netCDF4.Dataset, columns: tuple[str, ...] | None
     kind = "damaged" if damage else "sound" if lines else "unverified"
     reason = CHANGED + _said(damage, intact) if damage else ""
     about = [about.get(name, "") for name in WHOSE[:2]]
-    return Condition(path, kind, reason, *about, sizes, tuple(damage), intact)
+    return Condition(file.path, kind, reason, *about, sizes, tuple(damage), intact)
 
 
-def _split(file: netCDF4.Dataset, lines: dict[str, str]) -> tuple[list[str], list[str]]:
+def _split(file: File, lines: dict[str, str]) -> tuple[list[str], list[str]]:
     """Names of the variables that are read whole, and of those over the cases."""
     if lines:
         over = [line[1:] for line in lines if line.startswith("#")]
         return [line for line in lines if line[0] not in "#@="], over
-    if "status" not in file.variables:
-        return list(file.variables), []
-    status = file["status"]
-    coordinates = {*status.dimensions, *str(getattr(status, "coordinates", "")).split()}
+    there = file.variables
+    if "status" not in there:
+        return list(there), []
+    coordinates = coordinates_of(file)
     known = names("control", "result", "profile", "flag", "count")
-    over = [name for name in known if name in file.variables and name not in coordinates]
-    return [name for name in coordinates if name in file.variables], over
+    return [name for name in coordinates if name in there], [
+        name for name in known if name in there and name not in coordinates
+    ]
+
+
+def coordinates_of(file: File) -> set[str]:
+    """Names of the dimensions and coordinates of the cases."""
+    named = str(file.attribute("coordinates", "status")) if "coordinates" in file.attributes("status") else ""
+    return {*file.variables["status"], *named.split()}
 
 
 def _in_place(dims: tuple[str, ...], cases: tuple[str, ...]) -> bool:
@@ -163,29 +168,29 @@ def _in_place(dims: tuple[str, ...], cases: tuple[str, ...]) -> bool:
     return dims in (cases, (*cases, "x"))
 
 
-def _read(path: Path, file: netCDF4.Dataset, over: list[str], sizes: dict[str, int]) -> tuple[Rows, dict]:
+def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[Rows, dict]:
     """What the variables `over` the cases hold, summed; and name -> runs (start, stop) of cases that cannot be read."""
     grid, lost = Grid(sizes, {}), {}
     rows = Rows(grid.size)
     for name in over:
-        start = 0
-        for window in windows(grid, CHUNK, CHUNK):
-            stop = start + int(np.prod([part.stop - part.start for part in window.values()]))
+        for start, stop, window in runs(grid):
             try:
-                piece = cut_from(path, file, name, window).reshape(stop - start, -1)
+                piece = file.read(name, window).reshape(stop - start, -1)
             except (Unusable, *BROKEN):
                 lost.setdefault(name, []).append((start, stop))
                 piece = np.frombuffer(os.urandom(stop - start), np.uint8)  # fits no checksum
             rows.add(name, piece)
-            start = stop
     return rows, lost
 
 
-def cut_from(path: Path, file: netCDF4.Dataset, name: str, window: dict[str, slice]) -> np.ndarray:
-    """The part of a variable within a window, a slice for each dimension of the cases."""
-    with access(path):
-        variable = file[name]
-        return np.asarray(variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)])
+def runs(grid: Grid) -> Iterator[tuple[int, int, dict[str, slice]]]:
+    """(start, stop, window) of consecutive cases that are read at a time: what can be read and what cannot is told
+    apart by these."""
+    start = 0
+    for window in windows(grid, CHUNK, CHUNK):
+        stop = start + math.prod(part.stop - part.start for part in window.values())
+        yield start, stop, window
+        start = stop
 
 
 def _intact(rows: Rows, lines: dict[str, str], lost: dict) -> np.ndarray:

@@ -1,24 +1,15 @@
-"""The only room that touches netCDF: one thread at a time, whichever thread it is.
-
-Neither netCDF nor HDF5 bears two threads at once, even on different files: the interpreter crashes, or a good file
-seems damaged. All that is done here is done under the lock that xarray takes for the datasets it opens, so a program
-may run studies, ask for their state, open results and read lazily opened ones in any threads. Worker processes and the
-threads that solve never come here: they return arrays.
-"""
+"""The only file that touches netCDF: results files opened, read, written; under the lock of `access`."""
 
 import os
-import signal
 import stat
-import threading
-from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import suppress
 from pathlib import Path
 
 import netCDF4
+import numpy as np
 import xarray as xr
-from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
 
-from ..spec.definition import StudyError
+from .access import Access, Unusable, access
 
 try:
     import fcntl
@@ -30,123 +21,101 @@ END = {0: 40, 1: 44, 2: 28, 3: 28}
 """Version of the superblock, byte 8 of a file of HDF5 -> place of the 8 bytes that say how long the file is."""
 
 
-class Unusable(StudyError, OSError):
-    """A results file that cannot be used. `kind`: "damaged", "foreign" (none of ours) or "unreadable"."""
+class File:
+    """An open file; as a context manager it is closed at the end. Whatever is done with it is done under the lock."""
 
-    code = 1
+    def __init__(self, path: Path, mode: str = "r", called: Path | None = None):
+        """Open a file to be read, or with mode "w" a new one, which messages call `called`.
 
-    def __init__(self, path: Path, kind: str, reason: str):
-        self.kind, self.reason = kind, reason
-        super().__init__([f"{path}: {reason}"])
+        Raises FileNotFoundError, Unusable, and when it is written OSError.
+        """
+        self.path, self._writing = Path(called or path), mode == "w"
+        if not self._writing:
+            check_regular(path)
+        with self._access():
+            try:
+                self._file = netCDF4.Dataset(path, mode)
+            except OSError as error:
+                raise error if self._writing else _cannot_be_opened(path, error) from error
+            self._file.set_auto_maskandscale(False)
 
+    def __enter__(self) -> "File":
+        return self
 
-class Access:
-    """The lock, for what is done with the file `path`. A thread that holds it may take it again.
+    def __exit__(self, failed, *_) -> None:
+        if failed is None:
+            with self._access():
+                self._file.close()
+        else:
+            with access(self.path), suppress(RuntimeError):  # of a full disk; the first error is the one to tell
+                self._file.close()
 
-    Errors of the library leave it as `Unusable`, or as OSError when the file is being written. xarray takes it as the
-    lock of a dataset, which may go to another process.
-    """
+    def _access(self):
+        return access(self.path, self._writing)
 
-    _mine = threading.RLock()  # xarray's lock blocks a thread that holds it; always taken in this order
-    _depth = 0
+    def _of(self, name: str):
+        return self._file[name] if name else self._file
 
-    def __init__(self, path, writing: bool = False):
-        self.path, self.writing = Path(path), writing
+    @property
+    def sizes(self) -> dict[str, int]:
+        """Dimension -> its length."""
+        with self._access():
+            return {name: len(dimension) for name, dimension in self._file.dimensions.items()}
 
-    def acquire(self, blocking: bool = True) -> bool:
-        if not Access._mine.acquire(blocking):
-            return False
-        try:
-            again = Access._depth and blocking  # xarray does not block when it closes what is garbage, at any moment
-            taken = again or NETCDF4_PYTHON_LOCK.acquire(blocking)
-        except BaseException:
-            Access._mine.release()
-            raise
-        if not taken:
-            Access._mine.release()
-            return False
-        Access._depth += 1
-        return True
+    @property
+    def variables(self) -> dict[str, tuple[str, ...]]:
+        """Name -> dimensions; a text has one more, of its characters."""
+        with self._access():
+            return {name: variable.dimensions for name, variable in self._file.variables.items()}
 
-    def release(self) -> None:
-        Access._depth -= 1
-        if not Access._depth:
-            NETCDF4_PYTHON_LOCK.release()
-        Access._mine.release()
+    def dtype(self, name: str) -> np.dtype | type:
+        """Type of a variable, `str` for netCDF's own texts."""
+        with self._access():
+            return self._file[name].dtype
 
-    def locked(self) -> bool:
-        return NETCDF4_PYTHON_LOCK.locked()
+    def attributes(self, name: str = "") -> list[str]:
+        """Names of the attributes of a variable, or of the file."""
+        with self._access():
+            return self._of(name).ncattrs()
 
-    def __enter__(self) -> None:
-        self.acquire()
+    def attribute(self, name: str, of: str = ""):
+        """An attribute of a variable, or of the file, whatever bytes its text consists of."""
+        with self._access():
+            try:
+                return self._of(of).getncattr(name)
+            except UnicodeDecodeError:
+                return self._of(of).getncattr(name, encoding="latin-1")
 
-    def __exit__(self, _, error, __) -> None:
-        self.release()
-        if isinstance(error, (RuntimeError, AttributeError)) and str(error).startswith("NetCDF: "):
-            if self.writing:
-                raise OSError(f"{self.path} cannot be written ({error}): is the disk full?") from error
-            raise Unusable(self.path, "damaged", f"is damaged: a part of it cannot be read ({error})") from error
+    def read(self, name: str, window: dict[str, slice] | None = None, characters: bool = False) -> np.ndarray:
+        """A variable, or its part within a window, a slice for each dimension; texts as `characters` if asked for."""
+        with self._access():
+            variable, window = self._file[name], window or {}
+            variable.set_auto_chartostring(not characters)
+            return np.asarray(variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)])
 
+    def define(self, sizes: dict[str, int], attributes: dict) -> None:
+        """Make dimensions, those that are not there yet, and attributes of the file."""
+        with self._access():
+            for name, size in sizes.items():
+                if name not in self._file.dimensions:
+                    self._file.createDimension(name, size)
+            self._file.setncatts(attributes)
 
-@contextmanager
-def access(path, writing: bool = False) -> Iterator[None]:
-    """Hold the lock, and SIGINT and SIGTERM back: an exception while locks are taken would leave one locked."""
-    with interrupts_wait(), Access(path, writing):
-        yield
+    def add(self, name: str, kind, dims: tuple[str, ...], attributes: dict, options: dict) -> None:
+        """Make a variable without values. options : of netCDF4's createVariable"""
+        with self._access():
+            made = self._file.createVariable(name, kind, dims, **options)
+            made.set_auto_mask(False)
+            made.set_auto_chartostring(False)
+            if "chunksizes" in options:
+                made.set_var_chunk_cache(size=1, nelems=1)  # whole chunks are written, once: 64 MB each would hold them
+            made.setncatts(attributes)
 
-
-@contextmanager
-def interrupts_wait() -> Iterator[None]:
-    """Hold SIGINT and SIGTERM back until the block is left."""
-    if threading.current_thread() is not threading.main_thread():
-        yield
-        return
-    pending = []
-    kinds = (signal.SIGINT, signal.SIGTERM)
-    previous = {kind: signal.signal(kind, lambda number, _: pending.append(number)) for kind in kinds}
-    try:
-        yield
-    finally:
-        for kind, handler in previous.items():
-            signal.signal(kind, handler or signal.SIG_DFL)
-        if pending:
-            signal.raise_signal(pending[0])
-
-
-if hasattr(os, "register_at_fork"):  # a child has the lock of no thread that is not there, and no half-done work
-    _forking = Access("")
-    os.register_at_fork(before=_forking.acquire, after_in_parent=_forking.release, after_in_child=_forking.release)
-
-
-def opened(path: Path) -> netCDF4.Dataset:
-    """A file to be read, open; reading and closing it want `access`. Raises FileNotFoundError, Unusable."""
-    check_regular(path)
-    with access(path):
-        try:
-            found = netCDF4.Dataset(path)
-        except OSError as error:
-            raise _cannot_be_opened(path, error) from error
-        found.set_auto_maskandscale(False)
-        return found
-
-
-def created(path: Path) -> netCDF4.Dataset:
-    """A new file, open; writing and closing it want `access`."""
-    with access(path, writing=True):
-        return netCDF4.Dataset(path, "w")
-
-
-@contextmanager
-def closing(file: netCDF4.Dataset, path: Path, writing: bool = False) -> Iterator[netCDF4.Dataset]:
-    """Close the file at the end, under the lock."""
-    try:
-        yield file
-    except BaseException:
-        with access(path), suppress(RuntimeError):  # of a full disk; the first error is the one to tell
-            file.close()
-        raise
-    with access(path, writing):
-        file.close()
+    def write(self, name: str, array: np.ndarray, window: dict[str, slice] | None = None) -> None:
+        """The values of a variable, or of its part within a window."""
+        with self._access():
+            variable, window = self._file[name], window or {}
+            variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)] = array
 
 
 def read(path: Path) -> xr.Dataset:

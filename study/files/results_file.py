@@ -4,16 +4,15 @@ import os
 from itertools import count
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
 from ..data.dataset import plainly_written
-from .atomic import replacing
+from .atomic import replacing, target
 from .checksums import ATTRIBUTE, NOT_SUMMED, Rows, head, text
 from .examine import examine
-from .netcdf import access, closing, created, read, read_lazily
+from .netcdf import File, read, read_lazily
 from .seal import seal
 
 
@@ -33,35 +32,26 @@ def encoding(array: xr.DataArray) -> dict:
     return options | {"zlib": True, "complevel": 1, "shuffle": True}
 
 
-def create(file: netCDF4.Dataset, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int]) -> None:
+def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int]) -> None:
     """Dimensions, attributes and variables as in `part`, but of the sizes and with the coordinates of the `whole`.
 
     chunk : dimension -> its length in a chunk, where that is not all of it
     """
     variables, attributes = encode_dataset_coordinates(part)
     sizes = dict(whole.sizes)
-    for dim, size in sizes.items():
-        file.createDimension(dim, size)
+    file.define(sizes, attributes)
     for name, variable in variables.items():
-        options, values = encoding(part[name]), stored(whole[name]) if name in whole else None
+        options, values, more = encoding(part[name]), stored(whole[name]) if name in whole else None, {}
         dims, kind = variable.dims, variable.dtype
         if kind.kind in "UO":
-            dims, kind = (*dims, f"string{values.shape[-1]}"), "S1"
-            if dims[-1] not in file.dimensions:
-                file.createDimension(dims[-1], values.shape[-1])
+            length = values.shape[-1]
+            dims, kind, more = (*dims, f"string{length}"), "S1", {"_Encoding": "utf-8"}
+            file.define({dims[-1]: length}, {})
         elif name in part.data_vars and dims:
             options["chunksizes"] = [chunk.get(dim, sizes[dim]) for dim in dims]
-        made = file.createVariable(name, kind, dims, **options)
-        made.set_auto_mask(False)
-        made.set_auto_chartostring(False)
-        if "chunksizes" in options:
-            made.set_var_chunk_cache(size=1, nelems=1)  # whole chunks are written, once: 64 MB each would hold them
-        made.setncatts(variable.attrs)
-        if kind == "S1":
-            made.setncattr("_Encoding", "utf-8")
+        file.add(name, kind, dims, variable.attrs | more, options)
         if name in part.coords:
-            made[...] = values
-    file.setncatts(attributes)
+            file.write(name, values)
 
 
 def stored(array: xr.DataArray) -> np.ndarray:
@@ -76,21 +66,21 @@ def stored(array: xr.DataArray) -> np.ndarray:
     return words.astype(f"S{max(1, words.itemsize)}")[..., np.newaxis].view("S1")
 
 
-def add_checksums(file: netCDF4.Dataset, rows: Rows, cases: dict[str, str]) -> None:
+def add_checksums(file: File, rows: Rows, cases: dict[str, str]) -> None:
     """The attribute, when all else is in the file; `rows` of the variables over the cases, and the line `=cases`."""
     whole = [name for name in file.variables if name not in rows.digests]
-    attributes = [name for name in file.ncattrs() if name not in NOT_SUMMED]
+    attributes = [name for name in file.attributes() if name not in NOT_SUMMED]
     found = head(file, whole, list(rows.digests), attributes) | rows.lines() | cases
-    file.setncattr(ATTRIBUTE, text(found))
+    file.define({}, {ATTRIBUTE: text(found)})
 
 
 def write(dataset: xr.Dataset, path: Path, aside: bool = False) -> None:
     """Write a small dataset: `path` either is complete or does not exist. aside : see `set_aside`."""
     with replacing(path) as temporary:
-        with closing(created(temporary), path, writing=True) as file, access(path, writing=True):
+        with File(temporary, "w", path) as file:
             create(file, dataset, dataset, {})
             for name, array in dataset.data_vars.items():
-                file[name][...] = stored(array)
+                file.write(name, stored(array))
             add_checksums(file, Rows(0), {})
         seal(temporary)
         if aside:
@@ -98,7 +88,11 @@ def write(dataset: xr.Dataset, path: Path, aside: bool = False) -> None:
 
 
 def set_aside(path: Path) -> Path:
-    """Give a damaged file that is about to be replaced a second name, NAME.nc.damaged, which keeps it; returns that."""
+    """Give a damaged file that is about to be replaced a second name, NAME.nc.damaged, which keeps it; returns that.
+
+    Of a symbolic link it is what the link leads to that is kept, beside it, for that is what will be replaced.
+    """
+    path = target(path)
     names = (f"{path.name}.damaged{f'-{number}' * (number > 1)}" for number in count(1))
     kept = next(path.with_name(name) for name in names if not path.with_name(name).exists())
     try:

@@ -1,58 +1,58 @@
-"""Figures 3 to 10 of the paper and their companions: each draws on axes from opened datasets and returns its numbers.
+"""Figures 3 to 8 and 10 of the paper, from opened datasets, and a companion of each: the same on the exact layer.
 
 The curves have the paper's names: 1 rough, layered; 2 rough, homogeneous; 1' smooth, layered; 2' smooth, homogeneous.
-A companion draws the curves of the layer on the exact base, with the paper's thin layer dotted beside them.
+A companion draws the curves of the layer on the exact layer, with the paper's thin layer dotted beside them.
 """
 
 from functools import partial
 
-import numpy as np
 import xarray as xr
 
 from ..figures.annotate import load_axis, name_curve, shade_violations, violated
-from ..figures.sources import pick
+from ..figures.registry import ONE_COLUMN, Columns, figure, pick
 
 CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
 DEPTH = r"$D\ /\ (10^{-3} R)$"
-EXACT_LAW = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
 PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9, "zorder": 1.5}
 PAPER_LABEL = "thin layer (the paper)"
-Columns = dict[str, np.ndarray]
 
 
-def case_of(dataset: xr.Dataset, name: str, exact: bool) -> xr.Dataset:
-    """The case of a curve: on the exact layer if wanted and if there is a layer, otherwise as in the paper."""
-    return pick(dataset, label=(EXACT_LAYER if exact else {}).get(name, CURVES[name]))
+def with_companion(name: str, *studies: str, height: float = 2.6):
+    """Register `draw(axes, *datasets, exact)` as the figure NAME and, with exact = True, as its companion."""
+
+    def register(draw):
+        for suffix, exact in (("", False), ("_layered", True)):
+            figure(name + suffix, *studies, size=(ONE_COLUMN, height))(partial(draw, exact=exact))
+        return draw
+
+    return register
 
 
-def thin_beside(dataset: xr.Dataset, name: str, exact: bool) -> xr.Dataset | None:
-    """The paper's case to draw beside an exact one; None where they do not differ."""
-    return pick(dataset, label=CURVES[name]) if exact and name in EXACT_LAYER else None
+def cases_of(dataset: xr.Dataset, curve: str, exact: bool) -> dict[str, xr.Dataset]:
+    """The case of a curve by its name; of a companion that on the exact layer, then the paper's "NAME, thin layer"."""
+    if not (exact and curve in EXACT_LAYER):
+        return {curve: pick(dataset, label=CURVES[curve])}
+    return {curve: pick(dataset, label=EXACT_LAYER[curve]), f"{curve}, thin layer": pick(dataset, label=CURVES[curve])}
 
 
-def pressures(axes, main: xr.Dataset, *, sides: dict[str, str], exact: bool = False) -> Columns:
-    """p(r) of the curves named in `sides` over the paper's contact radius a0 of the rough layered contact."""
-    a0 = float(pick(main, label=CURVES["1"])["a"])
+def plot(axes, points: list[tuple], label: str) -> list:
+    """Lines through the (x, y) of one curve; the second, if any, is the paper's, dotted."""
+    lines = axes.plot(*points[0], label=label)
+    for x, y in points[1:]:
+        lines += axes.plot(x, y, color=lines[0].get_color(), **PAPER)
+    return lines
+
+
+def profile(axes, cases: dict[str, xr.Dataset], a0: float, label: str, side: str) -> Columns:
+    """One curve p/E2* over r/a0, with its name above or below it (`side`)."""
     columns = {}
-    for name, side in sides.items():
-        cases = case_of(main, name, exact), thin_beside(main, name, exact)
-        columns |= profile(axes, cases, a0, name, f"{name}: {CURVES[name]}", side)
-    pressure_axes(axes, exact)
-    return columns
-
-
-def profile(axes, cases: tuple, a0: float, name: str, label: str, side: str) -> Columns:
-    """One curve p/E2* over r/a0 with its name; of the two `cases` the second, if any, is the paper's, dotted."""
-    case, thin = cases
-    r, p = case["x"].values * float(case["a"]) / a0, case["p"].values
-    (line,) = axes.plot(r, p * 100, label=label)
-    lines, columns = [line], {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
-    if thin is not None:
-        r, p = thin["x"].values * float(thin["a"]) / a0, thin["p"].values
-        lines += axes.plot(r, p * 100, color=line.get_color(), **PAPER)
-        columns |= {f"r/a0 ({name}, thin layer)": r, f"p/E2* ({name}, thin layer)": p}
-    name_curve(axes, lines, name, 0.12, side=side)
+    for name, case in cases.items():
+        r, p = case["x"].values * float(case["a"]) / a0, case["p"].values
+        columns |= {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
+    numbers = list(columns.values())
+    lines = plot(axes, [(r, p * 100) for r, p in zip(numbers[::2], numbers[1::2], strict=True)], label)
+    name_curve(axes, lines, next(iter(cases)), 0.12, side=side)
     return columns
 
 
@@ -64,86 +64,92 @@ def pressure_axes(axes, exact: bool) -> None:
     axes.legend(loc="lower left")
 
 
-def against_load(
-    axes, *data: xr.Dataset, quantity: str, sides: dict[str, str], label: str, scale: float = 1.0, exact: bool = False
-) -> Columns:
-    """One quantity of the curves named in `sides` against the load; P0 marked, loads shaded where an assumption fails.
-
-    data : datasets load_sweep and main_case; label, scale : of the ordinate
-    """
-    sweep, main = data
-    P, columns = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}
-    cases = {name: case_of(sweep, name, exact) for name in sides}
-    for name, case in cases.items():
-        lines = axes.plot(P * 1e5, case[quantity] / scale, label=f"{name}: {CURVES[name]}")
-        columns[f"{quantity} ({name})"] = case[quantity].values
-        thin = thin_beside(sweep, name, exact)
-        if thin is not None:
-            lines += axes.plot(P * 1e5, thin[quantity] / scale, color=lines[0].get_color(), **PAPER)
-            columns[f"{quantity} ({name}, thin layer)"] = thin[quantity].values
-        align = "right" if sides[name] == "above" else "left"  # away from a curve that rises
-        name_curve(axes, lines, name, 0.85 * P[-1] * 1e5, side=sides[name], align=align)
-    if exact:
-        axes.plot([], [], color="0.3", label=PAPER_LABEL, **PAPER)
-    load_axis(axes, P[-1], float(main["P"]))
-    axes.set(ylabel=label, ylim=(0, 1.08 * max(float(case[quantity].max()) for case in cases.values()) / scale))
-    shade_violations(axes, P, {name: case["validity"] for name, case in cases.items()})
-    axes.legend(loc="lower right")
+def pressures(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Columns:
+    """p(r) of the curves named in `sides` over the paper's contact radius a0 of the rough layered contact."""
+    a0 = float(pick(main, label=CURVES["1"])["a"])
+    columns = {}
+    for curve, side in sides.items():
+        columns |= profile(axes, cases_of(main, curve, exact), a0, f"{curve}: {CURVES[curve]}", side)
+    pressure_axes(axes, exact)
     return columns
 
 
-def laws(panels, fits: xr.Dataset) -> Columns:
-    """Figure 9: additional displacement against pressure, exact and fitted; (a) three densities, (b) three radii."""
-    p = fits["p"].values
-    columns = {"p/E1*": p}
-    rows = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_000) for Ra in (0.004, 0.002, 0.001)]}
-    for axes, (panel, roughnesses) in zip(panels, rows.items(), strict=True):
-        for i, (Ra, Nbar) in enumerate(roughnesses):
-            case, colour = pick(fits, Ra=Ra, Nbar=Nbar), f"C{i}"
-            name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
-            lines = axes.plot(p, case["A_fit"] * 1e4, "-", color=colour)
-            axes.plot(p, case["A_exact"] * 1e4, **EXACT_LAW)
-            name_curve(axes, lines, name, 0.95 * p[-1], align="right")
-            columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": case[f"A_{kind}"].values for kind in ("exact", "fit")}
-        axes.plot([], [], label="exact, Eqs (6), (7)", **EXACT_LAW)
-        axes.plot([], [], "-", color="0.5", label=r"fitted, $B p^{\beta}$")
-        given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
-        axes.legend(title=f"({panel}) {given}", loc="upper left")
-        axes.set(
-            xlabel="$p/E_1^*$", ylabel=r"$A[p]\ /\ (10^{-4} R)$", xlim=(0, p[-1]), ylim=(0, axes.get_ylim()[1] * 1.25)
-        )
-    return columns
+@with_companion("fig03", "main_case")
+def rough_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
+    """Figure 3: pressure of the rough punch."""
+    return pressures(axes, main, {"1": "above", "2": "above"}, exact)
 
 
-def densities(axes, found: xr.Dataset, *, exact: bool = False) -> Columns:
+@with_companion("fig07", "main_case")
+def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
+    """Figure 7: pressure of the rough and of the smooth punch."""
+    return pressures(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
+
+
+@with_companion("fig10", "spot_density")
+def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     """Figure 10: nominal pressure on the layer for three densities of asperities under one load, over the paper's a0
     of the first."""
     paper = [pick(found, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
     columns, a0 = {}, float(paper[0]["a"])
     for thin, (name, side) in zip(paper, {"1": "above", "2": "below", "3": "below"}.items(), strict=True):
-        case = pick(found, Nbar=float(thin["Nbar"]), base="layered") if exact else thin
-        label = ", ".join([rf"{name}: $\bar N R^2 = {int(case['Nbar'])}$", *violated(case["validity"])])
-        columns |= profile(axes, (case, thin if exact else None), a0, name, label, side)
+        layered = pick(found, Nbar=float(thin["Nbar"]), base="layered")
+        cases = {name: layered, f"{name}, thin layer": thin} if exact else {name: thin}
+        label = ", ".join([rf"{name}: $\bar N R^2 = {int(thin['Nbar'])}$", *violated(cases[name]["validity"])])
+        columns |= profile(axes, cases, a0, label, side)
     pressure_axes(axes, exact)
     return columns
 
 
-_LOAD = {
-    "fig04": partial(against_load, quantity="Ar_An", sides={"1": "above", "2": "below"}, label="$A_r/A_n$"),
-    "fig05": partial(against_load, quantity="p_max", sides={"1": "below", "2": "below"}, label=r"$p_{\max}/E_2^*$"),
-    "fig06": partial(against_load, quantity="D", sides={"1": "above", "2": "below"}, label=DEPTH, scale=1e-3),
-    "fig08": partial(
-        against_load,
-        quantity="D",
-        sides={"1": "above", "2": "above", "1′": "below", "2′": "below"},
-        label=DEPTH,
-        scale=1e-3,
-    ),
-}
-_PROFILES = {
-    "fig03": partial(pressures, sides={"1": "above", "2": "above"}),
-    "fig07": partial(pressures, sides={"1": "below", "2": "below", "1′": "above", "2′": "above"}),
-    "fig10": densities,
-}
-PAPERS_FIGURES = _PROFILES | _LOAD
-"""Figures 3 to 8 and 10; with `exact=True` each draws its companion."""
+def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, sides: dict[str, str], exact: bool,
+                 scale: float = 1.0) -> Columns:  # fmt: skip
+    """One quantity over `scale` of the curves named in `sides` against the load; P0 marked, loads shaded where an
+    assumption fails.
+
+    data : datasets load_sweep and main_case
+    """
+    sweep, main = data
+    P, columns, first = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}, {}
+    for curve, side in sides.items():
+        cases = cases_of(sweep, curve, exact)
+        first[curve] = cases[curve]
+        columns |= {f"{quantity} ({name})": case[quantity].values for name, case in cases.items()}
+        points = [(P * 1e5, case[quantity] / scale) for case in cases.values()]
+        lines = plot(axes, points, f"{curve}: {CURVES[curve]}")
+        align = "right" if side == "above" else "left"  # away from a curve that rises
+        name_curve(axes, lines, curve, 0.85 * P[-1] * 1e5, side=side, align=align)
+    if exact:
+        axes.plot([], [], color="0.3", label=PAPER_LABEL, **PAPER)
+    load_axis(axes, P[-1], float(main["P"]))
+    axes.set_ylim(0, 1.08 * max(float(case[quantity].max()) for case in first.values()) / scale)
+    shade_violations(axes, P, {curve: case["validity"] for curve, case in first.items()})
+    axes.legend(loc="lower right")
+    return columns
+
+
+@with_companion("fig04", "load_sweep", "main_case")
+def contact_area(axes, *data: xr.Dataset, exact: bool) -> Columns:
+    """Figure 4: real over nominal contact area against the load."""
+    axes.set_ylabel("$A_r/A_n$")
+    return against_load(axes, data, "Ar_An", {"1": "above", "2": "below"}, exact)
+
+
+@with_companion("fig05", "load_sweep", "main_case")
+def largest_pressure(axes, *data: xr.Dataset, exact: bool) -> Columns:
+    """Figure 5: largest real pressure in the middle against the load."""
+    axes.set_ylabel(r"$p_{\max}/E_2^*$")
+    return against_load(axes, data, "p_max", {"1": "below", "2": "below"}, exact)
+
+
+@with_companion("fig06", "load_sweep", "main_case")
+def depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
+    """Figure 6: depth of the rough punch against the load."""
+    axes.set_ylabel(DEPTH)
+    return against_load(axes, data, "D", {"1": "above", "2": "below"}, exact, 1e-3)
+
+
+@with_companion("fig08", "load_sweep", "main_case", height=3.2)
+def rough_and_smooth_depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
+    """Figure 8: depth of the rough and of the smooth punch against the load."""
+    axes.set_ylabel(DEPTH)
+    return against_load(axes, data, "D", {"1": "above", "2": "above", "1′": "below", "2′": "below"}, exact, 1e-3)

@@ -10,6 +10,7 @@ import xarray as xr
 from solver import Problem, solve
 from solver.closed_forms import hertz
 
+from ..figures.registry import table
 from . import numbers
 from .uniform import solve_uniform
 
@@ -19,44 +20,51 @@ RADIUS = 0.04
 INTERVALS = (20, 40, 80, 160)
 STEPS = 40
 SHARED = ("P", "D", "A0", "Ar_An", "p_max")
+"""What is compared of the rough layered contact; keys of `numbers.NUMBERS`."""
 
 
-def iterates() -> xr.Dataset:
-    """P, D, A0, Ar_An, p_max over (intervals, iterate): the paper's main case at its radius, scheme (8) with k = 0."""
+def measured() -> xr.Dataset:
+    """The iterates of the paper's main case at its radius by scheme (8) with k = 0, and what two of them explain.
+
+    Over (intervals, iterate): iterate_P, iterate_D, ... of SHARED, in R = E2* = 1. Over `quantity`, keys of
+    `numbers.NUMBERS`: `converged`, and `by_iterates`, see `explained`. `pair`: which iterate, on how many intervals.
+    """
     problem = Problem.of(a=RADIUS, **MAIN)
     found = [[solve_uniform(problem, n, 0.0, 1e-12, m) for m in range(1, STEPS + 1)] for n in INTERVALS]
     variables = {
         f"iterate_{name}": (("intervals", "iterate"), [[float(getattr(s, name)[0]) for s in row] for row in found])
         for name in SHARED
     }
-    return xr.Dataset(variables, {"intervals": list(INTERVALS), "iterate": np.arange(1, STEPS + 1)})
+    iterates = xr.Dataset(variables, {"intervals": list(INTERVALS), "iterate": np.arange(1, STEPS + 1)})
+    return iterates.merge(explained(iterates))
 
 
 def nearest_pair(found: xr.Dataset) -> dict[str, int]:
-    """Mesh and number of the iterate that has the paper's load and whose successor has the paper's depth, as nearly."""
+    """Places of the mesh and of the iterate that has the paper's load and whose successor has its depth, as nearly."""
     load = np.abs(found["iterate_P"] / numbers.NUMBERS["P"][1] - 1).isel(iterate=slice(None, -1)).values
     depth = np.abs(found["iterate_D"] / numbers.NUMBERS["D"][1] - 1).isel(iterate=slice(1, None)).values
     mesh, step = np.unravel_index(np.argmin(np.maximum(load, depth)), load.shape)
     return {"intervals": int(mesh), "iterate": int(step)}
 
 
-def explained(found: xr.Dataset) -> list[tuple[str, float, float, float]]:
-    """(quantity, printed, converged, by the pair of iterates) for the paper's numbers of Section 5.
+def explained(iterates: xr.Dataset) -> xr.Dataset:
+    """The paper's numbers of Section 5, converged and by the nearest pair of iterates.
 
     The load is that of the first iterate of the pair, what is printed for the rough layered contact that of the
     second, and the other contacts are converged ones under the load of the second.
     """
-    pair = nearest_pair(found)
-    first = found.isel(pair)
-    second = found.isel(pair | {"iterate": pair["iterate"] + 1})
-    load = float(solve(Problem.of(a=RADIUS, **MAIN, rtol=1e-9)).P[0])
-    converged, theirs = contacts(load), contacts(float(second["iterate_P"]))
+    pair = nearest_pair(iterates)
+    first, second = iterates.isel(pair), iterates.isel(pair | {"iterate": pair["iterate"] + 1})
+    converged = contacts(float(solve(Problem.of(a=RADIUS, **MAIN, rtol=1e-9)).P[0]))
+    theirs = contacts(float(second["iterate_P"]))
     theirs |= {name: float(second[f"iterate_{name}"]) for name in SHARED} | {"P": float(first["iterate_P"])}
-    return [(numbers.NUMBERS[key][0], numbers.NUMBERS[key][1], converged[key], theirs[key]) for key in theirs]
+    variables = {"converged": [converged[key] for key in theirs], "by_iterates": list(theirs.values())}
+    found = xr.Dataset({name: ("quantity", values) for name, values in variables.items()}, {"quantity": list(theirs)})
+    return found.assign(pair=("end", [int(first["intervals"]), int(first["iterate"])]))
 
 
 def contacts(load: float) -> dict[str, float]:
-    """The numbers of Section 5 by converged solutions under one load, keys of `paper.NUMBERS`."""
+    """The numbers of Section 5 by converged solutions under one load, keys of `numbers.NUMBERS`."""
     changes = {}, {"base": "half_space"}, {"micro": "smooth"}
     layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
     return {
@@ -65,3 +73,25 @@ def contacts(load: float) -> dict[str, float]:
         "D smooth layered": float(smooth.D[0]),
         "D smooth homogeneous": float(hertz(P=load).D),
     }
+
+
+@table(
+    "paper_error",
+    "tradeoff",
+    caption="""The paper's numbers, the converged ones, and those by two successive iterates of Eq. (8) with k = 0: the
+    load by the first, the rest by the second, or under its load.""",
+    columns="""
+    quantity
+    paper | .4g
+    converged | .5g
+    converged off | +.2%
+    iterates | .5g
+    iterates off | +.2%""",
+)
+def rows(found: xr.Dataset) -> list[tuple]:
+    """Quantity, printed, converged, by iterates, each with its relative difference from the printed number."""
+    table = []
+    for key, *ours in zip(*(found[name].values for name in ("quantity", "converged", "by_iterates")), strict=True):
+        quantity, printed = numbers.NUMBERS[str(key)]
+        table.append((quantity, printed, *(float(v) for value in ours for v in (value, value / printed - 1))))
+    return table

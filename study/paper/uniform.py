@@ -3,75 +3,48 @@
 The paper gives Eqs (8) and (10), the parameter k and the search for the contact radius by halving; mesh and stopping
 rule it does not give. Here they are chosen in its favour: pressure linear between uniform nodes, the singular kernel
 integrated exactly against that, a new approximation until it moves by no more than the tolerance, at each radius from
-the pressure at the radius before, which halves their number. It serves for comparison: :func:`solve` of the package
-needs a tenth of the nodes and of the steps.
+the pressure at the radius before, which halves their number. It serves for comparison: `solver.solve` needs a tenth of
+the nodes and of the steps.
 """
 
+from collections import namedtuple
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from scipy.special import ellipkm1
 
-from solver.contact import picard
-from solver.contact.results import quantities
-from solver.numerics.bracket import bisection
-from solver.numerics.quadrature import gauss_legendre
-from solver.scaling import as_cases, dimensionless, refused, restore, without_springs
-from solver.solution import Solution
-from solver.status import Status
-from solver.threads import one_blas_thread
+from solver import Problem, Status
+from solver.laws import LAWS
 
-#: Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle.
 LIMIT, LIMIT_RELAXED = 200, 40
-#: Rows of the operator that are formed together.
-_ROWS = 64
+"""Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle."""
+ROWS = 64
+"""Rows of the operator that are formed together: on 1100 intervals all at once would take 0.5 GB."""
 
 
-class UniformMesh(NamedTuple):
-    """What the successive approximations need of a mesh, as a Mesh: s, x, w, edge (n,), K (n, n).
+UniformMesh = namedtuple("UniformMesh", "x w K")
+"""Nodes x = i/n from the centre, all but x = 1, where p = 0; x, w (n,), K (n, n).
 
-    The nodes are i/n, all but x = 1, where p = 0; `w` is the trapezoidal rule; K and edge are the half-space operator
-    on the piecewise linear pressure.
-    """
-
-    s: np.ndarray
-    x: np.ndarray
-    w: np.ndarray
-    K: np.ndarray
-    edge: np.ndarray
-
-    @property
-    def n(self):
-        """Number of nodes, and of intervals."""
-        return len(self.s)
+For a pressure linear between the nodes, in units R = E2* = 1: u(x) - u(1) = 4 a/π K p is the displacement of the
+half-space; 2 π a² w·p is the load, by the trapezoidal rule.
+"""
 
 
 @lru_cache(maxsize=16)
-def uniform_mesh(intervals):
-    """The :class:`UniformMesh` of `intervals` equal intervals in x = r/a; K and edge to 1e-9."""
-    rows = _operator(intervals)
-    inner = np.arange(intervals)[::-1]  # ascending in s, the centre last, as on every mesh
-    x = inner / intervals
-    edge = rows[-1, inner]
-    arrays = np.sqrt((1 - x) * (1 + x)), x, x / intervals, rows[np.ix_(inner, inner)] - edge, edge
-    for array in arrays:
-        array.flags.writeable = False
-    return UniformMesh(*arrays)
+def uniform_mesh(intervals: int) -> UniformMesh:
+    """The mesh of `intervals` equal intervals in x = r/a; K to 1e-9."""
+    blocks = (np.arange(i, min(i + ROWS, intervals + 1)) for i in range(0, intervals + 1, ROWS))
+    H = np.concatenate([rows(targets, intervals) for targets in blocks])[:, :-1]
+    x = np.arange(intervals) / intervals
+    return UniformMesh(x, x / intervals, H[:-1] - H[-1])
 
 
-def _operator(intervals):
-    """H (n + 1, n + 1) of the hat functions at the n + 1 nodes i/n."""
-    starts = range(0, intervals + 1, _ROWS)
-    return np.concatenate([_rows(np.arange(i, min(i + _ROWS, intervals + 1)), intervals) for i in starts])
-
-
-def _rows(targets, intervals):
-    """Rows (m, n + 1) of H at the nodes `targets` (m,)."""
-    rows = np.zeros((len(targets), intervals + 1))
+def rows(targets: np.ndarray, intervals: int) -> np.ndarray:
+    """Integrals (m, n + 1) of the kernel of Eq. (3) at the nodes `targets` (m,) against the n + 1 hat functions."""
+    found = np.zeros((len(targets), intervals + 1))
     target, cell = np.meshgrid(targets, np.arange(intervals), indexing="ij")
-    u, w = gauss_legendre(8)
-    v, wv = gauss_legendre(24)
+    (u, w), (v, wv) = (np.array(np.polynomial.legendre.leggauss(count)) / 2 for count in (8, 24))
+    u, v = u + 0.5, v + 0.5  # on [0, 1]
     near, w_near = v**4, 4 * v**3 * wv  # towards the logarithmic singularity at one end
     for chosen, place, weight in (
         ((cell != target) & (cell != target - 1), u, w),
@@ -79,47 +52,42 @@ def _rows(targets, intervals):
         (cell == target - 1, 1 - near, w_near),
     ):
         t, c = target[chosen], cell[chosen]
-        kernel = weight * _kernel(t[:, None], c[:, None] + place) / intervals
-        rows[t - targets[0], c] += kernel @ (1 - place)  # no cell is there twice
-        rows[t - targets[0], c + 1] += kernel @ place
-    return rows
+        kernel = weight * elliptic(t[:, None], c[:, None] + place) / intervals
+        found[t - targets[0], c] += kernel @ (1 - place)  # no cell is there twice
+        found[t - targets[0], c + 1] += kernel @ place
+    return found
 
 
-def _kernel(x, source):
+def elliptic(x: np.ndarray, source: np.ndarray) -> np.ndarray:
     """K(k) source/(x + source) of Eq. (3), k = 2 sqrt(x source)/(x + source): by Landen K(x_</x_>) source/x_>."""
     outer = np.maximum(x, source)
     return ellipkm1(np.abs(x - source) * (x + source) / outer**2) * source / outer
 
 
-@one_blas_thread()
-@np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
-def solve_uniform(problem, intervals, k, tolerance, limit=None):
+Found = namedtuple("Found", "a P D p0 p_max Ar_An A0 status iterations")
+"""What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
+
+
+def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None) -> Found:
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 
     Parameters
     ----------
-    problem : Problem
-        B cases of one micro law on "thin_layer" or "half_space"; its scheme, k, rtol and nodes are not used.
-    intervals : int
-        Of the uniform mesh on [0, a].
-    k : float, >= 0
-        The paper's relaxation, Eqs (8) and (10).
-    tolerance : float
-        The approximations stop when |p̂ - p| is below a tenth of it, relative to the largest pressure; the halving of
-        ln a when the bracket is.
-    limit : int, optional
-        Approximations at one radius; by default LIMIT, or LIMIT_RELAXED (1 + k) if that is more.
+    problem : cases on "thin_layer", where its equation applies, or "half_space", given P or a, with R = E2* = 1; its
+        scheme, k, rtol and nodes are not used
+    intervals : of the uniform mesh on [0, a]
+    k : the paper's relaxation, Eqs (8) and (10), >= 0
+    tolerance : the approximations stop when |p̂ - p| is below a tenth of it, relative to the largest pressure; the
+        halving when the bracket of ln a is
+    limit : approximations at one radius; by default LIMIT, or LIMIT_RELAXED (1 + k) if that is more
 
     Returns
     -------
-    Solution
-        Without profiles, stiffness and error estimate. `status` is CONVERGED where approximations and control have
-        arrived; LIMIT_CYCLE, ITERATION_LIMIT keep the last numbers.
+    Found : `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, or DIVERGED
 
     Raises
     ------
-    ValueError
-        Several bases or laws in one batch, or a base that the paper does not have.
+    ValueError : a base that the paper does not have, or smooth cases on the half-space
 
     Examples
     --------
@@ -129,30 +97,113 @@ def solve_uniform(problem, intervals, k, tolerance, limit=None):
     >>> print(f"{solve_uniform(case, 40, 10.0, 1e-4).P[0]:.3e}")
     2.704e-05
     """
-    kinds = set(zip(problem.base.tolist(), problem.micro.tolist(), strict=True))
-    if len(kinds) != 1 or kinds & {("layered", micro) for _, micro in kinds} or kinds == {("half_space", "smooth")}:
-        raise ValueError(f"one micro law on thin_layer, or a rough one on half_space, not {sorted(kinds)}")
-    scaled = dimensionless(problem)
-    invalid = refused(problem, scaled)
-    none = ~invalid & without_springs(scaled)
-    status = np.select([invalid, none], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)
-    pieces = [(np.arange(len(problem)), Solution.of(len(problem), 0, status=status))]
-    index = np.flatnonzero(~(invalid | none))
-    if len(index):
-        pieces.append((index, _solve(as_cases(scaled.take(index)), uniform_mesh(intervals), k, tolerance, limit)))
-    return restore(Solution.join(len(problem), 0, pieces), problem, without=("dP_dD", "error"))
+    kinds = {*zip(problem.base.tolist(), problem.micro.tolist(), strict=True)}
+    wrong = [kind for kind in kinds if kind[0] not in ("thin_layer", "half_space") or kind == ("half_space", "smooth")]
+    if wrong:
+        raise ValueError(f"thin_layer, or rough cases on half_space, not {sorted(wrong)}")
+    whole = Found(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
+    for base, micro in kinds:
+        index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
+        part = Contact(problem.take(index), uniform_mesh(int(intervals)), k, 0.1 * tolerance, limit)
+        with np.errstate(all="ignore"):  # a number that goes wrong is a NaN and a status
+            for array, values in zip(whole, part.solved(), strict=True):
+                array[index] = values
+    return whole
 
 
-def _solve(cases, grid, k, tolerance, limit):
-    """:class:`~solver.solution.Solution` of :class:`~solver.contact.equation.Cases`."""
-    one = np.ones(len(cases.value))
-    limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
-    way = {"search": bisection, "follow": True, "budget": np.iinfo(int).max}  # for comparison: at any cost
-    (ev, _, count), status = picard.solve(cases, grid, k * one, tolerance * one, limit, **way)
-    found = quantities(ev)
-    line = np.append(np.ones(grid.n - 1), 0.5) / grid.n
-    integral = found.a * cases.law.p_star * (ev.curve.q @ line)
-    D = 2 * integral + cases.body.C * found.p0 + found.A0  # (14)
-    ends = {"residual": ev.residual, "status": status, "iterations": count, "nodes": grid.n}
-    solution = Solution.of(len(one), 0, **found._replace(D=D)._asdict(), **ends)
-    return solution.refused(status == Status.DIVERGED, Status.DIVERGED)
+class Contact:
+    """B cases of one law on one base, with the last pressure p (B, n) and the number of approximations of each."""
+
+    def __init__(self, problem: Problem, mesh: UniformMesh, k: float, tolerance: float, limit: int | None):
+        law, layered = LAWS[str(problem.micro[0])], problem.base[0] == "thin_layer"
+        E = problem.n if layered else np.ones(len(problem))
+        self.law = law.bind(E, **{name: getattr(problem, name) for name in law.parameters})
+        self.C = compliance(problem) if layered else np.zeros(len(problem))
+        self.given, self.value = problem.control, problem.value
+        self.mesh, self.k, self.tolerance = mesh, k, tolerance
+        self.limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
+        self.p, self.count = np.zeros((len(problem), len(mesh.x))), np.zeros(len(problem), dtype=int)
+
+    def approximate(self, a: np.ndarray, index: np.ndarray) -> np.ndarray:
+        """Successive approximations of the cases `index` at the radii a, from their last pressure; which settled."""
+        active, settled = np.arange(len(index)), np.zeros(len(index), dtype=bool)
+        gap = (a**2 / 2)[:, None] * (1 - self.mesh.x**2)
+        for _ in range(self.limit):
+            part, now = index[active], self.p[index[active]]
+            law, C = self.law.take(part), self.C[part, None]
+            left = gap[active] - (4 / np.pi * a[active])[:, None] * (now @ self.mesh.K.T)  # C p + A[p] of Eq. (4)
+            if C.any():  # (8)
+                y = law.from_pressure(now / law.p_star[:, None])
+                wanted = np.maximum((left - law.A_star[:, None] * law.evaluate(y).g) / C, 0.0)
+            else:  # (10)
+                y = law.from_displacement(np.maximum(left / law.A_star[:, None], 0.0))
+                wanted = law.p_star[:, None] * law.evaluate(y).q
+            self.p[part] = new = (wanted + self.k * now) / (1 + self.k)
+            self.count[part] += 1
+            change = (1 + self.k) * np.abs(new - now).max(axis=1) / new.max(axis=1)
+            settled[active] = change < self.tolerance
+            active = active[change >= self.tolerance]  # NaN leaves as well: it has diverged
+            if not len(active):
+                break
+        return settled
+
+    def missed(self, eta: np.ndarray, index: np.ndarray) -> np.ndarray:
+        """Logarithm of the load (5) at ln a over the given one."""
+        settled = self.approximate(np.exp(eta), index)
+        load = 2 * np.pi * np.exp(2 * eta) * (self.p[index] @ self.mesh.w)
+        self.p[index[~settled]] = 0.0  # no cycle is handed on
+        return np.log(load / self.value[index])
+
+    def start(self) -> np.ndarray:
+        """Radii to begin with: under the load of the half-space, of the layer and of asperities A ~ p^β alone."""
+        law, P = self.law, self.value
+        gamma, beta = law.edge()
+        e = 1 / beta
+        spots = (P / (2 * np.pi * law.p_star) * (2 * law.A_star * gamma) ** e * (2 * e + 2)) ** (1 / (2 + 2 * e))
+        return ((0.75 * P) ** (4 / 3) + 4 / np.pi * self.C * P + spots**4) ** 0.25
+
+    def solved(self) -> Found:
+        """The outputs at the radius found; D by Eq. (14), whose integral along r is trapezoidal too."""
+        every, law, mesh = np.arange(len(self.value)), self.law, self.mesh
+        a = self.value
+        if self.given == "P":
+            a = np.exp(halved(self.missed, np.log(self.start()), self.tolerance))
+        settled, p = self.approximate(a, every), self.p
+        P = 2 * np.pi * a**2 * (p @ mesh.w)  # (5)
+        if self.given == "P":
+            settled &= np.abs(np.log(P / self.value)) < 10 * self.tolerance
+            P = self.value  # exactly as given
+        status = np.where(settled, Status.CONVERGED, Status.ITERATION_LIMIT)
+        status = np.where(np.isfinite(p).all(axis=1), status, Status.DIVERGED)
+        q = p / law.p_star[:, None]
+        y = law.from_pressure(q)
+        A0, peak = law.A_star * law.evaluate(y[:, :1]).g[:, 0], law.peak(y[:, :1], q[:, :1])[:, 0]  # (6), (13)
+        D = 2 * a / len(mesh.x) * (p.sum(axis=1) - p[:, 0] / 2) + self.C * p[:, 0] + A0  # (14)
+        arrays = a, P, D, p[:, 0], peak, 2 * (law.area(y, q) @ mesh.w), A0  # (12)
+        return Found(*np.where(status == Status.DIVERGED, np.nan, arrays), status, self.count)
+
+
+def compliance(problem: Problem) -> np.ndarray:
+    """C = 2 A2 h/E1* of the layer, Eq. (3), with A2 of Eq. (2)."""
+    stiffness = problem.n * (1 - problem.nu1) / (1 - problem.nu2) * (1 - 2 * problem.nu2)
+    bonded = (1 + stiffness) * (1 - 2 * problem.nu1 - stiffness) / (2 * (1 - problem.nu1) ** 2)
+    return 2 * np.where(problem.bonding == "bonded", bonded, 0.5) * problem.h / problem.n
+
+
+def halved(missed, start: np.ndarray, tolerance: float) -> np.ndarray:
+    """Roots (B,) of increasing functions `missed(x, index)` by halving: from start ± 0.1, moved outwards, doubling,
+    until they enclose the root. A case is left alone when its bracket is below the tolerance, or its function NaN."""
+    low, high = start - 0.1, start + 0.1
+    for sign, end in ((-1, low), (1, high)):
+        step, short = 0.1, np.arange(len(start))
+        while len(short) and step < 1000:
+            short = short[sign * missed(end[short], short) < 0]
+            step *= 2
+            end[short] += sign * step
+    active = np.arange(len(start))
+    while len(active):
+        middle = (low[active] + high[active]) / 2
+        found = missed(middle, active)
+        low[active], high[active] = np.where(found < 0, [middle, high[active]], [low[active], middle])
+        active = active[(high[active] - low[active] > tolerance) & ~np.isnan(found)]
+    return (low + high) / 2

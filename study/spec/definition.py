@@ -14,27 +14,17 @@ from .given import MOST_MESSAGES, Draft
 from .grid import Grid, shown
 from .identity import digest_of
 from .toml_text import text_in
-from .vocabulary import NUMERICS, VOCABULARY, check, finite, names, suggest
+from .vocabulary import NUMERICS, finite, names, suggest
 
 POINTS = 33
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
 MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
-FIT = tuple(name.removeprefix("fit.") for name in names("fit"))
-KEYS = {
-    "numerics": (*NUMERICS, "block"),
-    "output": ("x", "profiles", "dtype"),
-    "fit": (*FIT, "check"),
-    "model": None,
-    "axes": None,
-}
+KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype"), "model": None, "axes": None}
 """Of the tables of a study file; None: names of parameters."""
 PER_CASE = 16  # numbers per case besides the profiles, roughly
-SECTIONS = {
-    "contact": ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output"),
-    "micro_law": ("title", "kind", "model", "axes", "cases", "sample", "fit"),
-}
+SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
 
 
 class StudyError(ValueError):
@@ -51,25 +41,21 @@ class StudyError(ValueError):
 class Definition:
     """What a study computes.
 
-    kind : "contact" or "micro_law"
     text : the study file as it was read; goes into the dataset
-    x : (m,) points r/a of the profiles; for a micro law its pressures p/E1*
+    x : (m,) points r/a of the profiles
     profiles : names of the profiles that are stored
     dtype : "float64" or "float32", of the stored numbers
-    fit : arguments of `solver.fit_power_law` (micro_law only)
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
     """
 
     name: str
-    kind: str
     title: str
     text: str
     grid: Grid
     x: np.ndarray
     profiles: tuple[str, ...]
     dtype: str
-    fit: dict
     block: int
     digest: str
 
@@ -101,12 +87,13 @@ def read(path) -> Definition:
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
     kind = tables.get("kind", "contact")
-    if not isinstance(kind, str) or kind not in SECTIONS:
-        raise StudyError([f'{where}: kind = {shown(kind)}: must be one of "contact", "micro_law"'])
-    draft = Draft(kind)
+    if kind != "contact":
+        gone = "; a micro law needs no study: call solver.fit_power_law" if kind == "micro_law" else ""
+        raise StudyError([f'{where}: kind = {shown(kind)}: must be "contact", or left out{gone}'])
+    draft = Draft()
     draft.errors += [
-        f"{shown(key)} is not a section{suggest(key, SECTIONS[kind])}"
-        for key in islice((key for key in tables if key not in SECTIONS[kind]), MOST_MESSAGES)
+        f"{shown(key)} is not a section{suggest(key, SECTIONS)}"
+        for key in islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
     ]
     given = tables | {section: _table(tables, section, keys, draft.errors) for section, keys in KEYS.items()}
     for key, value in given["model"].items():
@@ -128,11 +115,10 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
 
     most : numbers that the results may hold. Raises StudyError with every message collected.
     """
-    errors, kind, title = draft.errors, tables.get("kind", "contact"), tables.get("title", "")
+    errors, title = draft.errors, tables.get("title", "")
     output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
-    fit = fit_arguments(tables["fit"], errors) if kind == "micro_law" else {}
     grid = draft.finish()
-    x = profile_points(output["x"], errors) if kind == "contact" else law_points(fit, errors)
+    x = profile_points(output["x"], errors)
     if not isinstance(title, str):
         errors.append(f"title = {shown(title)}: must be text")
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
@@ -141,7 +127,7 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
     profiles, dtype = profile_names(output["profiles"], errors), output["dtype"]
     if dtype not in DTYPES:
         errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
-    made = Definition(name, kind, title, text, grid, x, profiles, dtype, fit, block, "")
+    made = Definition(name, title, text, grid, x, profiles, dtype, block, "")
     if made.numbers > most:
         errors.append(
             f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
@@ -177,32 +163,6 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
     if len(found) < 2 or found[0] != 0 or found[-1] != 1 or (np.diff(found) <= 0).any():
         errors.append(f"x = {shown(points)}: a list must increase from 0 to 1, both included")
     return found
-
-
-def fit_arguments(given: dict, errors: list[str]) -> dict:
-    """Arguments of the least-squares fit from the table [fit], defaults filled in, pressures in E1*."""
-    fit = {key: given.get(key, VOCABULARY[f"fit.{key}"].default) for key in FIT}
-    for key, value in fit.items():
-        text = check(VOCABULARY[f"fit.{key}"], value)
-        if text:
-            errors.append(f"[fit] {key} = {shown(value)}: {text}")
-    fit["check"] = given.get("check", [0.0025, 0.025])
-    limits = fit["check"]
-    pair = isinstance(limits, list) and len(limits) == 2 and all(map(finite, limits))
-    if not pair or not 0 < limits[0] < limits[1]:
-        errors.append(f"[fit] check = {shown(limits)}: must be [low, high] with 0 < low < high")
-    return fit
-
-
-def law_points(fit: dict, errors: list[str]) -> np.ndarray:
-    """Pressures p of a micro-law study in E1*: from p_min to p_max in steps as near to `step` as fits."""
-    if errors:
-        return np.array([])
-    steps = (fit["p_max"] - fit["p_min"]) / fit["step"]
-    if not 1 <= steps <= 1e6:
-        errors.append("[fit] p_max must be at least one step, and at most a million steps, above p_min")
-        return np.array([])
-    return np.linspace(fit["p_min"], fit["p_max"], 1 + round(steps))
 
 
 def _table(tables: dict, section: str, known: tuple[str, ...] | None, errors: list[str]) -> dict:

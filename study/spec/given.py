@@ -1,6 +1,5 @@
 """A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
 
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field
 from functools import partial
@@ -10,7 +9,7 @@ import numpy as np
 from .grid import Grid, along, as_array, axis_values, shown, twins
 from .laws import is_parameter, law_names, learn, smooth_laws
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, MICRO_LAW_PARAMETERS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
+from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
 
 MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
@@ -20,11 +19,10 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x be
 class Draft:
     """Collects parameters; `finish` makes the Grid of them.
 
-    kind : "contact" or "micro_law"; errors : messages, no file name; sizes, values, labels : as of the Grid; sections :
-    where each parameter was given; claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
+    errors : messages, no file name; sizes, values, labels : as of the Grid; sections : where each parameter was given;
+    claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
     """
 
-    kind: str = "contact"
     errors: list[str] = field(default_factory=list)
     sizes: dict[str, int] = field(default_factory=dict)
     values: dict = field(default_factory=dict)
@@ -34,11 +32,6 @@ class Draft:
 
     def __post_init__(self):
         learn()
-
-    @property
-    def known(self) -> Sequence[str]:
-        """The names allowed."""
-        return PARAMETERS if self.kind == "contact" else MICRO_LAW_PARAMETERS
 
     def laws(self, given: list) -> None:
         """Make micro laws that are given as objects known before their parameters come; `micro` tells what is wrong."""
@@ -73,7 +66,7 @@ class Draft:
             if name == "label":
                 self._label_cases([row.get("label", "") for row in rows])
             elif self._accept(name, "[[cases]]"):
-                default = VOCABULARY[name].default
+                default = VOCABULARY[name].own.default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
                 self.values[name] = ("case",), self._checked(name, raw, gaps=True)
         if len(self.errors) == before:  # else the values are of any size and kind
@@ -98,7 +91,7 @@ class Draft:
         for dim, size in zip(map(str, given.dims), given.shape, strict=True):
             self.sizes.setdefault(dim, size)
             coordinate = given.coords[dim].values if dim in given.coords and dim != name else None
-            if dim not in self.known and coordinate is not None:
+            if dim not in PARAMETERS and coordinate is not None:
                 self.labels.setdefault(dim, ((dim,), coordinate))
             self.claims.append((name, dim, size, coordinate))
         flat = self._checked(name, given.values.ravel().tolist(), distinct=given.dims == (name,))
@@ -107,23 +100,23 @@ class Draft:
     def finish(self) -> Grid:
         """Fill in the defaults and check what concerns several parameters."""
         given = [name for name in CONTROLS if name in self.sections]
-        if self.kind == "contact" and len(given) != 1:
+        if len(given) != 1:
             self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
         self._check_dimensions()
-        for name in self.known:
-            default = VOCABULARY[name].default
+        for name in PARAMETERS:
+            default = VOCABULARY[name].own.default
             if name not in self.sections and default is not None:
                 self.values[name] = (), np.array(default)
         grid = Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
         if not self.errors:
-            self.errors += missing_parameters(grid, self.known) + lost_scheme(grid)
+            self.errors += missing_parameters(grid) + lost_scheme(grid)
         return grid
 
     def _accept(self, name: str, section: str) -> bool:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
-        if name not in self.known and not (self.kind == "contact" and is_parameter(name)):
-            near = suggest(name, self.known) if len(self.errors) < MOST_MESSAGES else ""  # somebody will read it
+        if not is_parameter(name):
+            near = suggest(name, PARAMETERS) if len(self.errors) < MOST_MESSAGES else ""  # somebody will read it
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
@@ -138,7 +131,13 @@ class Draft:
         """The values as an array, with messages for those that are not allowed, and for `distinct` ones that are
         twins."""
         before = len(self.errors)
-        array = as_array(VOCABULARY[name], raw, name, self.errors, gaps)
+        if name == "micro":
+            try:
+                raw = law_names(raw)
+            except ValueError as error:
+                self.errors.append(f"{name}: {error}")
+                return np.empty(len(raw))
+        array = as_array(VOCABULARY[name].own, raw, name, self.errors, gaps)
         if distinct and len(self.errors) == before:
             self._distinct(name, array.tolist())
         return array
@@ -165,14 +164,14 @@ class Draft:
         if len(self.sizes) > MOST_DIMENSIONS:
             self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
         for dim in self.sizes:
-            if dim in self.known and self.values.get(dim, ((dim,),))[0] != (dim,):
+            if dim in PARAMETERS and self.values.get(dim, ((dim,),))[0] != (dim,):
                 self.errors.append(f"{dim} is a dimension and a parameter over other dimensions")
-            elif dim in self.known and dim not in self.sections:
+            elif dim in PARAMETERS and dim not in self.sections:
                 self.errors.append(f"the dimension {dim} is called like a parameter that is not given")
-            elif dim in VOCABULARY and dim not in self.known and dim != "case":
+            elif dim in VOCABULARY and dim not in PARAMETERS and dim != "case":
                 self.errors.append(f'a dimension cannot be called "{dim}", which is the name of a result')
         for name, dim, size, coordinate in self.claims:
-            owner = (self.values if dim in self.known else self.labels).get(dim)
+            owner = (self.values if dim in PARAMETERS else self.labels).get(dim)
             if size == 0:
                 self.errors.append(f"{name} is empty: must have at least one value")
             elif size != self.sizes[dim]:
@@ -181,17 +180,17 @@ class Draft:
                 self.errors.append(f"{name} has other values of {dim} than another parameter")
 
 
-def missing_parameters(grid: Grid, known: Sequence[str]) -> list[str]:
+def missing_parameters(grid: Grid) -> list[str]:
     """Messages for parameters that some case needs and does not have."""
     messages = []
-    for name in known:
-        selector, words = VOCABULARY[name].needed_by
-        if VOCABULARY[name].default is not None or (name in CONTROLS and name not in grid.values):
+    for name in PARAMETERS:
+        selector, words = VOCABULARY[name].own.needed_by
+        if VOCABULARY[name].own.default is not None or (name in CONTROLS and name not in grid.values):
             continue
         gaps = np.isnan(along(grid, name)) & having(name, partial(along, grid))
         if gaps.any():
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")] if name in grid.values else ""
-            found = [shown(word) for word in words if selector in grid.values and word in grid.values[selector][1]]
+            found = [shown(word) for word in words if word in along(grid, selector)]
             reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
             messages.append(f"{name} is missing{f' in case {case}' if name in grid.values else ''}{reason}")
     return messages
@@ -205,6 +204,6 @@ def lost_scheme(grid: Grid) -> list[str]:
     asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
     if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
         return []
-    others = " or ".join(shown(name) for name in VOCABULARY["micro"].choices if name not in smooth)
+    others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
     names = " or ".join(map(shown, smooth))
     return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']

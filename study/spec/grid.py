@@ -8,8 +8,7 @@ from itertools import product
 import numpy as np
 
 from ..terminal import on_one_line
-from .laws import law_names
-from .vocabulary import VOCABULARY, Entry, check, finite
+from .vocabulary import VOCABULARY, Parameter, all_numbers_allowed, check, finite
 
 LONGEST_AXIS = 1_000_000
 SHOWN = 3  # messages of one kind for one parameter; the rest is counted
@@ -41,7 +40,7 @@ class Grid:
 def along(grid: Grid, name: str) -> np.ndarray:
     """Values of a parameter with all dimensions of the grid, in its order, of length 1 where the parameter has none;
     the default, or NaN, when it is not given."""
-    default = VOCABULARY[name].default
+    default = VOCABULARY[name].own.default
     dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
     array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
@@ -53,15 +52,12 @@ def columns(grid: Grid, start: int, stop: int) -> dict[str, np.ndarray]:
 
 
 def columns_at(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
-    """Parameters of the cases at `index` (k,), each (k,); what a case does not need (NaN) becomes 1."""
+    """Parameters of the cases at `index` (k,), each (k,); NaN is what no case there needs."""
     places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}
-    found = {}
-    for name, (dims, array) in grid.values.items():
-        column = array[tuple(places[dim] for dim in dims)] if dims else np.full(len(index), array)
-        if column.dtype.kind == "f":
-            column = np.where(np.isnan(column), 1.0, column)
-        found[name] = column
-    return found
+    return {
+        name: array[tuple(places[dim] for dim in dims)] if dims else np.full(len(index), array)
+        for name, (dims, array) in grid.values.items()
+    }
 
 
 def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
@@ -108,7 +104,7 @@ def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
     return flat.reshape(grid.shape + flat.shape[1:])
 
 
-def as_array(entry: Entry, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
+def as_array(own: Parameter, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
     """Check the values of one parameter and make them an array of float, int or text.
 
     Parameters
@@ -118,33 +114,21 @@ def as_array(entry: Entry, raw: list, key: str, errors: list[str], gaps: bool = 
     errors : messages are appended here
     gaps : None stands for "not given" and becomes NaN
     """
-    if entry.name == "micro":
-        try:
-            raw, entry = law_names(raw), VOCABULARY["micro"]
-        except ValueError as error:
-            errors.append(f"{key}: {error}")
-            return np.empty(len(raw))
-    if set(map(type, raw)) == {float} and _all_allowed(entry, np.array(raw)):
+    if not own.whole and all_numbers_allowed(own, raw):
         return np.array(raw)
     found = []
     for i, value in enumerate(raw):
-        text = "" if value is None and gaps else check(entry, value)
+        text = "" if value is None and gaps else check(own, value)
         if text:
             found.append(f"{key}{f'[{i}]' if len(raw) > 1 else ''} = {shown(value)}: {text}")
     errors += found[:SHOWN] + ([f"{key}: and {len(found) - SHOWN} more such values"] if len(found) > SHOWN else [])
     if found:
         return np.empty(len(raw))
-    if entry.choices:
+    if own.choices:
         return np.array(raw, dtype=str)
-    if entry.whole:
+    if own.whole:
         return np.array([int(value) for value in raw], dtype=np.int64)
     return np.array([math.nan if value is None else float(value) for value in raw])
-
-
-def _all_allowed(entry: Entry, values: np.ndarray) -> bool:
-    """Whether all are allowed, as they are when the extremes of an interval are: a million one by one take seconds."""
-    plain = not (entry.choices or entry.whole or entry.also)
-    return plain and not check(entry, values.min()) and not check(entry, values.max())  # both NaN if one value is
 
 
 def axis_values(raw, key: str, errors: list[str]) -> list:

@@ -21,7 +21,7 @@ from .vocabulary import PARAMETERS, VOCABULARY
 
 def counts(grid: Grid, name: str) -> np.ndarray:
     """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
-    value, default = along(grid, name), VOCABULARY[name].default
+    value, default = along(grid, name), VOCABULARY[name].own.default
     given = ~np.isnan(value) if default is None else value != default
     return given & uses(name, partial(along, grid))
 
@@ -43,13 +43,11 @@ def digest_of(definition) -> str:
     arrays |= {name: (dims, array) for name, (dims, array) in grid.values.items() if name in grid.sizes}
     content = {
         "numerics_version": NUMERICS_VERSION,
-        "kind": definition.kind,
         "sizes": list(grid.sizes.items()),
         "arrays": {name: (dims, _digest_of_array(array)) for name, (dims, array) in arrays.items()},
         "values": {name: _digest_of_values(grid, name) for name in PARAMETERS if name not in grid.sizes},
         "profiles": definition.profiles,
         "dtype": definition.dtype,
-        "fit": definition.fit,
     }
     content["values"] = {name: found for name, found in content["values"].items() if found}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}

@@ -5,26 +5,23 @@ from contextlib import suppress
 from solver import laws
 from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
-from .vocabulary import PARAMETERS, UNITS, VOCABULARY, Entry, completed, names
+from .vocabulary import PARAMETERS, UNITS, VOCABULARY, Entry, names
 
 laws.RESERVED.update(set(VOCABULARY) - set(OF_THE_SOLVER))
 
 
 def learn() -> None:
     """Take up the micro laws that have been registered since the last time: their names and their parameters."""
-    if VOCABULARY["micro"].choices is OF_THE_SOLVER["micro"].choices:
-        return
     own = names("control", "material", "roughness", "numerics")
     for name in set(PARAMETERS) - set(own):  # of laws that may have been replaced
         del VOCABULARY[name]
     PARAMETERS[:] = own
-    for name in [name for law in laws.LAWS.values() for name in law.parameters if name not in PARAMETERS]:
-        told = OF_THE_SOLVER[name]
-        unit = UNITS.get(told.powers, ("Pa{} m{}".format(*told.powers), 1.0))
-        words = told.symbol or name, told.long_name or f"parameter of the micro law {' and '.join(told.needed_by[1])}"
-        VOCABULARY[name] = completed(Entry(name, *words, "roughness", told.powers, unit))
-        PARAMETERS.append(name)
-    VOCABULARY["micro"] = completed(VOCABULARY["micro"])
+    for name, told in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
+        if name not in PARAMETERS:
+            unit = UNITS.get(told.powers, ("Pa{} m{}".format(*told.powers), 1.0))
+            words = told.long_name or f"parameter of the micro law {' and '.join(OF_THE_SOLVER[name].needed_by[1])}"
+            VOCABULARY[name] = Entry(name, told.symbol or name, words, "roughness", told.powers, unit)
+            PARAMETERS.append(name)
 
 
 def law_names(given: list) -> list:

@@ -82,11 +82,11 @@ def _power(over) -> tuple[str, int]:
 
 def _check(name: str, drawn: dict, errors: list[str]) -> None:
     """Messages for one parameter of the table."""
-    key, given, entry = f"[sample] {name}", drawn[name], VOCABULARY[name]
+    key, given, own = f"[sample] {name}", drawn[name], VOCABULARY[name].own
     if isinstance(given, list) and given:
         return  # its values are checked like any
-    if not isinstance(given, dict) or entry.choices or entry.whole:
-        form = "" if entry.choices or entry.whole else f"{{{', '.join(KEYS)}}} or "
+    if not isinstance(given, dict) or own.choices or own.whole:
+        form = "" if own.choices or own.whole else f"{{{', '.join(KEYS)}}} or "
         errors.append(f"{key} = {shown(given)}: must be {form}a list to choose from")
         return
     before = len(errors)
@@ -99,5 +99,5 @@ def _check(name: str, drawn: dict, errors: list[str]) -> None:
             allowed = " or ".join(plain) or "none here"
             errors.append(f"{key}: over = {shown(given['over'])}: must be a power of a range of [sample]: {allowed}")
     elif len(errors) == before:
-        bad = [(end, check(entry, given[end])) for end in ("start", "stop")]
+        bad = [(end, check(own, given[end])) for end in ("start", "stop")]
         errors += [f"{key}: {end} = {shown(given[end])}: {text}" for end, text in bad if text]

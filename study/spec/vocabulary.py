@@ -3,11 +3,11 @@
 import difflib
 import math
 import numbers
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
-from solver.parameters import CONTROL, among
+from solver.parameters import CONTROL, Parameter, among
 from solver.parameters import PARAMETERS as BESIDE_IT
 from solver.parameters import allowed as within
 
@@ -27,11 +27,7 @@ class Entry:
     """One name.
 
     `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity, printed in `unit`
-    (name, size in SI). `interval` is the allowed range in mathematical notation, `also` lists single values allowed
-    outside it. The solver knows these bounds (one that stands here is narrower), what its parameters default to, the
-    `choices` of a text, and which are `whole` numbers; `default` None means that a parameter has none: it is then
-    required wherever the parameter called `needed_by[0]` has one of the values `needed_by[1]`. `used_by` says the same
-    of where an answer depends on it.
+    (name, size in SI). `interval` is for a parameter that has narrower bounds in a study than in the solver.
     """
 
     name: str
@@ -42,12 +38,12 @@ class Entry:
     unit: tuple[str, float] = ("1", 1.0)
     equation: str = ""
     interval: str = ""
-    also: tuple = ()
-    choices: tuple[str, ...] = ()
-    default: object = None
-    whole: bool = False
-    needed_by: tuple[str, tuple[str, ...]] = ("", ())
-    used_by: tuple[str, tuple[str, ...]] = ("", ())
+
+    @property
+    def own(self) -> Parameter:
+        """What the solver's table says of a parameter: bounds, choices, default, which cases need it."""
+        known = CONTROL.get(self.name) or BESIDE_IT.get(self.name, Parameter())
+        return known._replace(interval=self.interval) if self.interval else known
 
     @property
     def scale(self) -> str:
@@ -56,7 +52,6 @@ class Entry:
         return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
 
 
-POSITIVE = "(0, inf)"
 LISTED = 40  # names in a message
 
 # fmt: off
@@ -109,27 +104,11 @@ _ENTRIES = (
     Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
     Entry("case", "", "number of the case", "coordinate"),
     Entry("label", "", "label of the case", "coordinate"),
-    Entry("fit.p_min", "", "smallest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
-    Entry("fit.p_max", "", "largest pressure of the fit, in E1*", "fit", interval=POSITIVE, default=0.025),
-    Entry("fit.step", "", "pressure step of the fit, in E1*", "fit", interval=POSITIVE, default=1e-4),
-    Entry("fit.mesh", "", "mesh of the fit", "fit", choices=("uniform", "graded"), default="uniform"),
-    Entry("A_exact", "A[p]", "additional displacement, exact", "law", (0, 1), MICRON, "(6)"),
-    Entry("A_fit", "B p^β", "additional displacement, fitted power law", "law", (0, 1), MICRON),
-    Entry("max_error", "", "largest relative error of the fit over the interval `check`", "law"),
 )
 # fmt: on
 
 
-def completed(entry: Entry) -> Entry:
-    """With what the solver knows of a parameter."""
-    known = CONTROL.get(entry.name) or BESIDE_IT.get(entry.name)
-    if not known:
-        return entry
-    told = known._asdict() | {"interval": entry.interval or known.interval}
-    return replace(entry, **{name: told[name] for name in told if name not in ("powers", "symbol", "long_name")})
-
-
-VOCABULARY = {entry.name: completed(entry) for entry in _ENTRIES}
+VOCABULARY = {entry.name: entry for entry in _ENTRIES}
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -141,43 +120,47 @@ CONTROLS = names("control")
 NUMERICS = names("numerics")
 PARAMETERS = list(names("control", "material", "roughness", "numerics"))
 """Names of parameters; :func:`study.spec.laws.learn` adds those of registered laws here and to VOCABULARY."""
-MICRO_LAW_PARAMETERS = ("Nbar", "Ra")
 
 
 def having(name: str, values) -> np.ndarray:
     """bool: the cases that have a parameter, by `needed_by`; `values(name)` gives the texts of another one."""
-    return among(VOCABULARY[name].needed_by, values)
+    return among(VOCABULARY[name].own.needed_by, values)
 
 
 def attributes(name: str) -> dict:
     """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation."""
     entry = VOCABULARY[name]
     found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
-    if not entry.choices and entry.role != "flag" and name != "label":
+    if not entry.own.choices and entry.role != "flag" and name != "label":
         found["units"] = "1"
     return {key: text for key, text in found.items() if text}
 
 
-def allowed(entry: Entry) -> str:
-    """What the values of an entry must be, as the end of a message: "must be > 0"."""
-    if entry.choices:
-        return "must be one of " + ", ".join(f'"{choice}"' for choice in entry.choices)
-    low, high = entry.interval[1:-1].split(", ")
+def allowed(own: Parameter) -> str:
+    """What the values of a parameter must be, as the end of a message: "must be > 0"."""
+    if own.choices:
+        return "must be one of " + ", ".join(f'"{choice}"' for choice in own.choices)
+    low, high = own.interval[1:-1].split(", ")
     if high == "inf":
-        return f"must be {'>' if entry.interval[0] == '(' else '>='} {low}"
-    either = "".join(f"{value} or " for value in entry.also)
-    return f"must be {either}in {entry.interval}"
+        return f"must be {'>' if own.interval[0] == '(' else '>='} {low}"
+    either = "".join(f"{value} or " for value in own.also)
+    return f"must be {either}in {own.interval}"
 
 
-def check(entry: Entry, value) -> str:
+def check(own: Parameter, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
-    if entry.choices:
-        return "" if isinstance(value, str) and value in entry.choices else allowed(entry)
+    if own.choices:
+        return "" if isinstance(value, str) and value in own.choices else allowed(own)
     if not finite(value):
-        return f"must be a finite number, {allowed(entry).removeprefix('must be ')}"
-    if entry.whole and value != int(value):
+        return f"must be a finite number, {allowed(own).removeprefix('must be ')}"
+    if own.whole and value != int(value):
         return "must be a whole number"
-    return "" if within(entry, value) else allowed(entry)
+    return "" if within(own, value).all() else allowed(own)
+
+
+def all_numbers_allowed(own: Parameter, values: list) -> bool:
+    """Whether all are floats within the bounds of a parameter: to look at a million one by one takes seconds."""
+    return set(map(type, values)) == {float} and bool(own.interval) and bool(within(own, values).all())
 
 
 def finite(value) -> bool:

@@ -1,28 +1,58 @@
 """The blocks of a study on disk, and which of its cases they hold. What is on disk is the progress.
 
 Cases are found by their keys, so it does not matter by which version of the study, in which order or in blocks of which
-size they were computed.
+size they were computed. The cases of an earlier results file are found and read in the same way.
 """
 
 import hashlib
 import json
 import logging
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import not_run
+from ..files.atomic import remove_temporary
 from ..spec.definition import Definition, StudyError
 from ..spec.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
-from .keys import VERSION, case_keys, find, renewed
+from .keys import case_keys, find
 
 log = logging.getLogger(__name__)
+
+
+class Source(Protocol):
+    """Where numbers of cases are: a block, or an earlier results file.
+
+    keys : (N, 2), of its cases; status : (N,) int8, NOT_RUN for a case whose numbers cannot be trusted
+    """
+
+    keys: np.ndarray
+    status: np.ndarray
+
+    def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged when they are no longer there."""
+
+
+@dataclass(frozen=True, eq=False)
+class BlockSource:
+    """The cases of a block, in the file that holds it."""
+
+    path: Path
+    keys: np.ndarray
+    status: np.ndarray
+
+    def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+        block = read_block(self.path)
+        if not np.array_equal(block.keys, self.keys):
+            raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
+        return {name: array[rows] for name, array in block.arrays.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +67,11 @@ class Store:
         return self.results / f".{self.definition.name}.blocks"
 
     @property
+    def path(self) -> Path:
+        """Of the results file."""
+        return self.results / f"{self.definition.name}.nc"
+
+    @property
     def lock(self) -> Path:
         return self.folder / "lock"
 
@@ -45,14 +80,14 @@ class Store:
 class Inventory:
     """Where each of the B cases is.
 
-    keys : (B, 2); files : the block files; file, row : (B,) int32, number of the file (-1: missing) and row in it;
-    status : (B,) int8, NOT_RUN for a missing case; blocks : every block -> how many cases, -1: it is not whole;
+    keys : (B, 2); sources : where cases are; source, row : (B,) int32, number of the source (-1: missing) and row in
+        it; status : (B,) int8, NOT_RUN for a missing case; blocks : every block -> how many cases, -1: it is not whole;
         inside : those of which the results of this study will hold everything
     """
 
     keys: np.ndarray
-    files: list[Path]
-    file: np.ndarray
+    sources: list[Source]
+    source: np.ndarray
     row: np.ndarray
     status: np.ndarray
     blocks: dict[Path, int] = field(default_factory=dict)
@@ -61,7 +96,7 @@ class Inventory:
     @property
     def missing(self) -> np.ndarray:
         """Numbers of the missing cases."""
-        return np.flatnonzero(self.file < 0)
+        return np.flatnonzero(self.source < 0)
 
 
 def count_statuses(status: np.ndarray) -> dict[int, int]:
@@ -71,9 +106,8 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray) -> dict:
-    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles; and the version
-    of the keys."""
-    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist(), "keys": VERSION}
+    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles."""
+    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
 
 
 def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:
@@ -84,11 +118,19 @@ def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -
     return here and same_points and given.get("numerics_version") == NUMERICS_VERSION
 
 
+def _is_kept(definition: Definition, block: Block) -> bool:
+    """Whether the results of a study hold all the numbers that a block holds of its cases."""
+    wanted, arrays = not_run(definition, 0), block.arrays
+    same_points = block.facts.get("x") == definition.x.tolist() or not any(array.ndim > 1 for array in arrays.values())
+    kept = all(name in wanted and array.dtype.itemsize <= wanted[name].dtype.itemsize for name, array in arrays.items())
+    return same_points and kept and block.facts.get("numerics_version") == NUMERICS_VERSION
+
+
 def blocks_on_disk(store: Store) -> Iterator[tuple[Path, Block | None]]:
     """Every block, None for one that is not whole: its cases are missing, so they are computed again."""
     for path in sorted(store.folder.glob("*.block")):
         try:
-            yield path, _read(store, path)
+            yield path, read_block(path)
         except FileNotFoundError:  # the run that it belongs to has just ended
             continue
         except OSError as error:
@@ -96,14 +138,10 @@ def blocks_on_disk(store: Store) -> Iterator[tuple[Path, Block | None]]:
             yield path, None
 
 
-def _read(store: Store, path: Path) -> Block:
-    """A block; one that was written with keys of version 1 has those of today."""
-    block = read_block(path)
-    return block if "keys" in block.facts else replace(block, keys=renewed(block.keys, store.definition.grid))
-
-
-def inventory(store: Store, retry: tuple[int, ...] = (), force: bool = False) -> Inventory:
-    """What the blocks on disk hold of the study.
+def inventory(
+    store: Store, earlier: Source | None = None, retry: tuple[int, ...] = (), force: bool = False
+) -> Inventory:
+    """What is on disk of a study: in its blocks, and in an earlier results file if there is one.
 
     retry : cases of these statuses count as missing; force : do without blocks of another version of the numerics
 
@@ -111,7 +149,7 @@ def inventory(store: Store, retry: tuple[int, ...] = (), force: bool = False) ->
     ------
     StudyError : there are blocks of another version of the numerics, and no `force`
     """
-    files, parts, blocks, inside = [], [], {}, set()
+    sources, blocks, inside = [], {}, set()
     keys = case_keys(store.definition.grid)
     first = np.sort(keys[:, 0])
     for path, block in blocks_on_disk(store):
@@ -125,23 +163,21 @@ def inventory(store: Store, retry: tuple[int, ...] = (), force: bool = False) ->
             if not force:
                 raise StudyError([_of_other_numerics(store, block.facts)])
         elif usable(store.definition, block.facts, block.arrays):
-            status = block.arrays["status"]
-            row = np.flatnonzero(~np.isin(status, retry)).astype(np.int32)
-            parts.append((block.keys[row], np.full(len(row), len(files), np.int32), row, status[row]))
-            files.append(path)
-    nothing = (np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))
-    known, file, row, status = (np.concatenate(column) for column in zip(nothing, *parts, strict=True))
+            sources.append(BlockSource(path, block.keys, block.arrays["status"]))
+    sources += [earlier] if earlier else []
+    return Inventory(keys, sources, *_places(keys, sources, retry), blocks, inside)
+
+
+def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> tuple[np.ndarray, ...]:
+    """Source, row and status of each case, (B,) each: where it ended best, the first of several such places."""
+    parts = [(np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))]
+    for number, found in enumerate(sources):
+        row = np.flatnonzero(~np.isin(found.status, (NOT_RUN, *retry))).astype(np.int32)
+        parts.append((found.keys[row], np.full(len(row), number, np.int32), row, found.status[row]))
+    known, source, row, status = (np.concatenate(column) for column in zip(*parts, strict=True))
     where = find(keys, known, status)
-    at = [np.append(array, array.dtype.type(none))[where] for array, none in ((file, -1), (row, -1), (status, NOT_RUN))]
-    return Inventory(keys, files, *at, blocks, inside)
-
-
-def _is_kept(definition: Definition, block: Block) -> bool:
-    """Whether the results of a study hold all the numbers that a block holds of its cases."""
-    wanted, arrays = not_run(definition, 0), block.arrays
-    same_points = block.facts.get("x") == definition.x.tolist() or not any(array.ndim > 1 for array in arrays.values())
-    kept = all(name in wanted and array.dtype.itemsize <= wanted[name].dtype.itemsize for name, array in arrays.items())
-    return same_points and kept and block.facts.get("numerics_version") == NUMERICS_VERSION
+    missing = ((source, -1), (row, -1), (status, NOT_RUN))
+    return tuple(np.append(array, array.dtype.type(none))[where] for array, none in missing)
 
 
 def _of_other_numerics(store: Store, given: dict) -> str:
@@ -155,9 +191,9 @@ def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.
     kept = {name: array.dtype for name, array in not_run(store.definition, 0).items()}
     arrays = {name: array.astype(kept[name], copy=False) for name, array in arrays.items()}
     path = put(store, Block(facts(store.definition.x), known.keys[index], arrays))
-    known.file[index], known.row[index] = len(known.files), np.arange(len(index))
+    known.source[index], known.row[index] = len(known.sources), np.arange(len(index))
     known.status[index] = arrays["status"]
-    known.files.append(path)
+    known.sources.append(BlockSource(path, known.keys[index], arrays["status"]))
     known.blocks[path] = len(index)
     known.inside.add(path)
 
@@ -189,24 +225,20 @@ def _is_another(path: Path, block: Block) -> bool:
 def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, np.ndarray]:
     """Columns of the cases start <= i < stop, name -> (stop - start, ...); missing ones as `not_run` has them.
 
-    Raises
-    ------
-    Damaged : a block that was whole when the inventory was made
+    Raises Damaged when a source is no longer what it was when the inventory was made.
     """
     found = not_run(store.definition, stop - start)
-    file = known.file[start:stop]
-    for number in np.unique(file[file >= 0]):
-        block, path = _read(store, known.files[number]), known.files[number]
-        here = np.flatnonzero(file == number)
-        row = known.row[start + here]
-        if len(block.keys) <= row.max() or (block.keys[row] != known.keys[start + here]).any():
-            raise Damaged(f"{path}: has become a block of other cases; the same command finds out of which")
+    source = known.source[start:stop]
+    for number in np.unique(source[source >= 0]):
+        here = np.flatnonzero(source == number)
+        arrays = known.sources[number].read(known.row[start + here])
         for name, array in found.items():
-            array[here] = block.arrays[name][row]
+            array[here] = arrays[name]
     return found
 
 
 def remove_litter(store: Store) -> None:
-    """Remove what runs that were killed while they wrote have left."""
+    """Remove what runs that were killed while they wrote have left, also beside a file that a link leads to."""
+    remove_temporary(store.path)
     for path in store.folder.glob(".*.tmp"):
         path.unlink(missing_ok=True)

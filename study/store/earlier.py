@@ -3,51 +3,78 @@
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-import netCDF4
 import numpy as np
 
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
-from ..files.checksums import ATTRIBUTE, attribute, identity, parsed
-from ..files.examine import BROKEN, CHUNK, Condition, cut_from
-from ..files.netcdf import Unusable, access, closing, opened
+from ..files.access import Unusable
+from ..files.checksums import ATTRIBUTE, identity, parsed
+from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
+from ..files.netcdf import File
 from ..spec.definition import Definition, StudyError
-from ..spec.grid import Grid, columns, windows
-from ..spec.vocabulary import PARAMETERS
-from .block_file import Block
-from .blocks import Inventory, Store, facts, put, usable
-from .keys import case_keys, find, first_keys
+from ..spec.grid import Grid, columns_at
+from ..spec.vocabulary import NOT_RUN, PARAMETERS
+from .block_file import Damaged
+from .blocks import Store, facts, usable
+from .keys import case_keys, find
 
-AT_ONCE = CHUNK  # cases read at a time: what can be read and what cannot is told apart by chunks
 MEND = "run the study as it was (its text is the attribute study), which mends it, or use --results DIR"
+
+
+@dataclass(frozen=True, eq=False)
+class ResultsSource:
+    """The N cases of a results file, on a `grid`. names : of the columns; seen : the file as it was, see `stamp`."""
+
+    path: Path
+    grid: Grid
+    keys: np.ndarray
+    status: np.ndarray
+    names: tuple[str, ...]
+    seen: tuple | None
+
+    def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+        """Columns of the cases at `rows`, read by the windows in which the file was examined: what can be read and what
+        cannot is told apart by these."""
+        given = columns_at(self.grid, rows)
+        found = {name: given[name] for name in self.names if name in self.grid.values}
+        over = [name for name in self.names if name not in found]
+        with File(self.path) as file:
+            for start, stop, window in runs(self.grid):
+                here = np.flatnonzero((start <= rows) & (rows < stop))
+                for name in over if len(here) else ():
+                    piece = file.read(name, window)
+                    piece = piece.reshape(stop - start, *piece.shape[len(self.grid.sizes) :])
+                    if name not in found:
+                        found[name] = np.empty((len(rows), *piece.shape[1:]), piece.dtype)
+                    found[name][here] = piece[rows[here] - start]
+        if stamp(self.path) != self.seen:
+            raise Damaged(f"{self.path}: has been replaced while its cases were read; the same command goes on")
+        return found
 
 
 @dataclass(frozen=True, eq=False)
 class Earlier:
     """A results file and its condition.
 
-    cases : how many it holds; grid : that they are on, None when they cannot be told; numerics : their version;
-    keys : (N, 2), of the cases that this study can use, or None
+    cases : how many it holds; told : whether it can be told which; numerics : their version; source : of those that
+    this study can use, or None
     """
 
     condition: Condition
     cases: int = 0
-    grid: Grid | None = None
+    told: bool = False
     numerics: str = ""
-    x: np.ndarray | None = None
-    keys: np.ndarray | None = None
+    source: ResultsSource | None = None
 
 
-def earlier(definition: Definition, found: Condition) -> Earlier | None:
-    """What is in a results file that was examined; None when there is none."""
-    if found.kind == "missing":
-        return None
-    if found.kind in ("foreign", "unreadable") or not found.digest and not found.damage:
+def earlier(definition: Definition, found: Condition) -> Earlier:
+    """What is in a results file that was examined."""
+    if found.kind in ("missing", "foreign", "unreadable") or not found.digest and not found.damage:
         return Earlier(found)
     try:
-        with closing(opened(found.path), found.path) as file:
+        with File(found.path) as file:
             return _described(definition, found, file)
     except Unusable:
         return Earlier(found)
@@ -55,47 +82,55 @@ def earlier(definition: Definition, found: Condition) -> Earlier | None:
         return Earlier(replace(found, kind="foreign", reason=f"is laid out as no results of ours ({error!r})"))
 
 
-def _described(definition: Definition, found: Condition, file: netCDF4.Dataset) -> Earlier:
-    with access(found.path):
-        if "status" not in file.variables:  # a micro law
-            return Earlier(found, numerics=found.numerics)
-        told = _told(definition, found, file)
-        columns = {name: np.empty(0, file[name].dtype) for name in not_run(definition, 0) if name in file.variables}
+def _described(definition: Definition, found: Condition, file: File) -> Earlier:
+    if "status" not in file.variables:  # a micro law
+        return Earlier(found, numerics=found.numerics)
+    told = _told(definition, found, file)
     if told is None:
         return Earlier(found, Grid(found.sizes, {}).size)
     grid, x, numerics = told
+    names = tuple(not_run(definition, 0))
+    columns = {name: np.empty(0, file.dtype(name)) for name in names if name in file.variables}
     columns |= {name: array[:0] for name, (_, array) in grid.values.items() if array.ndim}
-    serves = usable(definition, facts(x) | {"numerics_version": numerics}, columns)
-    return Earlier(found, grid.size, grid, numerics, x, case_keys(grid) if serves else None)
+    if not usable(definition, facts(x) | {"numerics_version": numerics}, columns):
+        return Earlier(found, grid.size, True, numerics)
+    status = file.read("status").ravel()
+    status = status if found.intact is None else np.where(found.intact, status, np.int8(NOT_RUN))
+    source = ResultsSource(found.path, grid, case_keys(grid), status, names, stamp(found.path))
+    return Earlier(found, grid.size, True, numerics, source)
 
 
-def _told(definition: Definition, found: Condition, file: netCDF4.Dataset) -> tuple | None:
+def _told(definition: Definition, found: Condition, file: File) -> tuple | None:
     """Grid, points x and numerics of the cases in a file: its own, or of the definition where those are damaged."""
     if not {*PARAMETERS, "x", "=structure", "@numerics_version"} & set(found.damage):
-        return _grid_in(file), np.asarray(file["x"][:]), found.numerics
-    lines = parsed(str(attribute(file, ATTRIBUTE))) if ATTRIBUTE in file.ncattrs() else {}
+        return _grid_in(file), file.read("x"), found.numerics
+    lines = parsed(str(file.attribute(ATTRIBUTE))) if ATTRIBUTE in file.attributes() else {}
     grid, x = definition.grid, definition.x
     same = list(grid.sizes.items()) == list(found.sizes.items())
-    if same and lines.get("=cases") in [identity(NUMERICS_VERSION, x, keys(grid)) for keys in (case_keys, first_keys)]:
+    if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
         return grid, x, NUMERICS_VERSION
     return None
 
 
+def _grid_in(file: File) -> Grid:
+    """The grid that a results file was computed on, from its coordinates."""
+    dims, values = file.variables, {}
+    for name in PARAMETERS:
+        if name in dims and name in coordinates_of(file):
+            array = file.read(name)  # texts without the dimension of their characters
+            values[name] = dims[name][: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
+    versions = str(file.attribute("micro_laws")).split("\n") if "micro_laws" in file.attributes() else []
+    if "micro" in values:  # a law of another version than the registered one is another law
+        own, words = values["micro"]
+        old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
+        values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
+    return Grid({dim: file.sizes[dim] for dim in dims["status"]}, values)
+
+
 def statuses(path: Path) -> np.ndarray:
     """The statuses in a results file of a contact study, an array over its grid."""
-    with closing(opened(path), path) as file, access(path):
-        return np.asarray(file["status"][...])
-
-
-def at_hand(known: Inventory, found: Earlier | None) -> np.ndarray:
-    """Status (B,) of every case that a run would not compute, in blocks or an earlier results file; else NOT_RUN."""
-    if not found or found.keys is None:
-        return known.status
-    where = find(known.keys, found.keys, np.zeros(len(found.keys)))
-    there = (known.file < 0) & (where >= 0)
-    if found.condition.intact is not None:
-        there &= found.condition.intact[where]
-    return np.where(there, statuses(found.condition.path).ravel()[where], known.status)
+    with File(path) as file:
+        return file.read("status")
 
 
 def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: bool = False) -> None:
@@ -107,16 +142,16 @@ def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: boo
     damaged = file.kind == "damaged"
     if file.kind in ("foreign", "unreadable"):
         raise Unusable(file.path, file.kind, f"{file.reason}; move it away, or use --results DIR")
-    if force or file.digest == digest or damaged and not (file.digest or found.cases):  # cut off: nothing can be told
+    nothing = file.kind == "missing" or damaged and not (file.digest or found.cases)  # cut off: nothing can be told
+    if force or nothing or file.digest == digest:
         return
-    if damaged and found.grid is None:
+    if damaged and not found.told:
         raise StudyError([f"{file.path}: {file.reason}; which cases it holds cannot be told: {MEND}"])
     if found.numerics != NUMERICS_VERSION:
         owner = f"version {found.numerics} of the numerics, this is {NUMERICS_VERSION}"
-        raise StudyError(
-            [f"{file.path}: holds results of {owner}: --force computes them again, --results DIR elsewhere"]
-        )
-    kept = 0 if found.keys is None else np.count_nonzero(find(found.keys, keys, np.zeros(len(keys))) >= 0)
+        choice = "--force computes them again, --results DIR elsewhere"
+        raise StudyError([f"{file.path}: holds results of {owner}: {choice}"])
+    kept = np.count_nonzero(find(found.source.keys, keys, np.zeros(len(keys))) >= 0) if found.source else 0
     if not found.cases or kept < found.cases:
         lost = f"{found.cases - kept} of its {found.cases} cases are not in this one"
         if damaged:
@@ -124,54 +159,3 @@ def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: boo
         owner = f"another definition (digest {file.digest[:8]}, here {digest[:8]})"
         choice = "--force replaces them, --results DIR writes elsewhere"
         raise StudyError([f"{file.path}: holds results of {owner}, {lost}: {choice}"])
-
-
-def adopt(store: Store, known: Inventory, found: Earlier, retry: tuple[int, ...]) -> None:
-    """Make blocks of the intact cases in the results file that are missing, but for those of a status in `retry`."""
-    if found.keys is None:
-        return
-    where = find(known.keys, found.keys, np.zeros(len(found.keys)))
-    useful = np.zeros(found.cases, dtype=bool)
-    useful[where[(where >= 0) & (known.file < 0)]] = True
-    useful &= found.condition.intact
-    given, path, start = facts(found.x), found.condition.path, 0
-    with closing(opened(path), path) as file:
-        for window in windows(found.grid, AT_ONCE, 1):
-            stop = start + int(np.prod([s.stop - s.start for s in window.values()]))
-            if useful[start:stop].any():
-                arrays = _rows(store.definition, path, file, found.grid, window, start, stop)
-                rows = np.flatnonzero(useful[start:stop] & ~np.isin(arrays["status"], retry))
-                if len(rows):
-                    put(store, Block(given, found.keys[start + rows], {n: a[rows] for n, a in arrays.items()}))
-            start = stop
-
-
-def _grid_in(file: netCDF4.Dataset) -> Grid:
-    """The grid that a results file was computed on, from its coordinates."""
-    status = file["status"]
-    coordinates = {*status.dimensions, *getattr(status, "coordinates", "").split()}
-    values = {}
-    for name in PARAMETERS:
-        if name in coordinates and name in file.variables:
-            array = np.asarray(file[name][...])  # texts without the dimension of their characters
-            values[name] = file[name].dimensions[: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
-    versions = str(attribute(file, "micro_laws")).split("\n") if "micro_laws" in file.ncattrs() else []
-    if "micro" in values:  # a law of another version than the registered one is another law
-        dims, words = values["micro"]
-        old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
-        values["micro"] = dims, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
-    return Grid({dim: len(file.dimensions[dim]) for dim in status.dimensions}, values)
-
-
-def _rows(
-    definition: Definition, path: Path, file: netCDF4.Dataset, grid: Grid, window: dict, start: int, stop: int
-) -> dict[str, np.ndarray]:
-    """The columns that the study wants and the file has, for the cases of a window: name -> (stop - start, ...)."""
-    given, found = columns(grid, start, stop), {}
-    for name, wanted in not_run(definition, 0).items():
-        if name in grid.values:
-            found[name] = given[name].astype(wanted.dtype, copy=False)
-        elif name in file.variables:
-            array = cut_from(path, file, name, window).astype(wanted.dtype, copy=False)
-            found[name] = array.reshape(stop - start, *array.shape[len(grid.sizes) :])
-    return found

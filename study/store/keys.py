@@ -1,9 +1,9 @@
 """One 128-bit key per case, made of the values that count for it alone: the same case in another order of the axes, on
-another grid or in another run has the same key. Numpy only, a million cases in a fraction of a second.
+another grid or in another run has the same key. Numpy only, a million cases in a fraction of a second. Whoever makes
+other keys of the same cases changes NUMERICS_VERSION: blocks and results of before are found by nobody.
 """
 
 import hashlib
-from functools import lru_cache
 
 import numpy as np
 
@@ -12,13 +12,6 @@ from solver.laws import identity as law_identity
 from ..spec.grid import Grid, along
 from ..spec.identity import counts
 from ..spec.vocabulary import PARAMETERS
-
-VERSION = 2
-"""Of the keys; blocks say with which they were made. Version 1, which says nothing, summed all of FIRST."""
-FIRST = (
-    *("P", "a", "D", "h", "n", "nu1", "nu2", "bonding", "base", "Nbar", "Ra", "micro", "B", "beta"),
-    *("scheme", "k", "rtol", "accuracy", "model_check", "nodes", "max_iterations"),
-)
 
 
 def case_keys(grid: Grid) -> np.ndarray:
@@ -32,26 +25,6 @@ def case_keys(grid: Grid) -> np.ndarray:
         if counted.any():
             lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
-
-
-def first_keys(grid: Grid) -> np.ndarray:
-    """(B, 2) uint64: keys as version 1 made them, of all parameters of that time whether or not a case uses them."""
-    lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
-    for name in FIRST:
-        lanes += _hashed(name, along(grid, name))
-    return np.ascontiguousarray(lanes.reshape(2, -1).T)
-
-
-def renewed(keys: np.ndarray, grid: Grid) -> np.ndarray:
-    """Keys (n, 2) of version 1 made anew; those of cases that are not on the grid stay, and serve nobody."""
-    first, new = _both(grid)
-    where = find(keys, first, np.zeros(len(first)))
-    return np.where((where >= 0)[:, np.newaxis], new[where], keys)
-
-
-@lru_cache(maxsize=1)  # for all blocks of a study
-def _both(grid: Grid) -> tuple[np.ndarray, np.ndarray]:
-    return first_keys(grid), case_keys(grid)
 
 
 def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:

@@ -8,8 +8,9 @@ from .blocks import Inventory, Store, inventory, remove_litter
 from .lock import held
 
 
-def tidy(store: Store, known: Inventory) -> str:
+def tidy(store: Store, known: Inventory | None = None) -> str:
     """Remove the blocks of which the results file holds everything; says what else lies there, "" if nothing does."""
+    known = known or inventory(store, force=True)
     for path in known.inside:
         path.unlink(missing_ok=True)
     remove_litter(store)
@@ -37,7 +38,7 @@ def clean(store: Store, done: bool) -> list[str]:
         if not alone:
             raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
         known = inventory(store, force=True)
-        used = set() if done else {known.files[number] for number in set(known.file[known.file >= 0].tolist())}
+        used = set() if done else {known.sources[number].path for number in set(known.source[known.source >= 0])}
         gone = [path for path in known.blocks if path not in used and path.is_file()]
         for path in gone:
             path.unlink(missing_ok=True)

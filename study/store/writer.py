@@ -4,15 +4,13 @@ from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
-import netCDF4
-
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import assembled, labelled
 from ..files.atomic import replacing
 from ..files.checksums import Rows, identity
 from ..files.examine import CHUNK
-from ..files.netcdf import access, closing, created
+from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, set_aside
 from ..files.seal import seal
 from ..spec.grid import box, cut_out, windows
@@ -33,32 +31,29 @@ def writing(store: Store, known: Inventory, path: Path, command: str, aside: boo
     OSError : the file cannot be written
     """
     with replacing(path, store.folder) as temporary:
-        with closing(created(temporary), path, writing=True) as file:
-            yield from _steps(file, store, known, path, command)
+        with File(temporary, "w", path) as file:
+            yield from _steps(file, store, known, command)
         seal(temporary)
         if aside:
             set_aside(path)
 
 
-def _steps(file: netCDF4.Dataset, store: Store, known: Inventory, path: Path, command: str) -> Iterator[None]:
+def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator[None]:
     definition, start = store.definition, 0
     rows = Rows(definition.grid.size)
     most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
     chunk = dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True))
     for window in windows(definition.grid, most, CHUNK):
         grid = cut_out(definition.grid, window)
-        while (known.file[start : start + grid.size] < 0).any():
+        while (known.source[start : start + grid.size] < 0).any():
             yield
         arrays = gather(store, known, start, start + grid.size)
         part = labelled(replace(definition, grid=grid), arrays, command)
         if not start:
-            with access(path, writing=True):
-                create(file, part, assembled(definition, {}, "x", definition.x, command), chunk)
+            create(file, part, assembled(definition, {}, "x", definition.x, command), chunk)
         for name, array in part.data_vars.items():
-            with access(path, writing=True):
-                file[name][tuple(window.get(dim, slice(None)) for dim in array.dims)] = array.values
+            file.write(name, array.values, window)
             rows.add(name, array.values.reshape(grid.size, -1))
             yield
         start += grid.size
-    with access(path, writing=True):
-        add_checksums(file, rows, {"=cases": identity(NUMERICS_VERSION, definition.x, known.keys)})
+    add_checksums(file, rows, {"=cases": identity(NUMERICS_VERSION, definition.x, known.keys)})

@@ -51,17 +51,15 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     processes = processes_for(count, -(-missing // definition.block))
     memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
-    if definition.kind == "contact":
-        memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
-    return Estimate(cases, present, seconds, memory, size, disk_for(definition) if missing else 0.0)
+    memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
+    return Estimate(cases, present, seconds, memory, size, disk_for(definition, missing) if missing else 0.0)
 
 
-def disk_for(definition: Definition) -> float:
-    """Bytes of the results file, and of the blocks that it is written from: both are there when it is complete."""
-    empty = not_run(definition, 1).values() if definition.kind == "contact" else ()
-    block = KEY + sum(array.nbytes for array in empty)
+def disk_for(definition: Definition, missing: int) -> float:
+    """Bytes of the results file, and of the blocks of the missing cases: both are there when it is complete."""
+    block = KEY + sum(array.nbytes for array in not_run(definition, 1).values())
     results = definition.numbers * np.dtype(definition.dtype).itemsize
-    return HEAD + ROOM * results + (block * definition.grid.size if empty else 0)
+    return HEAD + ROOM * results + block * missing
 
 
 def _matrices(definition: Definition) -> int:

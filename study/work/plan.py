@@ -1,6 +1,5 @@
 """What a run is asked for, what it reports, and what it checks before it begins."""
 
-import os
 import tempfile
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import TextIO
 import numpy as np
 
 from ..data.dataset import status_words
-from ..files.atomic import make_folder
+from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
 from ..spec.definition import LARGE, Definition, StudyError
 from ..spec.vocabulary import NOT_RUN, suggest
@@ -46,11 +45,12 @@ class Report:
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `cluster.engine`; processes : workers may be processes, which begin by importing the main
-    module of this one; part : (i, n), only the i-th of n parts, whichever ends last writes the
-    results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds a
-    case that has failed (one without a solution has not); force : replace a results file of which cases would be lost;
-    yes : go on however large the study is; command : for the history of the results; stream : text stream for progress
+    workers, scheduler : see `workers.engine`; processes : workers may be processes, which know what is installed but
+    nothing that the calling program has defined; part : (i, n), only the i-th of n parts, whichever ends last writes
+    the results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds
+    a case that has failed (one without a solution has not); force : replace a results file of which cases would be
+    lost; yes : go on however large the study is; command : for the history of the results; stream : text stream for
+    progress
     """
 
     definition: Definition
@@ -84,8 +84,7 @@ class Order:
         """Whether a results file that was examined is that of this study, and holds no case to be tried again."""
         if not belongs(self.definition, found):
             return False
-        again = self.retry and self.definition.kind == "contact"
-        return not (again and np.isin(statuses(self.path), self.retry).any())
+        return not (self.retry and np.isin(statuses(self.path), self.retry).any())
 
     def report(self, known: Inventory | None = None, **what) -> Report:
         counts = count_statuses(known.status) if known else {}
@@ -124,24 +123,18 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 def check_writable(path: Path) -> None:
     """Raise CannotWrite when the folder of the results cannot be made or written, or that which a link leads to."""
-    if not _is_utf8(str(path.absolute())):
-        raise StudyError([f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"])
     folder = path.parent
     try:
+        str(path.absolute()).encode()
         make_folder(folder)
-        if path.is_symlink():
-            folder = Path(os.path.realpath(path)).parent
+        folder = target(path).parent
         with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
             pass
     except OSError as error:
         raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
-
-
-def _is_utf8(text: str) -> bool:
-    try:
-        return bool(text.encode())
     except UnicodeEncodeError:  # Python keeps other bytes of a path as lone surrogates
-        return False
+        wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
+        raise StudyError([wrong]) from None
 
 
 def check_countable(store: Store, path: Path, yes: bool) -> bool:

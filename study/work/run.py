@@ -10,17 +10,15 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import NO_SOLUTION, labelled, status_words
+from ..files.atomic import target
 from ..files.examine import Condition, stamp
-from ..files.results_file import write
 from ..spec.definition import Definition
-from ..spec.vocabulary import NOT_RUN
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
-from ..store.earlier import adopt, at_hand, check_replaceable, earlier
+from ..store.earlier import check_replaceable, earlier
 from ..store.lock import held
 from ..store.tidy import tidy
 from ..store.writer import writing
 from ..terminal import say
-from . import micro_law
 from .cases import Failure, cut, guarded, parcel
 from .cost import Estimate, estimate
 from .plan import Order, Report, check_countable, check_size, check_writable, look
@@ -63,13 +61,10 @@ def run(definition: Definition, results="results", **options) -> Report:
 def _computed(order: Order, found: Condition) -> Report:
     """Compute what is missing, and write the results unless others compute too."""
     if order.done(found):
-        return order.report(kept=tidy(order.store, inventory(order.store, force=True)))
+        return order.report(kept=tidy(order.store))
     if found.kind == "damaged":
-        log.warning(
-            "%s: %s; computing again what is damaged, %s.damaged keeps it", order.path, found.reason, order.path
-        )
-    if order.definition.kind == "micro_law":
-        return _law(order, found)
+        kept = f"computing again what is damaged, {target(order.path)}.damaged keeps it"
+        log.warning("%s: %s; %s", order.path, found.reason, kept)
     known = prepared(order, found)
     missing = len(known.missing)
     writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))
@@ -79,16 +74,6 @@ def _computed(order: Order, found: Condition) -> Report:
     return order.report(known, computed=missing - len(known.missing), failures=failures, kept=kept)
 
 
-def _law(order: Order, found: Condition) -> Report:
-    """Compute the law, which takes a moment, in place of another law only."""
-    there = earlier(order.definition, found)
-    if there and (there.cases or not found.digest):
-        check_replaceable(order.store, there, np.empty((0, 2), dtype=np.uint64), order.force)
-    write(micro_law.compute(order.definition, order.command), order.path, aside=found.kind == "damaged")
-    kept = tidy(order.store, inventory(order.store, force=True))
-    return order.report(computed=order.definition.grid.size, kept=kept)
-
-
 def _last(order: Order, report: Report) -> Report:
     """What the last of several runs does: write the results, remove the blocks. The others leave it to that one."""
     with held(order.store.lock, wait=False) as alone:
@@ -96,8 +81,8 @@ def _last(order: Order, report: Report) -> Report:
             return report
         found = look(order.definition, order.path)
         if order.done(found):
-            return replace(report, complete=True, kept=tidy(order.store, inventory(order.store, force=True)))
-        known = inventory(order.store, force=order.force)
+            return replace(report, complete=True, kept=tidy(order.store))
+        known = prepared(replace(order, retry=()), found)
         with closing(_writing(order, known, found)) as steps:
             kept = _finish(order, known, steps)
         return order.report(known, computed=report.computed, failures=report.failures, kept=kept)
@@ -124,12 +109,10 @@ def prepared(order: Order, file: Condition) -> Inventory:
     """What is on disk, cases of an earlier results file included. Raises StudyError when these would be lost."""
     if not order.shared:
         remove_litter(order.store)
-    known, found = inventory(order.store, order.retry, order.force), earlier(order.definition, file)
-    if found is None:
-        return known
+    found = earlier(order.definition, file)
+    known = inventory(order.store, found.source, order.retry, order.force)
     check_replaceable(order.store, found, known.keys, order.force)
-    adopt(order.store, known, found, order.retry)
-    return inventory(order.store, order.retry, order.force)
+    return known
 
 
 def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dict[int, str]:
@@ -171,12 +154,12 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
     """
     order = Order(definition, Path(results))
     found = look(definition, order.path)
-    if definition.kind == "micro_law" or order.done(found):
+    if order.done(found):
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, order.path, yes):
         return estimate(definition, workers)
-    status = at_hand(inventory(order.store), earlier(definition, found))
-    return estimate(definition, workers, int(np.count_nonzero(status != NOT_RUN)))
+    known = inventory(order.store, earlier(definition, found).source)
+    return estimate(definition, workers, definition.grid.size - len(known.missing))
 
 
 def partial_dataset(definition: Definition, results) -> xr.Dataset:

@@ -168,15 +168,6 @@ def test_dry_run_retry_and_parts(capsys):
     ]
 
 
-def test_a_micro_law_has_nothing_to_retry(studies, capsys):
-    law = 'kind = "micro_law"\n[[cases]]\nRa = 0.004\nNbar = 250000\n'
-    (studies / "law.toml").write_text(law, encoding="utf-8")
-    assert main(["run", "law", "--part", "2/2"]) == 0
-    assert main(["retry", "law", "--status", "diverged"]) == 0
-    assert capsys.readouterr().out.endswith("results/law.nc is up to date (1 cases), nothing to do\n")
-    assert [path.name for path in Path("results").iterdir()] == ["law.nc"]
-
-
 def test_fail_fast(studies, capsys):
     hard = GOOD.replace('"smooth"', '"disc_cell"\nNbar = 1e5\nRa = 0.004') + "max_iterations = 1"
     (studies / "hard.toml").write_text(hard, encoding="utf-8")

@@ -7,7 +7,7 @@ import pytest
 import xarray as xr
 
 import study
-from study.files import netcdf, results_file
+from study.files import access, results_file
 from study.spec.vocabulary import NOT_RUN, PARAMETERS, VOCABULARY, attributes
 
 CASES = [
@@ -89,7 +89,7 @@ def interruptible():
 def test_an_interrupt_waits_until_netcdf_is_done():
     """An exception inside xarray's locks would leave one locked, and the next access would hang."""
     reached = []
-    with pytest.raises(KeyboardInterrupt), netcdf.interrupts_wait():
+    with pytest.raises(KeyboardInterrupt), access.interrupts_wait():
         signal.raise_signal(signal.SIGINT)
         reached.append("end of the block")
     assert reached
@@ -99,14 +99,17 @@ def test_an_interrupt_waits_until_netcdf_is_done():
 
 @pytest.mark.usefixtures("interruptible")
 def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
-    ended, real = [], results_file.create
+    ended, real = [], results_file.stored
 
-    def create(*arguments):
-        signal.raise_signal(signal.SIGINT)
-        real(*arguments)
-        ended.append("create")
+    class Interrupting:
+        """Values that netCDF asks for while it writes."""
 
-    monkeypatch.setattr(results_file, "create", create)
+        def __array__(self, dtype=None, copy=None):
+            signal.raise_signal(signal.SIGINT)
+            ended.append("written")
+            return reread.a.values
+
+    monkeypatch.setattr(results_file, "stored", lambda array: Interrupting() if array.name == "a" else real(array))
     with pytest.raises(KeyboardInterrupt):
         results_file.write(reread, tmp_path / "file.nc")
     assert ended and list(tmp_path.iterdir()) == []

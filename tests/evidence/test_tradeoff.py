@@ -13,8 +13,7 @@ from study import open_results
 from study.evidence import tradeoff
 from study.evidence.problem_sets import SETS
 from study.evidence.tradeoff import JUDGED, WAYS, errors, measure, taken, timed, with_reference
-from study.evidence.tradeoff_page import TARGETS, factors, page, time_to
-from study.evidence.tradeoff_view import STYLES, columns, rows
+from study.evidence.tradeoff_view import STYLES, columns, factors, rows, time_to
 from study.paper import paper_error
 
 
@@ -68,19 +67,17 @@ def test_a_long_run_is_not_repeated(monkeypatch):
     assert timed(lambda: "answer", 5) == (100.0, "answer")
 
 
-def test_slow_ways_take_a_spread_sample_of_the_bases_they_know():
-    cases = SETS["extremes"](90, 1)
-    cases["base"][::3] = "layered"
-    index = replace(WAYS["paper k = 5"], most=7).index(cases)
-    assert len(index) == 7 and (np.diff(index) > 0).all() and not (cases["base"][index] == "layered").any()
-    assert len(WAYS["newton, rtol"].index(cases)) == 90
+def test_slow_ways_take_a_spread_sample():
+    index = replace(WAYS["paper k = 5"], most=7).index(90)
+    assert len(index) == 7 and index[0] == 0 and index[-1] == 89 and np.ptp(np.diff(index)) <= 1
+    assert len(WAYS["newton, rtol"].index(90)) == 90
 
 
 @pytest.fixture
 def on_the_papers_layer(monkeypatch):
     """The measurement of one set alone."""
     monkeypatch.setattr(tradeoff, "SETS", {"paper, layer": SETS["paper, layer"]})
-    monkeypatch.setattr(tradeoff.paper_error, "iterates", xr.Dataset)
+    monkeypatch.setattr(tradeoff.paper_error, "measured", xr.Dataset)
 
 
 def test_newton_is_as_accurate_as_asked_and_the_papers_way_of_second_order(on_the_papers_layer):
@@ -128,20 +125,11 @@ def test_factors_are_those_of_the_cheapest_of_the_papers_ways_where_there_is_one
         "ended": (("way", "step"), np.ones((4, 2))),
         "cases": ("way", [5, 5, 5, 0]),
     }, {"way": ["paper k = 1", "paper k = 5", "newton, rtol", "paper k = 7"]})  # fmt: skip
-    assert factors(layer).splitlines()[2:] == [
-        "| 0.01 | 1e+03 | k = 1 | 10 | 100 |",
-        "| 0.001 | 1e+03 | k = 1 | 10 | 100 |",
-        "| 0.0001 | 4e+03 | k = 5 | 20 | 200 |",
+    assert factors(layer.expand_dims(set=["paper, layer"])) == [
+        (0.01, pytest.approx(1e3), "k = 1", pytest.approx(10), pytest.approx(100)),
+        (0.001, pytest.approx(1e3), "k = 1", pytest.approx(10), pytest.approx(100)),
+        (0.0001, pytest.approx(4e3), "k = 5", pytest.approx(20), pytest.approx(200)),
     ]
-
-
-def test_the_page_is_filled_and_wrapped(found):
-    text = page(found)
-    assert "{" not in text and max(map(len, text.splitlines())) <= 400
-    prose = [line for line in text.splitlines() if line and line[0] not in "|!#-"]
-    assert max(map(len, prose)) <= 120
-    table = [line for line in text.splitlines() if line.startswith("| paper, layer | newton, rtol |")]
-    assert len(table) == 1 and table[0].count("|") == len(TARGETS) + 3
 
 
 def test_two_iterates_have_the_papers_load_and_depth(found):
@@ -150,7 +138,7 @@ def test_two_iterates_have_the_papers_load_and_depth(found):
     first, second = (found.isel(pair | {"iterate": pair["iterate"] + i}) for i in (0, 1))
     assert f"{float(first['iterate_P']):.2e}" == "2.72e-05"
     assert f"{float(second['iterate_D']):.3e}" == "1.038e-03"
-    explained = {quantity: (printed, theirs) for quantity, printed, _, theirs in paper_error.explained(found)}
+    explained = {quantity: (printed, theirs) for quantity, printed, _, _, theirs, _ in paper_error.rows(found)}
     for quantity in ("D, smooth, layered", "D, smooth, homogeneous (Hertz)", "An over that of a0, rough, homogeneous"):
         printed, theirs = explained[quantity]
         assert theirs == pytest.approx(printed, rel=1e-3)

@@ -107,7 +107,7 @@ def test_measurements_stand_at_their_set_way_and_step(monkeypatch):
     sets = {"paper, layer": SETS["paper, layer"], "half": lambda size, seed: SETS["paper, half-space"](2 * size, seed)}
     monkeypatch.setattr(tradeoff, "SETS", sets)
     monkeypatch.setattr(tradeoff, "measured", number)
-    monkeypatch.setattr(tradeoff.paper_error, "iterates", xr.Dataset)  # takes seconds
+    monkeypatch.setattr(tradeoff.paper_error, "measured", xr.Dataset)  # takes seconds
     ways = {
         "one": Way(None, "knob", (1.0, 2.0), ("paper, layer", "half"), copies=4),
         "two": Way(None, "lever", (3.0,), ("half",), most=2),
@@ -187,7 +187,8 @@ def test_where_the_papers_numbers_may_come_from(results):
     found = open_results(results / "tradeoff.nc")
     pair = paper_error.nearest_pair(found)
     assert (int(found["iterate"][pair["iterate"]]), int(found["intervals"][pair["intervals"]])) == (23, 80)
-    rows = {row[0]: (row[1], f"{row[2]:.5g}", f"{row[3]:.5g}") for row in paper_error.explained(found)}
+    assert found["pair"].values.tolist() == [80, 23]
+    rows = {row[0]: (row[1], f"{row[2]:.5g}", f"{row[4]:.5g}") for row in paper_error.rows(found)}
     assert rows == ORIGIN
     loads = [f"{float(load):.4e}" for load in found["iterate_P"].sel(iterate=23)]
     assert loads == ["2.7169e-05", "2.7198e-05", "2.7201e-05", "2.7187e-05"]

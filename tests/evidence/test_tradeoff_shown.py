@@ -1,6 +1,4 @@
-"""Figure, table and page of the work-precision study show what is in its dataset, number by number."""
-
-import re
+"""Figure and tables of the work-precision study show what is in its dataset, number by number."""
 
 import numpy as np
 import pytest
@@ -9,8 +7,7 @@ from drawn import frame, legend, lines, texts, ticks
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from study import open_results
-from study.evidence.tradeoff_page import page
+from study.evidence import tradeoff_view
 from study.evidence.tradeoff_view import work_precision
 
 SETS = ("paper, layer", "paper, half-space", "coatings", "extremes")
@@ -33,7 +30,7 @@ STEPS = 4
 
 
 @pytest.fixture(scope="module")
-def found(results) -> xr.Dataset:
+def found() -> xr.Dataset:
     """Made-up measurements, all different; each set lacks a way, some ways a step, and a few cases did not end."""
     random = np.random.default_rng(5)
     shape = len(SETS), len(WAYS), STEPS
@@ -54,10 +51,7 @@ def found(results) -> xr.Dataset:
     made = xr.Dataset({name: (("set", "way", "step"), array) for name, array in arrays.items()})
     made["cases"] = ("set", "way"), cases
     made["varied"] = "way", [f"size{i}" for i in range(len(WAYS))]
-    made = made.assign_coords(set=list(SETS), way=list(WAYS))
-    iterates = open_results(results / "tradeoff.nc")
-    names = [name for name in iterates.data_vars if name.startswith("iterate_")]
-    return made.merge(iterates[names]).assign_attrs(cpu="a processor of 1971")
+    return made.assign_coords(set=list(SETS), way=list(WAYS))
 
 
 @pytest.fixture(scope="module")
@@ -134,64 +128,29 @@ def test_columns_of_the_csv(figure, found):
         assert figure.shown[column].tolist() == [found[column].values[place] for place in known]
 
 
-def rows_under(text: str, head: str) -> list[list[str]]:
-    """The rows of the Markdown table with this head."""
-    found = text.splitlines()
-    start = found.index(head) + 2
-    rows = []
-    for line in found[start:]:
-        if not line.startswith("|"):
-            break
-        rows.append([cell.strip() for cell in line.strip("|").split("|")])
-    return rows
-
-
 def cheapest(found, name: str, way: str, target: float) -> float:
     """µs: the quickest step with 95 % of the cases within the target and 95 % ended."""
     times = [t for t, e, ended in zip(*measured(found, name, way), strict=True) if e <= target and ended >= 0.95]
     return 1e6 * min(times, default=np.inf)
 
 
-def test_the_page_prints_the_cheapest_settings(found):
+def test_the_cheapest_settings(found):
     targets = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
     expected = []
     for name in SETS:
         for way in LABELS:
             if len(measured(found, name, way)[0]):
                 times = [cheapest(found, name, way, target) for target in targets]
-                expected.append([name, way, *("-" if time == np.inf else f"{time:.3g}" for time in times)])
-    assert rows_under(page(found), "| set | way | 0.01 | 0.001 | 0.0001 | 1e-06 | 1e-09 |") == expected
+                expected.append((name, way, *("-" if time == np.inf else pytest.approx(time) for time in times)))
+    assert tradeoff_view.cheapest(found) == expected
 
 
-def test_the_page_sets_the_papers_way_beside_newton(found):
+def test_the_papers_way_beside_newton(found):
     expected = []
     for target in (1e-2, 1e-3, 1e-4, 1e-5, 1e-6):
         ways = [way for way in LABELS if way.startswith("paper")]
         time, way = min((cheapest(found, "paper, layer", way, target), way) for way in ways)
         newton = cheapest(found, "paper, layer", "newton, rtol", target)
         if time < np.inf:
-            expected.append([f"{target:g}", f"{time:.3g}", way[6:], f"{newton:.3g}", f"{time / newton:.0f}"])
-    assert rows_under(page(found), "| error | the paper's way, µs | with | Newton, µs | factor |") == expected
-
-
-def test_the_page_says_what_was_measured_and_what_it_means(found):
-    prose = re.sub(r"\s+", " ", page(found))
-    assert (
-        "one thread for one batch, the shortest of several runs, over the number of cases (a processor of 1971)"
-        in prose
-    )
-    assert "each case of the paper's sets stands 10 times in the batch" in prose
-    counts = found["cases"]
-    sizes = "; ".join(f"{name}: {counts.sel(set=name).values.max()}" for name in SETS)
-    assert f"(units R = E2* = 1; cases: {sizes})" in prose
-    slow, slowest = (counts.sel(way=way).values.max() for way in ("paper k = 1", "paper k = 35"))
-    assert f"measured on {slow} cases spread over a set, with k = 35 on {slowest}, in the same" in prose
-    bare = found.sel(set="paper, half-space")
-    ways = [way for way in LABELS if way.startswith("paper") and bare["cases"].sel(way=way) > 0]
-    shares = [f"{np.nanmin(bare['ended'].sel(way=way)):.0%} ({way[6:]})" for way in ways]
-    assert f"on its worst mesh {', '.join(shares)} of the cases end" in prose
-    layer, coatings = found.sel(set="paper, layer"), found.sel(set="coatings")
-    main, law = (float(s["median"].sel(way=w)[0]) for s, w in ((layer, "the other layer"), (coatings, "the other law")))
-    refused = 1 - float(coatings["ended"].sel(way="the other layer")[0])
-    assert f"changes half of the paper's cases by {main:.1%} or more; to {refused:.0%} of the coatings" in prose
-    assert f"The power law for the exact law changes half of the coatings by {law:.1%} or more" in prose
+            expected.append((target, pytest.approx(time), way[6:], pytest.approx(newton), pytest.approx(time / newton)))
+    assert expected and tradeoff_view.factors(found) == expected

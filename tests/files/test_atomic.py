@@ -5,7 +5,7 @@ import stat
 
 import pytest
 
-from study.files.atomic import make_folder, replacing
+from study.files.atomic import make_folder, remove_temporary, replacing
 
 
 def test_the_file_is_flushed_and_then_renamed(tmp_path, monkeypatch):
@@ -66,3 +66,19 @@ def test_the_names_of_new_folders_are_flushed(tmp_path, monkeypatch):
     assert set(flushed) == {tmp_path.stat().st_ino, (tmp_path / "results").stat().st_ino}
     make_folder(tmp_path / "results" / "blocks")
     assert len(flushed) == 2, "nothing is new"
+
+
+def test_what_killed_writers_left_is_found_beside_what_a_link_leads_to(tmp_path):
+    """And nothing else is removed."""
+    disk = tmp_path / "disk"
+    disk.mkdir()
+    (tmp_path / "f[1].nc").symlink_to(disk / "large.nc")
+    with pytest.raises(SystemExit), replacing(tmp_path / "f[1].nc") as temporary:
+        assert temporary.parent == disk
+        temporary.touch()
+        os.link(temporary, disk / ".large.nc.01234567.tmp")
+        raise SystemExit
+    for name in (".other.nc.01234567.tmp", ".large.nc.mine.tmp", "large.nc"):
+        (disk / name).touch()
+    remove_temporary(tmp_path / "f[1].nc")
+    assert sorted(os.listdir(disk)) == [".large.nc.mine.tmp", ".other.nc.01234567.tmp", "large.nc"]

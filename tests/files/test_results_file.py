@@ -120,13 +120,6 @@ def test_nor_from_what_was_opened(opened, monkeypatch, tmp_path):
     assert filled(elsewhere.open(partial=True), tmp_path / "file.nc") == (set(), FLOATS)
 
 
-def test_a_law_has_no_fill_value_on_coordinates_either(tmp_path):
-    tables = {"kind": "micro_law", "cases": [{"Ra": 0.004, "Nbar": 250000}], "fit": {"step": 1e-3}}
-    law = study.Study(from_tables(tables, "law", "", "law"), tmp_path)
-    law.run()
-    assert filled(law.open(), tmp_path / "file.nc") == (set(), {"A_exact", "A_fit", "B", "beta", "max_error"})
-
-
 def test_units_of_a_lazily_opened_file_are_converted_lazily(opened, monkeypatch):
     monkeypatch.setattr(study.api, "LAZY", 0)
     found = study.to_physical(opened.open(), **SCALE)

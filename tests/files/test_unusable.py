@@ -6,6 +6,7 @@ import subprocess
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 import xarray as xr
 from conftest import ROOT
@@ -15,6 +16,7 @@ import study
 from study.__main__ import main
 from study.files import seal
 from study.files.netcdf import fcntl
+from study.files.results_file import write
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX files and locks")
 
@@ -107,24 +109,16 @@ def test_a_pipe_among_the_blocks_is_passed_by(file):
     assert report.computed == 23 and "1 damaged block that" in report.kept
 
 
-LAW = 'kind = "micro_law"\n[[cases]]\nRa = 0.004\nNbar = 250000\n[fit]\nstep = 1e-3\n'
-
-
-def test_full_disk_while_a_law_is_written(tmp_path, capsys):
-    (tmp_path / "law.toml").write_text(LAW, encoding="utf-8")
+def test_full_disk_while_a_small_dataset_is_written(tmp_path):
+    """Such as that of the trade-off; nothing is left of it."""
     _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
     try:
         resource.setrlimit(resource.RLIMIT_FSIZE, (8000, most))
-        code = main(["run", str(tmp_path / "law.toml"), "--results", str(tmp_path / "results")])
+        with pytest.raises(OSError, match=r"small.nc cannot be written \(NetCDF: HDF error\): is the disk full\?"):
+            write(xr.Dataset({"a": ("x", np.random.default_rng(1).random(5000))}), tmp_path / "small.nc")
     finally:
         resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, most))
-    said = capsys.readouterr().err
-    assert (
-        code == 1
-        and said.count("\n") == 1
-        and "law.nc cannot be written (NetCDF: HDF error): is the disk full?" in said
-    )
-    assert not list((tmp_path / "results").glob("*.nc*")) + list((tmp_path / "results").glob("*.tmp"))
+    assert not list(tmp_path.iterdir())
 
 
 def test_eight_threads_at_once():

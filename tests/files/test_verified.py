@@ -101,7 +101,6 @@ def runs(tmp_path_factory):
         patch.setattr(checksums, "RUN", 5)
         patch.setattr("study.files.examine.CHUNK", 5)
         patch.setattr("study.store.writer.CHUNK", 5)
-        patch.setattr("study.store.earlier.AT_ONCE", 5)
         # another process would have the usual runs of cases
         patch.setattr("study.files.examine.examined_apart", lambda path, columns, _: examined(path, columns))
         found = load(folder / "line.toml")
@@ -213,6 +212,23 @@ def test_a_damaged_file_is_kept_under_a_name_of_its_own(tmp_path, monkeypatch):
         names += [results_file.set_aside(path).name]
         path.unlink(missing_ok=True)
     assert names == ["f.nc.damaged", "f.nc.damaged-2"]
+
+
+@pytest.mark.parametrize("links", [True, False], ids=["hard links", "no hard links"])
+def test_a_damaged_file_behind_a_symbolic_link_is_kept_and_mended_there(one, opened, tmp_path, monkeypatch, links):
+    path, there = opened.results / "one.nc", tmp_path / "disk" / "large.nc"
+    there.parent.mkdir()
+    path.rename(there)
+    path.symlink_to(there)
+    flip(opened, "a")
+    damaged = there.read_bytes()
+    (there.parent / ".large.nc.01234567.tmp").touch()  # of a run that was killed
+    if not links:
+        monkeypatch.setattr(os, "link", lambda *_: (_ for _ in ()).throw(OSError(95, "no links")))
+    opened.run()
+    assert path.is_symlink() and sorted(os.listdir(there.parent)) == ["large.nc", "large.nc.damaged"]
+    assert (there.parent / "large.nc.damaged").read_bytes() == damaged
+    assert_same(opened.open(), one.open())
 
 
 def test_a_sample_of_random_flips():

@@ -7,21 +7,12 @@ import pytest
 import xarray as xr
 
 from study import StudyError, open_results
-from study.figures.sources import pick
-from study.paper import numbers
-from study.tables import (
-    TABLES,
-    Column,
-    Table,
-    as_csv,
-    as_latex,
-    as_text,
-    largest_error,
-    largest_thickness,
-    latex,
-    paper_numbers,
-    tabulate,
-)
+from study.catalogue import TABLES, tabulate
+from study.evidence.validity_maps import largest_thickness
+from study.figures.formats import as_csv, as_latex, as_text, latex
+from study.figures.registry import Table, column
+from study.paper import law_fits, numbers
+from study.paper.compared import paper_numbers
 
 CONVERGED = {  # of the thin-layer equation with the power law; every digit stable under refinement
     "P": 2.70408e-5,
@@ -83,24 +74,25 @@ def test_table1_refits_the_paper(written):
 
 def test_a_bound_of_the_paper_that_does_not_hold_is_called_so(results, monkeypatch):
     monkeypatch.setitem(numbers.ERROR_BOUNDS, 4.0, 0.07)
-    studies = (open_results(results / f"{name}.nc") for name in ("reference_load", "main_case", "table1"))
+    studies = (open_results(results / f"{name}.nc") for name in ("reference_load", "main_case"))
     assert [row[1:4:2] for row in paper_numbers(*studies)[-3:]] == [
         ("at most 7%", "does not hold"), ("at most 5%", "holds"), ("at most 5%", "holds"),
     ]  # fmt: skip
 
 
-def test_error_of_printed_constants_covers_the_whole_interval(results):
+def test_error_of_printed_constants_covers_the_whole_interval():
     """The fitted constants, measured as the printed ones are, have the error that the fit itself reports."""
-    case = pick(open_results(results / "table1.nc"), Ra=0.004, Nbar=250_000)
-    error = largest_error(case, float(case["B"]) * 0.004, float(case["beta"]))
-    assert error == pytest.approx(float(case["max_error"]), rel=1e-3)
+    fit = law_fits.fitted(0.004, 250_000)
+    assert law_fits.printed_error(0.004, 250_000, fit.B, fit.beta) == pytest.approx(fit.error, rel=1e-3)
 
 
-def test_the_error_counts_both_ends_of_the_interval_and_nothing_beyond():
+def test_the_error_counts_both_ends_of_the_interval_and_nothing_beyond(monkeypatch):
     p = np.array([0.0024, 0.0025, 0.01, 0.025, 0.0251])
+    monkeypatch.setattr(law_fits, "PRESSURES", p)
     for errors, largest in (([9, 0.2, 0.1, 0.3, 9], 0.3), ([9, 0.4, -0.1, 0.3, 9], 0.4), ([9, 0.1, -0.5, 0.3, 9], 0.5)):
-        law = xr.Dataset({"A_exact": ("p", 2 * p**0.5 / (1 + np.array(errors)))}, {"p": p})
-        assert largest_error(law, 2.0, 0.5) == pytest.approx(largest, rel=1e-12)  # rounding of a ratio
+        monkeypatch.setattr(law_fits, "exact", lambda *_, e=errors: 2 * p**0.5 / (1 + np.array(e)))
+        # rounding of a ratio
+        assert law_fits.printed_error(0.004, 250_000, 2.0, 0.5) == pytest.approx(largest, rel=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -152,7 +144,7 @@ def test_formats_of_cells():
     assert latex("+4.5%") == r"+4.5\%"
     assert latex("nominal pressure") == "nominal pressure"
     assert latex("does not hold") == "does not hold"
-    table = Table((), "caption", (Column("of", "of"), Column("number", "$x$", ".1%")), tuple)
+    table = Table((), tuple, "caption", (column("of"), column("number | .1% | $x$")))
     rows = [("one", 0.077), ("two", "at most 8%")]
     assert as_csv(table, rows).splitlines()[1:] == ["one,0.077", "two,at most 8%"]
     assert as_text(table, rows).splitlines()[4:] == ["one        7.7%", "two  at most 8%"]
@@ -162,5 +154,5 @@ def test_formats_of_cells():
 def test_messages_of_table(results, tmp_path):
     with pytest.raises(StudyError, match='did you mean "table1"?'):
         tabulate("table2", results, tmp_path)
-    with pytest.raises(StudyError, match="table1.nc: does not exist"):
-        tabulate("table1", tmp_path, tmp_path)
+    with pytest.raises(StudyError, match="reference_load.nc: does not exist"):
+        tabulate("paper_numbers", tmp_path, tmp_path)

@@ -21,8 +21,9 @@ ROOMS = {
         *("contact", "scaling", "models", "solve"),
     ),
     "study": (
-        *("terminal", "scene", "spec", "data", "files", "store", "work", "api", "figures", "paper", "evidence"),
-        *("tables", "catalogue", "commands", "__main__"),
+        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work", "api"),
+        *("figures", "paper", "evidence"),
+        *("catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -77,7 +78,7 @@ def test_importing_the_solver_does_nothing_to_the_process(path):
 @pytest.mark.parametrize("path", STUDY, ids=name)
 def test_study_imports_what_is_declared(path):
     """And SurfaceTopography, an extra, in the one file that reads scans."""
-    allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "solver", "study"}
+    allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
 
@@ -134,9 +135,9 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 
 
 def test_light_modules_stay_light():
-    """Complaints about a study file come at once, and worker processes, which import `blocks`, start soon."""
+    """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
     alone(f"import study.spec.vocabulary, study.spec.grid, study.spec.given, study.spec.definition; {NOT_HEAVY}")
-    alone(f"import study.commands.arguments, study.work.cases; {NOT_HEAVY}")
+    alone(f"import study.commands.arguments, study.work.processes; {NOT_HEAVY}")
     alone(f"import study.scene.materials; {NOT_HEAVY}")
 
 

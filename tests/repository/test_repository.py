@@ -5,13 +5,13 @@ import re
 import shutil
 import subprocess
 import tomllib
+from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
 from conftest import ROOT, STUDIES
 
-from study.catalogue import RECIPES
-from study.tables import TABLES
+from study.catalogue import FIGURES, SCHEMES, TABLES
 
 MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
@@ -36,20 +36,11 @@ def test_make_help_lists_every_target():
     assert all(len(line.split()) > 2 for line in lines), "each with a word of explanation"
 
 
-def test_makefile_knows_every_study_figure_and_table():
+def test_makefile_knows_its_own_studies_and_cleans_up_every_figure_and_table():
     assert variable("STUDIES") == {file.stem for file in STUDIES}
-    assert variable("FIGURES") | variable("APART") == set(RECIPES)
-    assert variable("TABLES") == set(TABLES)
-    assert not variable("FIGURES") & variable("APART")
-    assert variable("DRAWN") == {study for figure in variable("FIGURES") for study in RECIPES[figure].studies}
-
-
-@pytest.mark.parametrize("name", [*RECIPES, *TABLES])
-def test_makefile_gives_each_output_its_studies(name):
-    entry, target = (RECIPES[name], f"figures/{name}.pdf") if name in RECIPES else (TABLES[name], f"tables/{name}.txt")
-    rules = re.findall(r"^((?:figures|tables)/[^%:]*): (.*)$", MAKEFILE, flags=re.MULTILINE)
-    needs = [set(sources.split()) for targets, sources in rules if target in targets.split()]
-    assert needs == [{f"results/{study}.nc" for study in entry.studies}]
+    for names, patterns in (([*FIGURES, *SCHEMES], variable("DRAWN")), (TABLES, variable("WRITTEN"))):
+        unmatched = [name for name in names if not any(fnmatch(name, pattern) for pattern in patterns)]
+        assert not unmatched
 
 
 @pytest.fixture
@@ -59,7 +50,7 @@ def sandbox(tmp_path) -> Path:
     for folder in ("studies", "study", "solver", "tests", "results", ".venv/bin"):
         (tmp_path / folder).mkdir(parents=True)
     for file in (
-        "studies/table1.toml",
+        "studies/validity.toml",
         "studies/mine.toml",
         "study/api.py",
         "requirements.lock",
@@ -83,15 +74,55 @@ def calls(folder: Path) -> list[str]:
 
 
 def test_make_computes_a_study_once_and_replaces_only_its_own(sandbox):
-    assert make(sandbox, "results/table1.nc", "results/mine.nc").returncode == 0
-    assert calls(sandbox) == ["-m study run --force studies/table1.toml", "-m study run studies/mine.toml"]
-    make(sandbox, "results/table1.nc", "results/mine.nc")
+    assert make(sandbox, "results/validity.nc", "results/mine.nc").returncode == 0
+    assert calls(sandbox) == ["-m study run --force studies/validity.toml", "-m study run studies/mine.toml"]
+    make(sandbox, "results/validity.nc", "results/mine.nc")
     assert calls(sandbox) == []
     os.utime(sandbox / "results/mine.nc", (1, 1))  # older than the sources
     make(sandbox, "results/mine.nc")
     assert calls(sandbox) == ["-m study run studies/mine.toml"], "the digest decides, so run must be asked"
     make(sandbox, "results/mine.nc")
     assert calls(sandbox) == [], "and once is enough"
+
+
+@pytest.mark.parametrize(
+    ("target", "asked"),
+    [
+        ("figures", ["plot --run all"]),
+        ("figures/fig04.pdf", ["plot --run fig04"]),
+        ("tables/validity.txt", ["table --run validity"]),
+        ("picard_domain", ["plot --run picard_domain"]),
+        ("map", ["run --force studies/parameter_map.toml"]),
+    ],
+)
+def test_make_asks_the_program_which_knows_what_is_needed(sandbox, target, asked):
+    (sandbox / "studies/parameter_map.toml").touch()
+    assert make(sandbox, target).returncode == 0
+    assert calls(sandbox) == [f"-m study {command}" for command in asked]
+
+
+def test_make_prints_a_table_that_it_has_written(sandbox):
+    (sandbox / "tables").mkdir()
+    for name in ("table1", "extremes"):
+        (sandbox / f"tables/{name}.txt").write_text(f"{name} in words\n")
+        assert make(sandbox, name).stdout.endswith(f"{name} in words\n")
+    assert set(calls(sandbox)) == {
+        f"-m study {command}" for command in ("table --run table1", "plot --run extremes", "table --run extremes")
+    }
+
+
+def test_clean_removes_ours_alone(sandbox):
+    for name in (
+        "figures/fig04.pdf",
+        "figures/fig10_layered.csv",
+        "tables/table1.tex",
+        "figures/mine.pdf",
+        "bench.json",
+    ):
+        (sandbox / name).parent.mkdir(exist_ok=True)
+        (sandbox / name).touch()
+    assert make(sandbox, "clean").returncode == 0
+    assert [path.name for folder in ("figures", "tables") for path in (sandbox / folder).iterdir()] == ["mine.pdf"]
 
 
 def test_a_refused_run_and_clean_leave_the_results(sandbox):

@@ -35,7 +35,7 @@ COUNTS = [
     ("nu2", CASE | {"bonding": "bonded"}, 0.4, "a"),
     ("bonding", CASE, "bonded", "a"),
     ("base", CASE, "thin_layer", "a"),
-    ("accuracy", CASE | {"base": "auto"}, 0.5, "a"),
+    ("accuracy", CASE | {"base": "auto", "h": 1e-4}, 1e-6, "a"),
     ("model_check", THIN, "first_order", "model_error"),
     ("micro", CASE, "smooth", "a"),
     ("scheme", APPROXIMATED | {"scheme": "newton"}, "picard", "P"),
@@ -51,7 +51,7 @@ COUNTS = [
 def test_the_table():
     """Of defaults: no other parameter has one, in the solver or in a study."""
     assert {name: own.default for name, own in PARAMETERS.items() if own.default is not None} == DEFAULTS
-    of_studies = {name: VOCABULARY[name].default for name in PARAMETERS if name in VOCABULARY}
+    of_studies = {name: VOCABULARY[name].own.default for name in PARAMETERS if name in VOCABULARY}
     assert {name: value for name, value in of_studies.items() if value is not None} == {
         name: value for name, value in DEFAULTS.items() if name not in ("R", "E2")
     }

@@ -128,8 +128,18 @@ BAD = [
     ("x = [0, 0.5, 1]", "x = [0, 0.5]", "x = [0, 0.5]: a list must increase from 0 to 1, both included"),
     ("x = [0, 0.5, 1]", "profiles = 1", 'profiles = 1: must be true or false, or a list of "p", "lam"'),
     ('title = "Prüfung"', "title = 3", "title = 3: must be text"),
-    ('title = "Prüfung"', 'kind = "contract"', 'kind = "contract": must be one of "contact", "micro_law"'),
-    ('title = "Prüfung"', "kind = ['contact']", "kind = ['contact']: must be one of"),
+    ('title = "Prüfung"', 'kind = "contract"', 'kind = "contract": must be "contact", or left out'),
+    (
+        'title = "Prüfung"',
+        'kind = "micro_law"',
+        'kind = "micro_law": must be "contact", or left out; a micro law needs no study: call solver.fit_power_law',
+    ),
+    ('title = "Prüfung"', "kind = ['contact']", "kind = ['contact']: must be"),
+    (
+        'title = "Prüfung"',
+        "fit = {}",
+        '"fit" is not a section; known: title, kind, model, axes, cases, sample, numerics',
+    ),
     ('title = "Prüfung"', "cases = 3", "cases must be [[cases]] tables (a list of dictionaries)"),
     ('title = "Prüfung"', "cases = []", "cases is empty: must have at least one case"),
 ]
@@ -273,27 +283,10 @@ def test_digest_changes_with_the_numerics(tmp_path, monkeypatch):
     assert read(tmp_path, GOOD).digest != digest
 
 
-def test_micro_law_file(tmp_path):
-    text = 'kind = "micro_law"\n[[cases]]\nRa = 0.004\nNbar = 250000\n[fit]\nmesh = "graded"\nstep = 1e-3\n'
-    found = read(tmp_path, text)
-    assert found.fit == {"p_min": 1e-4, "p_max": 0.025, "step": 1e-3, "mesh": "graded", "check": [0.0025, 0.025]}
-    assert (found.x[0], found.x[-1], len(found.x)) == (1e-4, 0.025, 26)
-    assert messages(tmp_path, text.replace("Ra = 0.004", "")) == ["Ra is missing"]
-    assert messages(tmp_path, text.replace("Ra = 0.004", "Ra = 0.004\nP = 1"))[0].startswith(
-        '[[cases]] "P" is not a para'
-    )
-    assert messages(tmp_path, text + "[output]")[0].startswith('"output" is not a section')
-    assert messages(tmp_path, text.replace("graded", "grated"))[0].startswith('[fit] mesh = "grated": must be one of')
-    assert messages(tmp_path, text.replace("1e-3", "1"))[0].startswith("[fit] p_max must be at least one step")
-    assert messages(tmp_path, text + "check = [0.1, 0.01]")[0].startswith(
-        "[fit] check = [0.1, 0.01]: must be [low, high]"
-    )
-
-
 def test_defaults_of_the_vocabulary_are_allowed_values():
     from study.spec.vocabulary import check
 
     for name in PARAMETERS:
         entry = VOCABULARY[name]
-        assert entry.default is None or not check(entry, entry.default)
-        assert entry.interval or entry.choices
+        assert entry.own.default is None or not check(entry.own, entry.own.default)
+        assert entry.own.interval or entry.own.choices

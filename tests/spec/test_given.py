@@ -1,11 +1,11 @@
 """From tables to a grid: the order of its dimensions, defaults, gaps, and values just outside of what is allowed."""
 
 import tomllib
-from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from solver.parameters import Parameter
 from study import StudyError
 from study.spec.definition import Definition, from_tables
 from study.spec.grid import as_array
@@ -44,51 +44,6 @@ def test_points_increase_from_0_to_1(x):
     assert messages(model=SMOOTH | {"P": 1}, output={"x": x}) == [
         f"x = {x}: a list must increase from 0 to 1, both included"
     ]
-
-
-LAW = {"kind": "micro_law", "cases": [{"Ra": 0.004, "Nbar": 250000}]}
-
-
-@pytest.mark.parametrize(
-    ("fit", "expected"),
-    [
-        ({"check": [0, 0.1]}, "[fit] check = [0, 0.1]: must be [low, high] with 0 < low < high"),
-        ({"check": [0.1, 0.1]}, "[fit] check = [0.1, 0.1]: must be"),
-        ({"check": [0.1, 0.2, 0.3]}, "[fit] check = [0.1, 0.2, 0.3]: must be"),
-        ({"check": 0.1}, "[fit] check = 0.1: must be"),
-        ({"check": ["a", "b"]}, "[fit] check = ['a', 'b']: must be"),
-        ({"p_min": -1}, "[fit] p_min = -1: must be > 0"),
-        ({"step": 0}, "[fit] step = 0: must be > 0"),
-        ({"p_max": 1.5e-4}, "[fit] p_max must be at least one step, and at most a million steps, above p_min"),
-        ({"pmin": 1}, '[fit] "pmin" is not known; did you mean "p_min"?'),
-    ],
-    ids=str,
-)
-def test_bad_fits(fit, expected):
-    (message,) = messages(**LAW, fit=fit)
-    assert message.startswith(expected)
-
-
-def test_a_fit_is_what_is_given_and_else_the_default():
-    assert defined(**LAW).fit == {
-        "p_min": 1e-4,
-        "p_max": 0.025,
-        "step": 1e-4,
-        "mesh": "uniform",
-        "check": [0.0025, 0.025],
-    }
-    given = {"p_min": 1e-3, "p_max": 0.01, "step": 1e-3, "mesh": "graded", "check": [0.002, 0.009]}
-    assert defined(**LAW, fit=given).fit == given
-    np.testing.assert_allclose(defined(**LAW, fit=given).x, np.arange(1, 11) * 1e-3, rtol=1e-14, atol=0)  # a product
-
-
-def test_a_law_takes_only_roughness_and_a_contact_no_fit():
-    assert messages(**LAW, model={"h": 1})[0].startswith('[model] "h" is not a parameter; known: Nbar, Ra')
-    assert messages(model=SMOOTH | {"P": 1}, fit={})[0] == '"fit" ' + (
-        "is not a section; known: title, kind, model, axes, cases, sample, numerics, output"
-    )
-    assert defined(kind="micro_law", axes={"Ra": [0.004], "Nbar": [1e5, 2e5]}).grid.sizes == {"Ra": 1, "Nbar": 2}
-    assert messages(kind="micro_law", model={"Ra": 0.004}) == ["Nbar is missing"]
 
 
 def test_numerics_reach_the_grid():
@@ -134,17 +89,17 @@ def test_an_axis_that_only_some_points_need_is_asked_of_all():
 
 def test_a_value_between_a_single_one_and_the_interval_is_refused():
     """Also where floats are checked by their extremes."""
-    entry = replace(VOCABULARY["rtol"], interval="[4, 256]", also=(0,), default=None)
+    own = Parameter(interval="[4, 256]", also=(0,))
     errors = []
-    as_array(entry, [0.0, 2.0, 8.0], "q", errors)
+    as_array(own, [0.0, 2.0, 8.0], "q", errors)
     assert errors == ["q[1] = 2.0: must be 0 or in [4, 256]"]
-    assert as_array(entry, [0.0, 8.0], "q", errors).tolist() == [0, 8] and len(errors) == 1
+    assert as_array(own, [0.0, 8.0], "q", errors).tolist() == [0, 8] and len(errors) == 1
 
 
 def test_nothing_is_a_value_only_where_gaps_are_allowed():
     errors = []
-    assert np.isnan(as_array(VOCABULARY["h"], [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
-    as_array(VOCABULARY["h"], [None, 1.0], "h", errors)
+    assert np.isnan(as_array(VOCABULARY["h"].own, [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
+    as_array(VOCABULARY["h"].own, [None, 1.0], "h", errors)
     assert errors == ["h[0] = nothing: must be a finite number, in [1e-12, 1e6]"]
 
 

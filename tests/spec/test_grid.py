@@ -153,9 +153,11 @@ def test_solve_collects_all_messages():
     assert len(caught.value.messages) == 6
 
 
-def test_what_a_case_does_not_need_reaches_the_solver_as_a_number():
-    grid = Grid({"case": 2}, {"h": (("case",), np.array([np.nan, 0.01]))})
-    assert columns(grid, 0, 2)["h"].tolist() == [1.0, 0.01]
+def test_what_a_case_does_not_need_stays_nan():
+    """The solver does not look at it; no number is made up."""
+    found = study.solve(cases=[{"base": "half_space"}, {"base": "layered", "h": 0.01}], P=1e-5, n=0.5, micro="smooth")
+    assert np.array_equal(found.h, [np.nan, 0.01], equal_nan=True) and (found.status == 0).all()
+    assert np.array_equal(columns(Grid({"case": 2}, {"h": (("case",), found.h.values)}), 0, 2)["h"], found.h, True)
 
 
 def test_cases_in_python_with_an_axis():

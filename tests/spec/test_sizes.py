@@ -80,11 +80,3 @@ def test_longest_axis(monkeypatch):
     with pytest.raises(study.StudyError, match="P is too long"):
         from_tables({"model": SMOOTH, "axes": {"P": [1.0] * 101}}, "s", "", "s")
     assert from_tables({"model": SMOOTH, "axes": {"P": list(range(1, 101))}}, "s", "", "s").grid.size == 100
-
-
-def test_a_law_has_at_most_a_million_steps():
-    tables = {"kind": "micro_law", "cases": [{"Ra": 0.004, "Nbar": 250000}]}
-    with pytest.raises(study.StudyError, match="at most a million steps"):
-        from_tables(tables | {"fit": {"p_min": 1e-9, "p_max": 1.0, "step": 9e-7}}, "law", "", "law")
-    found = from_tables(tables | {"fit": {"p_min": 0.1, "p_max": 0.2, "step": 0.1}}, "law", "", "law")
-    assert found.x.tolist() == [0.1, 0.2], "one step is enough"

@@ -3,7 +3,7 @@ paper, limits and choices from the model."""
 
 import pytest
 
-from study.spec.vocabulary import MICRO_LAW_PARAMETERS, PARAMETERS, VOCABULARY, attributes, check, names
+from study.spec.vocabulary import PARAMETERS, VOCABULARY, attributes, check, names
 
 # Dimension in powers of kg, m, s and the printed unit of every quantity that has one.
 FORCE, LENGTH, PRESSURE = (1, 1, -2), (0, 1, 0), (1, -1, -2)
@@ -25,8 +25,6 @@ DIMENSIONS = {
     "b0": (LENGTH, "um"),
     "p_peak": (PRESSURE, "MPa"),
     "E_eff": (PRESSURE, "MPa"),
-    "A_exact": (LENGTH, "um"),
-    "A_fit": (LENGTH, "um"),
 }
 # Size of the printed units in SI.
 UNITS = {
@@ -42,8 +40,7 @@ UNITS = {
 PURE = {
     "n", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "scheme", "k", "rtol", "accuracy", "model_check",
     "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "model_error", "model_used", "residual",
-    "iterations", "nodes_used", "validity", "An_ratio", "spots", "x", "case", "label", "fit.p_min", "fit.p_max",
-    "fit.step", "fit.mesh", "max_error",
+    "iterations", "nodes_used", "validity", "An_ratio", "spots", "x", "case", "label",
 }
 # fmt: on
 
@@ -105,8 +102,6 @@ WORDS = words("""
     p_peak  :          : E2*     : (13)     : largest real pressure in the contact, wherever it is
     E_eff   : Eeff     : E2*     :          : effective reduced modulus (dP/dD)/(2a)
     x       : r/a      :         :          : radius over the radius of the nominal contact area
-    A_exact : A[p]     : R       : (6)      : additional displacement, exact
-    A_fit   : B p^β    : R       :          : additional displacement, fitted power law
 """)
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
@@ -114,7 +109,6 @@ CHOICES = {
     "micro": {"smooth", "disc_cell", "power_law"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
-    "fit.mesh": {"uniform", "graded"},
 }
 WORDS_OR_FLAGS = {*CHOICES, "label", "status", "model_used", "validity"}
 
@@ -135,15 +129,12 @@ def test_parameters_are_in_their_order():
     assert " ".join(PARAMETERS) == (
         "P a D h n nu1 nu2 bonding base Nbar Ra micro B beta scheme k rtol accuracy model_check nodes max_iterations"
     )
-    assert MICRO_LAW_PARAMETERS == ("Nbar", "Ra")
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
-    assert names("fit") == ("fit.p_min", "fit.p_max", "fit.step", "fit.mesh")
 
 
 INF = float("inf")
 # name: smallest and largest values that are allowed, and just outside of them; None: no such end.
 LIMITS = {
-    **dict.fromkeys(("fit.p_min", "fit.p_max", "fit.step"), (5e-324, 0)),
     "P": (1e-24, 0.99e-24, 1e3, 1.01e3),
     "a": (1e-9, 0.99e-9, 1e3, 1.01e3),
     "D": (1e-18, 0.99e-18, 1e3, 1.01e3),
@@ -164,33 +155,27 @@ LIMITS = {
 
 
 def test_every_parameter_has_limits_or_choices():
-    assert set(LIMITS) | set(CHOICES) == {*PARAMETERS, *names("fit")}
+    assert set(LIMITS) | set(CHOICES) == {*PARAMETERS}
     assert not set(LIMITS) & set(CHOICES)
 
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits(name):
-    entry, (low, below, *ends) = VOCABULARY[name], LIMITS[name]
+    own, (low, below, *ends) = VOCABULARY[name].own, LIMITS[name]
     high, above = ends or (1e300, INF)
-    assert [check(entry, value) for value in (low, high)] == ["", ""]
-    assert all(check(entry, value) for value in (below, above, float("nan"), True, "1", None))
+    assert [check(own, value) for value in (low, high)] == ["", ""]
+    assert all(check(own, value) for value in (below, above, float("nan"), True, "1", None))
 
 
 @pytest.mark.parametrize("name", CHOICES)
 def test_choices(name):
-    entry = VOCABULARY[name]
-    assert set(entry.choices) == CHOICES[name]
-    assert all(check(entry, value) == "" for value in CHOICES[name])
-    assert all(check(entry, value) for value in ("glued", "", 1, None))
+    own = VOCABULARY[name].own
+    assert set(own.choices) == CHOICES[name]
+    assert all(check(own, value) == "" for value in CHOICES[name])
+    assert all(check(own, value) for value in ("glued", "", 1, None))
 
 
 def test_zero_leaves_nodes_and_iterations_to_the_solver():
     for name in ("nodes", "max_iterations"):
-        assert check(VOCABULARY[name], 0) == "" and check(VOCABULARY[name], 16.0) == ""
-        assert check(VOCABULARY[name], 16.5) == "must be a whole number"
-
-
-def test_defaults_of_the_fit_are_those_of_the_paper():
-    """p = 1e-4 ... 0.025 E1* in steps of 1e-4."""
-    defaults = [VOCABULARY[name].default for name in names("fit")]
-    assert defaults == [1e-4, 0.025, 1e-4, "uniform"]
+        assert check(VOCABULARY[name].own, 0) == "" and check(VOCABULARY[name].own, 16.0) == ""
+        assert check(VOCABULARY[name].own, 16.5) == "must be a whole number"

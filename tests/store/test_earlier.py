@@ -1,5 +1,7 @@
 """What an earlier results file is taken for, when it may be replaced, and which of its cases serve."""
 
+from dataclasses import replace
+
 import netCDF4
 import numpy as np
 import pytest
@@ -10,9 +12,9 @@ from solver import NUMERICS_VERSION
 from study.files.examine import Condition, examine
 from study.spec.definition import Definition, from_tables
 from study.store import earlier as module
-from study.store.block_file import read_block
-from study.store.blocks import Store, inventory
-from study.store.earlier import Earlier, adopt, check_replaceable
+from study.store.block_file import Damaged
+from study.store.blocks import Store, gather, inventory
+from study.store.earlier import Earlier, ResultsSource, check_replaceable
 from study.store.keys import case_keys
 
 
@@ -21,7 +23,7 @@ def line(P=(1e-6, 2e-6, 3e-6), **output) -> Definition:
     return from_tables({"model": model, "axes": axes, "output": {"x": 3} | output}, "line", "", "line")
 
 
-def earlier(definition: Definition, path) -> Earlier | None:
+def earlier(definition: Definition, path) -> Earlier:
     return module.earlier(definition, examine(path))
 
 
@@ -41,22 +43,23 @@ def test_our_file(ran, results):
     found = earlier(line((2e-6, 9e-6)), results)
     assert (found.condition.kind, found.condition.digest) == ("sound", ran.definition.digest)
     assert (found.numerics, found.cases) == (NUMERICS_VERSION, 6)
-    np.testing.assert_array_equal(found.keys, case_keys(ran.definition.grid))
+    np.testing.assert_array_equal(found.source.keys, case_keys(ran.definition.grid))
 
 
 @pytest.mark.parametrize("output", [{"x": 5}, {"x": [0, 0.4, 1]}])
 def test_our_file_with_other_profiles_serves_nothing(results, output):
     found = earlier(line(**output), results)
-    assert found.keys is None and found.cases == 6
+    assert found.source is None and found.cases == 6
 
 
 def test_fewer_outputs_are_served(results):
     for output in ({"profiles": False, "x": 5}, {"profiles": ["lam"]}, {"dtype": "float32"}):
-        assert earlier(line(**output), results).keys is not None
+        assert earlier(line(**output), results).source is not None
 
 
 def test_no_file_and_files_of_others(tmp_path, results):
-    assert earlier(line(), tmp_path / "none.nc") is None
+    nothing = earlier(line(), tmp_path / "none.nc")
+    assert (nothing.condition.kind, nothing.cases, nothing.source) == ("missing", 0, None)
     ours = {"study_digest": "d", "numerics_version": NUMERICS_VERSION}
     status = xr.Dataset({"status": ("P", np.zeros(1, np.int8))}, {"P": [1.0]})
     (tmp_path / "junk.nc").write_bytes(b"no netCDF")
@@ -66,22 +69,24 @@ def test_no_file_and_files_of_others(tmp_path, results):
     for name in ("junk", "plain", "half", "without_points"):
         path = tmp_path / f"{name}.nc"
         found = earlier(line(), path)
-        assert (found.condition.kind, found.cases, found.keys) == ("foreign", 0, None), name
+        assert (found.condition.kind, found.cases, found.source) == ("foreign", 0, None), name
     xr.Dataset({"A_exact": 1.0}, attrs=ours).to_netcdf(tmp_path / "law.nc")
     law = earlier(line(), tmp_path / "law.nc")
-    assert (law.condition.digest, law.keys, law.cases) == ("d", None, 0)
+    assert (law.condition.digest, law.source, law.cases) == ("d", None, 0)
 
 
 def replaced(tmp_path, kind="sound", digest="other", force=False, **found) -> None:
     """Ask whether a results file, of the six cases of `line` but for what is `found`, may be replaced by theirs."""
     definition = line()
     keys = case_keys(definition.grid)
-    given = {"numerics": NUMERICS_VERSION, "keys": keys, "cases": 6, "grid": definition.grid} | found
-    condition = Condition(tmp_path / "f.nc", kind, "is so and so", digest)
+    given = {"numerics": NUMERICS_VERSION, "keys": keys, "cases": 6, "told": True} | found
+    condition, known = Condition(tmp_path / "f.nc", kind, "is so and so", digest), given.pop("keys")
+    status = np.zeros(6, np.int8)
+    given["source"] = None if known is None else ResultsSource(condition.path, definition.grid, known, status, (), None)
     check_replaceable(Store(definition, tmp_path), Earlier(condition, **given), keys, force)
 
 
-NOTHING = {"numerics": "", "keys": None, "cases": 0, "grid": None}
+NOTHING = {"numerics": "", "keys": None, "cases": 0, "told": False}
 
 
 def test_what_may_be_replaced(tmp_path):
@@ -117,7 +122,7 @@ def test_what_may_not(tmp_path, found, message):
     ("found", "message"),
     [
         (
-            {"kind": "damaged", "grid": None},
+            {"kind": "damaged", "told": False},
             "f.nc: is so and so; which cases it holds cannot be told: run the study as",
         ),
         (
@@ -134,48 +139,40 @@ def test_nobody_is_invited_to_destroy_what_is_damaged_or_not_ours(tmp_path, foun
     assert "--force" not in str(caught.value)
 
 
-@pytest.fixture
-def wider(ran, tmp_path):
-    """A study of four of the cases and two new ones, the store, and what there is: one of the four as a block."""
-    made = Store(line((3e-6, 5e-6, 1e-6)), tmp_path)
-    made.folder.mkdir()
-    adopt(made, inventory(made), earlier(made.definition, ran.results / "line.nc"), ())
-    (block,) = made.folder.iterdir()
-    return made, read_block(block)
+@pytest.mark.parametrize("chunk", [1, 3, 8192])
+def test_cases_of_an_earlier_file_are_read_from_it(ran, tmp_path, monkeypatch, chunk):
+    """In another order, beside cases that are new, whatever the windows in which the file is read."""
+    monkeypatch.setattr("study.files.examine.CHUNK", chunk)
+    store = Store(line((3e-6, 5e-6, 1e-6)), tmp_path)
+    source = earlier(store.definition, ran.results / "line.nc").source
+    known = inventory(store, source)
+    assert known.status.tolist() == [0, 0, 127, 127, 0, 0], "the new load"
+    found, old = gather(store, known, 1, 6), ran.open()
+    assert found["status"].tolist() == [0, 127, 127, 0, 0]
+    np.testing.assert_array_equal(found["P"], [3e-6, np.nan, np.nan, 1e-6, 1e-6])
+    for name in ("a", "p", "nodes_used"):
+        expected = np.concatenate([old[name].sel(P=load).values for load in (3e-6, 1e-6)])[1:]
+        np.testing.assert_array_equal(found[name][[0, 3, 4]], expected, name)
+    with pytest.raises(Damaged, match="has been replaced while its cases were read"):
+        replace(source, seen=None).read(np.array([0]))
 
 
-def test_cases_of_an_earlier_file_become_blocks_once(ran, wider):
-    store, block = wider
-    given = store.definition.grid
-    assert inventory(store).missing.tolist() == [2, 3], "the new load"
-    rows = [np.flatnonzero((block.keys == key).all(axis=1)).tolist() for key in case_keys(given)[[0, 1, 4, 5]]]
-    assert sorted(sum(rows, [])) == [0, 1, 2, 3]
-    old = ran.open().sel(P=[3e-6, 1e-6]).a.values.ravel()
-    np.testing.assert_array_equal(block.arrays["a"][sum(rows, [])], old)
-    adopt(store, inventory(store), earlier(store.definition, ran.results / "line.nc"), ())
-    assert len(list(store.folder.iterdir())) == 1, "what is in blocks already is not copied again"
+def test_a_run_takes_them_and_leaves_the_file_alone_until_the_end(ran, tmp_path, computed):
+    (tmp_path / "line.nc").write_bytes((ran.results / "line.nc").read_bytes())
+    found = study.Study(line((3e-6, 2e-6, 1e-6, 5e-6)), tmp_path)
+    assert found.run(workers=1).computed == 2
+    assert len(computed) == 1, "in one block"
+    xr.testing.assert_equal(found.open().a[:3], ran.open().a.sel(P=[3e-6, 2e-6, 1e-6]))
+    assert study.Study(line((1e-6,)), tmp_path).run(force=True).computed == 0
 
 
-def test_cases_of_a_status_to_be_tried_again_are_not_adopted(ran, tmp_path):
+def test_cases_of_a_status_to_be_tried_again_are_missing(ran, tmp_path):
     path = tmp_path / "line.nc"
     path.write_bytes((ran.results / "line.nc").read_bytes())
     with netCDF4.Dataset(path, "a") as file:
         file["status"][0, :] = [3, 5]
         file.delncattr("checksums")
     store = Store(line((1e-6, 3e-6)), tmp_path)
-    store.folder.mkdir()
-    adopt(store, inventory(store), earlier(store.definition, path), (3,))
-    assert inventory(store).status.tolist() == [127, 5, 0, 0]
-
-
-@pytest.mark.parametrize("at_once", [1, 3])
-def test_a_large_file_is_read_in_parts(ran, tmp_path, monkeypatch, at_once):
-    monkeypatch.setattr(module, "AT_ONCE", at_once)
-    store = Store(line((3e-6, 2e-6)), tmp_path)
-    store.folder.mkdir()
-    adopt(store, inventory(store), earlier(store.definition, ran.results / "line.nc"), ())
-    blocks = [read_block(path) for path in store.folder.iterdir()]
-    assert len(blocks) > 1 and max(len(block.keys) for block in blocks) <= at_once
-    found = study.Study(store.definition, tmp_path)
-    assert found.run().computed == 0
-    xr.testing.assert_equal(found.open(), ran.open().sel(P=[3e-6, 2e-6]))
+    source = earlier(store.definition, path).source
+    assert inventory(store, source, retry=(3,)).status.tolist() == [127, 5, 0, 0]
+    assert inventory(store, source).status.tolist() == [3, 5, 0, 0]

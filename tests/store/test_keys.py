@@ -5,7 +5,6 @@ makes no result unusable.
 """
 
 import hashlib
-import math
 import struct
 from dataclasses import replace
 
@@ -14,7 +13,7 @@ import pytest
 import xarray as xr
 from line_study import store_block
 from numpy.testing import assert_array_equal
-from same import assert_same, assert_same_numbers
+from same import assert_same
 
 import solver
 import study
@@ -24,8 +23,8 @@ from study.spec.definition import Definition, from_tables
 from study.spec.grid import Grid
 from study.spec.identity import digest_of
 from study.spec.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
-from study.store import blocks, keys
-from study.store.keys import case_keys, first_keys
+from study.store import keys
+from study.store.keys import case_keys
 from study.work.cases import compute, parcel
 
 OF_ALL = CONTROL | solver.parameters.PARAMETERS
@@ -121,7 +120,7 @@ def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given(monkeypatch):
     """A tilt of the punch, say, 0 by default. Results and blocks of today stay those of their cases."""
     today = defined()
     monkeypatch.setitem(solver.parameters.PARAMETERS, "tilt", Parameter(0.0, interval="[0, 1]"))
-    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "", "tilt of the punch", "material", default=0.0))
+    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "", "tilt of the punch", "material"))
     for module in (identity, keys):
         monkeypatch.setattr(module, "PARAMETERS", (*PARAMETERS, "tilt"))
     for tilt, same in ((None, True), (0.0, True), (0.5, False)):
@@ -192,13 +191,6 @@ def test_a_key_is_the_sum_of_the_hashes_of_what_counts():
     assert case_keys(defined(**law).grid).tolist() == [summed(law)]
 
 
-def test_keys_of_version_1():
-    """They were of all parameters of that time, NaN for what was not given."""
-    values = {name: two[0] for name, two in TWO.items() if name not in ("a", "D")} | {"a": math.nan, "D": math.nan}
-    assert first_keys(defined().grid).tolist() == [summed(values)]
-    assert set(values) == set(keys.FIRST)
-
-
 def test_a_nan_is_a_nan():
     """Whatever its sign, which arithmetic on other processors sets."""
     ours, other = (Grid({"h": 1}, {"h": (("h",), np.array([nan]))}) for nan in (np.nan, -np.nan))
@@ -216,7 +208,7 @@ def base() -> Definition:
     found = from_tables(tables, "base", "text", "base")
     dates = ("n",), np.array(["2024-01-01", "2025-01-01"], dtype="datetime64[ns]")
     grid = replace(found.grid, labels=found.grid.labels | {"date": dates})
-    return replace(found, grid=grid, fit={"p_min": 1e-4, "mesh": "uniform", "check": [0.0025, 0.025]})
+    return replace(found, grid=grid)
 
 
 def changed(what: str, name: str, dims: tuple, *array) -> dict:
@@ -231,7 +223,6 @@ def transposed() -> dict:
 
 
 OTHERS = {
-    "kind": lambda: {"kind": "micro_law"},
     "a number, in its last bit": lambda: changed("values", "P", ("case",), [1e-5, np.nextafter(2e-5, 1)]),
     "a word": lambda: changed("values", "bonding", ("bonding",), ["bonded", "bonded"]),
     "name of a parameter": lambda: changed("values", "nu1", (), 0.1),
@@ -247,9 +238,6 @@ OTHERS = {
     "profiles": lambda: {"profiles": ("p",)},
     "order of profiles": lambda: {"profiles": ("lam", "p")},
     "type": lambda: {"dtype": "float32"},
-    "fit, a number": lambda: {"fit": base().fit | {"p_min": 2e-4}},
-    "fit, a word": lambda: {"fit": base().fit | {"mesh": "graded"}},
-    "fit, interval": lambda: {"fit": base().fit | {"check": [0.0025, 0.02]}},
 }
 
 
@@ -272,10 +260,10 @@ def test_what_changes_no_number_is_not_in_the_digest():
 def load(tmp_path):
     """A study of two contacts, always the same file and folder."""
 
-    def written(numerics: str = "", model: str = "", label: str = "light", kind: str = "") -> study.Study:
+    def written(numerics: str = "", model: str = "", label: str = "light") -> study.Study:
         text = f'[model]\nh = 0.5\nn = 0.5\nmicro = "smooth"\n{model}\n[numerics]\n{numerics}\n[output]\nx = 3\n'
         text += f'[[cases]]\nP = 1e-7\nlabel = "{label}"\n[[cases]]\nP = 1e-3\nlabel = "heavy"\n'
-        (tmp_path / "two.toml").write_text(kind or text, encoding="utf-8")
+        (tmp_path / "two.toml").write_text(text, encoding="utf-8")
         return study.load(tmp_path / "two.toml", tmp_path / "results")
 
     return written
@@ -327,18 +315,6 @@ def test_an_edit_of_a_label_is_in_the_results_and_computes_nothing(load):
     assert edited.open().label.values.tolist() == ["small", "heavy"]
 
 
-def test_an_edit_of_the_fit_is_not_answered_with_the_old_one(load, tmp_path):
-    law = 'kind = "micro_law"\n[[cases]]\nRa = 0.004\nNbar = 250000\n[fit]\nstep = 1e-3\n'
-    load(kind=law).run()
-    edited = load(kind=law + 'mesh = "graded"\n')
-    assert edited.status()["state"] == "outdated"
-    with pytest.raises(study.StudyError, match="holds results of another definition"):
-        edited.open()
-    edited.run()
-    xr.testing.assert_identical(edited.open().drop_attrs(), fresh(edited, tmp_path / "fresh").drop_attrs())
-    assert edited.open().beta != fresh(load(kind=law), tmp_path / "old").beta
-
-
 def test_an_edit_of_what_no_case_uses_is_of_no_account(load):
     """Of a finished study, and of one that stopped half-way."""
     load(model="nu1 = 0.2").run()
@@ -346,45 +322,3 @@ def test_an_edit_of_what_no_case_uses_is_of_no_account(load):
     half_way = load(model="nu1 = 0.2\nB = 0.1", numerics="rtol = 1e-7")
     store_block(half_way, 0, 1)
     assert load(model="B = 0.3", numerics="rtol = 1e-7").run(force=True).computed == 1
-
-
-@pytest.fixture
-def version_1(monkeypatch):
-    """Everything is written as by the version before."""
-    with monkeypatch.context() as patch:
-        patch.setattr(blocks, "case_keys", first_keys)
-        patch.setattr(blocks, "facts", lambda x: {"numerics_version": solver.NUMERICS_VERSION, "x": x.tolist()})
-        patch.setattr(blocks, "renewed", lambda keys, _: keys)
-        patch.setattr(study.spec.definition, "digest_of", lambda _: "of version 1")
-        yield patch
-
-
-def test_blocks_of_version_1_are_used(load, version_1, tmp_path):
-    old = load()
-    store_block(old, 0, 1)
-    expected = old.open(partial=True)
-    version_1.undo()
-    assert load().dry_run().present == 1
-    assert_same_numbers(load().open(partial=True), expected)
-    assert load().run().computed == 1
-    assert_same(load().open(), fresh(load(), tmp_path / "fresh"))
-
-
-def test_results_of_version_1_are_used(load, version_1, tmp_path):
-    load().run()
-    version_1.undo()
-    assert load().status()["state"] == "outdated" and load().dry_run().present == 2
-    assert load().run().computed == 0
-    assert_same(load().open(), fresh(load(), tmp_path / "fresh"))
-
-
-def test_damaged_results_of_version_1_are_told_by_their_cases(load, version_1):
-    """As those of today are: a damaged coordinate is the study's, when the line of the cases is."""
-    load().run()
-    version_1.undo()
-    path, raw = load().verify().path, np.array([1e-7, 1e-3]).tobytes()
-    content = path.read_bytes()
-    assert content.count(raw) == 1
-    path.write_bytes(content.replace(raw, raw[::-1]))
-    assert load().verify().damage == ("P",)
-    assert load().run().computed == 0

@@ -64,7 +64,7 @@ def fresh(opened: study.Study, tmp_path) -> xr.Dataset:
 )
 @pytest.mark.parametrize("finished", [True, False])
 def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, axes, new, finished):
-    monkeypatch.setattr(earlier, "AT_ONCE", 2)
+    monkeypatch.setattr("study.files.examine.CHUNK", 2)
     if finished:
         load().run()
     else:

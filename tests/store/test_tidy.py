@@ -5,7 +5,6 @@ from line_study import load, store_block
 from same import assert_same_numbers
 
 from study.__main__ import main
-from study.store import block_file
 from study.store.block_file import Damaged, read_block
 from study.store.blocks import Store, gather, inventory
 from study.store.lock import held
@@ -101,4 +100,3 @@ def test_a_block_that_becomes_another_is_noticed_when_it_is_read(file):
     assert len(read_block(first).keys) == 5
     with pytest.raises(Damaged, match="has become a block of other cases"):
         gather(store, known, 0, 5)
-    assert block_file.MAGIC in first.read_bytes()

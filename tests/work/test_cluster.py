@@ -248,4 +248,4 @@ def test_blocks_that_a_lost_scheduler_has_cancelled_are_not_failures():
             return future
 
     with pytest.raises(engines.Lost, match="the scheduler is gone"):
-        list(engines.as_they_come(engines.Engine(Gone(), lambda: 2), len, ["", ""]))
+        list(engines.as_they_come(engines.Engine(Gone().submit, lambda: 2), len, ["", ""]))

@@ -153,11 +153,6 @@ def test_the_sample_is_spread_over_all_cases_and_timed_when_warm(monkeypatch):
     assert np.diff(first).max() < 2 * np.diff(first).min()
 
 
-def test_estimated_memory_of_a_law_needs_no_solver():
-    tables = {"kind": "micro_law", "cases": [{"Ra": 0.004, "Nbar": 250000}]}
-    assert estimates.estimate(from_tables(tables, "law", "", "law"), 1, present=1).memory < 0.3e9
-
-
 @pytest.mark.parametrize("dtype", ["float64", "float32"])
 @pytest.mark.parametrize("before", [0, 1500], ids=["new", "extended"])
 def test_disk_stays_just_below_the_estimate(tmp_path, monkeypatch, before, dtype):

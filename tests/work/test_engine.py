@@ -1,14 +1,14 @@
 """What computes, and how much of it at a time; a cluster is played by the test."""
 
 import os
-import signal
 import sys
-from concurrent.futures import BrokenExecutor, Executor, Future, ThreadPoolExecutor
+import threading
+from concurrent.futures import Executor, Future
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from children import PATIENCE, started
+from children import PATIENCE
 from line_study import load
 
 from study import StudyError
@@ -38,7 +38,7 @@ def test_a_task_is_made_when_there_is_room_and_results_come_in_order(width):
             made.append(number)
             yield number
 
-    for number, result in as_they_come(Engine(AtOnce(), lambda: width), lambda task: task**2, tasks()):
+    for number, result in as_they_come(Engine(AtOnce().submit, lambda: width), lambda task: task**2, tasks()):
         assert result == number**2 and number == len(under_way)
         under_way.append(len(made) - number)
     assert len(under_way) == 10 and max(under_way) == min(width, 10)
@@ -47,34 +47,22 @@ def test_a_task_is_made_when_there_is_room_and_results_come_in_order(width):
 def test_the_width_is_asked_again_and_again():
     """As workers come and go."""
     widths, made = iter([3, 2, 2, 1, 1, 1, 1, 1, 1]), []
-    found = as_they_come(Engine(AtOnce(), lambda: next(widths)), int, (made.append(i) or i for i in range(4)))
+    found = as_they_come(Engine(AtOnce().submit, lambda: next(widths)), int, (made.append(i) or i for i in range(4)))
     assert [(number, len(made)) for number, _ in found] == [(0, 2), (1, 3), (2, 3), (3, 4)]
 
 
 def test_a_task_that_raises_is_a_failure():
-    found = dict(as_they_come(Engine(AtOnce(), lambda: 2), lambda task: 1 // task, [1, 0, 1]))
+    found = dict(as_they_come(Engine(AtOnce().submit, lambda: 2), lambda task: 1 // task, [1, 0, 1]))
     assert found == {0: 1, 1: Failure("ZeroDivisionError: integer division or modulo by zero", ""), 2: 1}
-
-
-def test_a_killed_process_is_told_as_such():
-    class Broken(AtOnce):
-        def submit(self, *_):
-            raise BrokenExecutor
-
-    def broken(_):
-        raise BrokenExecutor
-
-    for executor, function in ((Broken(), int), (AtOnce(), broken)):
-        with pytest.raises(Lost, match="^a process that computed has been killed, perhaps for want of memory$"):
-            list(as_they_come(Engine(executor, lambda: 2), function, [1]))
 
 
 def test_threads_for_each_processor_unless_told_otherwise(monkeypatch):
     monkeypatch.setattr(workers, "available_workers", lambda: 5)
     for count, expected in ((None, 5), (2, 2)):
         with engine(count, None) as found:
-            assert isinstance(found.executor, ThreadPoolExecutor)
-            assert found.executor._max_workers == expected and found.width() == AHEAD * expected
+            assert found.submit.__self__._max_workers == expected and found.width() == AHEAD * expected
+            assert found.submit(threading.get_ident).result(PATIENCE) != threading.get_ident()
+            assert found.submit(os.getpid).result(PATIENCE) == os.getpid()
 
 
 def test_processors_that_may_be_used(monkeypatch):
@@ -84,58 +72,6 @@ def test_processors_that_may_be_used(monkeypatch):
     for count, expected in ((6, 6), (None, 1)):
         monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
         assert available_workers() == expected
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX signals")
-def test_processes_are_started_with_the_interrupt_blocked(monkeypatch):
-    """Between its start and its first line a worker would otherwise end with a traceback at Ctrl-C.
-
-    So is what removes their semaphores, and with the end of the terminal blocked.
-    """
-    blocked, masks, quiet = [], [], "ignore::UserWarning:multiprocessing.resource_tracker"
-
-    def ensure_running():
-        masks.append((signal.pthread_sigmask(signal.SIG_BLOCK, ()), os.environ["PYTHONWARNINGS"]))
-        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})  # as that of multiprocessing does
-
-    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", ensure_running)
-    monkeypatch.setenv("PYTHONWARNINGS", "error")
-
-    class Pool(AtOnce):
-        def __init__(self, count, context, begin):
-            assert (count, context.get_start_method(), begin) == (2, "spawn", workers._live_with_parent)
-
-        def submit(self, *_):
-            blocked.append(signal.SIGINT in signal.pthread_sigmask(signal.SIG_BLOCK, ()))
-
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", Pool)
-    with engine(2, None, 8):
-        assert blocked == [True, True], "each is started at once"
-        assert [({signal.SIGINT, signal.SIGHUP} <= mask, filters) for mask, filters in masks] == [
-            (True, f"error,{quiet}")
-        ]
-        assert os.environ["PYTHONWARNINGS"] == "error"
-        assert signal.SIGINT not in signal.pthread_sigmask(signal.SIG_BLOCK, ())
-
-
-def test_where_signals_cannot_be_blocked_processes_are_started_all_the_same(monkeypatch):
-    for name in ("pthread_sigmask", "SIG_BLOCK", "SIG_SETMASK"):
-        monkeypatch.delattr(signal, name, raising=False)
-    monkeypatch.setattr("multiprocessing.resource_tracker.ensure_running", lambda: None)
-    monkeypatch.setattr(workers, "ProcessPoolExecutor", lambda *_: AtOnce())
-    with engine(2, None, 8) as found:
-        assert found.width() == 2 * AHEAD
-
-
-def interrupted_worker() -> None:
-    workers._live_with_parent()
-    signal.raise_signal(signal.SIGINT)
-
-
-def test_a_worker_does_not_hear_the_interrupt():
-    process = started(interrupted_worker)
-    process.join(PATIENCE)
-    assert process.exitcode == 0
 
 
 @pytest.fixture

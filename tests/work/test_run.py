@@ -83,7 +83,7 @@ def test_blocks_on_disk_serve_another_block_size(file, computed):
 
 
 def test_failing_block_costs_that_block_only(file, monkeypatch, caplog):
-    caplog.set_level("DEBUG", "study.run")
+    caplog.set_level("DEBUG", "study.work.run")
     real = cases.compute
 
     def compute(wanted):

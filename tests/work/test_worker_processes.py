@@ -1,21 +1,20 @@
 """Runs from the command line compute many blocks in processes: what happens to one is no harm to results or machine."""
 
 import os
-import re
 import signal
 import subprocess
 import sys
-from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
-from children import PATIENCE, held, holding, stored, wait_for
+from children import PATIENCE, held, holding, lines, note, stored, wait_for
 from conftest import ROOT
 from line_study import load, present
 from same import assert_same
 
-from study.work import workers
-from study.work.workers import engine, processes_for
+from study.work.cases import Failure
+from study.work.processes import ATTEMPTS, KILLED
+from study.work.workers import AHEAD, engine, processes_for
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 BEFORE, CASES = 5, 40  # cases in blocks of one; those from BEFORE on are held
@@ -45,7 +44,7 @@ def workers_of(process: subprocess.Popen) -> list[int]:
     for stat in Path("/proc").glob("[0-9]*/stat"):
         try:
             state, _, _, session = stat.read_text().rpartition(")")[2].split()[:4]
-            if int(session) == process.pid and state != "Z" and b"spawn_main" in (stat.parent / "cmdline").read_bytes():
+            if int(session) == process.pid and state != "Z" and b"serve()" in (stat.parent / "cmdline").read_bytes():
                 found.append(int(stat.parent.name))
         except OSError:  # it has ended
             continue
@@ -83,43 +82,80 @@ def test_how_many_processes():
     assert [processes_for(*each) for each in ((2, 7), (2, 8), (1, 100), (16, 9))] == [0, 2, 0, 9]
 
 
-@pytest.mark.parametrize(("blocks", "kind"), [(100, ProcessPoolExecutor), (7, ThreadPoolExecutor)])
-def test_which_executor(monkeypatch, blocks, kind):
-    asked = []
-    monkeypatch.setattr(workers, "_processes", lambda count: asked.append(count) or ProcessPoolExecutor(count))
-    with engine(3, None, blocks) as found:
-        assert isinstance(found.executor, kind) and found.width() == 12
-        assert asked == ([3] if kind is ProcessPoolExecutor else [])
+@pytest.mark.parametrize(("workers", "blocks", "apart"), [(2, 8, True), (2, 7, False), (1, 8, False)])
+def test_where_blocks_are_computed(workers, blocks, apart):
+    with engine(workers, None, blocks) as found:
+        assert (found.submit(os.getpid).result(PATIENCE) != os.getpid()) == apart
+        assert found.width() == AHEAD * workers
 
 
-def test_a_killed_worker_ends_the_run_and_costs_the_blocks_in_work(opened):
+def test_what_a_task_prints_is_no_answer():
+    with engine(2, None, 8) as found:
+        assert [found.submit(print, word).result(PATIENCE) for word in ("one", "two")] == [None, None]
+
+
+def test_what_a_process_does_not_know_is_said(monkeypatch):
+    monkeypatch.delenv("PYTHONPATH", raising=False)
+    with engine(2, None, 8) as found:
+        failure = found.submit(note_and_die, Path()).result(PATIENCE)
+        assert failure.message == "ModuleNotFoundError: No module named 'test_worker_processes'"
+        assert found.submit(abs, -1).result(PATIENCE) == 1
+
+
+@pytest.fixture
+def importable(monkeypatch):
+    """Worker processes can import this file."""
+    monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
+
+
+def test_a_task_that_kills_its_process_is_given_up_and_others_are_not(importable, tmp_path):
+    """Its process is started again each time, and once more for the next task."""
+    log = tmp_path / "log"
+    with engine(2, None, 8) as found:
+        assert found.submit(note_and_die, log).result(PATIENCE) == Failure(KILLED, "")
+        assert len(lines(log)) == ATTEMPTS
+        assert found.submit(abs, -1).result(PATIENCE) == 1
+
+
+def note_and_die(log: Path) -> None:
+    note(log, "begun")
+    os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_process_does_not_end_what_nobody_waits_for(importable, tmp_path):
+    with engine(2, None, 8) as found:
+        found.submit(note_and_wait, tmp_path / "log")
+        wait_for(lambda: lines(tmp_path / "log"))
+    (process,) = lines(tmp_path / "log")
+    assert not Path("/proc", process).exists()
+
+
+def note_and_wait(log: Path) -> None:
+    note(log, str(os.getpid()))
+    signal.pause()
+
+
+def test_a_killed_worker_costs_the_blocks_it_computed_only(opened, tmp_path):
+    """Another process computes them, in the same run."""
     process = started(opened)
     wait_for(lambda: at_work(opened))
     os.kill(workers_of(process)[0], signal.SIGKILL)
+    wait_for(lambda: len(held(tmp_path)) == 3)
+    (tmp_path / "go").touch()
     _, errors = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 1
-    assert "a process that computed has been killed, perhaps for want of memory; finished blocks are kept" in errors
-    assert "Traceback" not in errors
-    assert_ends_well(opened, BEFORE)
-
-
-def semaphores_of(process: int) -> set[Path]:
-    """The files of the semaphores that a process has."""
-    return {Path(found) for found in re.findall(r"/dev/shm/sem\.\S+", Path(f"/proc/{process}/maps").read_text())}
+    assert process.returncode == 0 and "Traceback" not in errors
+    assert opened.status()["counts"] == {0: CASES} and len(lines(tmp_path / "go.log")) < CASES
 
 
 @pytest.mark.parametrize(("number", "whom"), [(signal.SIGKILL, os.kill), (signal.SIGHUP, os.killpg)])
 def test_nothing_is_left_of_a_killed_run_and_of_one_whose_terminal_is_closed(opened, number, whom):
-    """Its workers end, and their semaphores are removed; on the disk are the finished blocks."""
+    """Its workers end, in the middle of their work; on the disk are the finished blocks."""
     process = started(opened)
     wait_for(lambda: at_work(opened))
-    semaphores = semaphores_of(workers_of(process)[0])
-    assert len(semaphores) == 5 and all(path.exists() for path in semaphores)
     whom(process.pid, number)
     _, errors = process.communicate(timeout=PATIENCE)
     assert process.returncode == -number and errors == ""
     wait_for(lambda: not workers_of(process))
-    wait_for(lambda: not any(path.exists() for path in semaphores))
     assert_ends_well(opened, BEFORE)
 
 

@@ -1,0 +1,61 @@
+"""A table as aligned text, CSV (full precision) and LaTeX (booktabs)."""
+
+import csv
+import io
+import re
+from pathlib import Path
+
+from .registry import Table
+
+
+def as_text(table: Table, rows: list[tuple]) -> str:
+    """Columns aligned: text to the left, numbers to the right."""
+    cells = [[column.text for column in table.columns], *formatted(table, rows)]
+    widths = [max(map(len, column)) for column in zip(*cells, strict=True)]
+    marks = ["<" if column.form == "s" else ">" for column in table.columns]
+    lines = ["  ".join(f"{c:{m}{w}}" for c, m, w in zip(row, marks, widths, strict=True)).rstrip() for row in cells]
+    return "\n".join([table.caption, "", lines[0], "-" * max(map(len, lines)), *lines[1:]]) + "\n"
+
+
+def as_csv(table: Table, rows: list[tuple]) -> str:
+    """All digits."""
+    return csv_text([column.text for column in table.columns], rows)
+
+
+def as_latex(table: Table, rows: list[tuple]) -> str:
+    """A table environment; needs the package booktabs."""
+    form = "".join("l" if column.form == "s" else "r" for column in table.columns)
+    begin = [r"\begin{table}", r"\centering", rf"\caption{{{table.caption}}}", rf"\begin{{tabular}}{{{form}}}"]
+    head = " & ".join(column.latex for column in table.columns) + r" \\"
+    lines = [" & ".join(map(latex, row)) + r" \\" for row in formatted(table, rows)]
+    end = [r"\end{tabular}", r"\end{table}"]
+    return "\n".join([*begin, r"\toprule", head, r"\midrule", *lines, r"\bottomrule", *end]) + "\n"
+
+
+def formatted(table: Table, rows: list[tuple]) -> list[list[str]]:
+    """Cells as text; a text in a column of numbers stays as it is."""
+    forms = [column.form for column in table.columns]
+    return [
+        [cell if isinstance(cell, str) else f"{cell:{form}}" for cell, form in zip(row, forms, strict=True)]
+        for row in rows
+    ]
+
+
+def latex(cell: str) -> str:
+    """A formatted cell for LaTeX: powers of ten written out, percent signs escaped."""
+    written_out = re.sub(r"([\d.+-]+)e([+-]\d+)$", lambda found: rf"${found[1]}\times 10^{{{int(found[2])}}}$", cell)
+    return written_out.replace("%", r"\%")
+
+
+def csv_text(headings, rows) -> str:
+    """CSV with one line of headings."""
+    stream = io.StringIO()
+    csv.writer(stream, lineterminator="\n").writerows([headings, *rows])
+    return stream.getvalue()
+
+
+def write_text(path: Path, text: str) -> Path:
+    """Write a text file, and the folder it goes to; returns the path."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(text, encoding="utf-8")
+    return path

@@ -1,0 +1,134 @@
+"""The register of figures and tables: each is one decorated function of the opened datasets of the studies it names.
+
+`study.catalogue` imports every file of the rooms figures, paper and evidence, so that a function placed in one of them
+is known to `python -m study plot` and `table`, and to `make`, without another line anywhere.
+"""
+
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ..files.results_file import open_results
+from ..spec.definition import StudyError
+from ..spec.vocabulary import suggest
+
+ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
+Columns = dict[str, np.ndarray]
+"""The numbers that a figure shows: heading of the CSV -> column."""
+
+
+class Figure(NamedTuple):
+    """See `figure`."""
+
+    studies: tuple[str, ...]
+    draw: Callable[..., Columns]
+    size: tuple[float, float]
+    panels: tuple[int, int]
+
+
+class Column(NamedTuple):
+    """One column of a table: heading, format of its numbers ("s": text), heading in LaTeX."""
+
+    text: str
+    form: str
+    latex: str
+
+
+class Table(NamedTuple):
+    """See `table`."""
+
+    studies: tuple[str, ...]
+    rows: Callable[..., list[tuple]]
+    caption: str
+    columns: tuple[Column, ...]
+
+
+FIGURES: dict[str, Figure] = {}
+TABLES: dict[str, Table] = {}
+
+
+def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1)):
+    """Register `draw(axes, *datasets)`, which draws the figure NAME and returns the numbers that it shows.
+
+    Parameters
+    ----------
+    studies : names of the studies whose datasets `draw` takes, in this order
+    size : width and height in inches
+    panels : rows and columns; several make `axes` an array
+    """
+
+    def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
+        FIGURES[name] = Figure(studies, draw, size, panels)
+        return draw
+
+    return register
+
+
+def table(name: str, *studies: str, caption: str, columns: str):
+    """Register `rows(*datasets)`, which gives the table NAME as a list of tuples, one value per column.
+
+    Parameters
+    ----------
+    studies : names of the studies whose datasets `rows` takes, in this order
+    columns : a line for each column, "heading | format of its numbers | heading in LaTeX"; without a format the cells
+        are text, without a heading in LaTeX it is the plain one
+    """
+
+    def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
+        heads = tuple(column(line) for line in columns.strip().split("\n"))
+        TABLES[name] = Table(studies, rows, re.sub(r"\s+", " ", caption), heads)
+        return rows
+
+    return register
+
+
+def column(line: str) -> Column:
+    """A line of `columns` of a table."""
+    text, form, latex = (cell.strip() for cell in (line + "||").split("|")[:3])
+    return Column(text, form or "s", latex or text.replace("%", r"\%"))
+
+
+def entry(name: str, known: dict[str, NamedTuple]) -> NamedTuple:
+    """The figure or table of a name. Raises StudyError, which suggests another name, if there is none."""
+    if name not in known:
+        raise StudyError([f'"{name}" is not known{suggest(name, known)}'])
+    return known[name]
+
+
+def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Dataset]:
+    """The datasets that a figure or table needs, in their order. Raises StudyError if a study has no results yet."""
+    paths = {study: Path(results) / f"{study}.nc" for study in entry(name, known).studies}
+    missing = [
+        f"{path}: does not exist, {name} needs it; make it with: python -m study {command_of(study)}"
+        for study, path in paths.items()
+        if not path.exists()
+    ]
+    if missing:
+        raise StudyError(missing)
+    return [open_results(path) for path in paths.values()]
+
+
+def command_of(study: str) -> str:
+    """The command that makes the results of a study; the trade-off is measured, which no study file says."""
+    return study if study == "tradeoff" else f"run studies/{study}.toml"
+
+
+def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:
+    """The one case whose coordinates along `case` have the wanted values (numbers within 1e-9).
+
+    Raises
+    ------
+    StudyError : no case, or several, fit
+    """
+    fits = np.ones(dataset.sizes["case"], dtype=bool)
+    for name, value in wanted.items():
+        found = dataset[name].values
+        fits &= (found == value) if isinstance(value, str) else np.isclose(found, value, rtol=1e-9, atol=0)
+    if np.count_nonzero(fits) != 1:
+        which = ", ".join(f"{name} = {value}" for name, value in wanted.items())
+        raise StudyError([f"{dataset.attrs['study_name']}: {np.count_nonzero(fits)} cases have {which}: needs one"])
+    return dataset.isel(case=int(np.argmax(fits)))

@@ -1,0 +1,185 @@
+"""A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
+
+import numpy as np
+import xarray as xr
+
+from solver import Status
+
+from .data.derived import (
+    COMPRESSED,
+    FEW_SPOTS,
+    MERGING,
+    NOT_THIN,
+    SPOT_OVER_LAYER,
+    STEEP,
+)
+from .scene.quantities import READABLE, readable
+from .scene.roughness import looks_like_iso_ra
+from .spec.vocabulary import VOCABULARY
+
+MOST_CASES = 20  # that a summary writes out
+SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
+#: In a smooth contact the real pressure is the nominal one, and the real area all of it.
+_OF_ASPERITIES = ("p_max", "Ar_An")
+INPUTS = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "n", "m", "h", "bonding", "Nbar", "Ra")
+MODELS = {
+    "half_space": "a half-space under the asperities",
+    "smooth_half_space": "a half-space, without asperities",
+    "layer_alone": "a half-space of the layer's material under the asperities",
+    "smooth_layer_alone": "a half-space of the layer's material, without asperities",
+    "thin_layer": "the thin-layer equation under the asperities",
+    "smooth_thin_layer": "the thin-layer equation, without asperities",
+    "layered": "the exact layered half-space under the asperities",
+    "smooth_layered": "the exact layered half-space, without asperities",
+}
+BROKEN = {
+    "layer_not_thin": f"The layer is not thin: the thin-layer equation errs by more than {NOT_THIN:.0%} here. Take "
+    'base = "layered".',
+    "few_spots": f"Fewer than {FEW_SPOTS:.0f} asperities are in the contact: the model, which spreads them evenly, "
+    "describes an average over many contacts.",
+    "spot_not_small_against_h": f"The contact spots are not small against the layer (b > {SPOT_OVER_LAYER:g} h): they "
+    "feel the body below, and the asperities' part is only roughly right.",
+    "n_not_below_one": "The layer is not softer than the body (n >= 1), which the paper's thin layer assumes. Take "
+    'base = "layered".',
+    "spots_merging": f"The contact spots merge (λ(0) > {MERGING:g}): the disc cell overestimates what the asperities "
+    "yield by 10 % or more.",
+    "strain_not_small": f"The strain is not small (a > {STEEP:g} R, or the layer gives way by more than "
+    f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
+}
+
+
+class Summary(str):
+    """A text that shows itself as it is, in a notebook as in a terminal."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def summary(contact: xr.Dataset) -> Summary:
+    """What `study.solve` found, in words.
+
+    Parameters
+    ----------
+    contact : a dataset of `study.solve`, in physical units or dimensionless; of a grid the first cases are written out
+
+    Returns
+    -------
+    Text: the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
+    standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
+    inputs make of the quantity (`NAME_spread`).
+
+    Raises
+    ------
+    ValueError : the dataset is not one of contacts
+    """
+    missing = [name for name in ("status", "model_used", "validity", *SHOWN) if name not in contact]
+    if missing:
+        raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
+    dims = list(contact["status"].dims)
+    if not dims:
+        return Summary(_one(contact))
+    cases = contact.stack({"one": dims}, create_index=False)
+    texts = []
+    for i in range(min(cases.sizes["one"], MOST_CASES)):
+        case = cases.isel(one=i)
+        where = str(case["label"].values) if "label" in case else ", ".join(_given(case, dim) for dim in dims)
+        texts.append(f"--- {where}\n{_one(case, dims)}")
+    if cases.sizes["one"] > MOST_CASES:
+        texts.append(f"--- and {cases.sizes['one'] - MOST_CASES} more cases: choose some with sel() or isel()")
+    return Summary("\n\n".join(texts))
+
+
+def _one(case: xr.Dataset, dims=()) -> str:
+    """The text of one case."""
+    rough = str(case["micro"].values) != "smooth"
+    inputs = [name for name in INPUTS if name in case and name not in dims and _matters(case, name, rough)]
+    given = [] if "m" in case else ["a rigid punch"]
+    lines = ["Given: " + ", ".join(given + [_given(case, name) for name in inputs]), ""]
+    names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
+    width = max(len(VOCABULARY[name].long_name) for name in names)
+    for name in names:
+        lines.append(f"  {VOCABULARY[name].long_name:{width}}  {VOCABULARY[name].symbol:6} = {_sure(case, name)}")
+    return "\n".join([*lines, "", *_sentences(case)])
+
+
+def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
+    """Whether a parameter has a value that the case uses."""
+    value = case[name].values
+    if name in ("Nbar", "Ra"):
+        return rough
+    if name in ("E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
+        return False
+    if name in ("n", "m") and "E2" in case:
+        return False
+    return value.dtype.kind != "f" or bool(np.isfinite(value))
+
+
+def _given(case: xr.Dataset, name: str) -> str:
+    """An input with its unit: "h = 2 µm"."""
+    if name not in case:
+        return str(name)
+    value = case[name].values[()]
+    if isinstance(value, (str, np.str_)):
+        return str(value)
+    return f"{name} = {_text(case, name, float(value))}"
+
+
+def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:
+    unit = case[name].attrs.get("units", "1")
+    if unit in READABLE and unit != "1":
+        return readable(value, unit, spread)
+    scale = case[name].attrs.get("scale", "" if unit == "1" else unit)
+    return f"{readable(value, '1', spread)} {scale}".rstrip()
+
+
+def _sure(case: xr.Dataset, name: str) -> str:
+    """A result with unit and ±."""
+    value = float(case[name])
+    if not np.isfinite(value):
+        return "unknown"
+    parts = [float(case[f"{name}_spread"]) if f"{name}_spread" in case else 0.0]
+    control = [c for c in ("P", "a", "D") if c in case.coords]
+    if name not in control:
+        parts += [value * float(case[kind]) for kind in ("error", "model_error") if np.isfinite(case[kind])]
+    return _text(case, name, value, float(np.sqrt(np.sum(np.square(parts)))))
+
+
+def _sentences(case: xr.Dataset) -> list[str]:
+    """How it was solved, and what the numbers rest on."""
+    status = case["status"]
+    word = _word(status)
+    if word == "converged":
+        found = [f"Solved: the equations hold to a relative {float(case['error']):.1g}."]
+    else:
+        meaning = Status(int(status)).meaning if int(status) in list(Status) else "the case has not been computed"
+        found = [f"NOT SOLVED ({word}): {meaning}."]
+    model = MODELS.get(_word(case["model_used"]))
+    if model:
+        error = float(case["model_error"])
+        errs = f"; against the exact layered contact it errs by about {error:.1%}" if error > 0 else ""
+        found.append(f"Model: {model}{errs}.")
+    broken = doubts(case)
+    found += [f"Beware: {sentence}" for sentence in broken]
+    if not broken and word == "converged":
+        found.append("Every assumption that the model rests on holds.")
+    return found
+
+
+def _word(flag: xr.DataArray) -> str:
+    """The word of a flag value."""
+    words = zip(np.atleast_1d(flag.attrs["flag_values"]).tolist(), flag.attrs["flag_meanings"].split(), strict=True)
+    return dict(words).get(int(flag), str(int(flag)))
+
+
+def doubts(contact: xr.Dataset) -> list[str]:
+    """Sentences about the cases of a dataset that are beyond what the model describes; none: all is well."""
+    flags = contact["validity"]
+    found = []
+    for mask, word in zip(np.atleast_1d(flags.attrs["flag_masks"]), flags.attrs["flag_meanings"].split(), strict=True):
+        count = int(((flags.values & mask) != 0).sum())
+        of_all = f"{count} of {flags.size} cases: " if flags.size > 1 else ""
+        found += [of_all + BROKEN[word]] if count else []
+    if {"Ra", "Nbar"} <= set(contact.coords) and (contact["micro"] != "smooth").any():
+        sharp = looks_like_iso_ra(*(array.values for array in xr.broadcast(contact["Ra"], contact["Nbar"])))
+        found += [sharp] if sharp else []
+    return found

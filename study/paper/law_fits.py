@@ -1,0 +1,102 @@
+"""Figure 9 and Table 1: the additional displacement A[p] of five roughnesses, and the power laws fitted to it.
+
+No study is needed: the exact law is a formula, Eqs (6) and (7), and a fit takes milliseconds.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from solver import fit_power_law, micro
+
+from ..figures.annotate import name_curve
+from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from . import numbers
+
+PRESSURES = np.linspace(1e-4, 0.025, 250)
+"""p/E1* of the paper's fit, Section 4.1: from 1e-4 to 0.025 in steps of 1e-4."""
+EXACT_LAW = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
+PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_000) for Ra in (0.004, 0.002, 0.001)]}
+"""Ra and N̄ of the curves in each panel of Figure 9."""
+
+
+class Fitted(NamedTuple):
+    """B in R/E1*^β, β, and the largest relative error over the paper's interval of A = B p^β."""
+
+    B: float
+    beta: float
+    error: float
+
+    def displacement(self) -> np.ndarray:
+        """A/R at PRESSURES."""
+        return self.B * PRESSURES**self.beta
+
+
+def exact(Ra: float, Nbar: float) -> np.ndarray:
+    """A/R at PRESSURES by Eqs (6) and (7)."""
+    return micro.displacement(PRESSURES, 1.0, Nbar, Ra)
+
+
+def fitted(Ra: float, Nbar: float) -> Fitted:
+    """The power law as the paper fits it."""
+    B, beta, error = fit_power_law(Nbar * Ra**2)
+    return Fitted(B * Ra, beta, error)
+
+
+def printed_error(Ra: float, Nbar: float, B: float, beta: float) -> float:
+    """Largest |B p^β / A[p] - 1| of printed constants over the paper's interval; B in R/E1*^β."""
+    low, high = numbers.ERROR_INTERVAL
+    p = PRESSURES
+    inside = (p > low * (1 - 1e-9)) & (p < high * (1 + 1e-9))  # both ends count, however they are rounded
+    return float(np.abs(B * p**beta / exact(Ra, Nbar) - 1)[inside].max())
+
+
+def bound(Ra: float, Nbar: float) -> str:
+    """The paper's words on the error of its fit."""
+    return f"at most {numbers.ERROR_BOUNDS[round(Nbar * Ra**2, 9)]:.0%}"
+
+
+@table(
+    "table1",
+    caption="""Power law fitted to the additional displacement of a rough layer: the paper's constants, the error that
+    it states and the one that we find; our constants and their error.""",
+    columns=r"""
+    Ra/R | g | $R_a/R$
+    N R^2 | d | $\bar N R^2$
+    N Ra^2 | g | $\bar N R_a^2$
+    B paper | .1e | $B E_1^{*\beta}/R$ (paper)
+    beta paper | .2f | $\beta$ (paper)
+    error stated
+    error found | .1%
+    B | .3e | $B E_1^{*\beta}/R$
+    beta | .4f | $\beta$
+    error | .1%""",
+)
+def table1() -> list[tuple]:
+    """The constants that the paper prints, then ours."""
+    rows = []
+    for Ra, Nbar, B, beta in numbers.TABLE1:
+        found = printed_error(Ra, Nbar, B, beta)
+        rows.append((Ra, Nbar, Nbar * Ra**2, B, beta, bound(Ra, Nbar), found, *fitted(Ra, Nbar)))
+    return rows
+
+
+@figure("fig09", size=(TWO_COLUMNS, 2.7), panels=(1, 2))
+def laws(panels) -> Columns:
+    """Figure 9: additional displacement against pressure, exact and fitted; (a) three densities, (b) three radii."""
+    p, columns = PRESSURES, {"p/E1*": PRESSURES}
+    for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
+        for i, (Ra, Nbar) in enumerate(roughnesses):
+            A = {"exact": exact(Ra, Nbar), "fit": fitted(Ra, Nbar).displacement()}
+            lines = axes.plot(p, A["fit"] * 1e4, "-", color=f"C{i}")
+            axes.plot(p, A["exact"] * 1e4, **EXACT_LAW)
+            name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
+            name_curve(axes, lines, name, 0.95 * p[-1], align="right")
+            columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": values for kind, values in A.items()}
+        axes.plot([], [], label="exact, Eqs (6), (7)", **EXACT_LAW)
+        axes.plot([], [], "-", color="0.5", label=r"fitted, $B p^{\beta}$")
+        given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
+        axes.legend(title=f"({panel}) {given}", loc="upper left")
+        limits = {"xlim": (0, p[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}
+        axes.set(xlabel="$p/E_1^*$", ylabel=r"$A[p]\ /\ (10^{-4} R)$", **limits)
+    return columns

@@ -1,0 +1,150 @@
+"""Numbers with units: "5 mm", "200 ± 10 GPa" or quantities of pint become SI numbers, and SI numbers readable text.
+
+pint reads the units. It is imported when the first text or quantity comes, for that takes half a second.
+"""
+
+import math
+import numbers
+import re
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cache
+from typing import Any
+
+#: SI unit -> what it measures, and the multiples in which it is read most easily (name, size), the largest first.
+READABLE = {
+    "m": ("a length", (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9))),
+    "Pa": ("a pressure", (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0))),
+    "N": ("a force", (("kN", 1e3), ("N", 1.0), ("mN", 1e-3), ("µN", 1e-6), ("nN", 1e-9))),
+    "N/m": ("a stiffness", (("MN/m", 1e6), ("kN/m", 1e3), ("N/m", 1.0), ("mN/m", 1e-3))),
+    "1/m^2": ("a number per area", (("1/µm²", 1e12), ("1/mm²", 1e6), ("1/m²", 1.0))),
+    "m^2": ("an area", (("mm²", 1e-6), ("µm²", 1e-12), ("nm²", 1e-18))),
+    "1": ("a pure number", (("", 1.0),)),
+}
+LONGEST = 100  # characters of a text with a unit: pint computes what is written there
+_SURE = 1e-5  # relative spread of a number that is not worth a ±
+_SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A number in an SI unit, with its spread (one standard deviation) in the same unit; 0: none is known."""
+
+    value: float
+    spread: float = 0.0
+
+
+def has_unit(given: Any) -> bool:
+    """Whether something is a quantity of pint, or a text that begins with a number and is not only one."""
+    if isinstance(given, str):
+        number = _NUMBER.match(given.strip())
+        return bool(number) and number.end() < len(given.strip())
+    return hasattr(given, "magnitude") and hasattr(given, "to")
+
+
+def quantity(name: str, given: Any, unit: str) -> Quantity:
+    """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number.
+
+    Parameters
+    ----------
+    name : what the number is called, for messages
+    given : text, pint quantity or number
+    unit : one of READABLE: the SI unit of the result
+
+    Raises
+    ------
+    ValueError : no number, no unit, a unit of something else; the message says what was understood
+    """
+    what, multiples = READABLE[unit]
+    wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
+    if isinstance(given, numbers.Real) and not isinstance(given, bool):
+        if unit != "1":
+            raise ValueError(f"{name} = {given!r} has no unit: {wanted}")
+        return Quantity(float(given))
+    if isinstance(given, str):
+        return _from_text(name, given.strip(), unit, wanted)
+    if not has_unit(given):
+        raise ValueError(f"{name} = {given!r}: {wanted}")
+    try:
+        return Quantity(float(given.to(_pint_name(unit)).magnitude))
+    except Exception as error:  # of whatever registry the quantity is
+        raise ValueError(f"{name} = {given}: {wanted}") from error
+
+
+def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
+    """The quantity in a text; a unit behind the spread holds for the value as well."""
+    head, *spread = _SPREAD.split(text)
+    if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
+        raise ValueError(f'{name} = "{text[:LONGEST]}": {wanted}')
+    if not spread:
+        return Quantity(_si(name, text, unit, wanted))
+    number = _NUMBER.match(spread[0])
+    if not number:
+        raise ValueError(f'{name} = "{text}": behind ± must be a number')
+    if spread[0].endswith("%"):
+        value = _si(name, head, unit, wanted)
+        return Quantity(value, abs(value) * float(number[0]) / 100)
+    common = spread[0][number.end() :]
+    head = head if has_unit(head) else head + common
+    return Quantity(_si(name, head, unit, wanted), abs(_si(name, spread[0], unit, wanted)))
+
+
+def _si(name: str, text: str, unit: str, wanted: str) -> float:
+    """A text without spread in the SI unit, rounded once: "3 um" is the number 3e-6."""
+    try:
+        found = _registry().Quantity(text.replace("⁻²", "^-2").replace("²", "^2"))
+    except Exception as error:  # pint raises of many kinds
+        raise ValueError(f'{name} = "{text}": no unit is called like this; {wanted}') from error
+    if unit != "1" and found.dimensionless:
+        raise ValueError(f'{name} = "{text}" has no unit: {wanted}')
+    if not found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
+        raise ValueError(f'{name} = "{text}" is {_understood(found)}: {wanted}')
+    value = float(found.to(_pint_name(unit)).magnitude)
+    if not math.isfinite(value):
+        raise ValueError(f'{name} = "{text}": must be finite')
+    return value
+
+
+def _understood(found: Any) -> str:
+    """What a quantity of another dimension is."""
+    for unit, (what, _) in READABLE.items():
+        if found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
+            return what
+    return f"in {found.units}"
+
+
+def _pint_name(unit: str) -> str:
+    return "dimensionless" if unit == "1" else unit
+
+
+@cache
+def _registry() -> Any:
+    """The registry of pint; in decimal numbers, so that "3 um" and "3e-6 m" are the same float."""
+    import pint
+
+    return pint.UnitRegistry(non_int_type=Decimal)
+
+
+def _example(unit: str) -> str:
+    name = READABLE[unit][1][min(1, len(READABLE[unit][1]) - 1)][0]
+    return f"2 {name}"
+
+
+def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> str:
+    """A number in SI as text in the multiple that suits it: readable(2.5e-6, "m") is "2.5 µm"; with ± its spread.
+
+    value, spread : in the SI `unit`, one of READABLE; a spread of less than 1e-5 of the value is left out
+    digits : significant digits of a value without spread
+    """
+    if not math.isfinite(value):
+        return "unknown"
+    multiples = READABLE[unit][1]
+    name, size = next(((n, s) for n, s in multiples if abs(value) >= s), multiples[-1])
+    number, spread = value / size, spread / size
+    if spread > _SURE * abs(number):
+        places = max(0, 1 - math.floor(math.log10(spread)))  # two digits of the spread
+        text = f"{number:.{places}f} ± {spread:.{places}f}" if places < 7 else f"{number:.3e} ± {spread:.1e}"
+    else:
+        text = f"{number:.{digits}g}"
+    return f"{text} {name}".rstrip()

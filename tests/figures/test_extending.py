@@ -1,0 +1,97 @@
+"""What docs/extending.md says of figures, tables and output quantities, done as it stands there."""
+
+import csv
+import re
+import subprocess
+import sys
+
+import numpy as np
+import pages
+import pytest
+from conftest import ROOT
+
+import study
+from study import catalogue, open_results
+from study.data import derived
+from study.figures.registry import FIGURES, TABLES
+from study.spec import vocabulary
+
+SECTIONS = dict(part.split("\n", 1) for part in pages.read("docs/extending.md").split("\n## ")[1:])
+
+
+def code(heading: str) -> list[str]:
+    return re.findall(r"^```python\n(.*?)^```", SECTIONS[heading], flags=re.DOTALL | re.MULTILINE)
+
+
+(FIGURE,), (TABLE,), (ROW, FORMULA) = map(code, ("A figure", "A table", "An output quantity"))
+SCRIPT = """
+import sys
+import study.figures
+study.figures.__path__.append(sys.argv[1])
+from study.__main__ import main
+sys.exit(main(["plot", "stiffness", "--results", sys.argv[2], "--figures", sys.argv[3]]))
+"""
+
+
+@pytest.fixture(autouse=True)
+def registers_as_they_were():
+    before = dict(FIGURES), dict(TABLES)
+    yield
+    for register, entries in zip((FIGURES, TABLES), before, strict=True):
+        register.clear()
+        register.update(entries)
+
+
+def numbers(path) -> tuple[list[str], np.ndarray]:
+    with open(path, encoding="utf-8", newline="") as file:
+        head, *rows = csv.reader(file)
+    return head, np.array(rows, dtype=float)
+
+
+def test_a_figure_is_one_function_in_one_new_file(results, tmp_path):
+    """In a process of its own, where the file lies beside those of study/figures."""
+    (tmp_path / "stiffness.py").write_text(FIGURE, encoding="utf-8")
+    command = [sys.executable, "-c", SCRIPT, tmp_path, results, tmp_path / "figures"]
+    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300)
+    assert ran.returncode == 0, ran.stderr
+    assert sorted(path.suffix for path in (tmp_path / "figures").iterdir()) == [".csv", ".pdf", ".png"]
+    head, columns = numbers(tmp_path / "figures/stiffness.csv")
+    sweep = open_results(results / "load_sweep.nc")
+    assert head == ["P/(E2* R^2)", *sweep["label"].values]
+    np.testing.assert_array_equal(columns[:, 0], sweep["P"])
+    np.testing.assert_array_equal(columns[:, 1:], sweep["dP_dD"].transpose("P", "case"))
+
+
+def test_a_figure_of_a_script_is_among_those_of_make_figures(results, tmp_path):
+    exec(FIGURE, {})
+    assert "stiffness" in catalogue.usual(FIGURES)
+    assert [path.name for path in catalogue.draw("stiffness", results, tmp_path)][0] == "stiffness.csv"
+
+
+def test_a_table_is_one_function(results, tmp_path):
+    exec(TABLE, {})
+    text, comma, latex = (
+        path.read_text(encoding="utf-8") for path in catalogue.tabulate("stiffest", results, tmp_path)
+    )
+    main = open_results(results / "main_case.nc")
+    assert text.splitlines()[0] == "Contact stiffness under the load of the main case."
+    assert re.search(rf"^rough, layered +{float(main['dP_dD'][0]):.3f}$", text, flags=re.MULTILINE)
+    assert [float(row[1]) for row in list(csv.reader(comma.splitlines()))[1:]] == main["dP_dD"].values.tolist()
+    assert r"contact & $(dP/dD)/(E_2^* R)$ \\" in latex
+
+
+def test_an_output_quantity_is_one_row_and_its_formula(results, monkeypatch):
+    (row,) = eval(ROW, vars(vocabulary))
+    monkeypatch.setitem(vocabulary.VOCABULARY, row.name, row)
+    found = vars(derived) | {}
+    exec(FORMULA, found)
+    main = open_results(results / "main_case.nc")
+    made = main.assign(P_spot=found["spot_load"])
+    expected = (main["P"] / (main["Nbar"] * np.pi * main["a"] ** 2)).where(main["micro"] != "smooth")
+    np.testing.assert_allclose(made["P_spot"], expected, rtol=1e-14)  # the same arithmetic
+    assert made["P_spot"].attrs == {
+        "long_name": "mean load of a contact spot", "symbol": "P/(N̄ An)", "scale": "E2* R^2", "units": "1"
+    }  # fmt: skip
+    physical = study.to_physical(made, R=0.01, E2_star=2e11)
+    assert physical["P_spot"].units == "N"
+    np.testing.assert_allclose(physical["P_spot"], expected * 2e7, rtol=1e-12)  # two products

@@ -1,0 +1,60 @@
+"""A contact in words: every number of the text is that of the dataset, and every doubt is said."""
+
+import re
+
+import numpy as np
+import pytest
+from test_physical import COATED, quiet
+
+import study
+from study.data.derived import ASSUMPTIONS
+from study.in_words import BROKEN, MODELS, MOST_CASES
+
+
+def test_a_physical_contact():
+    found = quiet(**COATED | {"h": "2 um ± 0.1 um"}, P="10 N", x=2)
+    text = study.summary(found)
+    assert "R = 5 mm, E1 = 200 GPa, nu1 = 0.25, E2 = 210 GPa, nu2 = 0.3, h = 2 µm, frictionless" in text
+    assert "a rigid punch" in text
+    number, spread = re.search(r"a +=? *= ([\d.]+) ± ([\d.]+) µm", text).groups()
+    assert float(number) == pytest.approx(found.a.item() * 1e6, rel=1e-4)
+    assert float(spread) == pytest.approx(found.a_spread.item() * 1e6, rel=0.06), "two digits"
+    assert re.search(r"P += 10 N", text)
+    assert "Model: the exact layered half-space, without asperities." in text
+    assert "Every assumption that the model rests on holds." in text
+    assert "pmax" not in text and repr(text) == str(text)
+
+
+def test_the_model_error_is_in_the_plus_minus():
+    found = quiet(**COATED | {"base": "thin_layer"}, P="10 N", x=2)
+    text = study.summary(found)
+    spread = re.search(r"p\(0\) += [\d.]+ ± ([\d.]+) (\w+)", text)
+    size = {"GPa": 1e9, "MPa": 1e6}[spread[2]]
+    total = found.p0 * np.hypot(found.error, found.model_error)
+    assert float(spread[1]) * size == pytest.approx(total.item(), rel=0.06)
+    assert f"it errs by about {found.model_error.item():.1%}" in text
+
+
+def test_a_dimensionless_contact_and_a_failed_one():
+    found = study.solve(P=1e-5, h=0.02, n=0.5, Nbar=250000, Ra=0.004, x=2)
+    text = study.summary(found)
+    assert f"= {found.a.item():.5g} R" in text and f"= {found.p_max.item():.5g} E2*" in text
+    failed = study.solve(P=1e-5, h=0.02, n=0.5, nu1=0.5, bonding="bonded", base="thin_layer", micro="smooth", x=2)
+    text = study.summary(failed)
+    assert "NOT SOLVED (thin_layer_not_applicable): the thin-layer equation does not apply" in text
+    assert "unknown" in text and "holds" not in text
+
+
+def test_grids_are_written_out_and_long_ones_are_cut():
+    text = study.summary(quiet(**COATED, P=["1 N", "10 N"], x=2))
+    assert text.count("Given:") == 2 and "--- P = 1 N" in text and "--- P = 10 N" in text
+    long = study.solve(P=np.linspace(1e-6, 1e-5, MOST_CASES + 5), base="half_space", micro="smooth", x=2)
+    assert "--- and 5 more cases" in study.summary(long)
+    with pytest.raises(ValueError, match="this dataset is not one of contacts: it has no status"):
+        study.summary(long.drop_vars("status"))
+
+
+def test_every_flag_and_model_has_its_words():
+    assert set(BROKEN) == set(ASSUMPTIONS.values())
+    found = study.solve(P=1e-5, base="half_space", micro="smooth", x=2)
+    assert set(MODELS) == set(found.model_used.attrs["flag_meanings"].split()) - {"none"}

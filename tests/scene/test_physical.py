@@ -1,0 +1,135 @@
+"""Physical scenes: SI results are the dimensionless ones in other units, spreads are propagated, slips are named."""
+
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+
+pytest.importorskip("pint")
+COATED = {"R": "5 mm", "E1": "200 GPa", "nu1": 0.25, "E2": "210 GPa", "nu2": 0.3, "h": "2 um", "micro": "smooth"}
+E1_STAR, E2_STAR = 200e9 / (1 - 0.25**2), 210e9 / (1 - 0.3**2)
+R = 5e-3
+
+
+def quiet(**given) -> xr.Dataset:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return study.solve(**given)
+
+
+def test_a_scene_is_the_dimensionless_contact_in_si():
+    """To the rounding of the scales: the numbers inside are the same."""
+    found = quiet(**COATED, P=["1 N", "10 N"], x=3)
+    loads = [P / (E2_STAR * R**2) for P in (1.0, 10.0)]
+    inside = study.solve(P=loads, h=2e-6 / R, n=E1_STAR / E2_STAR, nu1=0.25, nu2=0.3, micro="smooth", x=3)
+    for name, scale in (("a", R), ("D", R), ("p0", E2_STAR), ("p", E2_STAR), ("dP_dD", E2_STAR * R), ("error", 1.0)):
+        np.testing.assert_allclose(found[name].values, inside[name].values * scale, rtol=1e-12, err_msg=name)
+    assert found.P.values.tolist() == [1.0, 10.0] and float(found.h) == 2e-6 and float(found.E1) == 200e9
+    units = {name: found[name].attrs["units"] for name in ("P", "a", "p0", "dP_dD", "h", "E1", "R")}
+    assert units == {"P": "N", "a": "m", "p0": "Pa", "dP_dD": "N/m", "h": "m", "E1": "Pa", "R": "m"}
+    assert "scale" not in found.a.attrs
+
+
+def test_axes_are_found_by_text_and_by_number():
+    found = quiet(**COATED | {"h": ["7 nm", "3 um", "0.1 mm"]}, P="10 N", x=2)
+    assert found.h.values.tolist() == [7e-9, 3e-6, 1e-4]
+    assert found.sel(h="3 um").a == found.sel(h=3e-6).a == found.isel(h=1).a
+    assert found.sel(h=["7 nm", "3000 nm"]).h.values.tolist() == [7e-9, 3e-6]
+    assert found.sel(h="2.9 um", method="nearest").h == 3e-6
+    with pytest.raises(ValueError, match='h = "3 N" is a force'):
+        found.sel(h="3 N")
+
+
+def test_results_survive_a_file(tmp_path):
+    quiet(**COATED, P=["1 N", "10 N"], x=3).to_netcdf(tmp_path / "scene.nc")
+    with xr.open_dataset(tmp_path / "scene.nc") as again:
+        assert again.sel(P=10.0).a.attrs["units"] == "m" and float(again.R) == R
+
+
+def test_quantities_of_pint_and_arrays_with_units():
+    import pint
+
+    unit = pint.UnitRegistry()
+    loads = xr.DataArray([1.0, 10.0], dims="load", attrs={"units": "N"})
+    texts = quiet(**COATED, P=["1 N", "10 N"], x=2)
+    for given in ({"P": unit.Quantity([1.0, 10.0], "N")}, {"P": loads}, {"P": [unit.Quantity(1, "N"), "10 N"]}):
+        np.testing.assert_allclose(quiet(**COATED, **given, x=2).a.values, texts.a.values, rtol=1e-12)
+
+
+def test_cases_with_units():
+    rows = [{"label": "thin", "h": "2 um", "E1": "200 GPa"}, {"label": "soft", "h": "20 um", "E1": "0.5 GPa"}]
+    common = {name: value for name, value in COATED.items() if name not in ("h", "E1")}
+    found = quiet(cases=rows, **common, P="10 N", x=2)
+    assert found.label.values.tolist() == ["thin", "soft"] and found.h.values.tolist() == [2e-6, 2e-5]
+    np.testing.assert_allclose(found.a[0], quiet(**COATED, P="10 N", x=2).a, rtol=1e-12)
+    with pytest.raises(study.StudyError, match="h must be given in every case, or once for all"):
+        study.solve(cases=[rows[0], {"E1": "1 GPa", "label": "x"}], **common, P="10 N")
+
+
+def test_spreads_of_hertz():
+    """a = (3 P R/(4 E*))^(1/3): its relative spread is a third of the root of the sum of squares, D's two thirds of
+    those of P and E* and a third of that of R."""
+    given = {"R": "5 mm ± 2 %", "E2": "210 GPa ± 10 GPa", "P": "10 N ± 0.3 N", "base": "half_space", "micro": "smooth"}
+    found = quiet(**given, x=2)
+    P, R, E = 0.03, 0.02, 10 / 210
+    # central differences over a tenth of the spreads: exact but for (0.1 spread)²/6 of the third derivative
+    np.testing.assert_allclose(found.a_spread / found.a, np.hypot(P, np.hypot(R, E)) / 3, rtol=1e-4)
+    np.testing.assert_allclose(found.D_spread / found.D, np.sqrt((2 * P) ** 2 + R**2 + (2 * E) ** 2) / 3, rtol=1e-4)
+    assert found.P == 10.0 and "moved input" not in found.dims
+
+
+def test_spreads_agree_with_draws():
+    """4,000 draws: the deviation of 4,000 numbers is known to 1/sqrt(8000) = 1.1 %; 5 % are more than four of these and
+    the second order."""
+    given = {"R": "5 mm", "E2": "210 GPa", "P": "10 N", "Nbar": "400 1/mm^2", "Ra": "50 um", "bonding": "bonded"}
+    spread = quiet(**given, E1="3 GPa ± 0.15 GPa", nu1="0.4 ± 0.01", h="50 um ± 2 um", x=2)
+    random = np.random.default_rng(1)
+    drawn = {"E1": (3e9, 0.15e9, "Pa"), "nu1": (0.4, 0.01, "1"), "h": (5e-5, 2e-6, "m")}
+    draws = {
+        name: xr.DataArray(random.normal(value, sd, 4000), dims="draw", attrs={"units": unit})
+        for name, (value, sd, unit) in drawn.items()
+    }
+    sampled = quiet(**given, **draws, x=2)
+    for name in ("a", "D", "p0", "p_max", "Ar_An"):
+        np.testing.assert_allclose(spread[f"{name}_spread"], sampled[name].std("draw"), rtol=0.05, err_msg=name)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"h": 2e-6}, 'h = 2e-06 has no unit: must be a length, such as "2 mm"'),
+        ({"h": "2 N"}, 'h = "2 N" is a force: must be a length'),
+        ({"h": ["2 um", "3"]}, r'h\[1\] = "3" has no unit'),
+        ({"h": []}, "h is empty"),
+        ({"P": "10 Pa"}, 'P = "10 Pa" is a pressure: must be a force'),
+        ({"nu1": "0.3 m"}, 'nu1 = "0.3 m" is a length: must be a number without a unit'),
+        ({"R": None}, "R is missing: the radius of the punch"),
+        ({"E2": None}, "E2 is missing: Young's modulus of the body"),
+        ({"E1": None}, "E1 is missing: Young's modulus of the layer"),
+        ({"n": 0.5}, "E1 and n are both given"),
+        ({"nu1": "0.6"}, r"nu1 = 0.6: must be in \(-1, 0.5\]"),
+        ({"E2": "-2 GPa"}, "E2 = -2 GPa: must be > 0"),
+        ({"hh": "2 um"}, '"hh" is not a parameter; did you mean "h"'),
+        ({"R": "5 km", "h": "2 nm"}, r"(?s)h = 4e-13.*dimensionless here"),
+        ({"h": xr.DataArray([1e-6], dims="film")}, 'the DataArray has no attribute "units"; a length needs one'),
+    ],
+)
+def test_slips_are_named(change, message):
+    given = {name: value for name, value in (COATED | {"P": "10 N"} | change).items() if value is not None}
+    with pytest.raises(study.StudyError, match=message):
+        study.solve(**given)
+
+
+def test_what_is_beyond_the_model_is_said_once():
+    with pytest.warns(UserWarning, match="The strain is not small") as said:
+        study.solve(**COATED | {"E1": "10 MPa"}, P="10 N", x=2)
+    assert len(said) == 1
+    with pytest.warns(UserWarning, match="roughness Ra of ISO"):
+        study.solve(**COATED | {"micro": "disc_cell"}, Nbar="400 1/mm^2", Ra="1.0 um", P="10 N", x=2)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        study.solve(**COATED, P="10 N", x=2)
+        study.solve(P=1e-2, n=1e-3, h=1e-3, micro="smooth", x=2)  # dimensionless: `validity` says it

@@ -1,0 +1,99 @@
+"""Numbers with units: what is read, what is refused and with which words, and readable multiples."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+
+from study.scene.quantities import READABLE, Quantity, has_unit, quantity, readable
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("3 um", "m", 3e-6),
+        ("3um", "m", 3e-6),
+        ("3 µm", "m", 3e-6),
+        ("0.1 nm", "m", 1e-10),
+        ("210 GPa", "Pa", 2.1e11),
+        ("2.5e11 1/m^2", "1/m^2", 2.5e11),
+        ("100 mm⁻²", "1/m^2", 1e8),
+        ("100 1/mm²", "1/m^2", 1e8),
+        ("10 mN", "N", 1e-2),
+        ("1 kgf", "N", 9.80665),
+        ("0.3", "1", 0.3),
+        (0.3, "1", 0.3),
+        (np.float64(0.3), "1", 0.3),
+    ],
+)
+def test_a_number_is_rounded_once(text, unit, value):
+    """Equal to the literal in SI, not near it: `sel(h="3 um")` has to find 3e-6."""
+    assert quantity("x", text, unit) == Quantity(value, 0.0)
+
+
+@pytest.mark.parametrize("sign", ["±", "+/-", "+-"])
+def test_spreads(sign):
+    assert quantity("E1", f"200 {sign} 10 GPa", "Pa") == Quantity(2e11, 1e10)
+    assert quantity("E1", f"200 GPa {sign} 10 GPa", "Pa") == Quantity(2e11, 1e10)
+    assert quantity("E1", f"200 GPa {sign} 5 %", "Pa") == Quantity(2e11, 1e10)
+    assert quantity("h", f"2 um {sign} 100 nm", "m") == Quantity(2e-6, 1e-7)
+    assert quantity("nu1", f"0.3 {sign} 0.02", "1") == Quantity(0.3, 0.02)
+
+
+@pytest.mark.parametrize(
+    ("given", "unit", "message"),
+    [
+        (3, "m", 'h = 3 has no unit: must be a length, such as "2 mm"'),
+        ("3", "m", 'h = "3" has no unit: must be a length'),
+        ("3 N", "m", 'h = "3 N" is a force: must be a length'),
+        ("3 Pa", "N", 'h = "3 Pa" is a pressure: must be a force'),
+        ("3 kg", "N", 'h = "3 kg" is in kilogram: must be a force'),
+        ("3 flarp", "m", 'h = "3 flarp": no unit is called like this; must be a length'),
+        ("3 um", "1", 'h = "3 um" is a length: must be a number without a unit'),
+        ("3 ± x um", "m", "behind ± must be a number"),
+        ("3 ± 4 ± 5 um", "m", "must be a length"),
+        ("um", "m", "must be a length"),
+        ("1e999 m", "m", "must be finite"),
+        (True, "m", "must be a length"),
+        (None, "m", "must be a length"),
+        ([1], "m", "must be a length"),
+        ("1 " + "m*" * 100 + "m", "m", "must be a length"),
+        ("9**9**9**9 m", "m", "no unit is called like this"),
+    ],
+)
+def test_what_is_refused(given, unit, message):
+    with pytest.raises(ValueError, match=re.escape(message)):
+        quantity("h", given, unit)
+
+
+def test_what_has_a_unit():
+    assert all(has_unit(text) for text in ("3 um", "3um", " -2.5e3 N", "200 ± 10 GPa"))
+    assert not any(has_unit(given) for given in ("3", "disc_cell", "", 3, 0.5, None, [3], "layered", "1e5"))
+
+
+def test_quantities_of_pint():
+    pint = pytest.importorskip("pint")
+    own = pint.UnitRegistry()
+    assert has_unit(own.Quantity(3.0, "um"))
+    assert quantity("h", own.Quantity(3.0, "um"), "m").value == pytest.approx(3e-6, rel=1e-15)  # a float product
+    with pytest.raises(ValueError, match=r"h = 3.0 newton: must be a length"):
+        quantity("h", own.Quantity(3.0, "N"), "m")
+
+
+def test_readable_numbers():
+    assert readable(2.5e-6, "m") == "2.5 µm"
+    assert readable(2.5e-6, "m", 3e-8) == "2.500 ± 0.030 µm"
+    assert readable(1.23e9, "Pa", 2e7) == "1.230 ± 0.020 GPa"
+    assert readable(1.23e9, "Pa", 1e3) == "1.23 GPa"
+    assert readable(0.0, "N") == "0 nN"
+    assert readable(-4e-3, "m") == "-4 mm"
+    assert readable(math.nan, "m") == "unknown"
+    assert readable(0.16004, "1", 0.0021) == "0.1600 ± 0.0021"
+
+
+@pytest.mark.parametrize("unit", [unit for unit in READABLE if unit != "1"])
+def test_readable_numbers_are_read_again(unit):
+    """From 1e-12 to 1e12, to the five digits that are written."""
+    for value in 1.2345 * 10.0 ** np.arange(-12, 13, 3):
+        assert quantity("x", readable(value, unit), unit).value == pytest.approx(value, rel=1e-4)

@@ -30,10 +30,7 @@ _TINY = np.finfo(float).tiny
 @dataclass(frozen=True, eq=False)
 class Approximation:
     """Of B cases at given radii: q (B, n) after `done` approximations; the last |p̂ - p| over the largest pressure, the
-    change of the load, and |p̂ - p| half-way to the limit, (B,) each.
-
-    `together`: all cases are multiplied at once; their rounding then depends on their number.
-    """
+    change of the load, and |p̂ - p| half-way to the limit, (B,) each."""
 
     cases: Cases
     operator: Operator
@@ -45,7 +42,6 @@ class Approximation:
     load_change: np.ndarray
     earlier: np.ndarray
     done: int = 0
-    together: bool = False
 
     @property
     def closed(self):
@@ -69,7 +65,7 @@ class Approximation:
         """The sub-batch at `index`, ascending."""
         arrays, own = (v[index] for v in self._arrays()), tuple(v[index] for v in self.groups)
         parts = self.cases.take(index), self.operator.take(index), own
-        return Approximation(*parts, *arrays, self.done, self.together)
+        return Approximation(*parts, *arrays, self.done)
 
     def join(self, cases, parts, places):
         """The batch `cases` from its sub-batches `parts`, each at its `places` (b,)."""
@@ -77,35 +73,28 @@ class Approximation:
         arrays = (np.concatenate(v)[order] for v in zip(*(part._arrays() for part in parts), strict=True))
         own = tuple(np.concatenate(v)[order] for v in zip(*(part.groups for part in parts), strict=True))
         operator = self.operator.join([part.operator for part in parts], places)
-        return Approximation(cases, operator, own, *arrays, together=self.together)
+        return Approximation(cases, operator, own, *arrays)
 
 
-def solve(cases, mesh, k, rtol, limit, search=false_position, follow=False, budget=0):
+def solve(cases, mesh, k, rtol, limit):
     """:class:`~solver.contact.driver.Iterated` with the equation at the end, and status (B,), by the paper's scheme.
 
-    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT); search : of numerics/bracket.py;
-    follow : begin at each radius with the pressure found at the one before, not with p = 0, and multiply all cases at
-    once (their rounding then depends on their number); budget : most approximations of a case at all radii but
-    the last (0: APPROXIMATIONS).
+    k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
     """
     eta, count = np.log(cases.value), np.zeros(len(cases.value), dtype=int)
-    before = np.zeros((len(eta), mesh.n)) if follow else None
-    budget = budget or APPROXIMATIONS
-    limit = min(limit or LIMIT, budget)
+    limit = min(limit or LIMIT, APPROXIMATIONS)
 
     def control_at(eta, index):
-        part, start = cases.take(index), None if before is None else before[index]
-        found = approximate(part, eta, mesh, k[index], rtol[index], limit, start)
+        part = cases.take(index)
+        found = approximate(part, eta, mesh, k[index], rtol[index], limit)
         count[index] += found.count
-        if follow:
-            before[index] = np.where(found.closed[:, None], found.at.q, 0.0)  # no cycle is handed on
-        return np.where(count[index] < budget, _control(part, eta, found.at), np.nan)
+        return np.where(count[index] < APPROXIMATIONS, _control(part, eta, found.at), np.nan)
 
     if cases.control != "a":
-        eta = search(control_at, np.log(guess_radius(cases)), 0.1 * rtol)[0]
-    found = approximate(cases, eta, mesh, k, rtol, limit, before)
+        eta = false_position(control_at, np.log(guess_radius(cases)), 0.1 * rtol)[0]
+    found = approximate(cases, eta, mesh, k, rtol, limit)
     count = count + found.count
-    status = _status(found.at, np.abs(_control(cases, eta, found.at)), count >= budget)
+    status = _status(found.at, np.abs(_control(cases, eta, found.at)), count >= APPROXIMATIONS)
     y = np.maximum(cases.law.from_pressure(found.at.q), _TINY)
     at = evaluate(cases, State(y, eta), mesh)
     return Iterated(at, status == Status.CONVERGED, count), status
@@ -121,17 +110,16 @@ def _status(at, missed, spent):
     return np.select(list(ends.values()), list(ends), np.where(spent, Status.BUDGET_SPENT, Status.ITERATION_LIMIT))
 
 
-def approximate(cases, eta, mesh, k, rtol, limit, start=None):
-    """:class:`~solver.contact.driver.Iterated` of successive approximations at the radii exp(eta) (B,) from `start`
-    (B, n), or from p = 0.
+def approximate(cases, eta, mesh, k, rtol, limit):
+    """:class:`~solver.contact.driver.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
 
     They amplify rounding where they do not settle quickly, so that all of a case is computed as if it were alone.
     """
-    never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n)) if start is None else start
+    never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n))
     alone = [cases.body.take([i]).at(np.exp(eta[i : i + 1]), mesh) for i in range(len(eta))]
     operator = alone[0].join(alone, np.arange(len(eta))[:, None])
     own = cases, operator, groups(cases, eta), k, rtol, q
-    first = Approximation(*own, never, never, never, together=start is not None)
+    first = Approximation(*own, never, never, never)
     return iterate(cases, first, lambda now: _next(now, limit // 2), limit)
 
 
@@ -139,7 +127,7 @@ def _next(now, half):
     """The approximation after `now`; that after `half` of all keeps the change before it."""
     q, k, cases = now.q, now.k, now.cases
     K, w = now.operator.K, now.operator.mesh.w
-    Kq = q @ K[0].T if now.together and len(K) == 1 else np.matmul(K, q[..., None])[..., 0]
+    Kq = np.matmul(K, q[..., None])[..., 0]
     new = (_pressure(cases.law, now.groups, now.operator.mesh.s**2, q, Kq) + k[:, None] * q) / (1 + k[:, None])
     change = (1 + k) * np.abs(new - q).max(axis=1) / np.maximum(new.max(axis=1), _TINY)
     load_change = np.abs((q @ w) / (new @ w) - 1)

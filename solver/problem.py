@@ -24,6 +24,9 @@ class Problem:
         Its value: load, radius of the nominal contact area or indentation depth.
     h, n : needed by every base but "half_space"
         Thickness of the layer, and ratio of the reduced moduli E1*/E2*.
+    m : 0
+        Ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
+        displacements of both bodies add; D is the approach of their distant points.
     nu1, nu2 : 0.3
         Poisson ratios of layer and half-space. Without friction between them these change nothing.
     bonding : "frictionless" (default) or "bonded"
@@ -63,6 +66,7 @@ class Problem:
     value: np.ndarray
     h: np.ndarray
     n: np.ndarray
+    m: np.ndarray
     nu1: np.ndarray
     nu2: np.ndarray
     bonding: np.ndarray

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from .body import BODIES
-from .body.springs import local_compliance
+from .body.springs import local_compliance, thin_layer_coefficients
 from .contact.equation import Cases
 from .laws import LAWS
 from .parameters import PARAMETERS, allowed
@@ -42,6 +42,31 @@ def _without_unit(value, powers, R, E2):
     return value
 
 
+def with_rigid_punch(problem):
+    """The problem with an elastic punch on a half-space or a thin layer as that of a rigid one: the same contact.
+
+    Displacements add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m: the body has the
+    modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of a frictionless layer
+    of thickness 2 A2 h/(1 + m). The exact layer stays as it is, and so do thin layers without springs, or those that
+    it judges.
+    """
+    m, base = problem.m, problem.base
+    if not (m > 0).any():
+        return problem
+    n = np.where(base == "half_space", 1.0, problem.n)
+    _, A2 = thin_layer_coefficients(n, problem.nu1, problem.nu2, problem.bonding == "bonded")
+    thin = (base == "thin_layer") & (A2 > 0) & (problem.model_check != "first_order")
+    moved = (m > 0) & ((base == "half_space") | thin)
+    return replace(
+        problem,
+        E2=np.where(moved, problem.E2 * n / (n + m), problem.E2),
+        n=np.where(moved, (n + m) / (1 + m), problem.n),
+        h=np.where(moved, 2 * A2 * problem.h / (1 + m), problem.h),
+        bonding=np.where(moved, "frictionless", problem.bonding),
+        m=np.where(moved, 0.0, m),
+    )
+
+
 def refused(problem, scaled):
     """(B,) bool: cases that cannot be solved as they are given; `scaled` is the problem in units R = E2* = 1."""
     units = [~allowed(PARAMETERS[name], getattr(problem, name)) for name in ("R", "E2")]
@@ -50,7 +75,7 @@ def refused(problem, scaled):
 
 def without_springs(scaled):
     """(B,) bool: thin layers to which Eq. (3) does not apply, C <= 0."""
-    return (scaled.base == "thin_layer") & ~(local_compliance(*_layer(scaled)) > 0)
+    return (scaled.base == "thin_layer") & ~(local_compliance(*_layer(scaled)[:5]) > 0)
 
 
 def as_cases(part):
@@ -62,11 +87,11 @@ def as_cases(part):
 def law_of(part):
     """The law of cases of one law, bound to their numbers."""
     law = LAWS[str(part.micro[0])]
-    return law.bind(part.n, **{name: getattr(part, name) for name in law.parameters})
+    return law.bind(part.n / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
 
 
 def _layer(problem):
-    return problem.h, problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
+    return problem.h, problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded", problem.m
 
 
 def restore(solution, problem, without=()):

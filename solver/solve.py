@@ -13,7 +13,7 @@ from .models import auto
 from .models.model_error import closed_form, judged
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
-from .scaling import as_cases, dimensionless, refused, restore, without_springs
+from .scaling import as_cases, dimensionless, refused, restore, with_rigid_punch, without_springs
 from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
@@ -59,23 +59,24 @@ def solve(problem, x=(0.0, 1.0)):
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    scaled = dimensionless(problem)
-    return _solved(problem, scaled, x, refused(problem, scaled) | problem.without_scheme())
+    return _solved(problem, x, refused(problem, dimensionless(problem)) | problem.without_scheme())
 
 
 def _of_a_model(problem, x):
     """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters."""
-    return _solved(problem, dimensionless(problem), x, problem.without_scheme())
+    return _solved(problem, x, problem.without_scheme())
 
 
-def _solved(problem, scaled, x, invalid):
+def _solved(given, x, invalid):
+    problem = with_rigid_punch(given)
+    scaled = dimensionless(problem)
     no_springs = ~invalid & without_springs(scaled)
     status = np.select([invalid, no_springs], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)
     size = len(problem), len(x)
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
     for index, solver in _routes(problem, ~(invalid | no_springs)):
         pieces.append((index, solver(scaled.take(index), x)))
-    return restore(_with_models(scaled, Solution.join(*size, pieces)), problem)
+    return _with_models(given, restore(Solution.join(*size, pieces), problem))
 
 
 def _routes(problem, solvable):

@@ -77,11 +77,12 @@ def wave_rule(eta, n, reach=2.0):
     return tuple(np.concatenate(v) for v in zip(*parts, strict=True))
 
 
-def fredholm(eta, n, nu1, nu2, bonded, count=None):
-    """P R/(E1* a³), D R/a², p(0) R/(E1* a), (dP/dD)/(E1* a) of a smooth sphere at h/a = η."""
+def fredholm(eta, n, nu1, nu2, bonded, count=None, m=0.0):
+    """P R/(E1* a³), D R/a², p(0) R/(E1* a), (dP/dD)/(E1* a) of a smooth sphere at h/a = η; with a sphere of E1*/m,
+    whose displacement adds m to L, over Ec = E1*/(1 + m) in place of E1*."""
     t, w = legendre(count or 48 + int(6 / eta))
     k, kw = wave_rule(eta, n)
-    weight = kw * kernel(k * eta, n, nu1, nu2, bonded)
+    weight = kw * kernel(k * eta, n, nu1, nu2, bonded) / (1 + m)
     wave = np.cos(np.outer(k, t))
     system = np.eye(len(t)) + (2 / np.pi) * (wave.T * weight) @ wave * w
     f1, f2 = np.linalg.solve(system, np.stack([np.ones_like(t), t * t], axis=1)).T
@@ -146,13 +147,14 @@ def spot_radius(p, E, Nbar, Ra):
     return np.where(p > 0, (low + high) / 2, 0.0)
 
 
-def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5, base="layered"):
-    """The NAMES of a rough sphere at the contact radius a, R = E2* = 1, on `count` nodes."""
+def rough(count, micro, a, h, n, nu1, nu2, bonded, Nbar, Ra, B=0.1, beta=0.5, base="layered", m=0.0):
+    """The NAMES of a rough sphere at the contact radius a, R = E2* = 1, on `count` nodes; `m` on the exact layer."""
     s, w, x, centre, t, tw, potential, H = collocation(count)
     if base == "layered":
         k, kw = wave_rule(h / a, n)
         transform = (np.cos(np.outer(k, t)) * tw) @ potential
-        layer = (j0(np.outer(x, k)) * (kw * kernel(k * h / a, n, nu1, nu2, bonded))) @ transform
+        layer = (j0(np.outer(x, k)) * (kw * kernel(k * h / a, n, nu1, nu2, bonded) / (1 + m))) @ transform
+        n = n / (1 + m)  # from here on of both surfaces together
         u, springs = 4 * a / (np.pi * n) * (H + layer), 0.0
     else:  # (3) with A1 = n: a half-space of E2* and springs
         n = 1.0 if base == "half_space" else n

@@ -87,6 +87,6 @@ class HalfSpace(NamedTuple):
         return np.maximum(nodes, np.where(springs & (rtol < _FINE), _SECOND, 0))
 
 
-def half_space(h, n, nu1, nu2, bonded):
-    """The half-space alone: E2* and no springs. Of the layer, which there is not, nothing counts but the shape."""
-    return HalfSpace(np.ones(np.shape(n)), np.zeros(np.shape(n)))
+def half_space(h, n, nu1, nu2, bonded, m):
+    """The half-space alone, n = 1, under a punch of m = E2*/E3*. Of the layer, which there is not, nothing counts."""
+    return HalfSpace(n / (n + m), 0 * n)

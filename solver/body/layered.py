@@ -15,15 +15,13 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics.mesh import Mesh
-from . import film
-from .kernel import decaying_part, whole
+from .kernel import whole
 from .operator import fitted_nodes
+from .part import Part, parts_of
 from .springs import thin_layer
-from .tables import between, felt, film_rows, table
-from .wave_rule import CUT, FILM, few, octave_of, quadrature
+from .tables import between, felt, film_rows
+from .wave_rule import CUT, FILM, octave_of
 
-#: Numbers in one block of kernel values: its temporaries stay in the cache.
-_BLOCK = 16384
 #: Relative change of the radius that is less than the rounding of the operator: its kernel need not be formed anew.
 _SAME = 1e-12
 #: Layers thinner than this times the radius are nearly thin layers.
@@ -32,18 +30,32 @@ _THIN = 0.02
 
 class Layered(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
-    Poisson ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
+    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, and m = E1*/E3*.
+
+    The punch yields as a half-space of E3* does, so that the kernel is L + m. In units of both surfaces, E of
+    1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m), and its L - 1 is (L - 1)/(1 + m).
+    """
 
     h: np.ndarray
     n: np.ndarray
     nu1: np.ndarray
     nu2: np.ndarray
     bonded: np.ndarray
+    m: np.ndarray
 
     @property
     def E(self):
-        """E1* (B,) in E2*: K is relative to the half-space of the layer's material."""
-        return self.n
+        """Modulus (B,) in E2* of a half-space of the layer's material and the punch, to which K is relative."""
+        return self.n / (1 + self.m)
+
+    @property
+    def material(self):
+        """n, nu1, nu2, bonded."""
+        return self[1:5]
+
+    def whole(self, u):
+        """The kernel (L + m)/(1 + m) (B,) at u (B,)."""
+        return (whole(u, *self.material) + self.m) / (1 + self.m)
 
     @property
     def C(self):
@@ -62,18 +74,18 @@ class Layered(NamedTuple):
             if len(same):
                 far[part.index[same]] = False
                 parts.append(part.take(same, part.index[same]))
-        parts += _parts(self, a, np.flatnonzero(far))
+        parts += parts_of(self, a, np.flatnonzero(far))
         return LayeredOperator(mesh, parts, *_matrix_and_edge(parts, mesh))
 
     def softness(self, a):
         """L (B,) at the wave number 1.5/a: about what the contact feels."""
-        return whole(1.5 * self.h / a, *self[1:])
+        return self.whole(1.5 * self.h / a)
 
     def error(self, a, nodes):
         """Error (B,) of the operator: rounding, and for films what the convolution leaves out."""
-        L = whole(10 * self.h / a, *self[1:])
+        L, below = self.whole(10 * self.h / a), (self.n + self.m) / (1 + self.m)
         octave, _ = octave_of(self, a)
-        local = np.abs(L - self.n) / np.maximum(L, self.n)
+        local = np.abs(L - below) / np.maximum(L, below)
         return 1e-14 * nodes / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
     def order(self, a):
@@ -91,40 +103,9 @@ class Layered(NamedTuple):
         return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))
 
 
-class Part(NamedTuple):
-    """The kernel of cases that share a table: their places `index` (b,) in the batch, the table, the radius a (b,), and
-    L - 1 and -u dL/du (b, M) at the few nodes k of the table.
-
-    Films have χ (L - n') in place of L - 1, their convolution c and its derivative by ln a (b, T), and n' (b, 1).
-    """
-
-    index: np.ndarray
-    octave: int
-    depth: int
-    radius: np.ndarray
-    L1: np.ndarray
-    uL: np.ndarray
-    film: np.ndarray | None = None
-    d_film: np.ndarray | None = None
-    level: np.ndarray | None = None
-
-    def table(self, mesh):
-        """Its :class:`~solver.body.tables.Table` on a mesh."""
-        return table(mesh, self.octave, self.depth)
-
-    @property
-    def share(self):
-        """The share (b, 1) of the half-space that stands beside Λ: 1 but for films."""
-        return 1.0 if self.level is None else self.level
-
-    def take(self, rows, index):
-        """The sub-batch at `rows`, at the places `index` in another batch."""
-        return Part(index, self.octave, self.depth, *(None if v is None else v[rows] for v in self[3:]))
-
-
 class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: a mesh, the kernel (list of :class:`Part`), the matrix K
-    (B, n, n), of which the cases lie next to each other in memory, and the row of the edge (B, n)."""
+    """The :class:`~solver.body.operator.Operator` of layers: a mesh, the kernel (list of :class:`.part.Part`), the matrix
+    K (B, n, n), of which the cases are neighbours in memory, and the row of the edge (B, n)."""
 
     mesh: Mesh
     parts: list
@@ -185,45 +166,6 @@ class LayeredOperator(NamedTuple):
                 values[:, near] += np.matmul(rows.of(part.film), q[index][:, :, None])[..., 0]
             out[index] = part.share * half_space[index] + values
         return out
-
-
-def _parts(layer, a, index):
-    """The kernel of the cases `index` at radii a (B,): a list of :class:`Part`, one for each table."""
-    octave, depth = octave_of(layer.take(index), a[index])
-    parts = []
-    for key in sorted(set(zip(octave.tolist(), depth.tolist(), strict=True))):
-        own = index[(octave == key[0]) & (depth == key[1])]
-        make = _film_part if key[0] == FILM else _plain_part
-        parts.append(Part(own, *key, a[own], *make(layer.take(own), layer.h[own] / a[own], *key)))
-    return parts
-
-
-def _plain_part(layer, eta, octave, depth):
-    k, _ = quadrature(octave, depth)
-    own = few(octave, depth)
-    return _kernel(layer, eta, k if own is None else k[own.nodes])
-
-
-def _film_part(layer, eta, octave, depth):
-    k, _ = quadrature(octave, depth)
-    level = whole(CUT * eta / 2, *layer[1:])[:, None]
-    kappa, _, _ = film.waves()
-    below = _kernel(layer, eta, k, level, film.step(k / CUT))
-    beyond, d_beyond = _kernel(layer, eta, CUT * kappa, level, 1 - film.step(kappa))
-    p, end = CUT * eta[:, None], level - 1
-    return *below, np.pi / 2 * film.transform(beyond, end, p), np.pi / 2 * film.transform(d_beyond, 0 * end, p), level
-
-
-def _kernel(layer, eta, k, level=None, factor=1.0):
-    """L less `level` (b, 1), or less 1, and -u dL/du, both times a factor (M,), at the nodes k: (b, M) each."""
-    L1, uL = np.empty((2, len(eta), len(k)))
-    rows, material = max(1, _BLOCK // len(k)), layer[1:]
-    for low in range(0, len(eta), rows):
-        part = slice(low, low + rows)
-        above, slope = decaying_part(k * eta[part, None], *(field[part, None] for field in material))
-        np.multiply(factor, above if level is None else above - (level[part] - 1), out=L1[part])
-        np.multiply(-factor, slope, out=uL[part])
-    return L1, uL
 
 
 def _matrix_and_edge(parts, mesh):

@@ -52,6 +52,6 @@ def local_compliance(h, n, nu1, nu2, bonded):
     return 2 * A2 * h / n
 
 
-def thin_layer(h, n, nu1, nu2, bonded):
-    """The thin layer, Eq. (3): a half-space of E2* that carries springs."""
-    return HalfSpace(np.ones(np.shape(n)), local_compliance(h, n, nu1, nu2, bonded))
+def thin_layer(h, n, nu1, nu2, bonded, m):
+    """The thin layer, Eq. (3): a half-space of E2* that carries springs, under a punch of m = E1*/E3*."""
+    return HalfSpace(n / (n + m), local_compliance(h, n, nu1, nu2, bonded))

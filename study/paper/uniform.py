@@ -83,7 +83,7 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
 
     Returns
     -------
-    Found : `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, or DIVERGED
+    Found : `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, DIVERGED, or INVALID_INPUT
 
     Raises
     ------
@@ -101,13 +101,17 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
     wrong = [kind for kind in kinds if kind[0] not in ("thin_layer", "half_space") or kind == ("half_space", "smooth")]
     if wrong:
         raise ValueError(f"thin_layer, or rough cases on half_space, not {sorted(wrong)}")
+    invalid = problem.invalid()
     whole = Found(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
     for base, micro in kinds:
-        index = np.flatnonzero((problem.base == base) & (problem.micro == micro))
+        index = np.flatnonzero((problem.base == base) & (problem.micro == micro) & ~invalid)
+        if not len(index):
+            continue
         part = Contact(problem.take(index), uniform_mesh(int(intervals)), k, 0.1 * tolerance, limit)
         with np.errstate(all="ignore"):  # a number that goes wrong is a NaN and a status
             for array, values in zip(whole, part.solved(), strict=True):
                 array[index] = values
+    whole.status[invalid] = Status.INVALID_INPUT
     return whole
 
 

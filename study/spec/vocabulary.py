@@ -61,6 +61,7 @@ _ENTRIES = (
     Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)"),
     Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON),
     Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material"),
+    Entry("m", "m", "ratio of the reduced moduli of layer and punch, 0: rigid", "material"),
     Entry("nu1", "ν1", "Poisson ratio of the layer", "material"),
     Entry("nu2", "ν2", "Poisson ratio of the half-space", "material"),
     Entry("bonding", "", "interface of layer and half-space", "material"),

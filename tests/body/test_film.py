@@ -93,7 +93,7 @@ def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
 def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
     """At h/a = 2^-8.5, with the half-space and all k to the end of the kernel: 1e-8 of the displacement."""
     eta, grid = 2.0**-8.5, mesh(16)
-    layer = Layered(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded)))
+    layer = Layered(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded, 0.0)))
     found = layer.at(np.ones(1), grid)
     assert found.parts[0].octave == FILM
     k, weight = wave_rule.quadrature(FILM, found.parts[0].depth)

@@ -17,7 +17,7 @@ def layers(eta, seed):
     """Materials for h/a (B,): n from 1e-3 to 1e3, both bondings."""
     random, one = np.random.default_rng(seed), np.ones(len(eta))
     n = np.exp(random.uniform(np.log(1e-3), np.log(1e3), len(eta)))
-    return Layered(eta, n, 0.3 * one, 0.3 * one, random.random(len(eta)) < 0.5)
+    return Layered(eta, n, 0.3 * one, 0.3 * one, random.random(len(eta)) < 0.5, 0 * one)
 
 
 @pytest.mark.parametrize("n", [16, 32])
@@ -30,7 +30,7 @@ def test_the_rule(octave, n):
     ends = np.unique(np.r_[0.0, end * 2.0 ** -np.arange(40.0), np.arange(0.0, end, 30.0)])
     t, w = gauss_legendre(48)
     k, w = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
-    material = [v[:, None] for v in layer[1:]]
+    material = [v[:, None] for v in layer.material]
     W = w * decaying_part(k * layer.h[:, None], *material)[0]
     phi, J = tables.transform(grid, k), j0(k[:, None] * grid.x) - j0(k)[:, None]
     q = grid.s + grid.s**2

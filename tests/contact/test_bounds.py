@@ -16,7 +16,8 @@ from study.spec.vocabulary import VOCABULARY
 
 #: What tests, `make extremes` and the issue use, and units as far as floating point goes.
 USED = {
-    "P": (1e-14, 0.1), "a": (1e-6, 1.0), "D": (1e-12, 1.0), "h": (1e-8, 1e3), "n": (1e-8, 1e8), "Ra": (1e-5, 0.1),
+    "P": (1e-14, 0.1), "a": (1e-6, 1.0), "D": (1e-12, 1.0), "h": (1e-8, 1e3), "n": (1e-8, 1e8), "m": (0.0, 1e8),
+    "Ra": (1e-5, 0.1),
     "Nbar": (1e-4, 1e16), "B": (1e-6, 100.0), "beta": (0.022, 1.0), "k": (0.0, 50.0), "nodes": (4, 256),
     "rtol": (1e-12, 0.1), "R": (1e-300, 1e300), "E2": (1e-300, 1e300), "nu1": (-0.9, 0.5), "nu2": (-0.9, 0.5),
     "accuracy": (1e-6, 0.5), "max_iterations": (1, 100_000),

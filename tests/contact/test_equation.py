@@ -15,7 +15,7 @@ def evaluation(q, F, G):
     """At two nodes, with X = Y = Z = 1, a law whose g is 1e-3, and ln a beside the given one by G."""
     q, F, one = np.array([q]), np.array([F]), np.ones((1, 1))
     curve = Curve(q=q, g=np.full_like(q, 1e-3), dq=np.ones_like(q), dg=np.ones_like(q))
-    body = BODIES["half_space"](ONE, ONE, ONE, ONE, ONE > 0)
+    body = BODIES["half_space"](ONE, ONE, ONE, ONE, ONE > 0, 0 * ONE)
     cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE)
     return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh(2)), one, one, one, curve, q, q[:, 0], F)
 

@@ -17,7 +17,7 @@ def operators(n, base, random):
         return mesh(n).K[None]
     h, stiffness = 10.0 ** random.uniform(-1, 1, MANY), 10.0 ** random.uniform(-3, 3, MANY)
     nu1, nu2, bonded = random.uniform(0, 0.49, MANY), np.full(MANY, 0.3), random.random(MANY) < 0.5
-    return Layered(h, stiffness, nu1, nu2, bonded).at(np.ones(MANY), mesh(n)).K
+    return Layered(h, stiffness, nu1, nu2, bonded, np.zeros(MANY)).at(np.ones(MANY), mesh(n)).K
 
 
 @pytest.mark.parametrize("base", ["half_space", "layered"])

@@ -10,6 +10,7 @@ from solver.parameters import PARAMETERS
 from study.spec.vocabulary import VOCABULARY
 
 DEFAULTS = {
+    "m": 0.0,
     "nu1": 0.3,
     "nu2": 0.3,
     "bonding": "frictionless",
@@ -31,6 +32,7 @@ APPROXIMATED = {name: value for name, value in THIN.items() if name != "P"}
 APPROXIMATED |= {"a": 0.03, "scheme": "picard", "nodes": 12, "max_iterations": 30}
 # parameter, a case in which it counts, another value, and what that changes
 COUNTS = [
+    ("m", CASE, 0.5, "a"),
     ("nu1", CASE | {"bonding": "bonded"}, 0.4, "a"),
     ("nu2", CASE | {"bonding": "bonded"}, 0.4, "a"),
     ("bonding", CASE, "bonded", "a"),

@@ -38,7 +38,7 @@ UNITS = {
 }
 # fmt: off
 PURE = {
-    "n", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "scheme", "k", "rtol", "accuracy", "model_check",
+    "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "scheme", "k", "rtol", "accuracy", "model_check",
     "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "model_error", "model_used", "residual",
     "iterations", "nodes_used", "validity", "An_ratio", "spots", "x", "case", "label",
 }
@@ -71,6 +71,7 @@ WORDS = words("""
     D       : D        : R       : (14)     : indentation depth
     h       : h        : R       :          : thickness of the layer
     n       : n        :         :          : ratio of the reduced moduli of layer and half-space
+    m       : m        :         :          : ratio of the reduced moduli of layer and punch, 0: rigid
     nu1     : ν1       :         :          : Poisson ratio of the layer
     nu2     : ν2       :         :          : Poisson ratio of the half-space
     bonding :          :         :          : interface of layer and half-space
@@ -127,7 +128,8 @@ def test_only_names_of_words_and_flags_have_no_unit():
 def test_parameters_are_in_their_order():
     """In this order they are columns of an inventory, and coordinates of a file."""
     assert " ".join(PARAMETERS) == (
-        "P a D h n nu1 nu2 bonding base Nbar Ra micro B beta scheme k rtol accuracy model_check nodes max_iterations"
+        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta scheme k rtol accuracy model_check nodes "
+        "max_iterations"
     )
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
 
@@ -140,6 +142,7 @@ LIMITS = {
     "D": (1e-18, 0.99e-18, 1e3, 1.01e3),
     "h": (1e-12, 0.99e-12, 1e6, 1.01e6),
     "n": (1e-9, 0.99e-9, 1e9, 1.01e9),
+    "m": (0, -1e-9, 1e9, 1.01e9),
     "Nbar": (1e-4, 0.99e-4, 1e18, 1.01e18),
     "Ra": (1e-7, 0.99e-7, 100, 101),
     "B": (1e-8, 0.99e-8, 1e4, 1.01e4),

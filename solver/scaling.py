@@ -47,8 +47,7 @@ def with_rigid_punch(problem):
 
     Displacements add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m: the body has the
     modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of a frictionless layer
-    of thickness 2 A2 h/(1 + m). The exact layer stays as it is, and so do thin layers without springs, or those that
-    it judges.
+    of thickness 2 A2 h/(1 + m). The exact layer stays as it is; so do thin layers without springs, or that it judges.
     """
     m, base = problem.m, problem.base
     if not (m > 0).any():

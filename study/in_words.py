@@ -93,7 +93,7 @@ def _one(case: xr.Dataset, dims=()) -> str:
     """The text of one case."""
     rough = str(case["micro"].values) != "smooth"
     inputs = [name for name in INPUTS if name in case and name not in dims and _matters(case, name, rough)]
-    given = [] if "m" in case else ["a rigid punch"]
+    given = ["a rigid punch"] if case.get("m", 0.0) == 0 else []
     lines = ["Given: " + ", ".join(given + [_given(case, name) for name in inputs]), ""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)

@@ -239,7 +239,7 @@ def _variable(value: Any) -> xr.Variable:
 
 def _with_spreads(found: xr.Dataset, moved: int) -> xr.Dataset:
     """The results as given, each with its standard deviation `NAME_spread`, to first order, of independent inputs."""
-    centre = found.isel({_MOVED: 0}, drop=True)
+    centre = found.isel({_MOVED: 0}).drop_vars(_MOVED, errors="ignore")
     for name, array in found.data_vars.items():
         if _MOVED not in array.dims or VOCABULARY[name].role not in ("control", "result", "profile"):
             continue

@@ -104,8 +104,9 @@ class Layered(NamedTuple):
 
 
 class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: a mesh, the kernel (list of :class:`.part.Part`), the matrix
-    K (B, n, n), of which the cases are neighbours in memory, and the row of the edge (B, n)."""
+    """The :class:`~solver.body.operator.Operator` of layers: its mesh, the kernel (list of
+    :class:`.part.Part`), the matrix K (B, n, n), of which the cases are neighbours in memory, and the row of the edge
+    (B, n)."""
 
     mesh: Mesh
     parts: list

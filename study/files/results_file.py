@@ -74,8 +74,8 @@ def add_checksums(file: File, rows: Rows, cases: dict[str, str]) -> None:
     file.define({}, {ATTRIBUTE: text(found)})
 
 
-def write(dataset: xr.Dataset, path: Path, aside: bool = False) -> None:
-    """Write a small dataset: `path` either is complete or does not exist. aside : see `set_aside`."""
+def write(dataset: xr.Dataset, path: Path) -> None:
+    """Write a small dataset: `path` either is complete or does not exist."""
     with replacing(path) as temporary:
         with File(temporary, "w", path) as file:
             create(file, dataset, dataset, {})
@@ -83,8 +83,6 @@ def write(dataset: xr.Dataset, path: Path, aside: bool = False) -> None:
                 file.write(name, stored(array))
             add_checksums(file, Rows(0), {})
         seal(temporary)
-        if aside:
-            set_aside(path)
 
 
 def set_aside(path: Path) -> Path:

@@ -102,9 +102,9 @@ def test_bases_and_laws_mix_and_each_case_is_as_if_alone():
         )  # rounding, amplified
 
 
-def test_what_diverges_has_no_numbers_and_harms_no_neighbour():
+def test_what_is_out_of_bounds_has_no_numbers_and_harms_no_neighbour():
     found = paper(P=[LOAD, -1.0])
-    assert found.status.tolist() == [Status.CONVERGED, Status.DIVERGED]
+    assert found.status.tolist() == [Status.CONVERGED, Status.INVALID_INPUT]
     assert np.isnan([found.p0[1], found.P[1], found.a[1]]).all()
     assert found.p0[0] == pytest.approx(paper(P=LOAD).p0[0], rel=1e-9)
 

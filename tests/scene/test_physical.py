@@ -69,6 +69,17 @@ def test_cases_with_units():
         study.solve(cases=[rows[0], {"E1": "1 GPa", "label": "x"}], **common, P="10 N")
 
 
+def test_a_steel_ball_on_dlc_on_steel():
+    """The layer hardly counts for a: Hertz with two steels. A rigid ball leaves one out; a is then 21 % too small."""
+    ball = {"E_punch": "210 GPa", "nu_punch": 0.3}
+    found = quiet(**COATED | ball, P="10 N", x=2)
+    steels = np.cbrt(0.75 * 10 * R / (E2_STAR / 2))
+    assert found.a == pytest.approx(steels, rel=0.02)
+    assert quiet(**COATED, P="10 N", x=2).a == pytest.approx(0.79 * steels, rel=0.02)
+    inside = {"h": 2e-6 / R, "n": E1_STAR / E2_STAR, "m": E1_STAR / E2_STAR, "nu1": 0.25, "micro": "smooth"}
+    assert found.a / R == pytest.approx(study.solve(P=10 / (E2_STAR * R**2), **inside, x=2).a.item(), rel=1e-12)
+
+
 def test_spreads_of_hertz():
     """a = (3 P R/(4 E*))^(1/3): its relative spread is a third of the root of the sum of squares, D's two thirds of
     those of P and E* and a third of that of R."""

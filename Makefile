@@ -17,7 +17,7 @@ RUN := $(VENV)/bin/python -m study
 # As many processes as processors, but no more than pays; one that is done takes tests from another.
 PYTEST := $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
-TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test kernels mutants \
+TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test check kernels mutants \
   fuzz bench lint clean
 
 .DEFAULT_GOAL := help
@@ -54,6 +54,12 @@ picard_domain: figures/picard_domain.pdf ## where the paper's successive approxi
 
 test: $(READY) ## all tests
 	$(PYTEST)
+
+# A sample of every room that is quick, against references where there are any: half a minute.
+CHECKED := numerics laws/test_micro.py body/test_kernel.py body/test_elastic_punch.py spec/test_grid.py spec/test_given.py \
+  spec/test_definition.py data contact/test_golden_numbers.py repository/test_imports.py repository/test_mutants.py
+check: $(READY) lint ## for the inner loop: ruff, and tests that take half a minute
+	$(PYTEST) $(CHECKED:%=tests/%)
 
 kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \

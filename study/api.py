@@ -14,7 +14,7 @@ from .files.access import Unusable
 from .files.examine import Condition
 from .files.results_file import open_lazily, open_results
 from .in_words import doubts
-from .physical import read as read_scene
+from .physical.reading import read as read_scene
 from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
 from .spec.given import Draft
 from .spec.grid import LONGEST_AXIS
@@ -67,12 +67,12 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
-    scene = read_scene(parameters, cases)
-    if scene:
-        parameters, cases = scene.parameters, None
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
+    scene = read_scene(parameters, cases)
+    if scene:
+        parameters, cases = scene.parameters, None
     if cases is not None:
         draft.cases(cases)
     for name, given in parameters.items():

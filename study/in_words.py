@@ -5,14 +5,7 @@ import xarray as xr
 
 from solver import Status
 
-from .data.derived import (
-    COMPRESSED,
-    FEW_SPOTS,
-    MERGING,
-    NOT_THIN,
-    SPOT_OVER_LAYER,
-    STEEP,
-)
+from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
 from .spec.vocabulary import VOCABULARY
@@ -121,7 +114,7 @@ def _given(case: xr.Dataset, name: str) -> str:
     value = case[name].values[()]
     if isinstance(value, (str, np.str_)):
         return str(value)
-    return f"{name} = {_text(case, name, float(value))}"
+    return f"{name} = {_text(case, name, float(value), _spread(case, name))}"
 
 
 def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:
@@ -132,12 +125,19 @@ def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str
     return f"{readable(value, '1', spread)} {scale}".rstrip()
 
 
+def _spread(case: xr.Dataset, name: str) -> float:
+    """The spread of an input, or what the spreads of the inputs make of a result; 0 where there is none."""
+    return float(case[f"{name}_spread"]) if f"{name}_spread" in case else 0.0
+
+
 def _sure(case: xr.Dataset, name: str) -> str:
     """A result with unit and ±."""
-    value = float(case[name])
+    value, spread = float(case[name]), _spread(case, name)
     if not np.isfinite(value):
         return "unknown"
-    parts = [float(case[f"{name}_spread"]) if f"{name}_spread" in case else 0.0]
+    if not np.isfinite(spread):  # a case with an input moved by a tenth of its spread was not solved
+        return f"{_text(case, name, value)} ± unknown"
+    parts = [spread]
     control = [c for c in ("P", "a", "D") if c in case.coords]
     if name not in control:
         parts += [value * float(case[kind]) for kind in ("error", "model_error") if np.isfinite(case[kind])]
@@ -149,7 +149,7 @@ def _sentences(case: xr.Dataset) -> list[str]:
     status = case["status"]
     word = _word(status)
     if word == "converged":
-        found = [f"Solved: the equations hold to a relative {float(case['error']):.1g}."]
+        found = [f"Solved: the numbers are within a relative {float(case['error']):.1g} of the model's solution."]
     else:
         meaning = Status(int(status)).meaning if int(status) in list(Status) else "the case has not been computed"
         found = [f"NOT SOLVED ({word}): {meaning}."]
@@ -161,7 +161,7 @@ def _sentences(case: xr.Dataset) -> list[str]:
     broken = doubts(case)
     found += [f"Beware: {sentence}" for sentence in broken]
     if not broken and word == "converged":
-        found.append("Every assumption that the model rests on holds.")
+        found.append("None of the assumptions that are checked is violated (docs/model.md, Four answers).")
     return found
 
 

@@ -3,13 +3,16 @@
 import os
 import shutil
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import pytest
 from line_study import computed, file, quiet  # noqa: F401
+
+from solver import laws
+from study.spec.laws import learn
 
 collect_ignore = ["hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]
@@ -26,6 +29,16 @@ def shrunken(tables: dict) -> dict:
             axes[name] = values if len(values) <= 3 else [values[0], values[len(values) // 2], values[-1]]
     sample = {"sample": tables["sample"] | {"size": min(tables["sample"]["size"], 3)}} if "sample" in tables else {}
     return tables | ({"axes": axes} if axes else {}) | sample
+
+
+@pytest.fixture(autouse=True)
+def laws_as_they_were() -> Iterator[None]:
+    """After each test only the laws of this package are known."""
+    yield
+    for name in set(laws.LAWS) - {law.name for law in laws.BUILT_IN}:
+        del laws.LAWS[name]
+        laws._declare(laws.LAWS)
+        learn()
 
 
 @pytest.fixture(scope="session")

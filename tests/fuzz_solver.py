@@ -34,6 +34,7 @@ AGREE = 10.0
 def logarithmic(random, name, size):
     """Numbers (size,) between the bounds of a parameter, uniform in their logarithm; one in eight at an end."""
     low, high = ends((CONTROL | PARAMETERS)[name].interval)[:2]
+    low = low or 1e-9  # m may be none at all
     values = np.exp(random.uniform(np.log(low), np.log(high), size)).clip(low, high)
     return np.where(random.random(size) < 1 / 8, random.choice([low, high], size), values)
 
@@ -49,6 +50,7 @@ def group(seed, number, share=1):
     case |= {"k": 10 ** random.uniform(-3, 3, size), "rtol": 10.0 ** random.uniform(-12, -1, size)}
     case |= {"bonding": random.choice(BONDINGS, size), "accuracy": 10 ** random.uniform(-6, -0.3, size)}
     case |= {"nodes": random.choice([0, 0, 0, 0, 4, 17, 48], size), "model_check": random.choice(MODEL_CHECKS, size)}
+    case |= {"m": np.where(random.random(size) < 0.5, 0.0, logarithmic(random, "m", size))}
     scheme = "picard" if law != "smooth" and random.random() < PICARD else "newton"
     return case | {control: logarithmic(random, control, size), "base": base, "micro": law, "scheme": scheme}, control
 

@@ -17,16 +17,16 @@ from ..numerics.quadrature import gauss_legendre
 from ..scaling import as_cases, law_of
 from ..solution import Model, Solution
 from ..status import Status
-from .thin_layer_error import largest_error
+from .model_error import closed_form
 
+#: Of each factor of a bound below, `python tests/models/margins.py` needed at most 0.85, over random cases.
 #: The error of the thin layer is at most this times its closed form, which is that of a smooth punch, where h/a is
-#: below the second number: 2.7 times was seen (`python tests/models/margins.py`).
+#: below the second number.
 _THIN, _THINNEST = 4.0, 0.1
-#: The error of dropping the body under a thick layer is at most this times (a/h) ∫|L - 1| du: 0.53 was seen. Where h/a
-#: is below the second number the bound is not worth its kernel: 1 % would want n within 2 % of 1.
+#: The error of dropping the body under a thick layer is at most this times (a/h) ∫|L - 1| du. Where h/a is below the
+#: second number, the bound is too large to be of use unless n is almost 1, and is not computed.
 _ALONE, _THICKEST = 0.8, 1.0
-#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D: 3.0, 4.1 and 2.4
-#: were seen.
+#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D.
 _ASPERITIES = {"P": 5.0, "a": 7.0, "D": 4.0}
 #: Bounds above this are none: closed forms of first order were seen to fail there.
 _TRUSTED = 0.3
@@ -87,7 +87,7 @@ def bounds(part):
     L1, _ = decaying_part(_U * np.ones((len(i), 1)), *(v[i, None] for v in material))
     alone[i] = _ALONE * (np.abs(L1) @ _WEIGHTS) / x[i]
     i = np.flatnonzero(x < _THINNEST)
-    thin[i] = np.nan_to_num(_THIN * largest_error(part.control, x[i], *(v[i] for v in material)), nan=np.inf)
+    thin[i] = np.nan_to_num(_THIN * closed_form(part.take(i), a[i]), nan=np.inf)
     found = {Model.LAYER_ALONE: alone, Model.THIN_LAYER: thin}
     if not cases.law.rough:
         return {Model(model + 1): bound for model, bound in found.items()}

@@ -69,7 +69,9 @@ def closed_form(problem, a):
     """Estimated relative error (B,) of the thin-layer model, without asperities and at no cost.
 
     `a` (B,) are its contact radii, in the unit of `problem.h`. NaN where the thin-layer equation does not apply. See
-    :func:`~solver.models.thin_layer_error.largest_error`.
+    :func:`~solver.models.thin_layer_error.largest_error`, which is made for a rigid punch. Under an elastic one that
+    number at given a, the largest of the three controls, stands for all controls.
     """
     material = problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
-    return largest_error(problem.control, problem.h / a, *material)
+    rigid = largest_error(problem.control, problem.h / a, *material)
+    return np.where(problem.m > 0, largest_error("a", problem.h / a, *material), rigid)

@@ -21,7 +21,7 @@ from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
 
 from ..data.provenance import provenance
 from ..files.examine import examine
-from ..files.results_file import open_results, write
+from ..files.results_file import open_results, set_aside, write
 from ..paper import paper_error
 from ..paper.uniform import solve_uniform, uniform_mesh
 from .problem_sets import SETS
@@ -230,5 +230,8 @@ def results(folder, size: int = SIZE, force: bool = False, command: str = "") ->
         found.raise_if_bad()
     if force or not found.good or found.digest != digest(plan(WAYS, size)):
         path.parent.mkdir(parents=True, exist_ok=True)
-        write(measure(size, command=command), path, aside=found.kind == "damaged")
+        measured = measure(size, command=command)
+        if found.kind == "damaged":
+            set_aside(path)
+        write(measured, path)
     return open_results(path)

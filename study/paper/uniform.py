@@ -15,6 +15,7 @@ from scipy.special import ellipkm1
 
 from solver import Problem, Status
 from solver.laws import LAWS
+from solver.threads import one_blas_thread
 
 LIMIT, LIMIT_RELAXED = 200, 40
 """Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle."""
@@ -68,6 +69,7 @@ Found = namedtuple("Found", "a P D p0 p_max Ar_An A0 status iterations")
 """What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
 
 
+@one_blas_thread()
 def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None) -> Found:
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 
@@ -87,7 +89,7 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
 
     Raises
     ------
-    ValueError : a base that the paper does not have, or smooth cases on the half-space
+    ValueError : a base that the paper does not have, smooth cases on the half-space, or an elastic punch
 
     Examples
     --------
@@ -101,6 +103,8 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
     wrong = [kind for kind in kinds if kind[0] not in ("thin_layer", "half_space") or kind == ("half_space", "smooth")]
     if wrong:
         raise ValueError(f"thin_layer, or rough cases on half_space, not {sorted(wrong)}")
+    if (problem.m > 0).any():
+        raise ValueError("the punch of the paper is rigid: m must be 0")
     invalid = problem.invalid()
     whole = Found(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
     for base, micro in kinds:

@@ -1,9 +1,9 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
-They are ours and no `dask.distributed.LocalCluster`, which takes 4 s more to start (two processors shared by others:
-first answers after 6.1 s against 11.8 s, 2.3 s against 5.0 s of processor time; means of four in alternation) and a
-quarter more of processor time for 200,000 thin rough cases (15.6 s against 19.5 s, means of three; twice as much
-without `MALLOC_TRIM_THRESHOLD_` removed from what dask sets). `python tests/benchmark_engine.py` measures both.
+They are ours and no `dask.distributed.LocalCluster`, which starts 2.5 s later: first answers of two workers after 2.0 s
+against 4.5 s, means of three in alternation on two processors that others used too. With a run of 100,000 thin rough
+cases and the two starts it takes 11.5 s against 18.1 s of processor time, and a run twice as much with dask's own
+settings, which make workers give memory back after each block. `python tests/benchmark_engine.py 3 100` measures it.
 Dask's own process scheduler is a pool of `concurrent.futures` inside: it holds all results in memory, and one killed
 process ends it.
 """

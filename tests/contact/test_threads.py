@@ -23,8 +23,9 @@ WATCHED = (
     "solver.contact.newton.solve_stack",
     "solver.contact.smooth._sums",
     "solver.contact.picard.approximate",
-    "solver.laws.fit._polish",
+    "solver.laws.fit.brentq",
     "solver.models.thin_layer_error._integrated",
+    "study.paper.uniform.compliance",
 )
 PAPER = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
 

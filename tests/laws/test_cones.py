@@ -18,22 +18,11 @@ import study
 from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS, Parameter
 from study.spec.definition import from_tables
-from study.spec.laws import learn
 from study.store.keys import case_keys
 from study.work.cases import parcel
 
 CASE = {"h": 0.02, "n": 0.5, "Nbar": 250_000.0}
 ALPHA = [1.2, 1.4]
-
-
-@pytest.fixture(autouse=True)
-def forgotten():
-    """After each test only the laws of this package are known."""
-    yield
-    for name in set(laws.LAWS) - {law.name for law in laws.BUILT_IN}:
-        del laws.LAWS[name]
-    laws._declare(laws.LAWS)
-    learn()
 
 
 def alike(alpha):

@@ -17,7 +17,8 @@ RANGES = {"P": (1e-7, 1e-3), "a": (3e-3, 0.1), "D": (1e-5, 1e-2)}
 
 
 def sample(control: str, size: int, seed: int = 1) -> dict:
-    """Arguments of ``Problem.of``: thin to thick, soft to hard layers under fine to coarse asperities, or none."""
+    """Arguments of ``Problem.of``: thin to thick, soft to hard layers under rigid and elastic punches,
+    asperities from fine to coarse, or none."""
     random = np.random.default_rng([seed, *control.encode()])
 
     def drawn(low: float, high: float) -> np.ndarray:
@@ -26,6 +27,7 @@ def sample(control: str, size: int, seed: int = 1) -> dict:
     return {
         control: drawn(*RANGES[control]), "h": drawn(1e-5, 10), "n": drawn(1e-3, 1e2), "Nbar": drawn(1e3, 1e9),
         "Ra": drawn(1e-5, 3e-2), "B": drawn(0.03, 1), "beta": random.uniform(0.35, 0.9, size),
+        "m": np.where(random.random(size) < 0.5, 0.0, drawn(1e-3, 1e3)),
         "nu1": random.uniform(-0.5, 0.5, size), "nu2": random.uniform(-0.5, 0.5, size),
         "bonding": random.choice(["frictionless", "bonded"], size),
         "micro": random.choice(["smooth", "disc_cell", "power_law"], size),

@@ -114,6 +114,11 @@ def test_bonded_layers_have_their_compliance():
     assert difference(paper(80, 20.0, 1e-5, P=LOAD, bonding="bonded", nu1=0.3, nu2=0.2), exact)[0] < 1e-3
 
 
+def test_an_elastic_punch_is_refused():
+    with pytest.raises(ValueError, match="the punch of the paper is rigid: m must be 0"):
+        paper(P=LOAD, m=[0.0, 0.1])
+
+
 @pytest.mark.parametrize("case", [{"base": "layered"}, {"base": "half_space", "micro": "smooth"}])
 def test_what_the_paper_has_not_is_refused(case):
     with pytest.raises(ValueError, match="thin_layer, or rough cases on half_space, not"):

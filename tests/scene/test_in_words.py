@@ -14,14 +14,15 @@ from study.in_words import BROKEN, MODELS, MOST_CASES
 def test_a_physical_contact():
     found = quiet(**COATED | {"h": "2 um ± 0.1 um"}, P="10 N", x=2)
     text = study.summary(found)
-    assert "R = 5 mm, E1 = 200 GPa, nu1 = 0.25, E2 = 210 GPa, nu2 = 0.3, h = 2 µm, frictionless" in text
+    assert "R = 5 mm, E1 = 200 GPa, nu1 = 0.25, E2 = 210 GPa, nu2 = 0.3, h = 2.00 ± 0.10 µm, frictionless" in text
     assert "a rigid punch" in text
     number, spread = re.search(r"a +=? *= ([\d.]+) ± ([\d.]+) µm", text).groups()
     assert float(number) == pytest.approx(found.a.item() * 1e6, rel=1e-4)
     assert float(spread) == pytest.approx(found.a_spread.item() * 1e6, rel=0.06), "two digits"
     assert re.search(r"P += 10 N", text)
     assert "Model: the exact layered half-space, without asperities." in text
-    assert "Every assumption that the model rests on holds." in text
+    assert "None of the assumptions that are checked is violated" in text
+    assert "h = 2.00 ± 0.10 µm" in text, "the spread of the input"
     assert "pmax" not in text and repr(text) == str(text)
 
 
@@ -40,6 +41,12 @@ def test_an_elastic_punch_is_no_rigid_one():
     assert "rigid" not in text and "E_punch = 210 GPa, nu_punch = 0.3" in text and " m = " not in text
     spread = study.summary(quiet(**COATED | {"E1": "200 ± 20 GPa"}, E_punch="210 GPa", P="10 N", x=2))
     assert "rigid" not in spread
+
+
+def test_a_spread_that_is_not_known_is_no_certainty():
+    found = quiet(**COATED | {"h": "2 um ± 0.1 um"}, P="10 N", x=2)
+    text = study.summary(found.assign(a_spread=found.a_spread * np.nan))
+    assert re.search(r"a +=? *= [\d.]+ µm ± unknown", text) and text.count("unknown") == 1
 
 
 def test_a_dimensionless_contact_and_a_failed_one():

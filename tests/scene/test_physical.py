@@ -39,8 +39,11 @@ def test_axes_are_found_by_text_and_by_number():
     assert found.sel(h="3 um").a == found.sel(h=3e-6).a == found.isel(h=1).a
     assert found.sel(h=["7 nm", "3000 nm"]).h.values.tolist() == [7e-9, 3e-6]
     assert found.sel(h="2.9 um", method="nearest").h == 3e-6
+    assert found.sel(h=slice("1 um", "1 mm")).h.values.tolist() == [3e-6, 1e-4]
     with pytest.raises(ValueError, match='h = "3 N" is a force'):
         found.sel(h="3 N")
+    with pytest.raises(ValueError, match='h = "3" has no unit'):
+        found.sel(h="3")
 
 
 def test_results_survive_a_file(tmp_path):
@@ -78,6 +81,38 @@ def test_a_steel_ball_on_dlc_on_steel():
     assert quiet(**COATED, P="10 N", x=2).a.item() == pytest.approx(0.79 * steels, rel=0.03)
     inside = {"h": 2e-6 / R, "n": E1_STAR / E2_STAR, "m": E1_STAR / E2_STAR, "nu1": 0.25, "micro": "smooth"}
     assert found.a.item() / R == pytest.approx(study.solve(P=10 / (E2_STAR * R**2), **inside, x=2).a.item(), rel=1e-12)
+
+
+@pytest.mark.parametrize("base", ["half_space", ["layered", "half_space"]], ids=str)
+def test_without_a_layer_the_punch_is_compared_with_the_body(base):
+    """Also where E1 is given, for the other cases: m is E2*/E3* there."""
+    given = COATED | {"base": base, "E1": "1 GPa", "E_punch": "70 GPa", "nu_punch": 0.2}
+    found = quiet(**given, P="1 N", x=2)
+    alone = found.sel(base="half_space") if isinstance(base, list) else found
+    both = 1 / (1 / E2_STAR + (1 - 0.2**2) / 70e9)
+    np.testing.assert_allclose(alone.a, np.cbrt(0.75 * R / both), rtol=1e-12)
+
+
+def test_a_ratio_of_moduli_in_place_of_the_layer():
+    given = {name: value for name, value in COATED.items() if name != "E1"} | {"E_punch": "210 GPa", "P": "1 N", "x": 2}
+    several = quiet(**given, n=[0.5, 2.0])
+    for n in (0.5, 2.0):
+        np.testing.assert_allclose(several.a.sel(n=n), quiet(**given, n=n).a, rtol=1e-12)
+    np.testing.assert_allclose(several.m, [0.5, 2.0], rtol=1e-12)
+
+
+def test_laws_of_others_have_units_as_well():
+    from laws import cones
+
+    given = {"R": "1 mm", "E2": "200 GPa", "base": "half_space", "Nbar": "10 1/mm^2", "P": "1 N", "x": 2}
+    found = quiet(**given, micro=cones.CONES, alpha=1.3)
+    assert found.status == 0 and found.alpha == 1.3 and found.Nbar == pytest.approx(1e7, rel=1e-15)
+
+
+def test_results_are_not_made_physical_twice():
+    found = quiet(**COATED, P="10 N", x=2)
+    with pytest.raises(ValueError, match="in physical units already"):
+        study.to_physical(found, R=R, E2_star=E2_STAR)
 
 
 def test_spreads_of_hertz():
@@ -121,6 +156,10 @@ def test_spreads_agree_with_draws():
         ({"E2": None}, "E2 is missing: Young's modulus of the body"),
         ({"E1": None}, "E1 is missing: Young's modulus of the layer"),
         ({"n": 0.5}, "E1 and n are both given"),
+        ({"E_punch": "1 GPa", "m": 0.5}, "E_punch and m are both given"),
+        ({"nu_punch": 0.3}, "nu_punch is given without E_punch"),
+        ({"nu1": "0.5 ± 0.01"}, "with its spread it must be in"),
+        ({"P": [1, "2 N"]}, r"P\[0\] = 1 has no unit"),
         ({"nu1": "0.6"}, r"nu1 = 0.6: must be in \(-1, 0.5\]"),
         ({"E2": "-2 GPa"}, "E2 = -2 GPa: must be > 0"),
         ({"hh": "2 um"}, '"hh" is not a parameter; did you mean "h"'),

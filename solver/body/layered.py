@@ -17,13 +17,11 @@ import numpy as np
 from ..numerics.mesh import Mesh
 from .kernel import whole
 from .operator import fitted_nodes
-from .part import Part, parts_of
+from .part import join, parts_of
 from .springs import thin_layer
 from .tables import between, felt, film_rows
-from .wave_rule import CUT, FILM, octave_of
+from .wave_rule import CUT, FILM, place_of
 
-#: Relative change of the radius that is less than the rounding of the operator: its kernel need not be formed anew.
-_SAME = 1e-12
 #: Layers thinner than this times the radius are nearly thin layers.
 _THIN = 0.02
 
@@ -70,7 +68,7 @@ class Layered(NamedTuple):
         """The :class:`LayeredOperator` at the radii a (B,); where those of `near` are the same, so is its kernel."""
         parts, far = [], np.ones(len(a), dtype=bool)
         for part in () if near is None else near.parts:
-            same = np.flatnonzero(np.abs(a[part.index] / part.radius - 1) <= _SAME)
+            same = np.flatnonzero(a[part.index] == part.radius)
             if len(same):
                 far[part.index[same]] = False
                 parts.append(part.take(same, part.index[same]))
@@ -84,13 +82,13 @@ class Layered(NamedTuple):
     def error(self, a, nodes):
         """Error (B,) of the operator: rounding, and for films what the convolution leaves out."""
         L, below = self.whole(10 * self.h / a), (self.n + self.m) / (1 + self.m)
-        octave, _ = octave_of(self, a)
+        octave, _ = place_of(self, a)
         local = np.abs(L - below) / np.maximum(L, below)
         return 1e-14 * nodes / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
     def order(self, a):
         """Permutation (B,) that puts cases with one table together: fewer, larger matrix products."""
-        return np.lexsort(octave_of(self, a))
+        return np.lexsort(place_of(self, a))
 
     def alike(self, a):
         """The thin layer in place of a film, if there is one."""
@@ -129,13 +127,10 @@ class LayeredOperator(NamedTuple):
         for operator, place in zip(operators, places, strict=True):
             K[place], edge[place] = operator.K, operator.edge
             for part in operator.parts:
-                groups.setdefault(part[1:3], []).append(part._replace(index=place[part.index]))
-        parts = []
-        for key, found in groups.items():
-            index, _, _, *arrays = zip(*found, strict=True)
-            arrays = (None if v[0] is None else np.concatenate(v) for v in arrays)
-            parts.append(Part(np.concatenate(index), *key, *arrays))
-        return LayeredOperator(self.mesh, parts, K, edge)
+                groups.setdefault((part.stiffness, part.film is None), []).append(
+                    part._replace(index=place[part.index])
+                )
+        return LayeredOperator(self.mesh, [join(parts) for parts in groups.values()], K, edge)
 
     def products(self, q):
         """K q (B, n) and edge @ q (B,)."""
@@ -145,27 +140,31 @@ class LayeredOperator(NamedTuple):
         """Derivatives of the products by ln a: (B, n) and (B,)."""
         d_Kq, d_edge_q = np.empty(q.shape), np.empty(len(q))
         for part in self.parts:
-            tab, own = part.table(self.mesh), q[part.index]
-            moved = tab.weights(part.uL) * (own @ tab.phi.T)
-            d_Kq[part.index], d_edge_q[part.index] = moved @ tab.J, moved @ tab.J_edge
-            if part.film is not None:
-                K, edge = _film(part.d_film, tab, self.mesh.n)
-                d_Kq[part.index] += np.matmul(K, own[..., None])[..., 0]
-                d_edge_q[part.index] += (edge * own).sum(axis=1)
+            for tab, rows in part.tables(self.mesh):
+                index = part.index[rows]
+                own = q[index]
+                moved = tab.weights(part.uL[rows]) * (own @ tab.phi.T)
+                d_Kq[index], d_edge_q[index] = moved @ tab.J, moved @ tab.J_edge
+                if part.film is not None:
+                    K, edge = _film(part.d_film[rows], tab, self.mesh.n)
+                    d_Kq[index] += np.matmul(K, own[..., None])[..., 0]
+                    d_edge_q[index] += (edge * own).sum(axis=1)
         return d_Kq, d_edge_q
 
     def between(self, q, s, half_space):
         """K q (B, m) at points s (m,) between the nodes; half_space (B, m) is H[q] - H[q](edge) there."""
         out, x = np.empty(half_space.shape), np.sqrt((1 - s) * (1 + s))
         for part in self.parts:
-            index, tab = part.index, part.table(self.mesh)
-            values = (tab.weights(part.L1) * (q[index] @ tab.phi.T)) @ between(self.mesh, part.octave, part.depth, x)
+            for tab, rows in part.tables(self.mesh):
+                index = part.index[rows]
+                J = between(self.mesh, int(part.octave[rows][0]), part.stiffness, x)
+                out[index] = (tab.weights(part.L1[rows]) * (q[index] @ tab.phi.T)) @ J
             if part.film is not None:
-                near = felt(self.mesh, x)
-                rows = film_rows(self.mesh, s[near].tobytes())
-                values -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
-                values[:, near] += np.matmul(rows.of(part.film), q[index][:, :, None])[..., 0]
-            out[index] = part.share * half_space[index] + values
+                index, near = part.index, felt(self.mesh, x)
+                away = film_rows(self.mesh, s[near].tobytes()).of(part.film)
+                out[index] -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
+                out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
+            out[part.index] += part.share * half_space[part.index]
         return out
 
 
@@ -174,21 +173,21 @@ def _matrix_and_edge(parts, mesh):
     order, n = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n
     flat, edge, end = np.empty((n * n, len(order))), np.empty((len(order), n)), 0
     for part in parts:
-        tab, begin, end = part.table(mesh), end, end + len(part.index)
-        own = flat[:, begin:end]
-        rows = own.reshape(n, n, -1).transpose(2, 0, 1)
-        if tab.product is not None:
-            np.matmul(tab.product.T, part.L1.T, out=own)
-        else:
-            for row, w in zip(rows, tab.weights(part.L1), strict=True):
-                row[:] = (tab.J * w[:, None]).T @ tab.phi
-        own += mesh.K.reshape(-1, 1) * np.transpose(part.share)
-        row = part.L1 @ tab.edge + part.share * mesh.edge
-        if part.film is not None:
-            K, at_edge = _film(part.film, tab, n)
-            rows += K
-            row += at_edge
-        edge[part.index] = row
+        for tab, rows in part.tables(mesh):
+            begin, end = end, end + rows.stop - rows.start
+            L1, share = part.L1[rows], part.share if part.level is None else part.share[rows]
+            own, row = flat[:, begin:end], L1 @ tab.edge + share * mesh.edge
+            if tab.product is None:
+                for one, w in zip(own.reshape(n, n, -1).transpose(2, 0, 1), tab.weights(L1), strict=True):
+                    one[:] = (tab.J * w[:, None]).T @ tab.phi
+            else:
+                np.matmul(tab.product.T, L1.T, out=own)
+            own += mesh.K.reshape(-1, 1) * np.transpose(share)
+            if part.film is not None:
+                K, at_edge = _film(part.film[rows], tab, n)
+                own.reshape(n, n, -1).transpose(2, 0, 1)[:] += K
+                row += at_edge
+            edge[part.index[rows]] = row
     if np.any(np.diff(order) < 0):
         flat = np.take(flat, np.argsort(order), axis=1)
     return flat.reshape(n, n, -1).transpose(2, 0, 1), edge

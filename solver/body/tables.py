@@ -30,7 +30,7 @@ class Table(NamedTuple):
 
     L - 1 (b, M) times `edge` (M, n) is the row of the edge, times `product` (M, n²), None if that is too large, the
     matrix. At all nodes k (G,) of the quadrature: J = J0(k x_i) - J0(k) and φ (G, n); J_edge = J0(k) (G,); `spread`,
-    (M, G), or (G,) where the few are all, takes L - 1 to the weights of the quadrature, π/2 included.
+    (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the quadrature, π/2 included.
 
     `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
     """
@@ -53,9 +53,9 @@ _tables = OrderedDict()
 _tables_lock = Lock()
 
 
-def table(grid, octave, depth):
+def table(grid, octave, stiffness):
     """The :class:`Table` of a mesh; the latest used, up to _MOST_BYTES, are kept."""
-    key = grid, octave, depth
+    key = grid, octave, stiffness
     with _tables_lock:
         if key in _tables:
             _tables.move_to_end(key)
@@ -73,13 +73,13 @@ def _size(found):
     return sum(getattr(part, "nbytes", 0) for part in (*found[:-1], *(found.film or ())))
 
 
-def _table(grid, octave, depth):
-    k, weight = quadrature(octave, depth)
+def _table(grid, octave, stiffness):
+    k, weight = quadrature(octave, stiffness)
     J_edge, phi = j0(k), transform(grid, k)
     J = j0(k[:, None] * grid.x) - J_edge[:, None]
-    own, at_edge, product = few(octave, depth), J_edge[:, None] * phi, None
-    if own is not None:
-        spread = np.pi / 2 * own.spread
+    at_edge, product = J_edge[:, None] * phi, None
+    if octave != FILM:
+        spread = np.pi / 2 * few(octave, stiffness).spread
         edge = spread @ at_edge
         product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
     else:
@@ -145,14 +145,14 @@ def _angles(low, high, k, order):
     return (ends[:-1, None] + width[:, None] * t).ravel(), (width[:, None] * w).ravel()
 
 
-def between(grid, octave, depth, x):
+def between(grid, octave, stiffness, x):
     """J0(k x) - J0(k), (G, m)."""
-    key = grid, octave, depth, x.tobytes()
-    small = len(x) * len(quadrature(octave, depth)[0]) <= _KEEP_BETWEEN
+    key = grid, octave, stiffness, x.tobytes()
+    small = len(x) * len(quadrature(octave, stiffness)[0]) <= _KEEP_BETWEEN
     return (_between_kept if small else _between_kept.__wrapped__)(*key)
 
 
 @lru_cache(maxsize=256)
-def _between_kept(grid, octave, depth, x_bytes):
-    tab = table(grid, octave, depth)
+def _between_kept(grid, octave, stiffness, x_bytes):
+    tab = table(grid, octave, stiffness)
     return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]

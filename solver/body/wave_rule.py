@@ -2,7 +2,8 @@
 
 Its panels follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers
 n^(-1/3)/η and 1/(nη), η = h/a), so that it is as accurate for every h/a and n of the octave. L - 1 does not oscillate:
-of all soft layers, at all h/a of an octave, it lies within rounding in a space of some 55 dimensions.
+of all layers of a class of stiffness, at all h/a of an octave, what counts of it lies within rounding in a space of
+some 50 to 100 dimensions.
 """
 
 from functools import lru_cache
@@ -19,6 +20,11 @@ OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
 _WIDEST = 200.0
+#: Largest n of each class of stiffness, and how many dyadic panels towards k = 0 its quadrature has. A stiff layer is a
+#: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: the first panel ends below 0.15/n.
+STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
+#: Number of few nodes of each class: at most so many are needed in any octave.
+_FEW = (52, 90, 104, 104)
 #: Random layers from whose L - 1 and u dL/du the few nodes are found, and what is left out of them, over the largest.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 
@@ -40,21 +46,18 @@ def _end(octave):
 CUT = _end(FILM) * 2.0**-FILM
 
 
-def octave_of(layer, a):
-    """Octave of h/a, or FILM, and depth of the quadrature for the stiffness of the layer, (B,) int each."""
+def place_of(layer, a):
+    """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each."""
     eta = layer.h / a
     octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
-    # a stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n
-    ratio = np.maximum(np.where(layer.bonded, layer.n, np.cbrt(layer.n)), 1.0)
-    ratio = np.where(octave == FILM, ratio * eta * 2.0**-FILM, ratio)
-    wanted = np.ceil(np.log2(np.maximum(3.5 * ratio, 1.0)))  # 0.5 2^-depth <= 0.15/ratio
-    return octave, np.where(layer.n > 2, 6 * np.ceil(wanted / 6), 0).astype(int)
+    stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)  # of a film, that of its quadrature's end
+    return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
 
 
-@lru_cache(maxsize=128)
-def quadrature(octave, depth):
-    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
-    scale, cut = 2.0**-octave, _end(octave)
+@lru_cache(maxsize=256)
+def quadrature(octave, stiffness):
+    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness."""
+    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness]
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
     for low, high in pairwise(ends):
@@ -70,27 +73,27 @@ def quadrature(octave, depth):
 
 
 class Few(NamedTuple):
-    """Indices (M,) of nodes of a quadrature, and (M, G) what makes w (L - 1) at all nodes of L - 1 at those."""
+    """The few nodes k (M,) of a quadrature, M that of the class, and (M, G) what makes w (L - 1) at all its nodes of
+    L - 1 at those."""
 
-    nodes: np.ndarray
+    k: np.ndarray
     spread: np.ndarray
 
 
-@lru_cache(maxsize=64)
-def few(octave, depth):
-    """The :class:`Few` nodes for n <= 2, by interpolative decomposition of random samples; None for others.
+@lru_cache(maxsize=256)
+def few(octave, stiffness):
+    """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples.
 
-    What is left out of L - 1 is below 2e-14 (tests/body/test_wave_rule.py). A batch of 4,000 such layers is solved in
-    two thirds of the time that it takes without. They are chosen without BLAS: with its rounding on another worker the
-    choice might be another.
+    What is left out is small beside the operator (tests/body/test_wave_rule.py): w (L - 1)/(1 + k²) is interpolated,
+    since J0 φ falls like 1/k². The nodes are chosen without BLAS: with its rounding on another worker the choice might
+    be another.
     """
-    if depth or octave == FILM:
-        return None
-    _, weight = quadrature(octave, depth)
-    rest, nodes, rows = _samples(octave), [], []
+    k, weight = quadrature(octave, stiffness)
+    scale = weight / (1 + k * k)
+    rest, nodes, rows = _samples(octave, stiffness, k, scale), [], []
     left = np.sum(rest**2, axis=0)
     most = left.max()
-    while left.max() > _LEFT_OUT**2 * most:
+    while left.max() > _LEFT_OUT**2 * most and len(nodes) < _FEW[stiffness]:
         nodes.append(np.argmax(left))
         direction = rest[:, nodes[-1]] / np.sqrt(left[nodes[-1]])
         rows.append(np.einsum("i,ij->j", direction, rest))
@@ -98,14 +101,21 @@ def few(octave, depth):
         left = np.sum(rest**2, axis=0)
         left[nodes] = 0.0
     R = np.array(rows)
-    return Few(np.array(nodes), np.linalg.solve(np.triu(R[:, nodes]), R) * weight)
+    spread = np.linalg.solve(np.triu(R[:, nodes]), R) * (1 + k * k)
+    fill = _FEW[stiffness] - len(nodes)  # with nodes that do not count
+    return Few(np.pad(k[nodes], (0, fill), mode="edge"), np.pad(scale[nodes, None] * spread, ((0, fill), (0, 0))))
 
 
-def _samples(octave):
-    """L - 1 and u dL/du (2 _SAMPLES, G) of random layers with n <= 2 and h/a in an octave."""
+def _samples(octave, stiffness, k, scale):
+    """(L - 1) and u dL/du (2 _SAMPLES, G), times `scale`, of random layers of a class with h/a in an octave; over the
+    sum of the first, about the operator's size, where that is above 1."""
     random, size = np.random.default_rng(0), _SAMPLES
-    n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), 10 ** random.uniform(-4, 0, size))
+    low = 1e-9 if stiffness == 0 else STIFFEST[stiffness - 1]
+    n = np.exp(random.uniform(np.log(low), np.log(STIFFEST[stiffness]), size))
+    if stiffness == 0:
+        n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)
     eta, bonded = 2.0 ** (octave + random.random(size)), random.random(size) < 0.67
-    material = n, *random.uniform(0, 0.5, (2, size)), bonded
-    k, _ = quadrature(octave, 0)
-    return np.concatenate(decaying_part(k * eta[:, None], *(v[:, None] for v in material)))
+    nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
+    L1, uL = (scale * v for v in decaying_part(k * eta[:, None], *(v[:, None] for v in (n, *nu, bonded))))
+    whole = np.maximum(np.abs(L1).sum(axis=1), 1.0)
+    return np.concatenate([L1, uL]) / np.tile(whole, 2)[:, None]

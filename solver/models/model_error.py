@@ -72,6 +72,10 @@ def closed_form(problem, a):
     :func:`~solver.models.thin_layer_error.largest_error`, which is made for a rigid punch. Under an elastic one that
     number at given a, the largest of the three controls, stands for all controls.
     """
-    material = problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
-    rigid = largest_error(problem.control, problem.h / a, *material)
-    return np.where(problem.m > 0, largest_error("a", problem.h / a, *material), rigid)
+    def error(part, radius, control):
+        return largest_error(control, part.h / radius, part.n, part.nu1, part.nu2, part.bonding == "bonded")
+
+    found, yields = error(problem, a, problem.control), np.flatnonzero(problem.m > 0)
+    if len(yields):
+        found[yields] = error(problem.take(yields), a[yields], "a")
+    return found

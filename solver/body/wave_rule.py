@@ -110,11 +110,12 @@ def _samples(octave, stiffness, k, scale):
     """(L - 1) and u dL/du (2 _SAMPLES, G), times `scale`, of random layers of a class with h/a in an octave; over the
     sum of the first, about the operator's size, where that is above 1."""
     random, size = np.random.default_rng(0), _SAMPLES
-    low = 1e-9 if stiffness == 0 else STIFFEST[stiffness - 1]
-    n = np.exp(random.uniform(np.log(low), np.log(STIFFEST[stiffness]), size))
+    of_n, of_eta = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
+    low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])
+    n = np.exp(low + (high - low) * of_n)
     if stiffness == 0:
         n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)
-    eta, bonded = 2.0 ** (octave + random.random(size)), random.random(size) < 0.67
+    eta, bonded = 2.0 ** (octave + of_eta), random.random(size) < 0.67
     nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
     L1, uL = (scale * v for v in decaying_part(k * eta[:, None], *(v[:, None] for v in (n, *nu, bonded))))
     whole = np.maximum(np.abs(L1).sum(axis=1), 1.0)

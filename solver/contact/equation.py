@@ -50,6 +50,10 @@ class State(NamedTuple):
         """The sub-batch at `index`."""
         return State(self.y[index], self.eta[index])
 
+    def join(self, states):
+        """The batch of the `states` one after another."""
+        return State(*map(np.concatenate, zip(*states, strict=True)))
+
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:

@@ -72,6 +72,7 @@ def closed_form(problem, a):
     :func:`~solver.models.thin_layer_error.largest_error`, which is made for a rigid punch. Under an elastic one that
     number at given a, the largest of the three controls, stands for all controls.
     """
+
     def error(part, radius, control):
         return largest_error(control, part.h / radius, part.n, part.nu1, part.nu2, part.bonding == "bonded")
 

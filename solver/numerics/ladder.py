@@ -1,8 +1,6 @@
 """The ladder of meshes: each case starts on the mesh its tolerance is likely to need and climbs until its estimated
 error meets it."""
 
-from collections import deque
-
 import numpy as np
 
 from .mesh import mesh, panel_mesh
@@ -49,8 +47,8 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
         A fixed mesh, or 0: begin on `first`.
     solve_on : callable
         ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. error (b,): their
-        estimated errors, NaN where there is no use in going on; finer: what the next finer mesh begins with, or None;
-        ``finer.take(rows)`` of it is the `start` there. On the first mesh that is None.
+        estimated errors, NaN where there is no use in going on; finer: what the next finer mesh begins with, its
+        `start` there, with ``finer.take(rows)`` and ``finer.join(others)``; or None. On the first mesh that is None.
     first : (B,) int, optional
         The mesh to begin on; else chosen by rtol.
     order : (B,) int, optional
@@ -64,16 +62,28 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
     rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
     order = np.arange(len(rtol)) if order is None else order
     batches = [(order[rung[order] == n], n) for n in np.unique(rung).tolist()]
-    todo = deque((index, n, None) for batch, n in batches for index in _stacks(batch, n))
+    waiting = {n: [(index, None) for index in _stacks(batch, n)] for batch, n in batches}
     pieces = []
-    while todo:
-        index, n, start = todo.popleft()
-        error, finer, found = solve_on(index, n, start)
-        pieces.append((index, found))
-        on = np.flatnonzero((error > rtol[index]) & (nodes[index] == 0))
-        if len(on) and n < LADDER[-1]:
-            todo.append((index[on], next_rung(n), None if finer is None else finer.take(on)))
+    while waiting:
+        n, on = min(waiting), []
+        for index, start in waiting.pop(n):
+            error, finer, found = solve_on(index, n, start)
+            pieces.append((index, found))
+            rows = np.flatnonzero((error > rtol[index]) & (nodes[index] == 0))
+            if len(rows) and n < LADDER[-1]:
+                on.append((index[rows], None if finer is None else finer.take(rows)))
+        if on:
+            waiting.setdefault(next_rung(n), []).extend(_together(on, next_rung(n)))
     return pieces
+
+
+def _together(on, n):
+    """Stacks of those that go on to n nodes, (index, start), from those of the mesh before."""
+    index, start = np.concatenate([one for one, _ in on]), on[0][1]
+    if start is None:
+        return [(rows, None) for rows in _stacks(index, n)]
+    start = start.join([one for _, one in on])
+    return [(index[rows], start.take(rows)) for rows in _stacks(np.arange(len(index)), n)]
 
 
 def _stacks(batch, n):

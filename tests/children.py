@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 PROCESSES = multiprocessing.get_context("forkserver")  # forks from a process that has imported everything
-PROCESSES.set_forkserver_preload(["study.api"])
+PROCESSES.set_forkserver_preload(["study.api", "distributed"])
 PATIENCE = 300  # seconds for what takes one or two: a busy machine makes a test slow, not red
 SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 

@@ -20,6 +20,7 @@ from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws
 from study.spec.laws import learn
+from study.store.lock import held
 
 collect_ignore = ["hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]
@@ -57,12 +58,18 @@ def read_in_a_fork(monkeypatch) -> None:
 
 @pytest.fixture(scope="session")
 def results(tmp_path_factory) -> Path:
-    """Folder with the results of every study, shrunken, and of the measurement of work and precision."""
-    folder = tmp_path_factory.mktemp("project") / "results"
-    if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutate.py: this mutant does not change them
-        shutil.copytree(os.environ["ROUGHCOAT_RESULTS"], folder)
-    else:
-        compute_results(folder)
+    """Folder with the results of every study, shrunken, and of the measurement of work and precision; nobody changes
+    them. The first process of pytest that asks computes them for all."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    folder = (tmp_path_factory.getbasetemp() if alone else tmp_path_factory.getbasetemp().parent) / "project/results"
+    with held(folder.with_name("lock")):
+        if not folder.exists():
+            unfinished = folder.with_name("unfinished")
+            if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutate.py: this mutant does not change them
+                shutil.copytree(os.environ["ROUGHCOAT_RESULTS"], unfinished)
+            else:
+                compute_results(unfinished)
+            unfinished.rename(folder)
     return folder
 
 

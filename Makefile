@@ -57,7 +57,7 @@ test: $(READY) ## all tests
 
 # A sample of every room that is quick, against references where there are any: half a minute.
 CHECKED := numerics laws/test_micro.py body/test_kernel.py body/test_elastic_punch.py spec/test_grid.py spec/test_given.py \
-  spec/test_definition.py data contact/test_golden_numbers.py repository/test_imports.py repository/test_mutants.py
+  spec/test_definition.py spec/test_bad_files.py data contact/test_golden_numbers.py repository/test_imports.py repository/test_mutants.py
 check: $(READY) lint ## for the inner loop: ruff, and tests that take half a minute
 	$(PYTEST) $(CHECKED:%=tests/%)
 

@@ -16,6 +16,7 @@ os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")
 
 import pytest
 from children import run_forked
+from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws

@@ -18,8 +18,8 @@ from threading import Thread
 import pytest
 from children import PATIENCE, PROCESSES, held, holding, stored, wait_for
 from children import started as launched
+from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, written
 from same import assert_same, assert_same_numbers
-from test_faults import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, undisturbed, written  # noqa: F401
 
 import study
 from study.work import run
@@ -126,7 +126,7 @@ def test_walk_through_of_the_documentation(tmp_path):
         assert subprocess.run(["sh", "-n"], input=script, text=True, check=False).returncode == 0
 
 
-def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):  # noqa: F811
+def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):
     opened = written(tmp_path)
     workers = [cluster.worker(50), cluster.worker(50)]
     process, answers = started(cluster, opened, tmp_path)
@@ -139,7 +139,7 @@ def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed): 
     assert_ends_well(opened, undisturbed, 0)
 
 
-def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):  # noqa: F811
+def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):
     opened = written(tmp_path)
     cluster.worker(3 * BLOCK)
     process, answers = started(cluster, opened, tmp_path)
@@ -204,7 +204,7 @@ ABSENT = {
 }
 
 
-def test_a_scheduler_that_is_not_there(tmp_path, monkeypatch, undisturbed):  # noqa: F811
+def test_a_scheduler_that_is_not_there(tmp_path, monkeypatch, undisturbed):
     monkeypatch.setattr(engines, "CONNECT", 0.5)
     opened = written(tmp_path)
     for address, why in ABSENT.items():
@@ -212,7 +212,7 @@ def test_a_scheduler_that_is_not_there(tmp_path, monkeypatch, undisturbed):  # n
     assert_ends_well(opened, undisturbed, CASES)
 
 
-def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):  # noqa: F811
+def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
     """Blocks of random size, axes in another order; the second worker comes while the run is on."""
     cluster.worker(60)
     text = TEXT.replace("[0.001, 0.002, 0.003]", "[0.003, 0.001, 0.002]")
@@ -228,7 +228,7 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed): 
     assert_same_numbers(opened.open().sel(h=undisturbed.h), undisturbed)
 
 
-def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):  # noqa: F811
+def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):
     cluster.worker()
     opened = written(tmp_path)
     real = run.parcel

@@ -6,6 +6,13 @@ A1 + A2 u, Eq. (2), so that u = (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*
 
 import numpy as np
 
+from .half_space import HalfSpace
+
+#: n of a base that stands for a rigid one under the thin layer: the equation divides by the half-space's part X, which
+#: must not be 0, and is here below 1e-20 of that of the springs for every h and a within the bounds. Squares and cubes
+#: of it are still far from the least float.
+STIFF = 1e-50
+
 
 def thin_layer_coefficients(n, nu1, nu2, bonded):
     """Coefficients A1 and A2 of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios.
@@ -53,3 +60,8 @@ def local_compliance(h, n, nu1, nu2, bonded):
 def layer_modulus(n):
     """E1* in the unit of moduli, which is E2*: n. On a rigid base, n = 0, the unit is E1* itself: 1."""
     return n + (n == 0)
+
+
+def thin_layer(h, n, nu1, nu2, bonded, m):
+    """The thin layer, Eq. (3): a half-space of E2* that carries springs, under a punch of m = E1*/E3*."""
+    return HalfSpace(layer_modulus(n) / np.maximum(n + m, STIFF), local_compliance(h, n, nu1, nu2, bonded))

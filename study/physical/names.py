@@ -18,8 +18,6 @@ SCENE = {
 }
 #: What may be rigid, and the texts that say so; its modulus is then infinite.
 RIGID, RIGID_TEXTS = ("E2", "E_punch"), ("rigid", "inf", "infinite")
-#: Powers of E2* and R -> SI unit.
-UNITS = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
 
 
 class Row(list):
@@ -40,8 +38,8 @@ def dim_of(name: str) -> str:
 
 
 def unit_of(name: str) -> str:
-    """SI unit of a parameter or result, as in READABLE; "1" for pure numbers and texts."""
-    return SCENE[name][0] if name in SCENE else UNITS[VOCABULARY[name].powers]
+    """SI unit of a parameter or result, most of them in READABLE; "1" for pure numbers and texts."""
+    return SCENE[name][0] if name in SCENE else VOCABULARY[name].unit
 
 
 def si(name: str, given: Any, called: str = "") -> Quantity:

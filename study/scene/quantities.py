@@ -61,7 +61,7 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     ------
     ValueError : no number, no unit, a unit of something else; the message says what was understood
     """
-    what, multiples = READABLE[unit]
+    what = READABLE[unit][0] if unit in READABLE else f"a number of {unit}"
     wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
     if isinstance(given, numbers.Real) and not isinstance(given, bool):
         if unit != "1":
@@ -159,8 +159,8 @@ def _registry() -> Any:
 
 
 def _example(unit: str) -> str:
-    name = READABLE[unit][1][min(1, len(READABLE[unit][1]) - 1)][0]
-    return f"2 {name}"
+    multiples = READABLE[unit][1] if unit in READABLE else ((unit, 1.0),)
+    return f"2 {multiples[min(1, len(multiples) - 1)][0]}"
 
 
 def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> str:

@@ -75,6 +75,18 @@ def test_whoever_edits_a_study_computes_what_is_new(folder, tmp_path):
         of(dimensionless, tmp_path).run(workers=1)
 
 
+def test_the_same_contact_twice_as_large_is_another_study(tmp_path):
+    """All its numbers are known, none of its results: the dimensionless contact is the same, the file is not."""
+    small = TEXT.replace('{ start = "1 N", stop = "100 N", num = 3, spacing = "log" }', '["1 N", "10 N"]')
+    large = small.replace('"5 mm"', '"10 mm"').replace('"2 um", "20 um"', '"4 um", "40 um"')
+    large = large.replace('"1 N", "10 N"', '"4 N", "40 N"')
+    assert of(small, tmp_path).run(workers=1).computed == 8
+    before, status = of(small, tmp_path).open(), of(large, tmp_path).status()
+    assert (status["state"], status["counts"]) == ("outdated", {0: 8})
+    assert of(large, tmp_path).run(workers=1).computed == 0
+    np.testing.assert_allclose(of(large, tmp_path).open().a, 2 * before.a.values, rtol=1e-15)
+
+
 def test_what_is_damaged_is_computed_again(folder, tmp_path):
     content = bytearray((folder / "dlc.nc").read_bytes())
     before = of(TEXT, folder).open()

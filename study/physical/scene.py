@@ -101,6 +101,8 @@ class Scene:
 
     def _renamed(self, variable: xr.Variable) -> xr.Variable:
         """The variable over the dimensions that the results have."""
+        if not self.dims:
+            return variable
         dims = [self.dims.get(dim, dim) for dim in variable.dims]
         return xr.Variable(dims, variable.data, variable.attrs, variable.encoding)
 
@@ -121,7 +123,8 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
         found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
     else:  # most often; arithmetic of labelled arrays takes as long as a contact
         found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
-    found = found.astype(variable.dtype, copy=False)
+    if found.dtype != variable.dtype:
+        found = found.astype(variable.dtype)
     found.attrs = {key: text for key, text in variable.attrs.items() if key != "scale"} | {"units": unit_of(name)}
     found.encoding = variable.encoding
     return found

@@ -1,4 +1,4 @@
-"""Command line of roughcoat: python -m study COMMAND, one of
+"""Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
 list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
@@ -12,9 +12,10 @@ import logging
 import os
 import sys
 from importlib import import_module
+from pathlib import Path
 
 from .commands import ending
-from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part
+from .commands.arguments import Parser, Version, add_engine, folder, part
 from .commands.ending import INTERRUPTED
 from .terminal import empty_buffers, open_the_closed, say
 
@@ -29,7 +30,8 @@ KEPT = "; finished blocks are kept, the same command goes on from there"
 
 def parser() -> argparse.ArgumentParser:
     """All subcommands and their options."""
-    top = Parser(prog="python -m study", description="Parameter studies of rough coated contacts.")
+    name = "roughcoat" if Path(sys.argv[0]).name.startswith("roughcoat") else "python -m study"
+    top = Parser(prog=name, description="Parameter studies of rough coated contacts.")
     top.add_argument("-v", "--verbose", action="store_true", help="show the log")
     top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -43,7 +45,7 @@ def parser() -> argparse.ArgumentParser:
         return sub
 
     sub = command("computing", "list_", "list the study files, their size and state")
-    sub.add_argument("folder", type=folder, nargs="?", default=STUDIES)
+    sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
     command("checking", "check", "check study files without computing", "FILE")
     sub = command("computing", "run", "compute what is missing and write the results", "FILE")
     add_engine(sub)
@@ -116,10 +118,23 @@ def _attempt(act, options, item, kept: str) -> int:
     return code
 
 
-if __name__ == "__main__":
+def own_modules_first() -> None:
+    """Look for modules in the working folder last, where `python -m` looks first: a user may have a solver.py there."""
+    first = Path(sys.path[0]).resolve()
+    if not sys.flags.safe_path and first == Path.cwd() != Path(__file__).resolve().parents[1]:
+        sys.path.append(sys.path.pop(0))
+
+
+def command() -> None:
+    """What a process of the command line does: `main`, and its exit code as the last thing that is decided."""
     open_the_closed()
     ending.start()
-    _code = main()
-    if _code == INTERRUPTED:
-        os._exit(_code)  # does not wait for the blocks in work
-    sys.exit(_code)
+    code = main()
+    if code == INTERRUPTED:
+        os._exit(code)  # does not wait for the blocks in work
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    own_modules_first()
+    command()

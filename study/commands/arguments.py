@@ -9,6 +9,7 @@ from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
 STUDIES = Path("studies")
+PACKAGE = Path(__file__).resolve().parents[1]
 MOST_DIGITS = 9  # Python itself refuses to read 4301
 
 
@@ -39,18 +40,29 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
+def packaged() -> Path:
+    """Folder of the studies that come with roughcoat: in the installed package, or beside it in a clone."""
+    inside = PACKAGE / "studies"
+    return inside if inside.is_dir() else PACKAGE.parent / "studies"
+
+
 def study_file(text: str) -> Path:
-    """The study file at a path, or of a study in studies/ by its name. Raises StudyError when there is none."""
+    """The study file at a path, or of a study by its name: in studies/, or of those that come with roughcoat.
+
+    Raises StudyError when there is none.
+    """
     from ..spec.definition import StudyError
     from ..spec.vocabulary import suggest
 
     given, short = Path(os.path.expanduser(text)), STUDIES / f"{text}.toml"
     by_path = given.suffix == ".toml"
-    for path in (given,) if by_path else (given, short):
+    ours = [packaged() / f"{text}.toml"] if given.name == text else []
+    for path in (given,) if by_path else (given, short, *ours):
         if path.exists():
             return path
-    folders = [given.parent, STUDIES] if by_path else [STUDIES]
+    folders = [given.parent, STUDIES] if by_path else [STUDIES, packaged()]
     known = [path.as_posix() if by_path else path.stem for folder in folders for path in sorted(folder.glob("*.toml"))]
+    known = list(dict.fromkeys(known))
     looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
     raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
 

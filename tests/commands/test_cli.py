@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, STUDIES
 
 import study
 from study.__main__ import main
@@ -24,6 +24,9 @@ P = [1e-6, 2e-6, 3e-6]
 [numerics]
 block = 1
 """
+
+
+OURS = ", ".join(file.stem for file in STUDIES)
 
 
 @pytest.fixture(autouse=True)
@@ -59,21 +62,55 @@ def test_a_study_that_is_not_there(studies, command, capsys):
     printed = capsys.readouterr()
     assert printed.out == "" and printed.err.splitlines() == [
         'par_map: not found (looked for par_map and studies/par_map.toml); did you mean "par_maps"?',
-        "q: not found (looked for q and studies/q.toml); known: good, par_maps",
+        f"q: not found (looked for q and studies/q.toml); known: good, par_maps, {OURS}",
         'studies/par_map.toml: not found; did you mean "studies/par_maps.toml"?',
         'good.toml: not found; did you mean "studies/good.toml"?',
-        "a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps",
+        f"a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps, {OURS}",
     ]
     assert not Path("results").exists()
 
 
-def test_where_there_are_no_studies_none_is_suggested(studies, monkeypatch, capsys):
+def test_where_there_are_no_studies_those_of_the_package_are_known_by_name(studies, monkeypatch, capsys):
     monkeypatch.chdir(studies)
     assert main(["status", "goood", "goood.toml"]) == 2
     assert capsys.readouterr().err.splitlines() == [
-        "goood: not found (looked for goood and studies/goood.toml)",
+        f"goood: not found (looked for goood and studies/goood.toml); known: {OURS}",
         'goood.toml: not found; did you mean "good.toml"?',
     ]
+    assert main(["check", "main_case"]) == 0
+    assert capsys.readouterr().out.startswith("main_case: 6 cases (case 6), digest ")
+    assert main(["list"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == OURS.split(", ")
+    assert main(["check", "main_case.toml"]) == 2
+
+
+def test_a_study_of_the_user_goes_before_one_of_the_package(studies, capsys):
+    (studies / "main_case.toml").write_text(GOOD, encoding="utf-8")
+    assert main(["check", "main_case"]) == 0
+    assert capsys.readouterr().out.startswith("main_case: 3 cases (P 3)")
+
+
+@pytest.mark.parametrize(
+    ("program", "name"), [("/usr/bin/roughcoat", "roughcoat"), ("/x/study/__main__.py", "python -m study")]
+)
+def test_the_usage_says_how_it_was_called(program, name, monkeypatch, capsys):
+    monkeypatch.setattr(sys, "argv", [program])
+    with pytest.raises(SystemExit):
+        main(["--help"])
+    assert capsys.readouterr().out.startswith(f"usage: {name} [-h]")
+
+
+def test_a_file_of_the_user_called_like_our_package_is_not_taken_for_it():
+    """Neither by the command nor by the processes that it starts, whatever it is called by."""
+    Path("solver.py").write_text("raise SystemExit('the wrong solver')", encoding="utf-8")
+    many = GOOD.replace("[1e-6, 2e-6, 3e-6]", "{ start = 1e-6, stop = 2e-6, num = 8 }")  # enough blocks for processes
+    Path("studies/many.toml").write_text(many, encoding="utf-8")
+    environment = os.environ | {"PYTHONPATH": str(ROOT)}
+    called = "import sys; sys.argv[0] = 'roughcoat'; sys.path.pop(0); from study.__main__ import command; command()"
+    console = [sys.executable, "-c", called, "check", "good"]
+    for command in ([sys.executable, "-m", "study", "run", "many", "--workers", "2"], console):
+        done = subprocess.run(command, env=environment, capture_output=True, text=True)
+        assert done.returncode == 0, done.stderr
 
 
 def test_a_path_goes_before_a_name(studies, capsys):

@@ -1,6 +1,6 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-list | check | run | retry | status | verify | clean | plot | table | tradeoff.
+point | list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. They say what
 became of the work, whoever hears of it: nothing stops because a terminal is gone, or a reader has left. Only where
@@ -41,9 +41,15 @@ def parser() -> argparse.ArgumentParser:
         sub.set_defaults(action=(module, name), items=[name])
         if items:
             sub.add_argument("items", nargs="+", metavar=items)
-        sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
+        if name != "point":
+            sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
+    sub = command("point", "point", "solve one contact and say in words what was found", "NAME=VALUE")
+    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.epilog = (
+        'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
+    )
     sub = command("computing", "list_", "list the study files, their size and state")
     sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
     command("checking", "check", "check study files without computing", "FILE")

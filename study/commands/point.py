@@ -1,0 +1,98 @@
+"""One contact in the terminal, in words."""
+
+import json
+import math
+import warnings
+
+import numpy as np
+import xarray as xr
+
+from ..api import solve
+from ..in_words import INPUTS, SHOWN, summary
+from ..scene import materials
+from ..spec.definition import StudyError
+from ..terminal import answer, on_one_line
+
+MATERIALS = {"punch": ("E_punch", "nu_punch"), "layer": ("E1", "nu1"), "body": ("E2", "nu2")}
+"""Who may be given as a material by its name, and which parameters that stands for."""
+
+
+def items(options) -> list[list[str]]:
+    """All that was given describes one contact."""
+    return [options.items]
+
+
+def point(options, given: list[str]) -> int:
+    """Solve the contact and say what was found; exit code 1 for one that has no solution."""
+    parameters = parameters_of(given)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the summary says it
+        found = solve(**parameters, x=2, profiles=False)
+    answer(json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found))
+    return 0 if int(found["status"]) == 0 else 1
+
+
+def parameters_of(given: list[str]) -> dict[str, float | str]:
+    """Parameters of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
+    found, errors = {}, []
+    for text in given:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        own = {name: number_or_text(value)}
+        if not equals or not name or not value:
+            errors.append(f'"{on_one_line(text, 60)}": must be NAME=VALUE, such as R="5 mm"')
+            continue
+        if name in MATERIALS:
+            try:
+                own = of_material(name, value)
+            except LookupError as error:
+                errors.append(f"{name}: {error.args[0]}")
+        errors += [f"{word} is given twice" for word in own if word in found]
+        found |= own
+    if errors:
+        raise StudyError(errors)
+    return found
+
+
+def of_material(who: str, name: str) -> dict[str, str]:
+    """E and ν of a material with their spreads, as the parameters of the punch, the layer or the body."""
+    E, nu = MATERIALS[who]
+    known = materials.get(name)
+    modulus, ratio = f"{known.E!r} ± {known.E_spread!r} Pa", f"{known.nu!r} ± {known.nu_spread!r}"
+    return {E: modulus, nu: ratio if known.nu_spread else known.nu}
+
+
+def number_or_text(value: str) -> float | str:
+    """A text that is a number as such."""
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+def as_numbers(found: xr.Dataset) -> dict:
+    """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
+    shown = {name: described(found, name) for name in (*INPUTS, *SHOWN) if name in found}
+    shown |= {name: number(found[name]) for name in ("error", "model_error")}
+    for name in ("status", "model_used"):
+        flags = found[name].attrs
+        values, words = np.atleast_1d(flags["flag_values"]).tolist(), flags["flag_meanings"].split()
+        shown[name] = dict(zip(values, words, strict=True)).get(int(found[name]), "none")
+    masks, words = found["validity"].attrs["flag_masks"], found["validity"].attrs["flag_meanings"].split()
+    shown["validity"] = [word for mask, word in zip(masks, words, strict=True) if int(found["validity"]) & int(mask)]
+    return shown
+
+
+def described(found: xr.Dataset, name: str) -> dict | str:
+    """Value, unit and spread of a variable; a text as it is."""
+    array = found[name]
+    if array.dtype.kind in "UO":
+        return str(array.values)
+    unit = array.attrs.get("scale") or array.attrs.get("units", "1")
+    spread = {"spread": number(found[f"{name}_spread"])} if f"{name}_spread" in found else {}
+    return {"value": number(array), "unit": unit} | spread
+
+
+def number(array: xr.DataArray) -> float | None:
+    """A number, None for NaN, which JSON does not have."""
+    value = float(array)
+    return value if math.isfinite(value) else None

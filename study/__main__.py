@@ -15,7 +15,7 @@ from importlib import import_module
 from pathlib import Path
 
 from .commands import ending
-from .commands.arguments import Parser, Version, add_engine, folder, part
+from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part
 from .commands.ending import INTERRUPTED
 from .terminal import empty_buffers, open_the_closed, say
 
@@ -72,6 +72,8 @@ def parser() -> argparse.ArgumentParser:
         sub = command("drawing", name, f"{text}; all: those that no long study is needed for", "NAME")
         sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
         sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
+        if name == "plot":
+            add_curves(sub)
     sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top

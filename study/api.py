@@ -167,6 +167,12 @@ class Study:
         again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)
 
+    def plot(self, x: str, y: str, hue: str = "", **where):
+        """A figure of the results, `y` against `x` with a curve for each `hue`: see `study.plot`."""
+        from .figures.lines import plot  # matplotlib takes a while
+
+        return plot(self.open(), x, y, hue, **where)
+
 
 def load(path, results="results") -> Study:
     """Read and check a study file. Raises StudyError with all that is wrong with it."""

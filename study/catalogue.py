@@ -1,13 +1,10 @@
 """All figures and tables by name: what each needs, whether it is up to date, and the files that it is written to."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib import import_module
-from importlib.resources import as_file, files
+from importlib.resources import files
 from pathlib import Path
 from pkgutil import iter_modules
 
-import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -16,6 +13,7 @@ import solver
 from . import evidence, figures, paper
 from .figures.formats import as_csv, as_latex, as_text, csv_text, write_text
 from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
+from .figures.style import style
 
 SCHEMES = ("fig01", "fig02")
 """Figures 1 and 2 of the paper: the contact and one asperity. They show no results, and are kept as drawings."""
@@ -65,13 +63,6 @@ def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
         figure = Figure(figsize=recipe.size, layout="constrained")
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
     return figure, columns, f"{name}, studies {' '.join(digests)}".removesuffix(", studies ")
-
-
-@contextmanager
-def style() -> Iterator[None]:
-    """Draw, and write, in the style of all figures."""
-    with as_file(files(figures) / "roughcoat.mplstyle") as sheet, matplotlib.style.context(sheet):
-        yield
 
 
 def draw(name: str, results="results", folder="figures") -> list[Path]:

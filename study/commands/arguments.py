@@ -40,6 +40,31 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
+def add_curves(sub: argparse.ArgumentParser) -> None:
+    """Options of `plot` that draw the results of any study, or any file of results, instead of a known figure."""
+    group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
+    group.add_argument("--x", metavar="QUANTITY", help="abscissa, such as P, or a")
+    group.add_argument("--y", metavar="QUANTITY", help="ordinate, such as p_max; also An, spots, p_peak, E_eff ...")
+    group.add_argument("--hue", metavar="AXIS", default="", help="a curve for each of its values, such as n, or label")
+    group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
+
+
+def assignment(text: str) -> tuple[str, float | str]:
+    """NAME=VALUE, the value as a number if it is one."""
+    name, _, value = (part.strip() for part in text.partition("="))
+    if not name or not value:
+        raise argparse.ArgumentTypeError(f'"{on_one_line(text, 60)}": must be NAME=VALUE')
+    return name, number_or_text(value)
+
+
+def number_or_text(value: str) -> float | str:
+    """A text that is a number as such."""
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
 def packaged() -> Path:
     """Folder of the studies that come with roughcoat: in the installed package, or beside it in a clone."""
     inside = PACKAGE / "studies"

@@ -12,6 +12,7 @@ from ..in_words import INPUTS, SHOWN, summary
 from ..scene import materials
 from ..spec.definition import StudyError
 from ..terminal import answer, on_one_line
+from .arguments import number_or_text
 
 MATERIALS = {"punch": ("E_punch", "nu_punch"), "layer": ("E1", "nu1"), "body": ("E2", "nu2")}
 """Who may be given as a material by its name, and which parameters that stands for."""
@@ -59,14 +60,6 @@ def of_material(who: str, name: str) -> dict[str, str]:
     known = materials.get(name)
     modulus, ratio = f"{known.E!r} ± {known.E_spread!r} Pa", f"{known.nu!r} ± {known.nu_spread!r}"
     return {E: modulus, nu: ratio if known.nu_spread else known.nu}
-
-
-def number_or_text(value: str) -> float | str:
-    """A text that is a number as such."""
-    try:
-        return float(value)
-    except ValueError:
-        return value
 
 
 def as_numbers(found: xr.Dataset) -> dict:

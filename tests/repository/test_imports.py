@@ -21,8 +21,8 @@ ROOMS = {
         *("contact", "scaling", "models", "solve"),
     ),
     "study": (
-        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work", "api"),
-        *("figures", "paper", "evidence"),
+        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),
+        *("figures", "api", "paper", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }

@@ -87,6 +87,13 @@ class Solution:
     p: np.ndarray
     lam: np.ndarray
 
+    def __repr__(self):
+        values, counts = np.unique(self.status, return_counts=True)
+        ended = ", ".join(
+            f"{n} {Status(v).name.lower()}" for v, n in zip(values.tolist(), counts.tolist(), strict=True)
+        )
+        return f"Solution({len(self.a)} cases: {ended or 'none'}; profiles at {self.p.shape[1]} radii)"
+
     @classmethod
     def empty(cls, size, points):
         """`size` cases without numbers, with profiles of `points` radii."""

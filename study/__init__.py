@@ -9,11 +9,12 @@
 from importlib import import_module
 
 _HOME = {
-    "solve": "api",
+    "solve": "solving",
     "load": "api",
     "Study": "api",
     "open_results": "files.results_file",
     "StudyError": "spec.definition",
+    "decode": "data.flags",
     "to_physical": "data.units",
     "from_physical": "data.units",
     "reduced_modulus": "data.units",

@@ -1,94 +1,25 @@
-"""The public functions: `solve` for a grid given in Python, `load` for a study file."""
+"""A study file, its results and what can be done with them: `load`."""
 
 import os
-import warnings
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
-from .data.dataset import labelled
 from .data.provenance import command_line
 from .files.access import Unusable
 from .files.examine import Condition
 from .files.results_file import open_lazily, open_results
-from .in_words import doubts
-from .physical.reading import read as read_scene
-from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
-from .spec.given import Draft
-from .spec.grid import LONGEST_AXIS
+from .spec.definition import Definition, StudyError, read
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, statuses
 from .store.tidy import clean
-from .work.cases import compute, parcel
 from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look, results_path
 from .work.run import dry_run, partial_dataset, run
 
-DIMENSIONLESS = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
 LAZY = 200_000_000  # bytes of a results file that is not read at once
-
-
-def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters) -> xr.Dataset:
-    """Solve the contact problem on a grid and return a labelled dataset.
-
-    Parameters
-    ----------
-    **parameters : exactly one of P, a, D, and any of h, n, m, nu1, nu2, bonding, base, Nbar, Ra, micro, B, beta,
-        scheme, k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see study.vocabulary), and
-        those of registered laws. Each a scalar, a 1-D sequence (which makes a dimension of that name, in the order
-        given) or a DataArray over dimensions of its own. `micro` may be a `solver.laws.Law` itself (docs/extending.md).
-        Or physical: R, E1, E2, E_punch (radius of the punch, Young's moduli of layer, body and punch; a punch without
-        is rigid), nu_punch (0.3), and the others as texts with units ("5 mm", "200 ± 10 GPa"), as quantities of pint,
-        or as DataArrays with an attribute `units`. n and m follow from the moduli. One without a unit is refused.
-    cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
-        which comes first
-    x : number of points r/a of the profiles, or the points, from 0 to 1
-    profiles : whether the dataset holds p and lam, or a list of those that it shall hold
-    title : of the dataset
-
-    Returns
-    -------
-    xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
-    is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
-    spreads: one standard deviation, to first order. `study.summary` says it in words. A warning tells of cases that
-    violate an assumption of the model.
-
-    Raises
-    ------
-    StudyError : a ValueError with every message, for input that cannot be used
-
-    Examples
-    --------
-    >>> import study
-    >>> found = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
-    >>> found.a.sel(P=2e-5).round(5).item()
-    0.02466
-    """
-    rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
-    draft = Draft()
-    draft.laws([given.get("micro") for given in (parameters, *rows)])
-    scene = read_scene(parameters, cases)
-    if scene:
-        parameters, cases = scene.parameters, None
-    if cases is not None:
-        draft.cases(cases)
-    for name, given in parameters.items():
-        _add(draft, name, given)
-    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
-    try:
-        definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
-    except StudyError as error:
-        raise StudyError([*error.messages, *([DIMENSIONLESS] if scene else [])]) from None
-    found = labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
-    if not scene:
-        return found
-    found = scene.dressed(found)
-    if doubts(found):
-        warnings.warn("\n".join(["this contact is beyond what the model describes:", *doubts(found)]), stacklevel=2)
-    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +28,10 @@ class Study:
 
     definition: Definition
     results: Path
+
+    def __repr__(self) -> str:
+        path = results_path(self.definition, self.results).as_posix()
+        return f'Study("{self.definition.name}", {self.definition.cases}, {path})'
 
     def run(self, **options) -> Report:
         """Compute what is missing and write the results file; options as of `study.work.plan.Order`."""
@@ -177,16 +112,3 @@ class Study:
 def load(path, results="results") -> Study:
     """Read and check a study file. Raises StudyError with all that is wrong with it."""
     return Study(read(os.path.expanduser(path)), Path(os.path.expanduser(results)))
-
-
-def _add(draft: Draft, name: str, given) -> None:
-    """Sort a parameter of `solve` by its form: DataArray, 1-D sequence, scalar."""
-    if isinstance(given, xr.DataArray):
-        draft.array(name, given)
-        return
-    if hasattr(given, "tolist"):  # numpy and pandas
-        given = given.tolist()
-    if isinstance(given, (list, tuple, range)):
-        draft.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless
-    else:
-        draft.scalar(name, given, "")

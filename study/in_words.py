@@ -14,7 +14,8 @@ MOST_CASES = 20  # that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: In a smooth contact the real pressure is the nominal one, and the real area all of it.
 _OF_ASPERITIES = ("p_max", "Ar_An")
-INPUTS = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "n", "m", "h", "bonding", "Nbar", "Ra")
+INPUTS = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "n", "m", "h", "bonding", "Nbar", "Ra", "B",
+          "beta")  # fmt: skip
 MODELS = {
     "half_space": "a half-space under the asperities",
     "smooth_half_space": "a half-space, without asperities",
@@ -100,6 +101,8 @@ def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
     value = case[name].values
     if name in ("Nbar", "Ra"):
         return rough
+    if name in ("B", "beta"):
+        return str(case["micro"].values) == "power_law"
     if name in ("E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
         return False
     if name in ("n", "m") and "E2" in case:
@@ -114,7 +117,9 @@ def _given(case: xr.Dataset, name: str) -> str:
     value = case[name].values[()]
     if isinstance(value, (str, np.str_)):
         return str(value)
-    return f"{name} = {_text(case, name, float(value), _spread(case, name))}"
+    text = f"{name} = {_text(case, name, float(value), _spread(case, name))}"
+    unit = " Ra/E1*^beta" if name == "B" else ""
+    return text + unit + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
 
 
 def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:

@@ -4,12 +4,12 @@ import json
 import math
 import warnings
 
-import numpy as np
 import xarray as xr
 
-from ..api import solve
+from ..data.flags import decode
 from ..in_words import INPUTS, SHOWN, summary
 from ..scene import materials
+from ..solving import solve
 from ..spec.definition import StudyError
 from ..terminal import answer, on_one_line
 from .arguments import number_or_text
@@ -66,12 +66,8 @@ def as_numbers(found: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
     shown = {name: described(found, name) for name in (*INPUTS, *SHOWN) if name in found}
     shown |= {name: number(found[name]) for name in ("error", "model_error")}
-    for name in ("status", "model_used"):
-        flags = found[name].attrs
-        values, words = np.atleast_1d(flags["flag_values"]).tolist(), flags["flag_meanings"].split()
-        shown[name] = dict(zip(values, words, strict=True)).get(int(found[name]), "none")
-    masks, words = found["validity"].attrs["flag_masks"], found["validity"].attrs["flag_meanings"].split()
-    shown["validity"] = [word for mask, word in zip(masks, words, strict=True) if int(found["validity"]) & int(mask)]
+    shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
+    shown["validity"] = decode(found["validity"]).item().split()
     return shown
 
 

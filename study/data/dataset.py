@@ -6,6 +6,7 @@ import xarray as xr
 from solver import Model, Status
 
 from ..spec.definition import Definition
+from ..spec.fitted import COMMENT
 from ..spec.grid import unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
@@ -39,6 +40,8 @@ def assembled(
     """Dataset of flat arrays: (B,) over the grid, (B, m) over the grid and the dimension `last` with its m points."""
     grid = definition.grid
     known = {name: attributes(name) for name in (*PARAMETERS, *names("coordinate"))}
+    for name in ("B", "beta") if grid.fitted else ():
+        known[name]["comment"] = COMMENT
     coordinates = {
         name: (dims, array, known.get(name, {})) for name, (dims, array) in (grid.values | grid.labels).items()
     }

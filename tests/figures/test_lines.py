@@ -161,7 +161,9 @@ def test_names_and_numbers_of_labels(found):
 
 
 def test_only_what_is_used_is_stated():
-    bare = study.solve(P=1e-5, h=0.02, n=0.5, B=0.1, beta=0.5, base="half_space", micro="smooth", x=2)
+    bare = study.solve(
+        P=1e-5, h=0.02, n=0.5, Nbar=250000, Ra=0.004, B=0.1, beta=0.5, base="half_space", micro="smooth", x=2
+    )
     assert stated([bare]) == ["$P/(E_2^*\\,R^2)$ = $10^{-5}$"]
     power = study.solve(P=1e-5, h=0.02, n=0.5, micro="power_law", Nbar=250000, Ra=0.004, B=0.1, beta=0.5)
     assert stated([power])[1:] == [

@@ -22,7 +22,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),
-        *("figures", "api", "paper", "evidence"),
+        *("solving", "figures", "api", "paper", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }
@@ -161,12 +161,21 @@ def test_public_names():
         study.sovle  # noqa: B018
 
 
-def test_solve_names_every_parameter():
+def test_solve_names_every_parameter_with_its_default_and_its_choices():
+    """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
+    from solver.parameters import PARAMETERS as OWN
+    from study.physical.names import SCENE
     from study.spec.vocabulary import PARAMETERS
 
-    listed = study.solve.__doc__.split("**parameters :")[1].split("all dimensionless")[0]
-    assert set(PARAMETERS) - set(re.findall(r"\w+", listed)) == set()
+    known = inspect.signature(study.solve).parameters
+    beside = {"cases", "x", "profiles", "title", "parameters"}
+    assert set(known) - beside == {*PARAMETERS, *SCENE}
     # getdoc: Python 3.13 takes the indentation of docstrings away
-    arguments = re.findall(r"^[*]{0,2}(\w+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
-    assert set(arguments) - {"StudyError"} == set(inspect.signature(study.solve).parameters)
+    lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
+    assert sorted(name for line in lines for name in line.split(", ")) == sorted([*known, "StudyError"])
+    for name in set(PARAMETERS) & set(OWN):  # E2 is a modulus here, with a unit
+        literal = re.search(r"Literal\[(.*?)\]", known[name].annotation)
+        assert known[name].default == OWN[name].default
+        choices = ast.literal_eval(f"({literal[1]},)") if literal else ()
+        assert sorted(choices) == sorted(OWN[name].choices), name

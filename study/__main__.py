@@ -11,11 +11,13 @@ import argparse
 import logging
 import os
 import sys
+from contextlib import suppress
+from functools import partial
 from importlib import import_module
 from pathlib import Path
 
 from .commands import ending
-from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part
+from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
 from .terminal import empty_buffers, open_the_closed, say
 
@@ -40,7 +42,8 @@ def parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(name.removesuffix("_"), help=text, description=text)
         sub.set_defaults(action=(module, name), items=[name])
         if items:
-            sub.add_argument("items", nargs="+", metavar=items)
+            given = sub.add_argument("items", nargs="+", metavar=items)
+            given.completer = partial(proposed, name)
         if name != "point":
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
@@ -83,7 +86,9 @@ def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
     kept = ""
     try:
-        options = parser().parse_args(arguments)
+        commands = parser()
+        complete(commands)
+        options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         kept = KEPT if options.command in ("run", "retry") else ""
@@ -100,6 +105,15 @@ def main(arguments=None) -> int:
     finally:
         empty_buffers()
     return code
+
+
+def complete(commands: argparse.ArgumentParser) -> None:
+    """Answer a shell that completes a command line, if argcomplete is installed (an extra), and end."""
+    if "_ARGCOMPLETE" in os.environ:
+        with suppress(ImportError):
+            import argcomplete
+
+            argcomplete.autocomplete(commands)
 
 
 def perform(options, kept: str) -> int:

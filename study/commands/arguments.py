@@ -85,11 +85,33 @@ def study_file(text: str) -> Path:
     for path in (given,) if by_path else (given, short, *ours):
         if path.exists():
             return path
-    folders = [given.parent, STUDIES] if by_path else [STUDIES, packaged()]
-    known = [path.as_posix() if by_path else path.stem for folder in folders for path in sorted(folder.glob("*.toml"))]
-    known = list(dict.fromkeys(known))
+    paths = [path.as_posix() for folder in (given.parent, STUDIES) for path in sorted(folder.glob("*.toml"))]
+    known = paths if by_path else known_studies()
     looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
     raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
+
+
+def proposed(command: str, prefix: str, **_) -> list[str]:
+    """What a shell may complete a word of a command to: names of studies, figures, tables, or of parameters."""
+    if command == "point":
+        from ..physical.names import SCENE
+        from ..spec.vocabulary import CONTROLS, names
+
+        known = [f"{name}=" for name in (*SCENE, *CONTROLS, *names("material", "roughness"), "punch", "layer", "body")]
+    elif command in ("plot", "table"):
+        from .. import catalogue
+
+        figures = [*catalogue.FIGURES, *catalogue.SCHEMES, *known_studies()]
+        known = ["all", *(figures if command == "plot" else catalogue.TABLES)]
+    else:
+        files = [*Path().glob("*.toml"), *STUDIES.glob("*.toml")]
+        known = [*known_studies(), *(path.as_posix() for path in sorted(files))]
+    return [name for name in known if name.startswith(prefix)]
+
+
+def known_studies() -> list[str]:
+    """Names of the studies in studies/, and of those that come with roughcoat."""
+    return list(dict.fromkeys(path.stem for where in (STUDIES, packaged()) for path in sorted(where.glob("*.toml"))))
 
 
 def folder(text: str) -> str:

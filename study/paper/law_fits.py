@@ -58,8 +58,9 @@ def bound(Ra: float, Nbar: float) -> str:
 
 @table(
     "table1",
-    caption="""Power law fitted to the additional displacement of a rough layer: the paper's constants, the error that
-    it states and the one that we find; our constants and their error.""",
+    caption="""Power law A = B p^beta fitted to the additional displacement of a rough layer: the paper's constants, the
+    error that it states and the one that we find; our constants and their error. B is in R/E1*^beta; the B of a study,
+    which is in Ra/E1*^beta, is this over Ra/R.""",
     columns=r"""
     Ra/R | g | $R_a/R$
     N R^2 | d | $\bar N R^2$

@@ -5,12 +5,14 @@ import subprocess
 import sys
 import tomllib
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from conftest import ROOT, STUDIES
 
 import study
 from study.__main__ import main
+from study.commands.arguments import proposed
 from study.work import cases
 from study.work import run as running
 
@@ -260,3 +262,19 @@ def test_answers_without_heavy_imports(arguments, code):
     environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
     done = subprocess.run([sys.executable, "-c", script, *arguments], env=environment, capture_output=True, text=True)
     assert done.returncode == code, done.stderr
+
+
+def test_a_shell_completes_names(monkeypatch):
+    assert proposed("run", "go") == ["good"] and proposed("run", "stu") == ["studies/good.toml"]
+    assert proposed("status", "main") == ["main_case"]
+    assert {"fig01", "fig03", "fig03_layered"} <= set(proposed("plot", "fig0"))
+    assert proposed("table", "table") == ["table1"]
+    assert proposed("point", "E") == ["E1=", "E2=", "E_punch="] and proposed("point", "pu") == ["punch="]
+    asked = []
+    fake = SimpleNamespace(autocomplete=lambda commands: asked.append(commands.prog))
+    monkeypatch.setitem(sys.modules, "argcomplete", fake)
+    assert main(["check", "good"]) == 0 and not asked
+    monkeypatch.setenv("_ARGCOMPLETE", "1")
+    assert main(["check", "good"]) == 0 and asked == ["python -m study"]
+    monkeypatch.setitem(sys.modules, "argcomplete", None)  # not installed
+    assert main(["check", "good"]) == 0

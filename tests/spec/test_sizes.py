@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import study
+from study import solving
 from study.spec import definition, grid, sample
 from study.spec.definition import from_tables
 
@@ -34,7 +35,7 @@ def test_a_call_that_is_absurdly_large_is_refused_before_it_computes(monkeypatch
     def parcel(*_):
         raise AssertionError("computed")
 
-    monkeypatch.setattr(study.solving, "parcel", parcel)
+    monkeypatch.setattr(solving, "parcel", parcel)
     loads, ratios = np.linspace(1e-6, 1e-4, 10_000), np.linspace(0.0, 0.4, 1_000)
     with pytest.raises(
         study.StudyError,
@@ -67,8 +68,8 @@ def test_just_allowed_and_just_refused():
 
 
 def test_longest_axis(monkeypatch):
-    assert grid.LONGEST_AXIS == study.solving.LONGEST_AXIS == sample.LIMITS["size"][1] == 1_000_000
-    for module in (grid, study.solving):
+    assert grid.LONGEST_AXIS == solving.LONGEST_AXIS == sample.LIMITS["size"][1] == 1_000_000
+    for module in (grid, solving):
         monkeypatch.setattr(module, "LONGEST_AXIS", 100)
     assert sized(100).grid.size == 100
     with pytest.raises(study.StudyError, match=r"P: num = 101: must be a whole number in \[2, 100\]"):

@@ -1,5 +1,6 @@
 """What quantities are called on axes, in legends and in the line that states the parameters of a figure."""
 
+import re
 from collections.abc import Iterable
 
 import numpy as np
@@ -65,7 +66,7 @@ def over_scale(text: str, powers: tuple[int, int]) -> str:
 def value_text(name: str, array: xr.DataArray, value) -> str:
     """A value with its name: "$h/R$ = 0.02", "$h$ = 2 µm"; a text as it is."""
     if isinstance(value, str):
-        return value.replace("_", " ")
+        return value.replace("_", " ") + " interface" * (name == "bonding")
     unit = array.attrs.get("units", "1")
     if unit in READABLE and unit != "1":
         return f"{symbol(name)} = {readable(float(value), unit)}"
@@ -99,6 +100,19 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
         array = next(dataset[name] for dataset in datasets if name in dataset)
         found.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
     return found
+
+
+def wrapped(texts: list[str], most: float) -> str:
+    """Texts joined by commas, in lines of about so many characters; the marks of mathtext are not counted."""
+    lines, length = [[]], 0
+    for text in texts:
+        shown = len(re.sub(r"\\(bar|mathrm|times|nu|beta)|[\\${}_^]", "", text)) + 2
+        if lines[-1] and length + shown > most:
+            lines.append([])
+            length = 0
+        lines[-1].append(text)
+        length += shown
+    return ",\n".join(", ".join(line) for line in lines)
 
 
 def _values(datasets: list[xr.Dataset], name: str) -> set:

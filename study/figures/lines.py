@@ -14,7 +14,7 @@ from ..data import derived
 from ..scene.quantities import quantity
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
-from .labels import axis_label, multiple, stated, value_text, written
+from .labels import axis_label, multiple, stated, value_text, wrapped, written
 from .registry import Columns
 from .style import style
 
@@ -186,7 +186,7 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, found[x]))
         axes.label_outer()
-    figure.suptitle(", ".join(stated([found])), fontsize=7, wrap=True)
+    figure.suptitle(wrapped(stated([found]), 21 * figure.get_figwidth()), fontsize=7)
     handles, title = [], ""
     if hue:
         every = -(-found.sizes[hue] // MOST_NAMES)

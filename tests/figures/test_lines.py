@@ -38,7 +38,7 @@ def shown(dataset, x, y, hue="", **where):
 def test_a_curve_for_each_hue_and_a_panel_for_each_of_the_rest(found):
     figure, columns = shown(found, "P", "p_max", "n")
     for axes, bonding in zip(figure.axes, AXES["bonding"], strict=True):
-        assert axes.get_title() == bonding
+        assert axes.get_title() == f"{bonding} interface"
         for (whole, valid), n in zip(np.reshape(lines(axes), (-1, 2)), AXES["n"], strict=True):
             case = found.sel(n=n, bonding=bonding)
             np.testing.assert_array_equal(whole.x, AXES["P"])
@@ -167,6 +167,6 @@ def test_only_what_is_used_is_stated():
     assert stated([bare]) == ["$P/(E_2^*\\,R^2)$ = $10^{-5}$"]
     power = study.solve(P=1e-5, h=0.02, n=0.5, micro="power_law", Nbar=250000, Ra=0.004, B=0.1, beta=0.5)
     assert stated([power])[1:] == [
-        "$h/R$ = 0.02", "$n$ = 0.5", "frictionless", "$\\bar N\\,R^2$ = 250000", "$R_a/R$ = 0.004",
+        "$h/R$ = 0.02", "$n$ = 0.5", "frictionless interface", "$\\bar N\\,R^2$ = 250000", "$R_a/R$ = 0.004",
         "$B$ = 0.1 $R_a/E_1^{*\\beta}$", "$\\beta$ = 0.5"
     ]  # fmt: skip

@@ -12,7 +12,7 @@ import xarray as xr
 
 from solver.laws import Law
 
-from .data.dataset import labelled, plainly_written
+from .data.dataset import labelled
 from .in_words import doubts
 from .physical.reading import read as read_scene
 from .spec.definition import LARGE, POINTS, StudyError, complete
@@ -162,8 +162,9 @@ solve.__signature__ = signature()
 
 def settings_apart(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with numerical settings that all cases share as attributes: they are no coordinates of a contact."""
-    shared = [name for name in NUMERICS if name in dataset.coords and not dataset[name].ndim]
-    return plainly_written(dataset.drop_vars(shared).assign_attrs({name: dataset[name].item() for name in shared}))
+    v = dataset.variables  # a DataArray of each would take longer
+    shared = {name: v[name].values.item() for name in NUMERICS if name in v and not v[name].ndim}
+    return dataset.drop_vars(list(shared)).assign_attrs(shared)
 
 
 def _add(draft: Draft, name: str, given) -> None:

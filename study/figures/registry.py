@@ -118,7 +118,7 @@ def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Da
 
 def command_of(study: str) -> str:
     """The command that makes the results of a study; the trade-off is measured, which no study file says."""
-    return study if study == "tradeoff" else f"run studies/{study}.toml"
+    return study if study == "tradeoff" else f"run {study}"
 
 
 def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:

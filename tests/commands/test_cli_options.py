@@ -137,7 +137,7 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     assert unknown.startswith('"fig91" is not known; ')
     study = "reference_load" if command == "table" else "spot_density"
     assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
-    assert missing[0].endswith(f"make it with: python -m study run studies/{study}.toml")
+    assert missing[0].endswith(f"make it with: python -m study run {study}")
 
 
 def test_run_computes_the_studies_that_are_needed_once_and_skips_what_is_up_to_date(monkeypatch, capsys):

@@ -168,7 +168,7 @@ def test_schemes_are_copies_with_every_letter_of_the_model(name, letters, tmp_pa
 def test_messages_of_plot(results, tmp_path):
     with pytest.raises(StudyError, match='"fig3" is not known; did you mean "fig03"?'):
         draw("fig3", results, tmp_path)
-    with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run studies/main_case.toml"):
+    with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run main_case"):
         draw("fig03", tmp_path, tmp_path)
 
 

@@ -51,6 +51,7 @@ def group(seed, number, share=1):
     case |= {"bonding": random.choice(BONDINGS, size), "accuracy": 10 ** random.uniform(-6, -0.3, size)}
     case |= {"nodes": random.choice([0, 0, 0, 0, 4, 17, 48], size), "model_check": random.choice(MODEL_CHECKS, size)}
     case |= {"m": np.where(random.random(size) < 0.5, 0.0, logarithmic(random, "m", size))}
+    case |= {"n": np.where(random.random(size) < 0.1, 0.0, case["n"])}
     scheme = "picard" if law != "smooth" and random.random() < PICARD else "newton"
     return case | {control: logarithmic(random, control, size), "base": base, "micro": law, "scheme": scheme}, control
 

@@ -149,14 +149,17 @@ def _bond(n, nu1, nu2):
 def _bonded_below(u, e, rest, bond):
     """Denominator 1 - (a + b + 4bu²)e + ab e² of L and its derivative."""
     a, b, one_a, one_b, _, _ = bond
-    soft = _one_minus(a, one_a, e, rest) * (1 - b * e) - 4 * b * u * u * e
-    d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)
     hard = b > 0  # then 1 - b e nearly vanishes at small u: written in 1 - a, 1 - b and s² - u²
-    if not np.any(hard):
-        return soft, d_soft
+    if not np.all(hard):
+        soft = _one_minus(a, one_a, e, rest) * (1 - b * e) - 4 * b * u * u * e
+        d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)
+        if not np.any(hard):
+            return soft, d_soft
     gap = _gap(u, e, rest)
     stiff = one_a * one_b + one_a * b * (rest - 4 * u * u * e) + a * one_b * rest + a * b * gap
     d_stiff = 2 * e * (one_a * b * (1 - 4 * u + 4 * u * u) + a * one_b) + a * b * _gap_slope(u, e, gap)
+    if np.all(hard):
+        return stiff, d_stiff
     return np.where(hard, stiff, soft), np.where(hard, d_stiff, d_soft)
 
 

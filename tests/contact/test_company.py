@@ -64,7 +64,7 @@ GOOD = MAIN | {"P": LOAD, "R": 1.0, "E2": 1.0, "rtol": 1e-6, "nu1": 0.3, "nu2": 
 OF_A_LAYER, OF_ASPERITIES, OF_POWER_LAWS = ("h", "n", "nu1", "nu2"), ("Nbar", "Ra"), ("B", "beta")
 #: A number that no case can have, of every parameter: (name, value).
 POISON = [(name, bad) for name in GOOD for bad in (np.nan, np.inf, -np.inf, -1.0, 0.0)
-          if (name, bad) not in (("nu1", 0.0), ("nu2", 0.0))]  # fmt: skip
+          if (name, bad) not in (("n", 0.0), ("nu1", 0.0), ("nu2", 0.0))]  # fmt: skip
 
 
 def used(name, base, law):

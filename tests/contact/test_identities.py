@@ -46,7 +46,7 @@ OUTSIDE = [
     {"beta": 1.0 + 1e-12}, {"beta": 0.0}, {"nodes": 3}, {"nodes": 257}, {"nu1": 0.5 + 1e-12}, {"nu1": -1.0},
     {"nu2": 0.5 + 1e-12}, {"nu2": -1.0}, {"k": -1e-12}, {"k": np.inf}, {"max_iterations": -1}, {"rtol": 1.0},
     {"rtol": 0.0}, {"base": "auto", "accuracy": 1.0}, {"base": "auto", "accuracy": 0.0}, {"P": np.inf}, {"h": np.inf},
-    {"R": np.inf}, {"E2": 0.0}, {"B": 0.0}, {"Nbar": np.inf}, {"Ra": 0.0}, {"n": 0.0},
+    {"R": np.inf}, {"E2": 0.0}, {"B": 0.0}, {"Nbar": np.inf}, {"Ra": 0.0}, {"n": 1e-10},
 ]  # fmt: skip
 
 

@@ -40,9 +40,9 @@ class Problem:
         Allowed relative model error of the base "auto".
     model_check : "closed_form" (default) or "first_order"
         How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
-    micro : "smooth", "disc_cell" (default) or "power_law"
-        No asperities, the exact law of Eqs (6) and (7), or A = B Ra (p/E1*)^beta (E2* without a layer); or the name of
-        a registered law, or such a :class:`~solver.laws.Law` itself.
+    micro : "smooth", "disc_cell" (default), "power_law", "square_lattice" or "hex_lattice"
+        No asperities, the law of Eqs (6) and (7), A = B Ra (p/E1*)^beta (E2* without a layer), or asperities on a
+        lattice; or the name of a registered law, or such a :class:`~solver.laws.Law` itself.
     B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
     scheme : "newton" (default) or "picard"

@@ -10,6 +10,7 @@ from .contact.error import finish
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
+from .models.range_of_law import outside_law
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
 from .scaling import as_cases, dimensionless, refused, restore, with_rigid_punch
@@ -78,6 +79,8 @@ def _solved(given, x, invalid):
         solution.put(index, solver(scaled.take(index), C[index], x))
     restore(solution, problem)
     _name_models(given, solution)
+    solution.refuse(outside_law(given, solution), Status.OUTSIDE_LAW)
+    getattr(solution, given.control)[:] = given.value
     return solution
 
 
@@ -150,3 +153,5 @@ def _name_models(problem, solution):
     solution.model_error[solved & named & (problem.base != "thin_layer")] = 0.0
     thin = np.flatnonzero(solved & (problem.base == "thin_layer") & (problem.model_check == "closed_form"))
     solution.model_error[thin] = closed_form(problem.take(thin), solution.a[thin])
+    for law in LAWS.values():
+        solution.model_error[named & (problem.micro == law.name)] += law.error

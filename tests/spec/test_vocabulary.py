@@ -107,7 +107,7 @@ WORDS = words("""
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
     "base": {"half_space", "thin_layer", "layered", "auto"},
-    "micro": {"smooth", "disc_cell", "power_law"},
+    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
 }
@@ -128,8 +128,7 @@ def test_only_names_of_words_and_flags_have_no_unit():
 def test_parameters_are_in_their_order():
     """In this order they are columns of an inventory, and coordinates of a file."""
     assert " ".join(PARAMETERS) == (
-        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta scheme k rtol accuracy model_check nodes "
-        "max_iterations"
+        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta scheme k rtol accuracy model_check nodes max_iterations"
     )
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
 

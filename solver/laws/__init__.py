@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from ..parameters import CONTROL, PARAMETERS
-from . import disc_cell, lattice, own_table, power_law, smooth
+from . import disc_cell, heights, lattice, own_table, power_law, smooth
 from .law import Bound, Curve, Law, Spots
 
 __all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "named", "register"]
@@ -102,6 +102,6 @@ def identity(name):
     return f"{name} {law.version}" if law and law.version else name
 
 
-BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX)
+BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW)
 #: Name -> Law.
 LAWS = _declare({law.name: law for law in BUILT_IN})

@@ -14,7 +14,7 @@ SCALE = {"R": 5e-3, "E2_star": 2e11}
 
 # Physical sizes, in the printed units, of dimensionless ones on a sphere of 5 mm on 200 GPa.
 FACTORS = {
-    **dict.fromkeys(("a", "D", "h", "Ra", "A0", "b0", "A_exact", "A_fit"), 5e3),  # µm
+    **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0", "A_exact", "A_fit"), 5e3),  # µm
     **dict.fromkeys(("p0", "p_max", "p", "p_mean", "p_peak", "E_eff"), 2e5),  # MPa
     "P": 5e6,  # N: 2e11 Pa (5e-3 m)²
     "Nbar": 0.04,  # mm⁻²: 1/(5 mm)²

@@ -11,11 +11,18 @@ WRITTEN := table1 paper_numbers validity extremes tradeoff tradeoff_cheapest tra
 # Kernels of OpenBLAS for `make kernels`: one that every x86-64 processor runs. On another, all that it runs:
 # make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
 KERNELS ?= Nehalem
+# What it runs: the tests of the rooms that compute, without files that take long because they make the same sums for more
+# cases, or start processes. All that import the solver: make kernels NUMERIC="$$(grep -l '^from solver' tests/*/test_*.py)"
+LONG := contact/test_extremes contact/test_robust contact/test_bounds contact/test_threads contact/test_fuzz_solver \
+  laws/test_cones models/test_auto
+COMPUTING := numerics laws body contact models
+NUMERIC ?= $(filter-out $(LONG:%=tests/%.py),$(wildcard $(COMPUTING:%=tests/%/test_*.py)))
 VENV := .venv
 READY := $(VENV)/.ready
 RUN := $(VENV)/bin/python -m study
-# As many processes as processors, but no more than pays; one that is done takes tests from another.
-PYTEST := $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
+# As many processes as processors, but no more than pays; one that is done takes tests from another. Compiled modules are
+# kept, whatever the environment says: tests start some hundred processes, of which each would compile them anew.
+PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
 TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test check kernels mutants \
   fuzz bench lint clean
@@ -57,13 +64,14 @@ test: $(READY) ## all tests
 
 # A sample of every room that is quick, against references where there are any: half a minute.
 CHECKED := numerics laws/test_micro.py body/test_kernel.py body/test_elastic_punch.py spec/test_grid.py spec/test_given.py \
-  spec/test_definition.py data contact/test_golden_numbers.py repository/test_imports.py repository/test_mutants.py
+  spec/test_definition.py spec/test_bad_files.py data contact/test_golden_numbers.py repository/test_imports.py \
+  repository/test_mutants.py
 check: $(READY) lint ## for the inner loop: ruff, and tests that take half a minute
 	$(PYTEST) $(CHECKED:%=tests/%)
 
-kernels: $(READY) ## the tests that import the solver, under the BLAS kernels of other processors
+kernels: $(READY) ## the tests of the rooms that compute, under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
-	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $$(grep -l '^from solver' tests/*/test_*.py) || exit 1; done
+	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $(NUMERIC) || exit 1; done
 
 mutants: $(READY) ## which of some 400 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md

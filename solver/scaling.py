@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .body.layered import Layer
+from .body import BODIES
 from .body.springs import local_compliance, thin_layer_coefficients
 from .contact.equation import Cases
 from .laws import LAWS
@@ -25,17 +25,13 @@ _UNITS = {
 
 
 def dimensionless(problem):
-    """The problem in units R = E2* = 1, and C (B,) of Eq. (3) in them: 0 without a layer."""
+    """The problem in units R = E2* = 1; n is 1 on the half-space alone."""
     R, E2 = problem.R, problem.E2
     value = _without_unit(problem.value, (1, 2) if problem.control == "P" else (0, 1), R, E2)
-    layered = problem.base != "half_space"
-    h, n = problem.h / R, np.where(layered, problem.n, 1.0)
-    springs = local_compliance(h, n, problem.nu1, problem.nu2, problem.bonding == "bonded")
-    C = np.where(problem.base == "thin_layer", springs, 0.0)
+    n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
     more = {name: _without_unit(v, PARAMETERS[name].powers, R, E2) for name, v in problem.more.items()}
     own = {name: _without_unit(getattr(problem, name), PARAMETERS[name].powers, R, E2) for name in ("Nbar", "Ra")}
-    one = np.ones(len(problem))
-    return replace(problem, value=value, h=h, n=n, R=one, E2=one, **own, more=more), C
+    return replace(problem, value=value, h=problem.h / R, n=n, R=one, E2=one, **own, more=more)
 
 
 def _without_unit(value, powers, R, E2):
@@ -76,27 +72,38 @@ def refused(problem, scaled):
     return scaled.invalid() | units[0] | units[1]
 
 
-def as_cases(part, C):
+def without_springs(scaled):
+    """(B,) bool: thin layers to which Eq. (3) does not apply, C <= 0."""
+    return (scaled.base == "thin_layer") & ~(local_compliance(*_layer(scaled)[:5]) > 0)
+
+
+def as_cases(part):
     """:class:`~solver.contact.equation.Cases` of one law on one base."""
+    body = BODIES[str(part.base[0])](*_layer(part))
+    return Cases(part.control, law_of(part), body, part.value)
+
+
+def law_of(part):
+    """The law of cases of one law, bound to their numbers."""
     law = LAWS[str(part.micro[0])]
-    law = law.bind(part.n / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
-    none = np.zeros(len(part))
-    layered = part.base[0] == "layered"
-    layer = Layer(part.h, part.n, part.nu1, part.nu2, part.bonding == "bonded", part.m) if layered else None
-    E = part.n / (1 + part.m) if layered else none + 1
-    return Cases(part.control, law, layer, part.value, E, C, reach=none, coarse=none > 0)
+    return law.bind(part.n / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
+
+
+def _layer(problem):
+    return problem.h, problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded", problem.m
 
 
 def restore(solution, problem, without=()):
-    """The end of every way to solve: back to the units of the problem, the controlled quantity exactly as given.
+    """The solution in the units of the problem: the end of every way to solve; the controlled quantity is as given.
 
     A case with a number that cannot be is not converged, nor is one with a number that its unit makes infinite.
     `without`: names of the numbers that this way to solve does not give.
     """
-    solution.refuse(solution.out_of_range(without), Status.DIVERGED)
+    solution = solution.refused(solution.out_of_range(without), Status.DIVERGED)
+    arrays = {}
     for name, (of_R, of_E2) in _UNITS.items():
-        array = getattr(solution, name)
-        factor = problem.R**of_R * problem.E2**of_E2
-        array *= factor.reshape(-1, *[1] * (array.ndim - 1))
-    solution.refuse(solution.not_finite(without), Status.DIVERGED)
-    getattr(solution, problem.control)[:] = problem.value
+        array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
+        arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
+    solution = replace(solution, **arrays)
+    solution = solution.refused(solution.not_finite(without), Status.DIVERGED)
+    return replace(solution, **{problem.control: problem.value * 1.0})

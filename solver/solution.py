@@ -11,6 +11,8 @@ from .status import Status
 _POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _NOT_NEGATIVE = ("A0", "residual", "error")
 _PROFILES = ("p", "lam")
+#: Types of what is counted or names something.
+_WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
 #: Shares of an area, and by how much the rounding of a sum over the nodes may carry them above 1.
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
@@ -88,16 +90,29 @@ class Solution:
     lam: np.ndarray
 
     @classmethod
-    def empty(cls, size, points):
-        """`size` cases without numbers, with profiles of `points` radii."""
-        values = {f.name: np.full(size, np.nan) for f in fields(cls)}
-        for name in ("status", "model_used"):
-            values[name] = np.zeros(size, dtype=np.int8)
-        for name in ("iterations", "nodes"):
-            values[name] = np.zeros(size, dtype=np.int32)
-        for name in ("p", "lam"):
-            values[name] = np.full((size, points), np.nan)
-        return cls(**values)
+    def of(cls, size, points, **values):
+        """`size` cases with profiles of `points` radii and the given arrays; what is not given is NaN, a count 0."""
+
+        def array(name):
+            shape = (size, points) if name in _PROFILES else (size,)
+            kind = _WHOLE.get(name, float)
+            return np.array(np.broadcast_to(values.get(name, np.nan if kind is float else 0), shape), dtype=kind)
+
+        return cls(**{f.name: array(f.name) for f in fields(cls)})
+
+    @classmethod
+    def join(cls, size, points, pieces):
+        """`size` cases with profiles of `points` radii from ``pieces`` (index, Solution); of two for one case the last
+        counts, and a case in none has no numbers."""
+        whole = vars(cls.of(size, points))
+        for index, piece in pieces:
+            for name, values in vars(piece).items():
+                whole[name][index] = values
+        return cls(**whole)
+
+    def take(self, index):
+        """The sub-batch at `index`."""
+        return Solution(**{name: values[index] for name, values in vars(self).items()})
 
     def not_finite(self, without=()):
         """(B,) bool: the case has an end that comes with numbers, and one of these is NaN or infinite.
@@ -125,19 +140,16 @@ class Solution:
         wrong += [ends[name][1] > 1 + _ROUNDING for name in _SHARES]
         return np.any(wrong, axis=0) & (self.status == Status.CONVERGED)
 
-    def refuse(self, mask, status):
-        """Take the numbers of the cases of `mask` (B,) away, in place, and say why."""
-        if mask.any():
-            for f in fields(self):
-                values = getattr(self, f.name)
-                if values.dtype == float:
-                    values[mask] = np.nan
-            self.status[mask] = status
-
-    def put(self, index, part):
-        """Write the values of the dict `part` (name -> array) into the cases `index`, in place."""
-        for name, value in part.items():
-            getattr(self, name)[index] = value
+    def refused(self, mask, status):
+        """The same without the numbers of the cases of `mask` (B,), whose status says why."""
+        if not mask.any():
+            return self
+        arrays = {name: np.array(values) for name, values in vars(self).items()}
+        for values in arrays.values():
+            if values.dtype == float:
+                values[mask] = np.nan
+        arrays["status"][mask] = status
+        return Solution(**arrays)
 
 
 def _ends(values):

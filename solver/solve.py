@@ -1,19 +1,20 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
 
+from .body import BODIES
 from .contact import adaptive, picard, smooth
-from .contact.equation import evaluate
-from .contact.error import finish
+from .contact.answer import answer
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
-from .models.range_of_law import outside_law
+from .models.range_of_law import refuse_outside
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
-from .scaling import as_cases, dimensionless, refused, restore, with_rigid_punch
+from .scaling import as_cases, dimensionless, refused, restore, with_rigid_punch, without_springs
 from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
@@ -59,8 +60,7 @@ def solve(problem, x=(0.0, 1.0)):
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    scaled, _ = dimensionless(problem)
-    return _solved(problem, x, refused(problem, scaled) | problem.without_scheme())
+    return _solved(problem, x, refused(problem, dimensionless(problem)) | problem.without_scheme())
 
 
 def _of_a_model(problem, x):
@@ -70,18 +70,15 @@ def _of_a_model(problem, x):
 
 def _solved(given, x, invalid):
     problem = with_rigid_punch(given)
-    scaled, C = dimensionless(problem)
-    solution = Solution.empty(len(problem), len(x))
-    solution.status[invalid] = Status.INVALID_INPUT
-    no_springs = ~invalid & (problem.base == "thin_layer") & ~(C > 0)
-    solution.status[no_springs] = Status.THIN_LAYER_NOT_APPLICABLE
+    scaled = dimensionless(problem)
+    no_springs = ~invalid & without_springs(scaled)
+    status = np.select([invalid, no_springs], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)
+    size = len(problem), len(x)
+    pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
     for index, solver in _routes(problem, ~(invalid | no_springs)):
-        solution.put(index, solver(scaled.take(index), C[index], x))
-    restore(solution, problem)
-    _name_models(given, solution)
-    solution.refuse(outside_law(given, solution), Status.OUTSIDE_LAW)
-    getattr(solution, given.control)[:] = given.value
-    return solution
+        pieces.append((index, solver(scaled.take(index), x)))
+    solution = _with_models(given, restore(Solution.join(*size, pieces), problem))
+    return refuse_outside(given, solution)
 
 
 def _routes(problem, solvable):
@@ -93,9 +90,9 @@ def _routes(problem, solvable):
     is_smooth, by_picard = ~problem.rough(), problem.scheme == "picard"
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
-    layered = problem.base == "layered"
-    for name, on_layered in product(LAWS, (False, True)):
-        of_law = solvable & (problem.micro == name) & (layered == on_layered) & (on_layered | ~is_smooth)
+    iterated = solvable & (~is_smooth | (problem.base == "layered"))
+    for law, body in product(LAWS, BODIES):
+        of_law = iterated & (problem.micro == law) & (problem.base == body)
         for limit in np.unique(problem.max_iterations[of_law]):
             chosen = of_law & (problem.max_iterations == limit)
             yield from _route(chosen & ~by_picard, _newton)
@@ -108,50 +105,46 @@ def _route(mask, solver):
         yield np.flatnonzero(mask), solver
 
 
-def _auto(part, C, x):
-    return vars(auto.cheapest(part, x, _of_a_model))
+def _auto(part, x):
+    return auto.cheapest(part, x, _of_a_model)
 
 
-def _judged(part, C, x):
-    return vars(judged(part, x, _of_a_model))
+def _judged(part, x):
+    return judged(part, x, _of_a_model)
 
 
-def _smooth_half_space(part, C, x):
+def _smooth_half_space(part, x):
     return smooth.half_space(part.control, part.value, x)
 
 
-def _smooth_layer(part, C, x):
-    return smooth.thin_layer(part.control, part.value, C, part.rtol, part.nodes, x)
+def _smooth_layer(part, x):
+    return smooth.thin_layer(part.control, part.value, as_cases(part).body.C, part.rtol, part.nodes, x)
 
 
-def _newton(part, C, x):
-    return adaptive.solve_newton(as_cases(part, C), part.rtol, part.nodes, int(part.max_iterations[0]), x)
+def _newton(part, x):
+    return adaptive.solve_newton(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
 
 
 def _picard_nodes(problem):
     return np.where(problem.nodes > 0, problem.nodes, start_nodes(problem.rtol))
 
 
-def _picard(part, C, x):
+def _picard(part, x):
     """Successive approximations on one mesh; their error is the distance to one Newton step on the next finer mesh."""
-    cases = as_cases(part, C)
-    n = int(_picard_nodes(part)[0])
-    grid = mesh(n)
-    with np.errstate(all="ignore"):
-        state, status, count = picard.solve(cases, grid, part.k, part.rtol, int(part.max_iterations[0]))
-        values, _ = finish(cases, grid, state, x, evaluate(cases, state, grid))
-    del values["tension"]  # asperities carry none
-    status[(status == Status.CONVERGED) & (values["error"] > part.rtol)] = Status.TOLERANCE_NOT_MET
-    return values | {"status": status.astype(np.int8), "iterations": count}
+    grid = mesh(int(_picard_nodes(part)[0]))
+    iterated, status = picard.solve(as_cases(part), grid, part.k, part.rtol, int(part.max_iterations[0]))
+    found = answer(iterated, x).solution
+    status = np.where(iterated.closed & (found.error > part.rtol), Status.TOLERANCE_NOT_MET, status)
+    return replace(found, status=status.astype(np.int8))
 
 
-def _name_models(problem, solution):
-    """`model_used` and `model_error` of the cases whose base was asked for by name, in place."""
-    named = problem.base != "auto"
-    solution.model_used[named] = auto.model_of(problem)[named]
-    solved = np.isfinite(solution.p0)
-    solution.model_error[solved & named & (problem.base != "thin_layer")] = 0.0
-    thin = np.flatnonzero(solved & (problem.base == "thin_layer") & (problem.model_check == "closed_form"))
-    solution.model_error[thin] = closed_form(problem.take(thin), solution.a[thin])
-    for law in LAWS.values():
-        solution.model_error[named & (problem.micro == law.name)] += law.error
+def _with_models(problem, solution):
+    """The solution with `model_used` and `model_error` of the cases whose base was asked for by name."""
+    named, thin = problem.base != "auto", problem.base == "thin_layer"
+    solved, error = np.isfinite(solution.p0), np.array(solution.model_error)
+    error[solved & named & ~thin] = 0.0
+    judged = np.flatnonzero(solved & thin & (problem.model_check == "closed_form"))
+    error[judged] = closed_form(problem.take(judged), solution.a[judged])
+    error += sum(law.error * (named & (problem.micro == name)) for name, law in LAWS.items())
+    used = np.where(named, auto.model_of(problem), solution.model_used)
+    return replace(solution, model_used=used, model_error=error)

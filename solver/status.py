@@ -31,7 +31,7 @@ _MEANINGS = {
     Status.THIN_LAYER_NOT_APPLICABLE: "the thin-layer equation does not apply (C <= 0 in Eq. (3)); no numbers",
     Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
     Status.LIFT_OFF: "the punch lifts off inside the contact, or the pressure is tensile there; no numbers",
-    Status.BUDGET_SPENT: "the work that one case may take is spent (contact/budget.py); last numbers, if any, kept",
+    Status.BUDGET_SPENT: "the work that one case may take is spent; last numbers, if any, kept",
     Status.OUTSIDE_LAW: "the nominal pressures are not in the range that the micro law knows; no numbers",
     Status.INVALID_INPUT: "a parameter is not finite or out of bounds, or a smooth case asks for picard; no numbers",
 }

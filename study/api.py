@@ -38,8 +38,9 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     ----------
     **parameters : exactly one of P, a, D, and any of h, n, m, nu1, nu2, bonding, base, Nbar, Ra, micro, B, beta,
         sigma, cut, scheme, k, rtol, accuracy, model_check, nodes, max_iterations, all dimensionless (see
-        study.vocabulary), and those of registered laws. Each a scalar, a 1-D sequence (which makes a dimension of that name, in the order
-        given) or a DataArray over dimensions of its own. `micro` may be a `solver.laws.Law` itself (docs/extending.md).
+        study.vocabulary), and those of registered laws. Each a scalar, a 1-D sequence (which makes a dimension of that
+        name, in the order given) or a DataArray over dimensions of its own. `micro` may be a `solver.laws.Law` itself
+        (docs/extending.md), or "table:" and the path of a CSV file.
         Or physical: R, E1, E2, E_punch (radius of the punch, Young's moduli of layer, body and punch; a punch without
         is rigid), nu_punch (0.3), and the others as texts with units ("5 mm", "200 ± 10 GPa"), as quantities of pint,
         or as DataArrays with an attribute `units`. n and m follow from the moduli. One without a unit is refused.

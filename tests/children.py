@@ -1,16 +1,19 @@
 """Runs of a study in processes of their own, which tests kill. What they compute is written down, block by block."""
 
 import importlib
+import io
 import multiprocessing
 import os
 import runpy
 import signal
+import subprocess
 import sys
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 PROCESSES = multiprocessing.get_context("forkserver")  # forks from a process that has imported everything
-PROCESSES.set_forkserver_preload(["study.api"])
+PROCESSES.set_forkserver_preload(["study.api", "distributed"])
 PATIENCE = 300  # seconds for what takes one or two: a busy machine makes a test slow, not red
 SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 
@@ -97,6 +100,30 @@ def _command(folder: Path, first: int, arguments, ignoring, stuck: bool, prepare
         prepared()
     sys.argv = ["study", *arguments]
     runpy.run_module("study", run_name="__main__", alter_sys=True)
+
+
+def run_forked(command: list[str], *, input: bytes, timeout: float, **_) -> SimpleNamespace:
+    """`subprocess.run` of `python -c STATEMENT` in a forked process, which has nothing to import any more; `stdout` is
+    what it has written, nothing if it broke down."""
+    ours, its = PROCESSES.Pipe(duplex=False)
+    process = started(_execute, command[-1], input, its)
+    its.close()
+    try:
+        if not ours.poll(timeout):
+            raise subprocess.TimeoutExpired(command, timeout)
+        return SimpleNamespace(stdout=ours.recv_bytes())
+    except EOFError:
+        return SimpleNamespace(stdout=b"")
+    finally:
+        process.kill()
+        process.join()
+        ours.close()
+
+
+def _execute(statement: str, given: bytes, answer) -> None:
+    sys.stdin, sys.stdout = io.TextIOWrapper(io.BytesIO(given)), io.TextIOWrapper(io.BytesIO())
+    exec(statement, {})
+    answer.send_bytes(sys.stdout.buffer.getvalue())
 
 
 def note(log: Path, line: str) -> None:

@@ -2,17 +2,26 @@
 
 import os
 import shutil
+import subprocess
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
+
+# Before numpy is imported. The processors are shared among processes of pytest; a second BLAS thread in each, which
+# waits for work at full speed, took 12 of the 16 s of tests/body/test_layered.py.
+os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")} | os.environ
 
 import pytest
+from children import run_forked
+from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws
 from study.spec.laws import learn
+from study.store.lock import held
 
 collect_ignore = ["hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]
@@ -41,14 +50,27 @@ def laws_as_they_were() -> Iterator[None]:
         learn()
 
 
+@pytest.fixture
+def read_in_a_fork(monkeypatch) -> None:
+    """Files without a whole seal are read in a forked process: one that is started takes 1.5 s to import what it needs.
+    That it does is left to tests/files/test_seal.py and some of tests/files/test_verified.py and test_unusable.py."""
+    monkeypatch.setattr("study.files.examine.subprocess", SimpleNamespace(**vars(subprocess) | {"run": run_forked}))
+
+
 @pytest.fixture(scope="session")
 def results(tmp_path_factory) -> Path:
-    """Folder with the results of every study, shrunken, and of the measurement of work and precision."""
-    folder = tmp_path_factory.mktemp("project") / "results"
-    if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutate.py: this mutant does not change them
-        shutil.copytree(os.environ["ROUGHCOAT_RESULTS"], folder)
-    else:
-        compute_results(folder)
+    """Folder with the results of every study, shrunken, and of the measurement of work and precision; nobody changes
+    them. The first process of pytest that asks computes them for all."""
+    alone = "PYTEST_XDIST_WORKER" not in os.environ
+    folder = (tmp_path_factory.getbasetemp() if alone else tmp_path_factory.getbasetemp().parent) / "project/results"
+    with held(folder.with_name("lock")):
+        if not folder.exists():
+            unfinished = folder.with_name("unfinished")
+            if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutate.py: this mutant does not change them
+                shutil.copytree(os.environ["ROUGHCOAT_RESULTS"], unfinished)
+            else:
+                compute_results(unfinished)
+            unfinished.rename(folder)
     return folder
 
 

@@ -1,8 +1,8 @@
 """Runs that do not end before a test has done its thing: the blocks of case HOLD_FROM (an environment variable) and of
 later ones are computed when the file HOLD_UNTIL exists. Who waits writes a line with its process id to HOLD_UNTIL.log.
 
-Importing this module makes it so, as the main module of a run, whose worker processes import it too, or as the
-`--preload` of a dask worker; `python hold.py ...` is `python -m study ...`.
+Importing this module makes it so, in a dask worker or as the main module of a run, whose worker processes import it
+too; `python hold.py ...` is `python -m study ...`.
 """
 
 import os
@@ -12,7 +12,7 @@ import time
 from study.work import cases, processes
 
 FROM, UNTIL = int(os.environ["HOLD_FROM"]), os.environ["HOLD_UNTIL"]
-cases.unheld = getattr(cases, "unheld", cases.compute)  # dask loads this file twice
+unheld = cases.compute
 
 
 def compute(wanted):
@@ -21,7 +21,7 @@ def compute(wanted):
             log.write(f"{os.getpid()}\n")
         while not os.path.exists(UNTIL):
             time.sleep(0.005)
-    return cases.unheld(wanted)
+    return unheld(wanted)
 
 
 cases.compute = compute

@@ -6,6 +6,8 @@ A1 + A2 u, Eq. (2), so that u = (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*
 
 import numpy as np
 
+from .half_space import HalfSpace
+
 
 def thin_layer_coefficients(n, nu1, nu2, bonded):
     """Coefficients A1 and A2 of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios.
@@ -48,3 +50,8 @@ def local_compliance(h, n, nu1, nu2, bonded):
     R."""
     _, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
     return 2 * A2 * h / n
+
+
+def thin_layer(h, n, nu1, nu2, bonded, m):
+    """The thin layer, Eq. (3): a half-space of E2* that carries springs, under a punch of m = E1*/E3*."""
+    return HalfSpace(n / (n + m), local_compliance(h, n, nu1, nu2, bonded))

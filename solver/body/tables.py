@@ -26,10 +26,11 @@ _ROWS = 250
 
 
 class Table(NamedTuple):
-    """Hankel transforms of one octave on one mesh: k (G,); J0(k x_i) - J0(k) and φ (G, n); J0(k) (G,).
+    """What makes the operator of L - 1 at the few nodes k (M,) of one octave on one mesh.
 
-    `nodes` are those (M,), or all, of which w (L - 1) makes the edge and the matrix: times `edge` (M, n) and `product`
-    (M, n²).
+    L - 1 (b, M) times `edge` (M, n) is the row of the edge, times `product` (M, n²), None if that is too large, the
+    matrix. At all nodes k (G,) of the quadrature: J = J0(k x_i) - J0(k) and φ (G, n); J_edge = J0(k) (G,); `spread`,
+    (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the quadrature, π/2 included.
 
     `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
     """
@@ -38,19 +39,23 @@ class Table(NamedTuple):
     J: np.ndarray
     phi: np.ndarray
     J_edge: np.ndarray
-    nodes: np.ndarray | slice
+    spread: np.ndarray
     edge: np.ndarray
     product: np.ndarray | None
     film: tuple | None
+
+    def weights(self, L1):
+        """(π/2) w (L - 1) (b, G) at all nodes of the quadrature from L - 1 (b, M) at the few."""
+        return L1 * self.spread if self.spread.ndim == 1 else L1 @ self.spread
 
 
 _tables = OrderedDict()
 _tables_lock = Lock()
 
 
-def table(grid, octave, depth, coarse=False):
+def table(grid, octave, stiffness):
     """The :class:`Table` of a mesh; the latest used, up to _MOST_BYTES, are kept."""
-    key = grid, octave, depth, coarse
+    key = grid, octave, stiffness
     with _tables_lock:
         if key in _tables:
             _tables.move_to_end(key)
@@ -68,21 +73,21 @@ def _size(found):
     return sum(getattr(part, "nbytes", 0) for part in (*found[:-1], *(found.film or ())))
 
 
-def _table(grid, octave, depth, coarse):
-    k, weight = quadrature(octave, depth, coarse)
-    n = grid.n
-    J_edge = j0(k)
+def _table(grid, octave, stiffness):
+    k, weight = quadrature(octave, stiffness)
+    J_edge, phi = j0(k), transform(grid, k)
     J = j0(k[:, None] * grid.x) - J_edge[:, None]
-    phi = transform(grid, k)
-    own, at_edge = few(octave, depth, coarse), J_edge[:, None] * phi
-    if own is None:
-        nodes, edge, product = slice(None), at_edge, None
-        if phi.size * n <= _KEEP:
-            product = (J[:, :, None] * phi[:, None, :]).reshape(len(k), n * n)
+    at_edge, product = J_edge[:, None] * phi, None
+    if octave != FILM:
+        spread = np.pi / 2 * few(octave, stiffness).spread
+        edge = spread @ at_edge
+        product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
     else:
-        nodes, spread = own.nodes, own.spread / weight[own.nodes, None]
-        edge, product = spread @ at_edge, np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
-    return Table(k, J, phi, J_edge, nodes, edge, product, _film_table(grid) if octave == FILM else None)
+        spread = np.pi / 2 * weight
+        edge = spread[:, None] * at_edge
+        if phi.size * grid.n <= _KEEP:
+            product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
+    return Table(k, J, phi, J_edge, spread, edge, product, _film_table(grid) if octave == FILM else None)
 
 
 @lru_cache(maxsize=4)
@@ -90,6 +95,12 @@ def _film_table(grid):
     near = felt(grid, grid.x)
     edge = film.convolution(grid, np.zeros(1), CUT).of(np.eye(len(film.waves()[1])))
     return near, film.convolution(grid, grid.s[near], CUT), edge[:, 0]
+
+
+@lru_cache(maxsize=8)
+def film_rows(grid, s_bytes):
+    """The :class:`film.Convolution` at points s between the nodes."""
+    return film.convolution(grid, np.frombuffer(s_bytes), CUT)
 
 
 def felt(grid, x):
@@ -134,14 +145,14 @@ def _angles(low, high, k, order):
     return (ends[:-1, None] + width[:, None] * t).ravel(), (width[:, None] * w).ravel()
 
 
-def between(grid, octave, depth, coarse, x):
+def between(grid, octave, stiffness, x):
     """J0(k x) - J0(k), (G, m)."""
-    key = grid, octave, depth, coarse, x.tobytes()
-    small = len(x) * len(quadrature(octave, depth, coarse)[0]) <= _KEEP_BETWEEN
+    key = grid, octave, stiffness, x.tobytes()
+    small = len(x) * len(quadrature(octave, stiffness)[0]) <= _KEEP_BETWEEN
     return (_between_kept if small else _between_kept.__wrapped__)(*key)
 
 
 @lru_cache(maxsize=256)
-def _between_kept(grid, octave, depth, coarse, x_bytes):
-    tab = table(grid, octave, depth, coarse)
+def _between_kept(grid, octave, stiffness, x_bytes):
+    tab = table(grid, octave, stiffness)
     return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]

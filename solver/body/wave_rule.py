@@ -2,10 +2,12 @@
 
 Its panels follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers
 n^(-1/3)/η and 1/(nη), η = h/a), so that it is as accurate for every h/a and n of the octave. L - 1 does not oscillate:
-of all soft layers, at all h/a of an octave, it lies within rounding in a space of some 55 dimensions.
+of all layers of a class of stiffness, at all h/a of an octave, what counts of it lies within rounding in a space of
+some 50 to 100 dimensions.
 """
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -18,50 +20,52 @@ OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
 _WIDEST = 200.0
+#: Largest n of each class of stiffness, and how many dyadic panels towards k = 0 its quadrature has. A stiff layer is a
+#: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: the first panel ends below 0.15/n.
+STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
+#: Number of few nodes of each class: at most so many are needed in any octave.
+_FEW = (52, 90, 104, 104)
 #: Random layers from whose L - 1 and u dL/du the few nodes are found, and what is left out of them, over the largest.
-_SAMPLES, _LEFT_OUT = 200, {False: 3e-16, True: 1e-11}
+_SAMPLES, _LEFT_OUT = 200, 3e-16
 
 
-class Rule(NamedTuple):
-    """Of the quadrature in k: nodes of a panel beside those its oscillation takes, factor of the root of its width,
-    fewest nodes of panels below and above u = 1/2, where u ends, at most and at octave 0; nodes less a digit of e^-2u.
-    """
-
-    more: int
-    root: float
-    least: tuple
-    end: tuple
-    less: float
+#: The rule on a panel of the width w between low and high, in u at octave 0: _MORE + w/2 + _ROOT w^(1/3) points, the
+#: fewest of _LEAST below and above u = 1/2, _LESS fewer a digit by which e^-2u has decayed there. With it the operator
+#: is right to rounding, to 1e-11 below h/a = 1/64 (tests/body/test_wave_rule.py).
+_MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
+#: Where the integral over u may end, at most and at octave 0: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1.
+_END, _END_MIDDLE = 17.0, 15.0
 
 
-#: To rounding (1e-11 below h/a = 1/64, where it ends), and to COARSE of the larger of L(0) and L(inf) with half the
-#: nodes (tests/body/test_wave_rule.py).
-_RULES = {False: Rule(9, 3.0, (11, 15), (17.0, 15.0), 0.8), True: Rule(4, 2.5, (8, 10), (15.0, 14.5), 1.0)}
-COARSE = 1e-9
-
-
-def _end(octave, coarse=False):
-    """Where the integral over u may end: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1, their product below the error."""
-    most, middle = _RULES[coarse].end
-    return min(most, middle + 0.7 * octave)
+def _end(octave):
+    """Where the integral over u ends: what lies beyond is below the error."""
+    return min(_END, _END_MIDDLE + 0.7 * octave)
 
 
 #: Largest k of the quadrature of films.
 CUT = _end(FILM) * 2.0**-FILM
 
 
-@lru_cache(maxsize=128)
-def quadrature(octave, depth, coarse=False):
-    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)], `depth` more dyadic panels towards k = 0."""
-    rule, scale, cut = _RULES[coarse], 2.0**-octave, _end(octave, coarse)
+def place_of(layer, a):
+    """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each."""
+    eta = layer.h / a
+    octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
+    stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)  # of a film, that of its quadrature's end
+    return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
+
+
+@lru_cache(maxsize=256)
+def quadrature(octave, stiffness):
+    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness."""
+    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness]
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
-    for low, high in zip(ends[:-1], ends[1:], strict=True):
+    for low, high in pairwise(ends):
         pieces = int(np.ceil((high - low) * scale / _WIDEST))
         width = (high - low) * scale / pieces
-        order = max(rule.least[int(high >= 0.5)], int(width / 2 + rule.root * np.cbrt(width)) + rule.more)
+        order = max(_LEAST[int(high >= 0.5)], int(width / 2 + _ROOT * np.cbrt(width)) + _MORE)
         decayed = 2 * (low - np.log1p(low)) / np.log(10)
-        t, w = gauss_legendre(max(7, order - int(rule.less * decayed)))
+        t, w = gauss_legendre(max(7, order - int(_LESS * decayed)))
         for piece in range(pieces):
             k.append(low * scale + (piece + t) * width)
             weight.append(width * w)
@@ -69,26 +73,27 @@ def quadrature(octave, depth, coarse=False):
 
 
 class Few(NamedTuple):
-    """Indices (M,) of nodes of a quadrature, and (M, G) what makes w (L - 1) at all nodes of L - 1 at those."""
+    """The few nodes k (M,) of a quadrature, M that of the class, and (M, G) what makes w (L - 1) at all its nodes of
+    L - 1 at those."""
 
-    nodes: np.ndarray
+    k: np.ndarray
     spread: np.ndarray
 
 
-@lru_cache(maxsize=64)
-def few(octave, depth, coarse):
-    """The :class:`Few` nodes for n <= 2, by interpolative decomposition of random samples; None for others.
+@lru_cache(maxsize=256)
+def few(octave, stiffness):
+    """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples.
 
-    What is left out of L - 1 is below 2e-14, on the coarse quadrature 3e-10 (tests/body/test_wave_rule.py). They
-    are chosen without BLAS: with its rounding on another worker the choice might be another.
+    What is left out is small beside the operator (tests/body/test_wave_rule.py): w (L - 1)/(1 + k²) is interpolated,
+    since J0 φ falls like 1/k². The nodes are chosen without BLAS: with its rounding on another worker the choice might
+    be another.
     """
-    if depth or octave == FILM:
-        return None
-    _, weight = quadrature(octave, depth, coarse)
-    rest, nodes, rows = _samples(octave, coarse), [], []
+    k, weight = quadrature(octave, stiffness)
+    scale = weight / (1 + k * k)
+    rest, nodes, rows = _samples(octave, stiffness, k, scale), [], []
     left = np.sum(rest**2, axis=0)
     most = left.max()
-    while left.max() > _LEFT_OUT[coarse] ** 2 * most:
+    while left.max() > _LEFT_OUT**2 * most and len(nodes) < _FEW[stiffness]:
         nodes.append(np.argmax(left))
         direction = rest[:, nodes[-1]] / np.sqrt(left[nodes[-1]])
         rows.append(np.einsum("i,ij->j", direction, rest))
@@ -96,14 +101,22 @@ def few(octave, depth, coarse):
         left = np.sum(rest**2, axis=0)
         left[nodes] = 0.0
     R = np.array(rows)
-    return Few(np.array(nodes), np.linalg.solve(np.triu(R[:, nodes]), R) * weight)
+    spread = np.linalg.solve(np.triu(R[:, nodes]), R) * (1 + k * k)
+    fill = _FEW[stiffness] - len(nodes)  # with nodes that do not count
+    return Few(np.pad(k[nodes], (0, fill), mode="edge"), np.pad(scale[nodes, None] * spread, ((0, fill), (0, 0))))
 
 
-def _samples(octave, coarse):
-    """L - 1 and u dL/du (2 _SAMPLES, G) of random layers with n <= 2 and h/a in an octave."""
+def _samples(octave, stiffness, k, scale):
+    """(L - 1) and u dL/du (2 _SAMPLES, G), times `scale`, of random layers of a class with h/a in an octave; over the
+    sum of the first, about the operator's size, where that is above 1."""
     random, size = np.random.default_rng(0), _SAMPLES
-    n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), 10 ** random.uniform(-4, 0, size))
-    eta, bonded = 2.0 ** (octave + random.random(size)), random.random(size) < 0.67
-    material = n, *random.uniform(0, 0.5, (2, size)), bonded
-    k, _ = quadrature(octave, 0, coarse)
-    return np.concatenate(decaying_part(k * eta[:, None], *(v[:, None] for v in material)))
+    of_n, of_eta = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
+    low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])
+    n = np.exp(low + (high - low) * of_n)
+    if stiffness == 0:
+        n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)
+    eta, bonded = 2.0 ** (octave + of_eta), random.random(size) < 0.67
+    nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
+    L1, uL = (scale * v for v in decaying_part(k * eta[:, None], *(v[:, None] for v in (n, *nu, bonded))))
+    whole = np.maximum(np.abs(L1).sum(axis=1), 1.0)
+    return np.concatenate([L1, uL]) / np.tile(whole, 2)[:, None]

@@ -1,133 +1,112 @@
-"""The batched Newton loop: finished cases leave it; and a second way in for those that do not finish."""
+"""The active-set loop of every iterative scheme, Newton's method with it, and a second way in where that fails."""
+
+from dataclasses import replace
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..body.layered import place_weights, take_weights
 from ..numerics.bracket import false_position
 from . import newton
-from .budget import newton_steps
-from .equation import State, control_residual, evaluate, groups, guess_radius, operate, smooth_start, softness
-from .error import error_floor
+from .equation import evaluate
+from .start import guess_radius, smooth_start
 
-#: Part of the operator's own error at which the iteration has closed.
-_CLOSING = 1e-2
-#: Residual from which one more step closes the iteration: they square.
-NEAR = 1e-8
-#: Rounding of the residual of a soft layer, times the softness of the layer. Its half-space and its layer terms are
-#: large and nearly cancel. Under three BLAS kernels, on 12 to 64 nodes, at most 18 eps were seen.
-_ROUNDING = 20 * np.finfo(float).eps
-#: Change of ln a over which the matrix of the exact layer is not formed anew: the iteration loses so much a step.
-_LAG = 1e-3
+#: Most Newton steps on a mesh of up to _NODES nodes, and the fewest; the finer the mesh, the longer a step takes. Of
+#: random cases within the bounds of the parameters, those that searched for their radius took 230 at most.
+_STEPS, _NODES, _FEWEST = 1000, 96, 60
 
 
-def iterate(cases, state, grid, limit=newton.LIMIT, near=0.0, known=None):
-    """Newton steps until the residual is below its tolerance; finished cases leave the batch.
+class Iterated(NamedTuple):
+    """Where an iteration has arrived (what its steps made), and whether it has closed and its steps: (B,) each."""
 
-    So do cases after the step from a residual below `near`, without another look. `known`: weights of the layer (list)
-    near the state, in place replaced by those where the cases left. Returns the state, closed (B,) bool and the number
-    of steps (B,).
+    at: Any
+    closed: np.ndarray
+    count: np.ndarray
+
+
+@np.errstate(all="ignore")  # what goes wrong is NaN, and `lost`
+def iterate(cases, start, step, limit):
+    """Repeat `step` on a batch; a case that has closed or is lost leaves it, the others go on: :class:`Iterated`.
+
+    Parameters
+    ----------
+    cases : Cases
+    start : the batch at its start, an :class:`.equation.Evaluation` or an :class:`.picard.Approximation`:
+        ``start.closed`` and ``start.lost`` (B,) bool; ``start.take(index)`` a sub-batch; ``start.join(cases, parts,
+        places)`` the batch of sub-batches at their places.
+    step : callable
+        ``step(now) -> next``.
+    limit : int
+        Most steps.
     """
-    size = len(state.eta)
-    y, eta = np.empty_like(state.y), np.empty_like(state.eta)
-    closed, count = np.zeros(size, bool), np.zeros(size, int)
-    active, last, left, weights = np.arange(size), np.zeros(size, bool), [], known or []
-    tolerance, lagged = _tolerance(cases, state, grid) * np.ones(size), None
-    for step in range(limit + 1):
-        y[active], eta[active], count[active] = state.y, state.eta, step
-        if last.any():
-            closed[active[last]] = True
-            left += place_weights(take_weights(weights, np.flatnonzero(last)), active[last])
-            keep = np.flatnonzero(~last)
-            if not len(keep):
+    size = len(cases.value)
+    closed, count, active = np.zeros(size, bool), np.zeros(size, int), np.arange(size)
+    now, parts, places = start, [], []
+    for done in range(limit + 1):
+        count[active], closed[active] = done, now.closed
+        leaves = closed[active] | now.lost | (done == limit)
+        if leaves.any():
+            parts.append(now if leaves.all() else now.take(np.flatnonzero(leaves)))
+            places.append(active[leaves])
+            active = active[~leaves]
+            if not len(active):
                 break
-            active, cases, state = active[keep], cases.take(keep), state.take(keep)
-            weights, lagged = take_weights(weights, keep), _take(lagged, keep)
-        ev = evaluate(cases, state, grid, weights)
-        residual = ev.residual
-        done = residual < tolerance[active]
-        closed[active[done]] = True
-        go = ~done & np.isfinite(residual)
-        keep = np.flatnonzero(go)
-        if len(keep) < len(active):
-            left += place_weights(take_weights(ev.base.weights, np.flatnonzero(~go)), active[~go])
-        if step == limit or not len(keep):
-            break
-        if len(keep) < len(active):
-            active, cases, state, ev = active[keep], cases.take(keep), state.take(keep), ev.take(keep)
-            lagged = _take(lagged, keep)
-        last, weights = residual[keep] < near, ev.base.weights
-        lagged = _matrix(lagged, ev, state.eta, grid)
-        state, _ = newton.advance(cases, state, ev, grid, lagged and lagged[0])
-    if known is not None:
-        known[:] = left
-    return State(y, eta), closed, count
+            now = now.take(np.flatnonzero(~leaves))
+        now = step(now)
+    return Iterated(parts[0] if len(parts) == 1 else start.join(cases, parts, places), closed, count)
 
 
-def _matrix(lagged, ev, eta, grid):
-    """Matrix (B, n, n) of the operator of the exact layer, and the η (B,) it is of: the one at hand, formed anew where
-    η has moved on. None for other bases."""
-    if not ev.base.weights:
-        return None
-    if lagged is None:
-        return ev.base.matrix(grid), eta.copy()
-    K, at = lagged
-    moved = np.flatnonzero(np.abs(eta - at) > _LAG)
-    if len(moved):
-        K[moved], at[moved] = ev.base.take(moved).matrix(grid), eta[moved]
-    return K, at
+def newton_steps(nodes):
+    """Most Newton steps (...) of a case on a mesh of `nodes` (...): its budget there."""
+    share = np.minimum(1.0, (_NODES / np.maximum(nodes, 1)) ** 2)
+    return np.maximum(_FEWEST, (_STEPS * share).astype(int))
 
 
-def _take(lagged, index):
-    """The sub-batch at `index` of what :func:`_matrix` returns."""
-    return lagged and (np.take(lagged[0].transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1), lagged[1][index])
+def solve_on(start, limit=0):
+    """:class:`Iterated` of Newton's method from the equation at its `start`, by the radius where that fails.
+
+    limit : most steps; 0: those of the method.
+    """
+    cases, grid = start.cases, start.mesh
+    found = _newton(start, min(limit, newton_steps(grid.n)) or newton.LIMIT)
+    failed = np.flatnonzero(~found.closed)
+    if limit or not len(failed):
+        return found
+    again, rest = _by_radius(cases.take(failed), grid), np.flatnonzero(found.closed)
+    parts, places = ([found.at.take(rest)], [rest]) if len(rest) else ([], [])
+    at = again.at.join(cases, [*parts, again.at], [*places, failed])
+    closed, count = found.closed.copy(), found.count.copy()
+    closed[failed] = again.closed
+    count[failed] += again.count
+    return Iterated(at, closed, count)
 
 
-def settle(cases, grid, state, closed, count, known):
-    """:class:`Evaluation` of states that :func:`iterate` left; those that had not closed after all go on, in place."""
-    ev = evaluate(cases, state, grid, known)
-    again = np.flatnonzero(closed & ~(ev.residual < _tolerance(cases, state, grid)))
-    if not len(again):
-        return ev
-    found, closed[again], steps = iterate(cases.take(again), state.take(again), grid)
-    state.y[again], state.eta[again] = found
-    count[again] += steps
-    return evaluate(cases, state, grid, ev.base.weights)
+def _newton(start, limit=newton.LIMIT):
+    return iterate(start.cases, start, newton.step, limit)
 
 
-def _tolerance(cases, state, grid):
-    """Residual (B,) below which an iteration has closed: no less than rounding leaves of it."""
-    a = np.exp(state.eta)
-    floor = np.maximum(_CLOSING * error_floor(cases, a, grid.n, closing=True), _ROUNDING / softness(cases, a))
-    return np.maximum(newton.TOLERANCE, floor)
-
-
-def rescue(cases, grid, state, closed, count):
-    """Second attempt at cases that did not close, in place: search the radius, start each from the smooth contact.
+def _by_radius(cases, grid):
+    """:class:`Iterated` of cases by a search for their radius; at each the iteration starts from the smooth contact.
 
     The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
     """
-    failed = np.flatnonzero(~closed)
-    part = cases.take(failed)
+    spent = np.zeros(len(cases.value), int)
 
     def at_radius(eta, index):
-        fixed = part.take(index)._replace(control="a", value=np.exp(eta))
-        found, done, steps = iterate(fixed, smooth_start(fixed, grid), grid)
-        count[failed[index]] += steps
-        return found, done
+        fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
+        found = _newton(evaluate(fixed, smooth_start(fixed, grid), grid))
+        spent[index] += found.count
+        return found
 
     def control_at(eta, index):
-        found, closed = at_radius(eta, index)
-        here = part.take(index)
-        q = here.law.evaluate(found.y).q
-        edge_q = operate(here, eta, q, grid).edge_q
-        closed &= count[failed[index]] < newton_steps(grid.n)  # else its budget is spent
-        return np.where(closed, control_residual(here, eta, groups(here, eta)[0], q, edge_q, grid), np.nan)
+        found = at_radius(eta, index)
+        known = found.closed & (spent[index] < newton_steps(grid.n))  # else its budget is spent
+        return np.where(known, replace(found.at, cases=cases.take(index)).G, np.nan)
 
-    eta = np.log(guess_radius(part))
+    eta = np.log(guess_radius(cases))
     if cases.control != "a":
         eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
-    found, done = at_radius(eta, np.arange(len(failed)))
-    if cases.control != "a":
-        found, done, steps = iterate(part, found, grid)
-        count[failed] += steps
-    state.y[failed], state.eta[failed], closed[failed] = found.y, found.eta, done
+    found = at_radius(eta, np.arange(len(eta)))
+    if cases.control == "a":
+        return Iterated(replace(found.at, cases=cases), found.closed, spent)
+    found = _newton(replace(found.at, cases=cases))
+    return Iterated(found.at, found.closed, spent + found.count)

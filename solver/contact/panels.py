@@ -1,20 +1,20 @@
 """Cases that one polynomial does not resolve: polynomials on panels, chosen for each case by how its solution varies.
 
 Where the asperities saturate, A → B̄²/(3Ra), inside a contact, the pressure has a corner at s² = Z/3, as wide as the
-base is stiff; a stiff or thin base adds an edge layer. Both are found by the coefficients of the pressure and of the
+body is stiff; a stiff or thin body adds an edge layer. Both are found by the coefficients of the pressure and of the
 contact area on each panel, and enclosed by halving.
 """
 
+from itertools import pairwise
+
 import numpy as np
 
-from ..body.layered import octave_of
-from ..body.springs import local_compliance
-from ..body.wave_rule import FILM
 from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
-from .budget import panel_work
-from .equation import State, evaluate, first_guess, guess_radius
+from .driver import solve_on
+from .equation import State, evaluate
 from .results import interpolate
+from .start import first_guess, guess_radius
 
 #: Panels to begin with, nodes on each, and the narrowest panel as a power of 1/2.
 START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
@@ -22,88 +22,74 @@ ORDER = 12
 DEPTH = 30
 #: More panels than this are not made: the operator is not accurate enough to tell more.
 _MOST = 32
-#: Films thinner than this times the radius start from the thin layer.
-_THIN = 0.02
 #: Tolerances of the rounds of solving and halving: a coarse solution cannot tell where a fine one is not resolved.
-_GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13, 1e-13)
+_GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 #: A panel is resolved when what its last coefficients add to the load and the real area is below this times rtol.
 _SHARE = 0.3
 #: ... or, for the smallest rtol, below this: the operator has an error too.
 _FLOOR = 1e-12
+#: Sum of (nodes)² over the meshes of panels of a case: entries of operators that are made for it alone. It limits the
+#: work that one case may take, counted in what is done and not in seconds: it is the same on every machine. Nearly all
+#: cases need a hundredth of it.
+BUDGET = 1_500_000
 
 
-def solve_on_panels(case, rtol, iterate, budget):
+def solve_on_panels(case, rtol, budget):
     """Solve one case (a batch of one) on panels that resolve it, or as far as the budget goes.
 
-    iterate(case, state, grid) -> state, closed (1,), count (1,).
-
-    Returns
-    -------
-    grid, state, closed, count, work (more than the budget: it was spent before all was resolved)
+    Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before all was resolved.
     """
-    breaks, state, total, work = START, None, 0, 0.0
-    if case.layer is not None and case.layer.h[0] < _THIN * guess_radius(case)[0]:
-        alike = _on_thin_layer(case)
-        if alike.C[0] > 0:  # nearly the same solution, far cheaper
-            grid, found, closed, total, work = solve_on_panels(alike, rtol, iterate, budget)
-            if closed[0]:
-                breaks, state = grid.breaks, found
-    goals = np.maximum(rtol, _GOALS)
-    film = case.layer is not None and octave_of(case.layer, guess_radius(case))[0][0] == FILM
-    for i, goal in enumerate(goals):
-        grid = panel_mesh(ORDER, breaks)
-        state, closed, count = iterate(case, state or first_guess(case, grid), grid)
-        total += count
-        ev = evaluate(case, state, grid)
-        if not np.isfinite(ev.residual[0]) or i == len(goals) - 1:
+    grid, start, count, work = panel_mesh(ORDER, START), None, 0, 0
+    alike = case.body.alike(guess_radius(case))
+    if alike is not None:  # nearly the same solution, far cheaper
+        found, work = solve_on_panels(case._replace(body=alike), rtol, budget)
+        count = found.count
+        if found.closed[0]:
+            grid, start = found.at.mesh, found.at.state
+    found = solve_on(evaluate(case, start or first_guess(case, grid), grid))
+    least = max(rtol, case.body.error(guess_radius(case), ORDER)[0])  # panels do not take the operator's own error away
+    for goal in np.maximum(least, _GOALS):
+        count, found = count + found.count, found._replace(count=0 * found.count)
+        if found.at.lost[0]:
             break
-        better = resolve(case, ev, state, grid, goal)
-        if better == breaks:
-            if goal == rtol:
-                break
+        breaks = resolve(found.at, goal)
+        if breaks == grid.breaks:
             continue
-        work += panel_work(ORDER * (len(better) - 1), film)
+        grid = panel_mesh(ORDER, breaks)
+        work += grid.n**2
         if work > budget:
             break
-        nodes = on_panels(radau_nodes(ORDER), better)
-        state, breaks = State(interpolate(case, ev, grid, nodes), state.eta), better
-    return grid, state, closed, total, work
+        start = State(interpolate(found.at, grid.s), found.at.state.eta)
+        found = solve_on(evaluate(case, start, grid, found.at.operator))
+    return found._replace(count=count + found.count), work
 
 
-def _on_thin_layer(case):
-    """The case with the thin layer in place of the exact one."""
-    layer = case.layer
-    springs = local_compliance(layer.h, *layer.material)
-    return case._replace(layer=None, E=layer.n / (layer.n + layer.m), C=springs)
-
-
-def resolve(case, ev, state, grid, rtol):
-    """Ends of panels (tuple) that resolve q and λ of a solution; those of `grid` where it is resolved."""
-    q = ev.curve.q[0]
-    lam = case.law.area(state.y, q[None])[0]
-    scale = np.array([q @ grid.w, lam @ grid.w]) * max(_SHARE * rtol, _FLOOR)
-    inside = {}  # panel -> values of q and λ at its nodes
-    for i, panel in enumerate(zip(grid.breaks[:-1], grid.breaks[1:], strict=True)):
-        part = slice(i * grid.order, (i + 1) * grid.order)
-        inside[panel] = np.stack([q[part], lam[part]])
-    ends, todo, room = {1.0}, list(inside), _MOST - len(inside)
-    while todo:
+def resolve(ev, rtol):
+    """Ends of panels (tuple) that resolve q and λ of a solution; those of its mesh where it is resolved."""
+    grid, q, law = ev.mesh, ev.curve.q, ev.cases.law
+    values = np.concatenate([q, law.area(ev.state.y, q)])
+    scale = values @ grid.w * max(_SHARE * rtol, _FLOOR)
+    inside = dict(zip(pairwise(grid.breaks), np.split(values, len(grid.breaks) - 1, axis=1), strict=True))
+    ends, room = {1.0}, _MOST - len(inside)
+    while inside:  # panel -> values of q and λ at its nodes
         halves = []
-        for low, high in todo:
-            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(inside[low, high]) * (high**2 - low**2) > scale):
+        for (low, high), own in inside.items():
+            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(own) * (high**2 - low**2) > scale):
                 middle = (low + high) / 2
                 halves += [(low, middle), (middle, high)]
                 room -= 1
             else:
                 ends.add(low)
-        if halves:
-            nodes = np.concatenate([low + (high - low) * radau_nodes(ORDER) for low, high in halves])
-            y = interpolate(case, ev, grid, nodes)
-            q_new = case.law.evaluate(y).q
-            values = np.stack([q_new[0], case.law.area(y, q_new)[0]])
-            inside = dict(zip(halves, np.split(values, len(halves), axis=1), strict=True))
-        todo = halves
+        inside = dict(zip(halves, _between(ev, halves), strict=True)) if halves else {}
     return tuple(sorted(ends))
+
+
+def _between(ev, panels):
+    """Values (2, ORDER) of q and λ at the nodes of each of some panels, which the mesh does not have."""
+    law = ev.cases.law
+    y = interpolate(ev, np.concatenate([on_panels(radau_nodes(ORDER), panel) for panel in panels]))
+    q = law.evaluate(y).q
+    return np.split(np.concatenate([q, law.area(y, q)]), len(panels), axis=1)
 
 
 def _tail(values):

@@ -5,29 +5,46 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .equation import displacement_between
-
-
-def quantities(cases, state, curve, X, edge_q, mesh):
-    """a, P, D, p0, A0, p_max, Ar_An as a dict of (B,) arrays in units R = E2* = 1.
-
-    curve: the law at `state`; X, edge_q (B,): the group and the displacement of the edge there. D is taken from Eq.
-    (3) at r = a, where p = 0; it equals Eq. (14) and needs p at no point.
-    """
-    law, y, q, a = cases.law, state.y, curve.q, np.exp(state.eta)
-    return {
-        "a": a,
-        "P": 2 * np.pi * a**2 * law.p_star * (q @ mesh.w),  # (5)
-        "D": a**2 / 2 * (1 + X * edge_q),  # (14)
-        "p0": law.p_star * q[:, -1],
-        "A0": law.A_star * curve.g[:, -1],
-        "p_max": law.peak(y[:, -1:], q[:, -1:])[:, 0],  # (13)
-        "Ar_An": 2 * (law.area(y, q) @ mesh.w),  # (12)
-    }
-
-
 #: Newton steps between the nodes; a few do but near full contact.
 _STEPS = 40
+
+
+class Quantities(NamedTuple):
+    """Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`."""
+
+    a: np.ndarray
+    P: np.ndarray
+    D: np.ndarray
+    p0: np.ndarray
+    p_max: np.ndarray
+    Ar_An: np.ndarray
+    A0: np.ndarray
+
+
+#: Those whose largest relative error is the error of a case.
+JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
+
+
+def quantities(ev):
+    """:class:`Quantities` of an :class:`~solver.contact.equation.Evaluation`.
+
+    D is taken from Eq. (3) at r = a, where p = 0; it equals Eq. (14) and needs p at no point.
+    """
+    law, y, q, a, w = ev.cases.law, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
+    return Quantities(
+        a=a,
+        P=2 * np.pi * a**2 * law.p_star * (q @ w),  # (5)
+        D=a**2 / 2 * (1 + ev.X[:, 0] * ev.edge_q),  # (14)
+        p0=law.p_star * q[:, -1],
+        p_max=law.peak(y[:, -1:], q[:, -1:])[:, 0],  # (13)
+        Ar_An=2 * (law.area(y, q) @ w),  # (12)
+        A0=law.A_star * ev.curve.g[:, -1],
+    )
+
+
+def difference(first, second):
+    """Largest relative difference (B,) of two :class:`Quantities`, over those that are judged."""
+    return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in JUDGED], axis=0)
 
 
 class Between(NamedTuple):
@@ -57,7 +74,7 @@ def _stiffness_between(mesh, s):
     return np.pi / (2 * mesh.order) * s * np.sqrt(np.maximum(spread, 0.0) / (1 + s))
 
 
-def interpolate(cases, ev, mesh, s, tolerance=1e-13, rows=slice(None)):
+def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh.
 
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
@@ -66,10 +83,9 @@ def interpolate(cases, ev, mesh, s, tolerance=1e-13, rows=slice(None)):
     nothing it is q_L. Newton, from a two-term guess times what it misses at the nodes, until the next step would be
     below the relative `tolerance`. Of the cases `rows` alone, if given.
     """
-    between = _between(mesh, np.ascontiguousarray(s, dtype=float).tobytes())
-    x = np.sqrt((1 - between.s) * (1 + between.s))
-    Kq = displacement_between(ev, between.H, x, mesh)[rows]
-    X, Y, Z, law = ev.X[rows], ev.Y[rows], ev.Z[rows], cases.law.take(rows)
+    between = _between(ev.mesh, np.ascontiguousarray(s, dtype=float).tobytes())
+    Kq = ev.operator.between(ev.curve.q, between.s, ev.curve.q @ between.H.T)[rows]
+    X, Y, Z, law = ev.X[rows], ev.Y[rows], ev.Z[rows], ev.cases.law.take(rows)
     q, g = ev.curve.q[rows], ev.curve.g[rows]
     stiff = X * between.kappa
     q_L = q @ between.L.T
@@ -81,7 +97,7 @@ def interpolate(cases, ev, mesh, s, tolerance=1e-13, rows=slice(None)):
     def guess(linear, right):
         return law.guess(1 / (linear / right + 1 / law.sparse(right / Z)))
 
-    missed = np.nan_to_num(ev.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
+    missed = np.nan_to_num(ev.state.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
     missed = np.clip(missed, 0.5, 2.0) @ between.L.T
     y = guess(linear, right) * np.clip(missed, 0.7, 1.4)
     active = np.arange(len(y))
@@ -97,15 +113,13 @@ def interpolate(cases, ev, mesh, s, tolerance=1e-13, rows=slice(None)):
     return y
 
 
-def profiles(cases, ev, mesh, x, rows=slice(None)):
-    """p (b, m) in E2* and λ (b, m) of the cases `rows` at the radii x (m,) from the solution on a mesh; 0 at the
-    edge."""
+def profiles(ev, x, rows):
+    """p (b, m) in E2* and λ (b, m) of the cases `rows` (b,) at the radii x (m,); 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
-    inner = s > 0
-    y = interpolate(cases, ev, mesh, s[inner], rows=rows)
-    law = cases.law.take(rows)
+    inner, law = s > 0, ev.cases.law.take(rows)
+    y = interpolate(ev, s[inner], rows=rows)
     q = law.evaluate(y).q
-    p, lam = np.zeros((len(q), len(s))), np.zeros((len(q), len(s)))
+    p, lam = np.zeros((2, len(q), len(s)))
     p[:, inner] = law.p_star[:, None] * q
     lam[:, inner] = law.area(y, q)
     return p, lam

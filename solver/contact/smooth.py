@@ -6,6 +6,7 @@ are sums of n fractions of t. (κ is real and positive, the condition of V below
 here: sums over the nodes then run along whole rows.
 """
 
+from dataclasses import replace
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -14,6 +15,7 @@ import numpy as np
 from ..closed_forms import hertz, hertz_pressure
 from ..numerics.ladder import MARGIN, climb, next_rung
 from ..numerics.mesh import mesh
+from ..solution import Solution
 from ..status import Status
 
 #: What the sums S (3, B) stand for; powers of a; what is left of S without pressure.
@@ -51,34 +53,38 @@ def modes(n):
 
 
 def half_space(control, value, x):
-    """Hertz: dict of output arrays in units R = E2* = 1; value (B,), x (m,)."""
+    """:class:`~solver.solution.Solution` of Hertz's contacts in units R = E2* = 1; value (B,), x (m,)."""
     H = hertz(**{control: value})
-    zero = np.zeros_like(H.a)
-    out = H._asdict() | {"p_max": H.p0, "dP_dD": 2 * H.a, "residual": zero, "error": zero + 4 * np.finfo(float).eps}
-    return out | _smooth_extras(hertz_pressure(x, H.p0[:, None]), zero) | {control: value}
+    rest = {"p": hertz_pressure(x, H.p0[:, None]), "dP_dD": 2 * H.a, "residual": 0.0, "error": 4 * np.finfo(float).eps}
+    return _solution(H._asdict() | rest | {control: value})
 
 
 def thin_layer(control, value, C, rtol, nodes, x):
-    """Smooth punch on a thin layer: dict of output arrays in units R = E2* = 1; value, C, rtol, nodes (B,), x (m,)."""
-    out, steps = {}, np.zeros(len(value), dtype=int)
+    """:class:`~solver.solution.Solution` of a smooth punch on a thin layer in units R = E2* = 1; value, C, rtol, nodes
+    (B,), x (m,)."""
 
-    def solve_on(index, n):
-        part = _on_mesh(control, value[index], C[index], n, x)
-        steps[index] += part["iterations"]
-        for name, v in part.items():
-            out.setdefault(name, np.full((len(value), *v.shape[1:]), np.nan))[index] = v
-        return part["error"]
+    def on_mesh(index, n, start):
+        found = _solution(_on_mesh(control, value[index], C[index], n, x))
+        return found.error, None, found
 
-    unmet = climb(rtol, nodes, solve_on)
-    status = np.where(unmet, Status.TOLERANCE_NOT_MET, Status.CONVERGED)
-    status[~np.isfinite(out["error"])] = Status.DIVERGED
-    ended = {"status": status.astype(np.int8), "iterations": steps, control: value}
-    return out | _smooth_extras(out["p"], out["p0"] * 0) | ended
+    rungs = climb(rtol, nodes, on_mesh)
+    steps = np.zeros(len(value), dtype=np.int32)
+    for index, found in rungs:
+        steps[index] += found.iterations
+    solution = Solution.join(len(value), len(x), rungs)
+    status = np.where(solution.error > rtol, Status.TOLERANCE_NOT_MET, Status.CONVERGED)
+    status = np.where(np.isfinite(solution.error), status, Status.DIVERGED).astype(np.int8)
+    return replace(solution, status=status, iterations=steps, **{control: value})
 
 
-@np.errstate(all="ignore")
+def _solution(arrays):
+    """The solution with what a smooth punch adds: real contact everywhere, λ = 1 inside, p_max = p(0)."""
+    smooth = {"p_max": arrays["p0"], "lam": 1.0, "A0": 0.0, "Ar_An": 1.0}
+    return Solution.of(*arrays["p"].shape, **arrays, **smooth)
+
+
 def _on_mesh(control, value, C, n, x):
-    """Solve on n nodes; the error is the distance, to first order, to the next finer mesh."""
+    """Arrays (dict) on n nodes; the error is the distance, to first order, to the next finer mesh."""
     grid, modal = mesh(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)
@@ -89,19 +95,9 @@ def _on_mesh(control, value, C, n, x):
     p[x == 1.0] = 0.0
     error = np.maximum(MARGIN * _distance(control, t, S, slopes, modes(next_rung(n))), 4 * n * np.finfo(float).eps)
     error = np.maximum(error, _unseen(control, t, grid.s[0]))
-    return {
-        "a": a,
-        "P": P,
-        "D": D,
-        "p0": p0,
-        "p_max": p0,
-        "dP_dD": P * slopes[0] / (D * slopes[1]),
-        "error": error,
-        "residual": residual,
-        "p": p.T,
-        "nodes": np.full(len(a), n),
-        "iterations": steps,
-    }
+    names = ("a", "P", "D", "p0", "dP_dD", "p", "error", "residual", "nodes", "iterations")
+    slope = P * slopes[0] / (D * slopes[1])
+    return dict(zip(names, (a, P, D, p0, slope, p.T, error, residual, n, steps), strict=True))
 
 
 def _sums(a, C, modal):
@@ -148,8 +144,3 @@ def _radius(control, value, C, modal):
         change = np.where(going, np.log(_OF_SUMS[control](a, S) / value) / slopes[row], 0.0)
         a = a * np.exp(-change)
     return a, steps
-
-
-def _smooth_extras(p, zero):
-    """What a smooth punch adds: real contact everywhere, λ = 1 inside."""
-    return {"p": p, "lam": np.ones_like(p), "A0": zero, "Ar_An": zero + 1}

@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import brentq
 
 from ..threads import one_blas_thread
 from .disc_cell import displacement
@@ -54,6 +53,8 @@ def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", 
     >>> print(f"{B:.4f} {beta:.4f}")
     0.0919 0.4908
     """
+    from scipy.optimize import brentq  # its import takes 0.3 s, which only a fit is to wait for
+
     _check(Nbar_Ra2, p_min, p_max, step, mesh, check)
     p = pressures(p_min, p_max, step, mesh)
     A = displacement(p, 1.0, Nbar_Ra2, 1.0)

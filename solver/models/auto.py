@@ -11,10 +11,10 @@ from dataclasses import replace
 import numpy as np
 
 from ..body.kernel import decaying_part, whole
-from ..contact.equation import guess_radius
+from ..contact.start import guess_radius
 from ..laws import LAWS, smooth
 from ..numerics.quadrature import gauss_legendre
-from ..scaling import as_cases
+from ..scaling import as_cases, law_of
 from ..solution import Model, Solution
 from ..status import Status
 from .model_error import closed_form
@@ -54,7 +54,7 @@ def cheapest(problem, x, solve):
 
     problem : all of base "auto"; x : (m,) radii; solve : ``solve(problem, x)`` for the bases with a name.
     """
-    out, left = Solution.empty(len(problem), len(x)), np.ones(len(problem), dtype=bool)
+    pieces, left = [], np.ones(len(problem), dtype=bool)
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
         part = problem.take(index)
@@ -62,14 +62,15 @@ def cheapest(problem, x, solve):
             chosen = np.flatnonzero(left[index] & (bound <= np.minimum(part.accuracy, _TRUSTED)))
             if len(chosen):
                 found = _on_model(model, part.take(chosen), x, solve)
-                found |= {"model_error": bound[chosen], "model_used": np.full(len(chosen), model)}
-                good = found["status"] == Status.CONVERGED
-                out.put(index[chosen[good]], {name: value[good] for name, value in found.items()})
+                good = np.flatnonzero(found.status == Status.CONVERGED)
+                used = np.full(len(good), model, dtype=np.int8)
+                found = replace(found.take(good), model_error=bound[chosen[good]], model_used=used)
+                pieces.append((index[chosen[good]], found))
                 left[index[chosen[good]]] = False
     rest = np.flatnonzero(left)
     if len(rest):
-        out.put(rest, vars(solve(_with(problem.take(rest), base="layered"), x)))
-    return out
+        pieces.append((rest, solve(_with(problem.take(rest), base="layered"), x)))
+    return Solution.join(len(problem), len(x), pieces)
 
 
 def bounds(part):
@@ -78,7 +79,7 @@ def bounds(part):
     Closed forms at the first guess of the contact radius; the cheapest model comes first. tests/models/test_auto.py
     holds them against the exact layer.
     """
-    cases = as_cases(_with(part, base="layered"), np.zeros(len(part)))
+    cases = as_cases(_with(part, base="layered"))
     a = guess_radius(cases)
     x, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")
     alone, thin = np.full((2, len(part)), np.inf)
@@ -97,19 +98,19 @@ def bounds(part):
 
 
 def _on_model(model, part, x, solve):
-    """Output arrays (dict) of the cases `part` on a cheap model, with their asperities."""
+    """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
     base = _with(part, base="thin_layer") if thin else replace(_with(part, base="half_space"), E2=part.n)
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
-        return vars(solve(base, x))
+        return solve(base, x)
     s, weight = _area_rule()
     at_area = np.sqrt((1 - s) * (1 + s))
-    found = vars(solve(_with(base, micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, at_area])))
-    p, p_area = np.split(found["p"], [len(x)], axis=1)
-    law = as_cases(part, np.zeros(len(part))).law
-    centre = law.at(found["p0"][:, None])
+    found = solve(_with(base, micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, at_area]))
+    p, p_area = np.split(found.p, [len(x)], axis=1)
+    law = law_of(part)
+    centre = law.at(found.p0[:, None])
     spots = {"A0": centre.A[:, 0], "p_max": centre.p_max[:, 0], "Ar_An": 2 * law.at(p_area).lam @ weight}
-    return found | spots | {"p": p, "lam": law.at(p).lam}
+    return replace(found, **spots, p=p, lam=law.at(p).lam)
 
 
 def _area_rule():

@@ -10,16 +10,15 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..contact.equation import State, evaluate, groups
+from ..contact.equation import State, evaluate
+from ..contact.error import nearby
 from ..contact.newton import advance
-from ..contact.results import quantities
+from ..contact.results import difference, quantities
 from ..numerics.mesh import mesh
 from ..scaling import as_cases
 from ..solution import Solution
 from .thin_layer_error import largest_error
 
-#: The quantities whose largest relative error is the model error.
-JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 #: Nodes of the step: they need only resolve the error, not the solution.
 NODES = 24
 
@@ -29,16 +28,16 @@ def judged(problem, x, solve):
 
     problem : all of base "thin_layer"; x : (m,) radii; solve : ``solve(problem, x)``, without this estimate.
     """
-    out = Solution.empty(len(problem), len(x))
+    pieces = []
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
         part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
-        found = vars(solve(part, np.concatenate([x, mesh(NODES).x])))
+        found = solve(part, np.concatenate([x, mesh(NODES).x]))
         layered = replace(part, base=np.full(len(index), "layered"))
-        error = first_order(as_cases(layered, np.zeros(len(index))), found, found["p"][:, len(x) :])
-        shown = {name: found[name][:, : len(x)] for name in ("p", "lam")}
-        out.put(index, found | shown | {"model_error": error})
-    return out
+        error = first_order(as_cases(layered), found, found.p[:, len(x) :])
+        shown = {"p": found.p[:, : len(x)], "lam": found.lam[:, : len(x)]}
+        pieces.append((index, replace(found, **shown, model_error=error)))
+    return Solution.join(len(problem), len(x), pieces)
 
 
 def first_order(cases, cheap, p):
@@ -48,8 +47,8 @@ def first_order(cases, cheap, p):
     ----------
     cases : Cases
         The exact equation of the B cases in units R = E2* = 1.
-    cheap : dict
-        The cheap solution: a, P, D, p0, p_max, Ar_An (B,) in the same units.
+    cheap : Solution
+        The cheap solution in the same units.
     p : (B, NODES) float, E2*
         Its nominal pressure at the nodes ``mesh(NODES).x``.
 
@@ -58,18 +57,12 @@ def first_order(cases, cheap, p):
     (B,) float
         NaN for a case whose cheap solution has no numbers, inf where the step fails.
     """
-    grid = mesh(NODES)
-    y = cases.law.from_pressure(p / cases.law.p_star[:, None])
-    last = State(y, np.log(cheap["a"]))
-    ev = evaluate(cases, last, grid)
-    state, _ = advance(cases, last, ev, grid)
-    curve = cases.law.evaluate(state.y)
-    # to first order, as the step itself: the operator is not formed anew
-    edge_q = (ev.base.edge(grid) * curve.q).sum(axis=1) + ev.base.d_edge_q * (state.eta - last.eta)
-    X, _, _ = groups(cases, state.eta)
-    dear = quantities(cases, state, curve, X[:, 0], edge_q, grid)
-    error = np.max([np.abs(cheap[name] / dear[name] - 1) for name in JUDGED], axis=0)
-    return np.where(np.isfinite(cheap["a"]) & ~np.isfinite(error), np.inf, error)
+    state = State(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
+    ev = evaluate(cases, state, mesh(NODES))
+    state, _ = advance(ev)
+    exact = quantities(nearby(ev, state, cases.law.evaluate(state.y)))
+    error = difference(cheap, exact)
+    return np.where(np.isfinite(cheap.a) & ~np.isfinite(error), np.inf, error)
 
 
 def closed_form(problem, a):
@@ -79,6 +72,11 @@ def closed_form(problem, a):
     :func:`~solver.models.thin_layer_error.largest_error`, which is made for a rigid punch. Under an elastic one that
     number at given a, the largest of the three controls, stands for all controls.
     """
-    material = problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
-    rigid = largest_error(problem.control, problem.h / a, *material)
-    return np.where(problem.m > 0, largest_error("a", problem.h / a, *material), rigid)
+
+    def error(part, radius, control):
+        return largest_error(control, part.h / radius, part.n, part.nu1, part.nu2, part.bonding == "bonded")
+
+    found, yields = error(problem, a, problem.control), np.flatnonzero(problem.m > 0)
+    if len(yields):
+        found[yields] = error(problem.take(yields), a[yields], "a")
+    return found

@@ -16,7 +16,6 @@ from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 
 from ..body.kernel import whole
 from ..body.springs import thin_layer_coefficients
@@ -78,6 +77,8 @@ def edge_shift(n, nu1, nu2, bonded):
 @lru_cache(maxsize=1)
 def _without_friction():
     """κ without friction as a cubic spline over ln n, right to 1e-8; Poisson ratios change nothing there."""
+    from scipy.interpolate import CubicSpline  # its import takes 0.3 s, which only few solves are to wait for
+
     ln_n = np.linspace(-_RANGE, _RANGE, 1001)
     none = np.zeros_like(ln_n)
     return CubicSpline(ln_n, _integrated(np.exp(ln_n), none, none, none))

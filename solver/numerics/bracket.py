@@ -26,6 +26,8 @@ def false_position(evaluate, start, tolerance, steps=80):
     x, g = high.copy(), g_high.copy()
     active = np.flatnonzero(np.isfinite(g_low + g_high))
     for _ in range(steps):
+        if not len(active):
+            break
         lo, hi, gl, gh = low[active], high[active], g_low[active], g_high[active]
         guess = lo - gl * (hi - lo) / (gh - gl)
         x[active] = np.where((guess > lo) & (guess < hi), guess, 0.5 * (lo + hi))
@@ -36,8 +38,6 @@ def false_position(evaluate, start, tolerance, steps=80):
         near = tolerance[active]
         done = (np.abs(value) < near) | (high[active] - low[active] < near) | np.isnan(value)
         active = active[~done]
-        if not len(active):
-            break
     return x, g
 
 

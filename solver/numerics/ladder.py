@@ -37,7 +37,7 @@ def finer_mesh(grid):
     return panel_mesh(grid.order + grid.order // 3, grid.breaks)
 
 
-def climb(rtol, nodes, solve_on, first=None, order=None, stack=STACK):
+def climb(rtol, nodes, solve_on, first=None, order=None):
     """Let every case climb to the mesh that meets its tolerance.
 
     Parameters
@@ -46,29 +46,45 @@ def climb(rtol, nodes, solve_on, first=None, order=None, stack=STACK):
     nodes : (B,) int
         A fixed mesh, or 0: begin on `first`.
     solve_on : callable
-        ``solve_on(index, n) -> error`` solves the cases `index` on n nodes, keeps their numbers, and returns their
-        estimated errors (NaN: no use going on).
+        ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. error (b,): their
+        estimated errors, NaN where there is no use in going on; finer: what the next finer mesh begins with, its
+        `start` there, with ``finer.take(rows)`` and ``finer.join(others)``; or None. On the first mesh that is None.
     first : (B,) int, optional
         The mesh to begin on; else chosen by rtol.
     order : (B,) int, optional
         Permutation of the cases; neighbours in it are solved together.
-    stack : int
-        Most unknowns solved together.
 
     Returns
     -------
-    (B,) bool
-        The cases whose error still exceeds rtol on the last mesh.
+    list of (index, found)
+        Of each stack that was solved. The last one that has a case has its answer.
     """
     rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
-    unmet = np.zeros(len(rtol), dtype=bool)
     order = np.arange(len(rtol)) if order is None else order
-    while (rung > 0).any():
-        n = int(rung[rung > 0].min())
-        batch = order[rung[order] == n]
-        for index in np.array_split(batch, -(-len(batch) * n // stack)):
-            missed = solve_on(index, n) > rtol[index]
-            last = (nodes[index] > 0) | (n >= LADDER[-1])
-            unmet[index] = missed & last
-            rung[index] = np.where(missed & ~last, next_rung(n), 0)
-    return unmet
+    batches = [(order[rung[order] == n], n) for n in np.unique(rung).tolist()]
+    waiting = {n: [(index, None) for index in _stacks(batch, n)] for batch, n in batches}
+    pieces = []
+    while waiting:
+        n, on = min(waiting), []
+        for index, start in waiting.pop(n):
+            error, finer, found = solve_on(index, n, start)
+            pieces.append((index, found))
+            rows = np.flatnonzero((error > rtol[index]) & (nodes[index] == 0))
+            if len(rows) and n < LADDER[-1]:
+                on.append((index[rows], None if finer is None else finer.take(rows)))
+        if on:
+            waiting.setdefault(next_rung(n), []).extend(_together(on, next_rung(n)))
+    return pieces
+
+
+def _together(on, n):
+    """Stacks of those that go on to n nodes, (index, start), from those of the mesh before."""
+    index, start = np.concatenate([one for one, _ in on]), on[0][1]
+    if start is None:
+        return [(rows, None) for rows in _stacks(index, n)]
+    start = start.join([one for _, one in on])
+    return [(index[rows], start.take(rows)) for rows in _stacks(np.arange(len(index)), n)]
+
+
+def _stacks(batch, n):
+    return np.array_split(batch, -(-len(batch) * n // STACK))

@@ -11,10 +11,11 @@ from solver_cases import JUDGED, MAIN, difference
 from solver import Problem, Status, solve
 from solver.body import film, tables, wave_rule
 from solver.body.kernel import decaying_part
-from solver.body.layered import Layer, half_space_share, layer_matrix, layer_weights
+from solver.body.layered import Layered
 from solver.body.wave_rule import CUT, FILM
-from solver.contact.driver import iterate
-from solver.contact.equation import first_guess
+from solver.contact.driver import solve_on
+from solver.contact.equation import evaluate
+from solver.contact.start import first_guess
 from solver.models.thin_layer_error import edge_shift
 from solver.numerics.mesh import mesh, panel_mesh
 from solver.scaling import as_cases, dimensionless
@@ -73,16 +74,16 @@ def test_a_panel_whose_rule_lies_beyond_the_reach():
 def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
     """The pressure of a film of 5 to 56 millionths of the radius, on meshes that share no panel there: 1e-3 of p(0)."""
     case = {"a": 1.0, "R": 20.0, "h": h, "n": n, "base": "layered", "micro": "smooth"}
-    cases = as_cases(*dimensionless(Problem.of(**case)))
+    cases = as_cases(dimensionless(Problem.of(**case)))
     s = np.sqrt(2 * h * np.geomspace(0.1, 20, 40))
     pressures = []
     for width in (0.8, 0.65):
         ends = np.arange(0, 0.999 * s[-1] + width * np.sqrt(h), width * np.sqrt(h))
         grid = panel_mesh(12, (*ends, *np.geomspace(ends[-1], 1.0, 9)[1:]))
         with np.errstate(divide="ignore"):
-            state, closed, _ = iterate(cases, first_guess(cases, grid), grid)
-        assert closed[0]
-        pressures.append(grid.basis(s) @ state.y[0] / state.y[0, -1])
+            found = solve_on(evaluate(cases, first_guess(cases, grid), grid), 60)
+        assert found.closed[0]
+        pressures.append(grid.basis(s) @ found.at.state.y[0] / found.at.state.y[0, -1])
     assert np.all(pressures[0] > 0)
     assert pressures[0].max() > 4 * pressures[0][-1]
     assert_allclose(*pressures, rtol=0, atol=1e-3)
@@ -92,15 +93,15 @@ def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
 def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
     """At h/a = 2^-8.5, with the half-space and all k to the end of the kernel: 1e-8 of the displacement."""
     eta, grid = 2.0**-8.5, mesh(16)
-    layer = Layer(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded, 0.0)))
-    weights = layer_weights(layer, np.ones(1))
-    assert weights[0].octave == FILM
-    k, weight = wave_rule.quadrature(FILM, weights[0].depth)
+    layer = Layered(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded, 0.0)))
+    found = layer.at(np.ones(1), grid)
+    assert found.parts[0].octave[0] == FILM
+    k, weight = wave_rule.quadrature(FILM, found.parts[0].stiffness)
     W = weight * decaying_part(k * eta, n, nu, 0.3, np.array(bonded))[0]
-    table = tables.table(grid, FILM, weights[0].depth)
+    table = tables.table(grid, FILM, found.parts[0].stiffness)
     whole = (table.J * W[:, None]).T @ table.phi
     assert np.abs(decaying_part(np.array([CUT * eta]), n, nu, 0.3, np.array([bonded]))[0][0]) < 1e-5  # all of L - 1
-    K = half_space_share(weights)[0] * grid.K + np.pi / 2 * layer_matrix(weights, grid)[0]
+    K = found.K[0]
     for q in (grid.s, grid.s**3):
         found = K @ q
         expected = grid.K @ q + np.pi / 2 * whole @ q

@@ -24,7 +24,7 @@ def size(tables):
 def test_no_more_than_400_megabytes_are_kept(tables, monkeypatch):
     """The oldest go, those that were used last stay. The arrays are not touched, and take no memory."""
     none = np.empty(0)
-    big = module.Table(none, np.empty(20_000_000), none, none, slice(None), none, None, None)
+    big = module.Table(none, np.empty(20_000_000), none, none, none, none, None, None)
     monkeypatch.setattr(module, "_table", lambda *key: big._replace(k=np.array(key[1:])))
     grid, sizes = mesh(5), []
     for octave in range(6):

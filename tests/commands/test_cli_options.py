@@ -1,7 +1,6 @@
 """What is said on the command line reaches what it is meant for: options, folders, exit codes, messages."""
 
 import logging
-import os
 import sys
 from pathlib import Path
 
@@ -103,96 +102,6 @@ def test_addresses_that_are_none(command, text, capsys):
 def test_addresses(asked, text):
     assert main(["run", "good", "--scheduler", text]) == 0
     assert asked[0][2]["scheduler"] == text
-
-
-def test_figures_and_tables_go_to_their_folders(capsys):
-    """Of micro laws, which need no study."""
-    assert main(["plot", "fig09"]) == 0
-    drawn = [f"figures/fig09.{kind}" for kind in ("csv", "pdf", "png")]
-    assert capsys.readouterr().out.splitlines() == drawn
-    assert main(["table", "table1"]) == 0
-    written = [f"tables/table1.{kind}" for kind in ("txt", "csv", "tex")]
-    assert capsys.readouterr().out.splitlines() == written
-    assert tree() == sorted([*drawn, *written])
-
-
-def test_folders_that_are_asked_for(monkeypatch, capsys):
-    seen = []
-    for name in ("draw", "tabulate"):
-        monkeypatch.setattr(catalogue, name, lambda *given: seen.append(given) or [f"{given[0]} of {given[2]}"])
-    assert main(["plot", "fig01", "fig02", "--results", "there", "--figures", "elsewhere"]) == 0
-    assert main(["table", "table1", "--results", "there", "--tables", "elsewhere"]) == 0
-    assert seen == [(name, "there", "elsewhere") for name in ("fig01", "fig02", "table1")]
-    assert capsys.readouterr().out.splitlines() == [f"{name} of elsewhere" for name in ("fig01", "fig02", "table1")]
-
-
-@pytest.mark.parametrize(("command", "function"), [("plot", "draw"), ("table", "tabulate")])
-def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, function, monkeypatch, capsys):
-    real = getattr(catalogue, function)
-    monkeypatch.setattr(catalogue, function, lambda name, *_: ["made"] if name == "other" else real(name, *_))
-    assert main([command, "fig91", "paper_numbers" if command == "table" else "fig10", "other"]) == 2
-    printed = capsys.readouterr()
-    assert printed.out == "made\n"
-    unknown, *missing = printed.err.splitlines()
-    assert unknown.startswith('"fig91" is not known; ')
-    study = "reference_load" if command == "table" else "spot_density"
-    assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
-    assert missing[0].endswith(f"make it with: python -m study run studies/{study}.toml")
-
-
-def test_run_computes_the_studies_that_are_needed_once_and_skips_what_is_up_to_date(monkeypatch, capsys):
-    """Its own studies may be replaced; a figure is drawn again when it is older than its results."""
-    ran, drawn = [], []
-
-    def run(self, **options):
-        name = self.definition.name
-        ran.append((name, options["force"]))
-        path = self.results / f"{name}.nc"
-        path.parent.mkdir(exist_ok=True)
-        if not path.exists():  # what is up to date is left alone
-            path.touch()
-        return Report(path, 1, 0, {}, {}, True)
-
-    def draw(name, results, folder):
-        drawn.append(name)
-        Path(folder).mkdir(exist_ok=True)
-        paths = [Path(folder) / f"{name}.{kind}" for kind in ("csv", "pdf", "png")]
-        for path in paths:
-            path.touch()
-        return paths
-
-    for study in ("load_sweep", "main_case"):
-        Path(f"studies/{study}.toml").write_text(GOOD, encoding="utf-8")
-    monkeypatch.setattr(api.Study, "run", run)
-    monkeypatch.setattr(catalogue, "draw", draw)
-    assert main(["plot", "--run", "fig04", "fig05"]) == 0
-    assert (ran, drawn) == ([("load_sweep", True), ("main_case", True)], ["fig04", "fig05"])
-    assert main(["plot", "--run", "fig04", "fig05"]) == 0
-    assert drawn == ["fig04", "fig05"], "they are up to date"
-    later = Path("figures/fig05.png").stat().st_mtime + 10
-    os.utime("results/main_case.nc", (later, later))
-    assert main(["plot", "--run", "fig05"]) == 0
-    os.utime("results/main_case.nc", (1, 1))
-    Path("figures/fig04.csv").unlink()
-    assert main(["plot", "--run", "fig04", "fig05"]) == 0
-    assert drawn == ["fig04", "fig05", "fig05", "fig04"]
-    monkeypatch.setattr(api.Study, "run", lambda self, **_: Report(Path("x"), 1, 0, {0: "lost"}, {}, False))
-    Path("figures/fig05.csv").unlink()
-    assert main(["plot", "--run", "fig05"]) == 1
-    assert len(drawn) == 4, "not from results that are not complete"
-
-
-def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
-    drawn = []
-    for name in ("draw", "tabulate"):
-        monkeypatch.setattr(catalogue, name, lambda *given: drawn.append(given[0]) or [])
-    assert main(["plot", "all"]) == 0
-    paper = [f"fig{number:02}" for number in range(1, 11)]
-    layered = [f"{name}_layered" for name in paper if name not in ("fig01", "fig02", "fig09")]
-    assert drawn == sorted([*paper, *layered, "coatings", "validity", "validity_load"])
-    drawn.clear()
-    assert main(["table", "all"]) == 0
-    assert drawn == ["paper_numbers", "table1", "validity"]
 
 
 @pytest.mark.parametrize(

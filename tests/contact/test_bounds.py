@@ -67,7 +67,7 @@ def test_a_number_is_allowed_up_to_its_bounds(name):
         return Problem.of(**{key: np.multiply(v, UNITS[key]) if key in UNITS else v for key, v in case.items()})
 
     allowed = problem(inside)
-    assert not refused(allowed, dimensionless(allowed)[0]).any()
+    assert not refused(allowed, dimensionless(allowed)).any()
     s = solve(problem(just_outside(name)))
     assert s.status.tolist() == [Status.INVALID_INPUT] * 2
     assert np.isnan(s.p0).all() and np.isnan(s.p).all()

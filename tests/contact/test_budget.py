@@ -9,9 +9,9 @@ from numpy.testing import assert_allclose
 from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
-from solver.body.layered import Layer, operator_error
+from solver.body.layered import Layered
 from solver.contact import adaptive, driver, picard
-from solver.contact.budget import newton_steps
+from solver.contact.driver import newton_steps
 from study.spec.definition import from_tables
 
 X = np.linspace(0.0, 1.0, 5)
@@ -40,7 +40,8 @@ def test_approximations(monkeypatch, control, value):
 def test_newton_steps(monkeypatch):
     """A limit of the user's beyond ours, on a case that takes more."""
     case = MAIN | {"P": [LOAD, 1e3 * LOAD], "base": "thin_layer", "rtol": 1e-9}
-    monkeypatch.setattr(adaptive, "newton_steps", lambda nodes: np.minimum(2, nodes))
+    for module in (adaptive, driver):
+        monkeypatch.setattr(module, "newton_steps", lambda nodes: np.minimum(2, nodes))
     s = solve(Problem.of(**case, max_iterations=100_000), X)
     assert s.status.tolist() == [Status.BUDGET_SPENT] * 2 and np.isfinite(s.a).all()
     s = solve(Problem.of(**case, max_iterations=1), X)
@@ -52,14 +53,13 @@ def test_a_search_for_the_radius_ends(monkeypatch):
     case = Problem.of(P=LOAD, **MAIN, base="thin_layer", nodes=16)
     steps = []
 
-    def failing(cases, state, grid, *rest, **options):
-        found = plain(cases, state, grid, *rest, **options)
-        steps.append(int(found[2].sum()))
-        return (found[0], found[1] & (cases.control == "a"), found[2])
+    def failing(cases, *arguments):
+        found = plain(cases, *arguments)
+        steps.append(int(found.count.sum()))
+        return found._replace(closed=found.closed & (cases.control == "a"))
 
     plain = driver.iterate
     monkeypatch.setattr(driver, "iterate", failing)
-    monkeypatch.setattr(adaptive, "iterate", failing)
     solve(case, X)
     many = sum(steps)
     steps.clear()
@@ -72,7 +72,7 @@ def test_panels(monkeypatch):
     """The corner ends on its first panels, with last numbers; the main case beside it needs none."""
     case = Problem.of(**CORNER, base="thin_layer", rtol=1e-9)
     free = solve(case, X)
-    monkeypatch.setattr(adaptive, "PANELS", 1)
+    monkeypatch.setattr(adaptive, "BUDGET", 1)
     s = solve(case, X)
     assert free.status.tolist() == [Status.CONVERGED] * 2
     assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
@@ -83,9 +83,9 @@ def test_a_tolerance_that_no_mesh_meets_takes_no_panels():
     """The operator of a soft film is not as good as rtol: that is said on the first mesh that is as good as it."""
     film = {"n": 1.41e-5, "nu1": 0.091, "nu2": -0.15, "bonding": "bonded"}
     s = solve(Problem.of(P=132.0, h=1.97e-9, **film, micro="smooth", rtol=1e-10), X)
-    layer = Layer(*(np.array([v]) for v in (1.97e-9, *film.values(), 0.0)))._replace(bonded=np.array([True]))
+    layer = Layered(*(np.array([v]) for v in (1.97e-9, *film.values(), 0.0)))._replace(bonded=np.array([True]))
     assert s.status[0] == Status.TOLERANCE_NOT_MET and s.nodes[0] <= 64
-    assert_allclose(s.error, operator_error(layer, s.a, s.nodes), rtol=1e-9)
+    assert_allclose(s.error, layer.error(s.a, s.nodes), rtol=1e-9)
     assert np.isfinite(s.p).all() and np.isfinite(s.lam).all()
 
 

@@ -1,5 +1,7 @@
 """A number that is not finite, or negative where it cannot be, is never a converged one, however it came about."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from solver_cases import LOAD, MAIN
@@ -54,7 +56,7 @@ def test_a_negative_number_of_a_way_to_solve(monkeypatch):
 
     def wrong(control, value, x):
         found = hertz(control, value, x)
-        return found | {"D": np.where(value == 0.04, -found["D"], found["D"])}
+        return replace(found, D=np.where(value == 0.04, -found.D, found.D))
 
     monkeypatch.setattr(smooth, "half_space", wrong)
     s = solve(Problem.of(a=[0.02, 0.04], micro="smooth", base="half_space"), X)

@@ -1,4 +1,4 @@
-"""Every case of the ranges converges; batches, bad inputs, extremes; the estimated error is honest.
+"""Every case of the ranges converges; bad input and limits are said.
 
 Warnings are errors here, as in all tests of the project.
 """
@@ -6,12 +6,11 @@ Warnings are errors here, as in all tests of the project.
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from solver_cases import BASES, EXTREMES, JUDGED, KINDS, LOAD, MAIN, ROUGH_KINDS, difference, one, random_cases
+from solver_cases import JUDGED, KINDS, LOAD, MAIN, difference, one, random_cases
 
 from solver import Problem, Status, solve
 
 kinds = pytest.mark.parametrize(("base", "law"), KINDS, ids=["-".join(kind) for kind in KINDS])
-rough_kinds = pytest.mark.parametrize(("base", "law"), ROUGH_KINDS, ids=["-".join(kind) for kind in ROUGH_KINDS])
 NUMBERS = (*JUDGED, "A0", "dP_dD", "residual", "error", "p", "lam")
 
 
@@ -27,96 +26,10 @@ def test_twenty_thousand_random_cases(base, law):
         assert np.all((s.Ar_An > 0) & (s.Ar_An < 1))
 
 
-def mixed(size, seed):
-    """Cases of every base, law and tolerance in one batch, some of them invalid or outside the model."""
-    rng = np.random.default_rng(seed)
-    case = random_cases(size, seed) | {"nu1": np.where(rng.random(size) < 0.1, 0.5, 0.3)}
-    for name, choices in {
-        "base": BASES,
-        "micro": ("disc_cell", "power_law", "smooth"),
-        "rtol": (1e-3, 1e-6, 1e-9),
-        "nodes": (0, 0, 20),
-        "max_iterations": (0, 0, 50),
-    }.items():
-        case[name] = rng.choice(choices, size)
-    case["P"][rng.random(size) < 0.05] = np.nan
-    case["h"][rng.random(size) < 0.05] = -1.0
-    return case
-
-
-def test_mixed_batches_are_single_cases():
-    """Each case of a batch has the numbers it has alone, and in any other order and company.
-
-    To rounding: BLAS rounds a product of more rows otherwise, and where that decides whether a residual is below 1e-13
-    the iteration takes a step more or less, of that size, which a pressure may feel a hundred times.
-    """
-    size, x = 120, np.array([0.0, 0.5, 1.0])
-    case = mixed(size, 4)
-    together = solve(Problem.of(**case), x)
-    assert set(together.status) >= {Status.CONVERGED, Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE}
-    order = np.random.default_rng(0).permutation(size)
-    shuffled = solve(Problem.of(**{name: v[order] for name, v in case.items()}), x)
-    for i in range(size):
-        alone = solve(Problem.of(**{name: v[i] for name, v in case.items()}), x)
-        for other, j in ((together, i), (shuffled, int(np.flatnonzero(order == i)[0]))):
-            assert other.status[j] == alone.status[0]
-            assert other.nodes[j] == alone.nodes[0]
-            for name in ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "p", "lam"):
-                value, expected = getattr(other, name)[j], getattr(alone, name)[0]
-                assert_allclose(value, expected, rtol=1e-11, atol=0, err_msg=f"{name} of case {i}")
-
-
 def test_empty_batch():
     s = solve(Problem.of(P=np.zeros(0), **MAIN, base="thin_layer"))
     assert s.a.shape == (0,)
     assert s.p.shape == (0, 2)
-
-
-def test_arguments_are_not_edited():
-    case = mixed(30, 9)
-    before = {name: v.copy() for name, v in case.items()}
-    solve(Problem.of(**case))
-    for name, v in case.items():
-        assert_array_equal(v, before[name])
-
-
-USED_BY = {
-    "P": lambda base, law: True,
-    "R": lambda base, law: True,
-    "E2": lambda base, law: True,
-    "rtol": lambda base, law: True,
-    "h": lambda base, law: base == "thin_layer",
-    "n": lambda base, law: base == "thin_layer",
-    "nu1": lambda base, law: base == "thin_layer",
-    "nu2": lambda base, law: base == "thin_layer",
-    "Nbar": lambda base, law: law != "smooth",
-    "Ra": lambda base, law: law != "smooth",
-    "B": lambda base, law: law == "power_law",
-    "beta": lambda base, law: law == "power_law",
-}
-POISON = [np.nan, np.inf, -np.inf, -1.0, 0.0]
-ALLOWED = {("nu1", 0.0), ("nu2", 0.0)}
-
-
-@kinds
-def test_poison_is_flagged_and_harmless(base, law):
-    """A bad number among good ones: INVALID_INPUT and NaN; the neighbours have the same bits as without it."""
-    good = MAIN | {"P": LOAD, "R": 1.0, "E2": 1.0, "rtol": 1e-6, "nu1": 0.3, "nu2": 0.3, "base": base, "micro": law}
-    clean = solve(Problem.of(**(good | {"P": np.full(3, LOAD)})))
-    for name, used in USED_BY.items():
-        for bad in POISON:
-            if (name, bad) in ALLOWED:
-                continue
-            values = np.array([good[name], bad, good[name]])
-            s = solve(Problem.of(**(good | {name: values})))
-            expected = Status.INVALID_INPUT if used(base, law) else Status.CONVERGED
-            assert s.status.tolist() == [0, expected, 0], (name, bad)
-            for number in NUMBERS:
-                found = getattr(s, number)
-                atol = 6e-14 if number == "error" else 1e-14  # six times a difference of numbers
-                assert_allclose(found[[0, 2]], getattr(clean, number)[[0, 2]], rtol=1e-12, atol=atol)
-                if used(base, law) and number != "P":
-                    assert np.all(np.isnan(found[1])), (name, bad, number)
 
 
 @pytest.mark.parametrize(
@@ -152,40 +65,6 @@ def test_where_the_thin_layer_does_not_apply(law):
     assert_array_equal(free.status, Status.CONVERGED)
     assert np.all(np.diff(free.a[:3]) < 0)  # a harder coating, a smaller contact
     assert_allclose(free.a[4], free.a[0], rtol=1e-14, atol=0)  # without friction ν plays no part
-
-
-@kinds
-@pytest.mark.parametrize("control", ["P", "a", "D"])
-def test_extremes_answer_without_warning(base, law, control):
-    """Twelve decades of everything: finite numbers for each case; those called converged are within their tolerance."""
-    case = random_cases(250, 3, EXTREMES) | {"bonding": "frictionless", "rtol": 1e-4}
-    P = case.pop("P")
-    value = {"P": P, "a": np.cbrt(P), "D": np.cbrt(P) ** 2}[control]
-    s = solve(Problem.of(**case, **{control: value}, base=base, micro=law))
-    assert set(s.status) <= {Status.CONVERGED, Status.TOLERANCE_NOT_MET}
-    assert (s.status == Status.CONVERGED).mean() > (0.95 if law == "disc_cell" else 0.99)
-    for name in NUMBERS:
-        assert np.all(np.isfinite(getattr(s, name))), name
-    assert np.all(s.error[s.status == Status.CONVERGED] <= 1e-4)
-    fine = solve(Problem.of(**(case | {"rtol": 1e-6}), **{control: value}, base=base, micro=law))
-    ok = (s.status == Status.CONVERGED) & (fine.status == Status.CONVERGED)
-    assert ok.mean() > 0.8
-    assert np.quantile(difference(s, fine)[ok], 0.99) <= 1e-4
-
-
-ITERATED = [kind for kind in KINDS if kind != ("half_space", "smooth")]
-
-
-@pytest.mark.parametrize(("base", "law"), ITERATED, ids=["-".join(kind) for kind in ITERATED])
-@pytest.mark.parametrize("rtol", [1e-4, 1e-6, 1e-9])
-def test_error_is_honest(base, law, rtol):
-    """Against 64 nodes: the estimate is at least a third of the truth in 99 %, the truth within rtol in 99.9 %."""
-    case = random_cases(2000, 21) | {"bonding": "frictionless", "base": base, "micro": law}
-    s = solve(Problem.of(**case, rtol=rtol))
-    reference = solve(Problem.of(**case, rtol=0.5, nodes=64))
-    truth = difference(s, reference)
-    assert (s.error >= truth / 3).mean() >= 0.99
-    assert (truth <= rtol).mean() >= 0.999
 
 
 def test_converged_is_within_rtol_in_999_of_1000():

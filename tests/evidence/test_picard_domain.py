@@ -24,8 +24,8 @@ CASE = (
 
 def approximations(k, count, nodes=32, **case):
     problem = Problem.of(**(CASE | {"beta": 0.5, "h": 0.02} | case), k=k, nodes=nodes)
-    cases = as_cases(*dimensionless(problem))
-    return picard.approximate(cases, np.log(cases.value), mesh(nodes), problem.k, np.zeros(1), count)
+    cases = as_cases(dimensionless(problem))
+    return picard.approximate(cases, np.log(cases.value), mesh(nodes), problem.k, np.zeros(1), count).at
 
 
 def part_of(h, beta: float, **changes) -> xr.Dataset:

@@ -1,6 +1,8 @@
 """Every study runs, every figure draws from it, and the numbers beside a figure are those of the datasets."""
 
 import csv
+from functools import cache
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -17,14 +19,19 @@ from study.paper.curves import CURVES, EXACT_LAYER
 
 @pytest.fixture(scope="module")
 def figures(drawing, tmp_path_factory):
+    """The path, without its suffix, of the files of a figure: written when they are first asked for."""
     folder = tmp_path_factory.mktemp("figures")
-    for name in FIGURES:
+
+    @cache
+    def written(name: str) -> Path:
         save(folder / name, *drawing(name))
-    return folder
+        return folder / name
+
+    return written
 
 
 def numbers(figures, name: str) -> dict[str, np.ndarray]:
-    with open(figures / f"{name}.csv", encoding="utf-8", newline="") as file:
+    with open(figures(name).with_suffix(".csv"), encoding="utf-8", newline="") as file:
         head, *rows = csv.reader(file)
     return dict(zip(head, np.array(rows, dtype=float).T, strict=True))
 
@@ -46,10 +53,10 @@ def test_every_study_runs_and_converges(results, file):
 def test_every_figure_is_written(figures, name):
     from matplotlib.image import imread
 
-    image = imread(figures / f"{name}.png")
+    image = imread(figures(name).with_suffix(".png"))
     assert image.shape[1] == pytest.approx(300 * FIGURES[name].size[0], abs=1)
     assert 0.01 < np.mean(image[..., :3].min(axis=2) < 0.9) < 0.9, "nearly blank, or nearly black"
-    pdf = (figures / f"{name}.pdf").read_bytes()
+    pdf = (figures(name).with_suffix(".pdf")).read_bytes()
     assert pdf.startswith(b"%PDF") and b"/Type3" not in pdf and b"CreationDate" not in pdf
     columns = numbers(figures, name)
     assert len(columns) >= 3
@@ -58,7 +65,7 @@ def test_every_figure_is_written(figures, name):
 
 def test_the_same_results_give_the_same_bytes(figures, results, tmp_path):
     for path in draw("fig04", results, tmp_path):
-        assert path.read_bytes() == (figures / path.name).read_bytes(), path.name
+        assert path.read_bytes() == figures("fig04").with_suffix(path.suffix).read_bytes(), path.name
 
 
 def test_profiles_of_figures_3_7_and_10_carry_the_load(figures, results):
@@ -178,7 +185,7 @@ def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
 
     studies = (open_results(results / f"{name}.nc") for name in ("load_sweep", "main_case"))
     title = "fig04, studies " + " ".join(found.attrs["study_digest"][:16] for found in studies)
-    assert Image.open(figures / "fig04.png").text["Title"] == title
-    assert title.encode() in (figures / "fig04.pdf").read_bytes()
+    assert Image.open(figures("fig04").with_suffix(".png")).text["Title"] == title
+    assert title.encode() in (figures("fig04").with_suffix(".pdf")).read_bytes()
     assert {recipe.size[0] for recipe in FIGURES.values()} == {3.35, 6.9}  # inches: one and two columns
     assert max(recipe.size[1] for recipe in FIGURES.values()) < 9.5

@@ -79,6 +79,7 @@ def test_what_is_stored_is_what_the_solver_gave(solved, path):
     np.testing.assert_array_equal(found.lam0, found.lam.sel(x=0))
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("place", [0, 0.5, 1], ids=["first", "middle", "last"])
 def test_a_flipped_byte_of_a_profile_is_noticed(path, place):
     raw = study.open_results(path).p.values.astype("<f8").tobytes()

@@ -61,6 +61,7 @@ STRANGE = {
 }
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("spoil", STRANGE, ids=lambda spoil: spoil.__name__)
 def test_what_is_none_of_ours_is_said_and_kept(opened, file, spoil, capsys):
     path = opened.results / "line.nc"

@@ -53,6 +53,7 @@ def flip(opened: study.Study, name: str) -> None:
     damage(opened, number, number[:6] + bytes([number[6] ^ 4]) + number[7:])
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("name", ["h", "a"])
 def test_one_flipped_bit_is_named_and_mended(one, opened, name, tmp_path, capsys, caplog):
     flip(opened, name)
@@ -79,6 +80,7 @@ def test_status_says_what_is_damaged(opened, tmp_path, capsys):
     assert "  damaged  \n    " in (said := capsys.readouterr().out) and said.endswith("has changed it: h\n")
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize(
     ("old", "new", "name"),
     [

@@ -220,10 +220,10 @@ def test_in_a_study():
 def test_a_step_of_first_order_that_fails_has_no_error():
     """From a pressure of NaN it has no numbers; a case without cheap numbers has no estimate at all."""
     problem = Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT)
-    cases = as_cases(problem, np.zeros(3))
-    cheap = vars(solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh(NODES).x))
-    p = cheap["p"].copy()
+    cases = as_cases(problem)
+    cheap = solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh(NODES).x)
+    p = cheap.p.copy()
     p[1] = np.nan
-    cheap["a"][2] = np.nan
+    cheap.a[2] = np.nan
     error = first_order(cases, cheap, p)
     assert 0 < error[0] < 1 and error[1] == np.inf and np.isnan(error[2])

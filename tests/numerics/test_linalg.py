@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from solver.body.layered import Layer, layer_matrix, layer_weights
+from solver.body.layered import Layered
 from solver.numerics.linalg import solve_stack
 from solver.numerics.mesh import mesh
 
@@ -17,8 +17,7 @@ def operators(n, base, random):
         return mesh(n).K[None]
     h, stiffness = 10.0 ** random.uniform(-1, 1, MANY), 10.0 ** random.uniform(-3, 3, MANY)
     nu1, nu2, bonded = random.uniform(0, 0.49, MANY), np.full(MANY, 0.3), random.random(MANY) < 0.5
-    weights = layer_weights(Layer(h, stiffness, nu1, nu2, bonded, np.zeros(MANY)), np.ones(MANY))
-    return mesh(n).K + np.pi / 2 * layer_matrix(weights, mesh(n))
+    return Layered(h, stiffness, nu1, nu2, bonded, np.zeros(MANY)).at(np.ones(MANY), mesh(n)).K
 
 
 @pytest.mark.parametrize("base", ["half_space", "layered"])

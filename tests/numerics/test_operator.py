@@ -6,7 +6,6 @@ from numpy.testing import assert_allclose
 from scipy.special import beta, ellipe, factorial, hyp2f1
 
 from solver import Problem
-from solver.contact.equation import operate
 from solver.numerics.mesh import HERTZ, half_space_rows, mesh
 from solver.numerics.quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
 from solver.scaling import as_cases, dimensionless
@@ -95,17 +94,16 @@ def test_algebraic_singularity_converges_algebraically():
 @pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
 @pytest.mark.parametrize("size", [1, 3])
 def test_part_of_a_batch(base, size):
-    """The operator at a state has a row for each case: no case of one leaves no row, whatever the batch shares."""
+    """What the operator gives has a row for each case: no case of one leaves no row, whatever the batch shares."""
     problem = Problem.of(a=np.linspace(0.02, 0.04, size), h=0.02, n=0.5, Nbar=250000, Ra=0.004, base=base)
-    cases = as_cases(*dimensionless(problem))
-    grid, eta = mesh(6), np.log(cases.value)
-    q = np.linspace(1, 2, size)[:, None] * grid.s
-    whole = operate(cases, eta, q, grid)
+    cases = as_cases(dimensionless(problem))
+    grid, q = mesh(6), np.linspace(1, 2, size)[:, None] * mesh(6).s
+    whole = cases.body.at(cases.value, grid)
     for index in (np.arange(0), np.array([size - 1])):
-        part, alone = whole.take(index), operate(cases.take(index), eta[index], q[index], grid)
-        for name in ("Kq", "edge_q", "d_Kq", "d_edge_q"):
-            found, expected = getattr(part, name), getattr(alone, name)
-            assert found.shape == expected.shape == (len(index), *(6,) * (found.ndim - 1)), name
+        part, alone = whole.take(index), cases.body.take(index).at(cases.value[index], grid)
+        rows = (*part.products(q[index]), *part.slopes(q[index]))
+        for found, expected in zip(rows, (*alone.products(q[index]), *alone.slopes(q[index])), strict=True):
+            assert found.shape == expected.shape == (len(index), *(6,) * (found.ndim - 1))
             assert_allclose(found, expected, rtol=0, atol=1e-14)  # rounding of products of order 1
 
 

@@ -49,7 +49,7 @@ def test_the_statuses_are_those_of_the_solver():
     table = {int(value): (name.strip("`"), meaning) for value, name, meaning in rows("value | name | meaning")}
     assert {value: name for value, (name, _) in table.items()} == status_words()
     for status in Status:
-        assert table[status][1] == status.meaning.replace(" (contact/budget.py)", "")
+        assert table[status][1] == status.meaning
 
 
 def test_the_models_are_those_of_the_solver():

@@ -1,16 +1,13 @@
 """Roughness from designs, and from surfaces whose moments, summits and radii are known in closed form."""
 
-import dataclasses
 import math
 import re
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from pages import check_examples
 
 from study import roughness
-from study.paper.numbers import TABLE1
 from study.scene import summits
 
 ELL = 1e-6  # correlation length of the random surfaces, m
@@ -247,51 +244,3 @@ def test_the_iso_ra_is_of_what_the_filter_leaves():
     scan = roughness.profile(1e-3 * np.cos(2 * np.pi * x) + 1e-5 * np.cos(40 * np.pi * x), dx=1 / 400)
     inner = scan.z[30:-30] - scan.z[30:-30].mean()
     assert_allclose(roughness.measure(scan, form="mean", cutoff=0.1).iso_Ra, np.mean(np.abs(inner)), rtol=0.02)
-
-
-def test_the_answer_in_sentences():
-    z, step = random_surface(256, 8)
-    answer = roughness.measure(roughness.height_map(z, dx=step, name="wafer.csv"))
-    said = str(answer)
-    assert "the radius of an asperity. The ISO roughness Ra (mean height) is" in said
-    assert f"{answer.Nbar / 1e12:.3g} µm⁻²" in said and f"Ra = {answer.Ra * 1e6:.3g} µm" in said
-    for part in (answer.method, answer.filter, answer.resolution, "wafer.csv, 256 × 256 points 125 nm × 125 nm apart"):
-        assert part in said
-    number = answer.Nbar * (256 * step) ** 2
-    assert f"about {number:.0f} asperities: N̄ is uncertain by some 10 %" in said
-    with pytest.raises(dataclasses.FrozenInstanceError):
-        answer.Ra = 1.0
-    times = answer.sigma_summits * 3 * math.pi * answer.Nbar * answer.Ra
-    assert f"the spread is {times:.2g} times that" in said
-    assert_allclose(times, 0.375 * math.sqrt(math.pi / 12 * (3 - 0.8968)), rtol=0.1)  # of N̄, Ra, σ_s by moments
-    text, unit = answer.parameters()["Nbar"].split()
-    assert float(text) == answer.Nbar and unit == "1/m^2" and answer.units == "m"
-
-
-def test_doubts_are_named():
-    noise = np.random.default_rng(0).normal(size=(64, 64)) * 1e-9
-    unresolved = roughness.measure(roughness.height_map(noise, dx=1e-7), method="summits")
-    assert any("3 points apart, 5 are needed" in note for note in unresolved.notes)
-    z, step = random_surface(256, 8)
-    stretched = roughness.measure(roughness.height_map(z, dx=step, dy=3 * step))
-    assert any("3.1 times" in note or "3 times" in note or "2.9 times" in note for note in stretched.notes)
-    worn = roughness.measure(roughness.height_map(np.minimum(z, 0), dx=step))
-    assert any("skewness -" in note and 'method="summits"' in note for note in worn.notes)
-    assert any("isotropic" in note for note in roughness.measure(roughness.profile(z[0], dx=step)).notes)
-
-
-def test_an_iso_ra_is_known_by_its_size():
-    """The surfaces of the paper are silent, and random ones; their ISO Ra, given as Ra, is not."""
-    assert not any(roughness.looks_like_iso_ra(Ra, Nbar) for Ra, Nbar, *_ in TABLE1)
-    z, step = random_surface(256, 8)
-    answer = roughness.measure(roughness.height_map(z, dx=step))
-    assert roughness.looks_like_iso_ra(answer.Ra, answer.Nbar) is None
-    said = roughness.looks_like_iso_ra(answer.iso_Ra, answer.Nbar)
-    assert "radius of an asperity" in said and "ISO 4287" in said and "cap_radius" in said
-    assert "Ra = 4e-07 is small for Nbar = 1e+10: the asperities are 25 radii apart" in roughness.looks_like_iso_ra(
-        np.array([1e-5, 4e-7]), np.array([1e9, 1e10])
-    )
-
-
-def test_the_page_prints_what_stands_there(tmp_path):
-    check_examples("docs/roughness.md", tmp_path)

@@ -57,6 +57,7 @@ def test_fewer_outputs_are_served(results):
         assert earlier(line(**output), results).source is not None
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 def test_no_file_and_files_of_others(tmp_path, results):
     nothing = earlier(line(), tmp_path / "none.nc")
     assert (nothing.condition.kind, nothing.cases, nothing.source) == ("missing", 0, None)
@@ -166,6 +167,7 @@ def test_a_run_takes_them_and_leaves_the_file_alone_until_the_end(ran, tmp_path,
     assert study.Study(line((1e-6,)), tmp_path).run(force=True).computed == 0
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 def test_cases_of_a_status_to_be_tried_again_are_missing(ran, tmp_path):
     path = tmp_path / "line.nc"
     path.write_bytes((ran.results / "line.nc").read_bytes())

@@ -10,13 +10,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import xarray as xr
-from line_study import store_block
 from numpy.testing import assert_array_equal
-from same import assert_same
 
 import solver
-import study
 from solver.parameters import CONTROL, EVERY, Parameter
 from study.spec import identity
 from study.spec.definition import Definition, from_tables
@@ -259,71 +255,3 @@ def test_what_changes_no_number_is_not_in_the_digest():
     assert {digest_of(replace(base(), **new)) for new in same} == {digest_of(base())}
     whole, real = (replace(base(), **changed("values", "nodes", (), zero)) for zero in (0, -0.0))
     assert digest_of(whole) == digest_of(real)
-
-
-@pytest.fixture
-def load(tmp_path):
-    """A study of two contacts, always the same file and folder."""
-
-    def written(numerics: str = "", model: str = "", label: str = "light") -> study.Study:
-        text = f'[model]\nh = 0.5\nn = 0.5\nmicro = "smooth"\n{model}\n[numerics]\n{numerics}\n[output]\nx = 3\n'
-        text += f'[[cases]]\nP = 1e-7\nlabel = "{label}"\n[[cases]]\nP = 1e-3\nlabel = "heavy"\n'
-        (tmp_path / "two.toml").write_text(text, encoding="utf-8")
-        return study.load(tmp_path / "two.toml", tmp_path / "results")
-
-    return written
-
-
-def fresh(opened: study.Study, folder) -> xr.Dataset:
-    there = study.Study(opened.definition, folder)
-    there.run()
-    return there.open()
-
-
-AUTO = 'base = "auto"'
-EDITS = {
-    "rtol": ({"numerics": "rtol = 1e-2"}, {"numerics": "rtol = 1e-10"}, "nodes_used"),
-    "accuracy": (
-        {"model": AUTO, "numerics": "accuracy = 1e-6"},
-        {"model": AUTO, "numerics": "accuracy = 0.5"},
-        "model_used",
-    ),
-}
-
-
-@pytest.mark.parametrize(("before", "after", "seen"), EDITS.values(), ids=EDITS)
-@pytest.mark.parametrize("finished", [True, False])
-def test_an_edit_of_the_numerics_computes_again(load, tmp_path, before, after, seen, finished):
-    """Of a finished study, and of one that stopped half-way and goes on after the edit."""
-    if finished:
-        load(**before).run()
-        old = load(**before).open()
-    else:
-        old = load(**before)
-        store_block(old, 0, 1)
-        old = old.open(partial=True)
-    edited = load(**after)
-    assert edited.dry_run().present == 0
-    if finished:
-        with pytest.raises(study.StudyError, match="2 of its 2 cases are not in this one"):
-            edited.run()
-    assert edited.run(force=finished).computed == 2
-    found = edited.open()
-    assert_same(found, fresh(edited, tmp_path / "fresh"))
-    assert found[seen].values[0] != old[seen].values[0]
-
-
-def test_an_edit_of_a_label_is_in_the_results_and_computes_nothing(load):
-    load().run()
-    edited = load(label="small")
-    assert edited.run().computed == 0
-    assert edited.open().label.values.tolist() == ["small", "heavy"]
-
-
-def test_an_edit_of_what_no_case_uses_is_of_no_account(load):
-    """Of a finished study, and of one that stopped half-way."""
-    load(model="nu1 = 0.2").run()
-    assert load(model="nu1 = 0.4").status()["state"] == "done"
-    half_way = load(model="nu1 = 0.2\nB = 0.1", numerics="rtol = 1e-7")
-    store_block(half_way, 0, 1)
-    assert load(model="B = 0.3", numerics="rtol = 1e-7").run(force=True).computed == 1

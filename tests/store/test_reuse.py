@@ -39,31 +39,24 @@ def fresh(opened: study.Study, tmp_path) -> xr.Dataset:
     return there.open()
 
 
-@pytest.mark.parametrize(
-    ("axes", "new"),
-    [
-        (MORE, 2),
-        ({"P": "[2e-6, 1e-6, 0.5e-6, 4e-6]", "h": "[0.002, 0.003, 0.001]"}, 6),
-        (AXES | {"rtol": "[1e-6, 1e-7]"}, 6),
-        (AXES | {"nu1": "[0.3, 0.4]"}, 0),
-        ({"n": "[0.4, 0.5]"} | AXES, 6),
-        ({"h": AXES["h"], "P": AXES["P"]}, 0),
-        ({"h": "[0.002, 0.001]", "P": "[4e-6, 1e-6, 2e-6]"}, 0),
-        ({"bonding": '["bonded", "frictionless"]'} | AXES, 6),
-    ],
-    ids=[
-        "value",
-        "values of two axes",
-        "axis",
-        "axis of what is not used",
-        "axis in front",
-        "order of axes",
-        "order of values",
-        "axis of words",
-    ],
-)
-@pytest.mark.parametrize("finished", [True, False])
-def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, axes, new, finished):
+EXTENDED = {
+    "value": (MORE, 2),
+    "values of two axes": ({"P": "[2e-6, 1e-6, 0.5e-6, 4e-6]", "h": "[0.002, 0.003, 0.001]"}, 6),
+    "axis": (AXES | {"rtol": "[1e-6, 1e-7]"}, 6),
+    "axis of what is not used": (AXES | {"nu1": "[0.3, 0.4]"}, 0),
+    "axis in front": ({"n": "[0.4, 0.5]"} | AXES, 6),
+    "order of axes": ({"h": AXES["h"], "P": AXES["P"]}, 0),
+    "order of values": ({"h": "[0.002, 0.001]", "P": "[4e-6, 1e-6, 2e-6]"}, 0),
+    "axis of words": ({"bonding": '["bonded", "frictionless"]'} | AXES, 6),
+}
+# Which cases are new is found from their keys, wherever those come from; blocks give theirs in one way.
+SOURCES = [(name, True) for name in EXTENDED] + [("values of two axes", False), ("axis in front", False)]
+
+
+@pytest.mark.parametrize(("change", "finished"), SOURCES)
+def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, change, finished):
+    """Of a finished study, whose cases lie in a results file, and of one whose cases lie in blocks."""
+    axes, new = EXTENDED[change]
     monkeypatch.setattr("study.files.examine.CHUNK", 2)
     if finished:
         load().run()

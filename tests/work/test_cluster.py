@@ -1,10 +1,11 @@
 """More than one machine: the walk-through of docs/cluster.md, and workers and schedulers that die."""
 
+import asyncio
+import multiprocessing
 import os
 import random
 import re
 import shutil
-import signal
 import socket
 import subprocess
 import sys
@@ -16,8 +17,9 @@ from threading import Thread
 
 import pytest
 from children import PATIENCE, PROCESSES, held, holding, stored, wait_for
+from children import started as launched
+from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, written
 from same import assert_same, assert_same_numbers
-from test_faults import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, undisturbed, written  # noqa: F401
 
 import study
 from study.work import run
@@ -34,41 +36,46 @@ ENVIRONMENT = os.environ | {
 
 
 class Cluster:
-    """A scheduler and workers, processes of this machine."""
+    """A scheduler and workers, processes of this machine that have imported everything: what the commands of dask
+    start, which the walk-through does start by them."""
 
     def __init__(self, folder: Path):
         self.folder = folder
-        self.log = (folder / "cluster.log").open("w")
         self.file = folder / "scheduler.json"
         self.processes = []
-        self.start("scheduler", "--host", "127.0.0.1", "--port", "0", "--scheduler-file", str(self.file))
+        self.start({"scheduler_file": str(self.file), "port": 0}, "Scheduler", {})
 
-    def start(self, *command: str, **environment: str) -> subprocess.Popen:
-        command = [sys.executable, "-m", "dask", *command, "--no-dashboard"]
-        environment = ENVIRONMENT | environment
-        self.processes.append(subprocess.Popen(command, env=environment, stdout=self.log, stderr=self.log))
+    def start(self, options: dict, kind: str, environment: dict[str, str]) -> multiprocessing.Process:
+        self.processes.append(launched(_serve, kind, options, environment, self.folder / "cluster.log"))
         return self.processes[-1]
 
-    def worker(self, first: int = CASES) -> subprocess.Popen:
+    def worker(self, first: int = CASES) -> multiprocessing.Process:
         """Start a worker that holds its blocks from case `first` on until folder/go is there."""
-        wait_for(self.known)
-        options = ("--nthreads", "1", "--no-nanny", "--host", "127.0.0.1", "--preload", str(ROOT / "tests" / "hold.py"))
-        return self.start("worker", "--scheduler-file", str(self.file), *options, **holding(self.folder, first))
-
-    def known(self) -> bool:
-        """Whether the scheduler has written its address: the file exists before."""
-        return self.file.exists() and self.file.stat().st_size > 0
+        return self.start({"scheduler_ip": self.address, "nthreads": 1}, "Worker", holding(self.folder, first))
 
     @property
     def address(self) -> str:
-        wait_for(self.known)
+        wait_for(lambda: self.file.exists() and self.file.stat().st_size > 0)  # the file exists before the address
         return re.search(r'"address": "(tcp://[^"]+)"', self.file.read_text())[1]
 
     def stop(self) -> None:
         for process in self.processes:
             process.kill()
-            process.wait()
-        self.log.close()
+            process.join()
+
+
+def _serve(kind: str, options: dict, environment: dict[str, str], log: Path) -> None:
+    """Be a scheduler or a worker until killed."""
+    os.environ |= environment
+    os.dup2(os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND), sys.stderr.fileno())
+    if environment:
+        import hold  # noqa: F401
+
+    async def serve():
+        async with getattr(distributed, kind)(host="127.0.0.1", dashboard=False, **options) as served:
+            await served.finished()
+
+    asyncio.run(serve())
 
 
 @pytest.fixture
@@ -119,12 +126,12 @@ def test_walk_through_of_the_documentation(tmp_path):
         assert subprocess.run(["sh", "-n"], input=script, text=True, check=False).returncode == 0
 
 
-def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):  # noqa: F811
+def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):
     opened = written(tmp_path)
     workers = [cluster.worker(50), cluster.worker(50)]
     process, answers = started(cluster, opened, tmp_path)
     wait_for(lambda: len(held(tmp_path)) == 2)
-    workers[0].send_signal(signal.SIGKILL)
+    workers[0].kill()
     (tmp_path / "go").touch()
     process.join(PATIENCE)
     code, errors = answers.get(timeout=PATIENCE)
@@ -132,7 +139,7 @@ def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed): 
     assert_ends_well(opened, undisturbed, 0)
 
 
-def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):  # noqa: F811
+def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, undisturbed):
     opened = written(tmp_path)
     cluster.worker(3 * BLOCK)
     process, answers = started(cluster, opened, tmp_path)
@@ -188,24 +195,24 @@ def test_a_port_that_is_not_dask(tmp_path, monkeypatch, words, why, scheme):
         assert f"no scheduler answers there ({why}" in refused(opened, scheme + address)
 
 
-@pytest.mark.parametrize(
-    ("address", "why"),
-    [
-        ("tcp://127.0.0.1:1", "no scheduler answers there (Timed out"),
-        ("tcp://nowhere.invalid:8786", "no scheduler answers there (nowhere.invalid: "),
-        ("tls://127.0.0.1:1", "no scheduler answers there (TLS needs certificates, "),
-        ("nonsense", "must be the address of a dask scheduler"),
-        ("", "must be the address of a dask scheduler"),
-    ],
-)
-def test_a_scheduler_that_is_not_there(tmp_path, address, why, monkeypatch, undisturbed):  # noqa: F811
+ABSENT = {
+    "tcp://127.0.0.1:1": "no scheduler answers there (Timed out",
+    "tcp://nowhere.invalid:8786": "no scheduler answers there (nowhere.invalid: ",
+    "tls://127.0.0.1:1": "no scheduler answers there (TLS needs certificates, ",
+    "nonsense": "must be the address of a dask scheduler",
+    "": "must be the address of a dask scheduler",
+}
+
+
+def test_a_scheduler_that_is_not_there(tmp_path, monkeypatch, undisturbed):
     monkeypatch.setattr(engines, "CONNECT", 0.5)
     opened = written(tmp_path)
-    assert why in refused(opened, address)
+    for address, why in ABSENT.items():
+        assert why in refused(opened, address)
     assert_ends_well(opened, undisturbed, CASES)
 
 
-def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):  # noqa: F811
+def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
     """Blocks of random size, axes in another order; the second worker comes while the run is on."""
     cluster.worker(60)
     text = TEXT.replace("[0.001, 0.002, 0.003]", "[0.003, 0.001, 0.002]")
@@ -221,7 +228,7 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed): 
     assert_same_numbers(opened.open().sel(h=undisturbed.h), undisturbed)
 
 
-def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):  # noqa: F811
+def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):
     cluster.worker()
     opened = written(tmp_path)
     real = run.parcel

@@ -1,21 +1,18 @@
 """Whatever happens to a run, what is on disk is kept, and the next run ends in the dataset of an undisturbed one."""
 
-import errno
 import io
 import json
 import os
 import random
-import resource
 import signal
-import stat
 import time
 from pathlib import Path
 
 import numpy as np
 import pytest
-import xarray as xr
 from children import PATIENCE, child, computed_in, lines, wait_for
-from line_study import present, store_block
+from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, written
+from line_study import store_block
 from same import assert_same
 
 import study
@@ -27,56 +24,12 @@ from study.work import progress
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals and limits")
 
-CASES, BLOCK = 300, 5
 IN_FLIGHT = 4 * 2 * BLOCK  # cases submitted and not stored, for two workers
-TEXT = f"""
-[model]
-micro = "smooth"
-n = 0.5
-base = "thin_layer"
-[axes]
-h = [0.001, 0.002, 0.003]
-P = {{start = 1e-6, stop = 1e-4, num = {CASES // 3}}}
-[numerics]
-block = {BLOCK}
-[output]
-x = 3
-"""
-
-
-@pytest.fixture(scope="module")
-def undisturbed(tmp_path_factory) -> xr.Dataset:
-    folder = tmp_path_factory.mktemp("undisturbed")
-    opened = written(folder)
-    opened.run()
-    return opened.open()
 
 
 @pytest.fixture
 def opened(tmp_path) -> study.Study:
     return written(tmp_path)
-
-
-def written(folder: Path, text: str = TEXT) -> study.Study:
-    (folder / "line.toml").write_text(text, encoding="utf-8")
-    return study.load(folder / "line.toml", folder / "results")
-
-
-def assert_ends_well(opened: study.Study, undisturbed: xr.Dataset, computed: int | None = None, kept=()) -> None:
-    """The next run computes so many cases, gives the dataset of an undisturbed run and leaves nothing but the blocks
-    that are to be `kept`: what is in them is not in the results."""
-    report = opened.run(workers=2)
-    assert report.complete and (computed is None or report.computed == computed)
-    assert_same(opened.open(), undisturbed)
-    blocks = [f".line.blocks/{name}" for name in ("lock", *(path.name for path in kept))] if kept else []
-    assert sorted(
-        path.relative_to(opened.results).as_posix() for path in opened.results.rglob("*") if path.is_file()
-    ) == (sorted([*blocks, "line.nc"]))
-    assert bool(report.kept) == bool(kept)
-
-
-def cases_on_disk(opened: study.Study) -> set[int]:
-    return set(np.flatnonzero(opened.open(partial=True).status.values.ravel() != 127).tolist())
 
 
 def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
@@ -157,66 +110,6 @@ def test_nothing_executable_is_read(opened, undisturbed, tmp_path):
     with pytest.raises(block_file.Damaged):
         read_block(path)
     assert_ends_well(opened, undisturbed, CASES)
-
-
-def full_disk(limit: int):
-    """No file may grow beyond `limit` bytes in this process: a write fails, as on a full disk, even for root."""
-    _, most = resource.getrlimit(resource.RLIMIT_FSIZE)
-    resource.setrlimit(resource.RLIMIT_FSIZE, (limit, most))
-
-
-@pytest.mark.parametrize(("limit", "kept"), [(500, 0), (8000, CASES)], ids=["of a block", "of the results"])
-def test_full_disk(opened, undisturbed, capsys, tmp_path, limit, kept):
-    command = ["run", str(tmp_path / "line.toml"), "--results", str(opened.results), "--workers", "1"]
-    try:
-        full_disk(limit)
-        code = main(command)
-    finally:
-        full_disk(resource.RLIM_INFINITY)
-    assert code == 1
-    errors = capsys.readouterr().err.splitlines()
-    assert len([line for line in errors if "cases" not in line]) == 1, errors
-    assert "File too large" in errors[-1] or "is the disk full?" in errors[-1]
-    assert present(opened) == kept
-    assert not list(opened.results.rglob("*.tmp"))
-    assert_ends_well(opened, undisturbed, CASES - kept)
-
-
-def test_disk_full_half_way(opened, undisturbed, monkeypatch):
-    flushed, real = [], os.fsync
-
-    def fsync(file):
-        flushed.extend([file] * stat.S_ISREG(os.fstat(file).st_mode))
-        if len(flushed) > 3:
-            raise OSError(errno.ENOSPC, "No space left on device")
-        real(file)
-
-    monkeypatch.setattr(os, "fsync", fsync)
-    with pytest.raises(OSError, match="No space left on device"):
-        opened.run(workers=2)
-    monkeypatch.undo()
-    assert present(opened) == 3 * BLOCK
-    assert_ends_well(opened, undisturbed, CASES - 3 * BLOCK)
-
-
-@pytest.mark.skipif(not Path("/proc/self").exists(), reason="a folder where nobody may write")
-def test_read_only_folder(opened, undisturbed, capsys, tmp_path):
-    assert main(["run", str(tmp_path / "line.toml"), "--results", "/proc/self/results"]) == 1
-    assert capsys.readouterr().err == "/proc/self/results: cannot be written: No such file or directory\n"
-    assert_ends_well(opened, undisturbed, CASES)
-
-
-def test_folder_becomes_read_only(opened, undisturbed, tmp_path, capsys, monkeypatch):
-    store_block(opened, 0, BLOCK)
-
-    def replace(*_):
-        raise OSError(errno.EROFS, "Read-only file system")
-
-    monkeypatch.setattr(os, "replace", replace)
-    assert main(["run", str(tmp_path / "line.toml"), "--results", str(opened.results), "--workers", "1"]) == 1
-    assert "Read-only file system" in capsys.readouterr().err
-    monkeypatch.undo()
-    assert_ends_well(opened, undisturbed, CASES - BLOCK)
 
 
 @pytest.mark.parametrize("locks", [True, False])

@@ -33,6 +33,7 @@ def test_results_of_another_definition_are_kept(file):
     assert other.open().sizes["P"] == 24
 
 
+@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
 def test_a_file_that_is_no_result_is_kept(file, content):
     opened = load(file)

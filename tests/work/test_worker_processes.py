@@ -2,13 +2,12 @@
 
 import os
 import signal
-import subprocess
 import sys
+from multiprocessing.process import BaseProcess as Run
 from pathlib import Path
 
 import pytest
-from children import PATIENCE, held, holding, lines, note, stored, wait_for
-from conftest import ROOT
+from children import PATIENCE, command, held, lines, note, stored, wait_for
 from line_study import load, present
 from same import assert_same
 
@@ -25,20 +24,24 @@ def opened(file):
     return load(file, **{"num = 23": f"num = {CASES}", "block = 5": "block = 1"})
 
 
-def started(opened, *options: str) -> subprocess.Popen:
+def started(opened) -> Run:
     """A run from the command line in a session of its own."""
-    folder = opened.results.parent
-    command = [sys.executable, ROOT / "tests" / "hold.py", "run", "line.toml", "--workers", "2", *options]
-
-    def listen():  # what background jobs and nohup ignore
-        for number in (signal.SIGINT, signal.SIGHUP):
-            signal.signal(number, signal.SIG_DFL)
-
-    where = {"cwd": folder, "env": holding(folder, BEFORE), "start_new_session": True}
-    return subprocess.Popen(command, **where, preexec_fn=listen, stderr=subprocess.PIPE, text=True)
+    return command(opened.results.parent, BEFORE, "run", "line.toml", "--workers", "2", prepared=alone)
 
 
-def workers_of(process: subprocess.Popen) -> list[int]:
+def alone() -> None:
+    """Lead a session, and end at what closes its terminal, which background jobs and nohup ignore."""
+    os.setsid()
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+
+
+def ended(process: Run, opened) -> tuple[int, str]:
+    """Exit code of a run, and what it has said, once it has ended."""
+    process.join(PATIENCE)
+    return process.exitcode, (opened.results.parent / "errors").read_text()
+
+
+def workers_of(process: Run) -> list[int]:
     """Processes that compute for a run, those that have ended and not been waited for left out."""
     found = []
     for stat in Path("/proc").glob("[0-9]*/stat"):
@@ -69,8 +72,7 @@ def test_processes_compute_what_threads_compute(opened, tmp_path):
     wait_for(lambda: at_work(opened))
     assert {*map(str, workers_of(process))} == held(tmp_path)
     (tmp_path / "go").touch()
-    _, errors = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 0, errors
+    assert ended(process, opened)[0] == 0
     (tmp_path / "threads").mkdir()
     threads = load(tmp_path / "threads" / "line.toml", **{"num = 23": f"num = {CASES}", "block = 5": "block = 1"})
     threads.run()
@@ -142,8 +144,8 @@ def test_a_killed_worker_costs_the_blocks_it_computed_only(opened, tmp_path):
     os.kill(workers_of(process)[0], signal.SIGKILL)
     wait_for(lambda: len(held(tmp_path)) == 3)
     (tmp_path / "go").touch()
-    _, errors = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 0 and "Traceback" not in errors
+    code, errors = ended(process, opened)
+    assert code == 0 and "Traceback" not in errors
     assert opened.status()["counts"] == {0: CASES} and len(lines(tmp_path / "go.log")) < CASES
 
 
@@ -153,8 +155,7 @@ def test_nothing_is_left_of_a_killed_run_and_of_one_whose_terminal_is_closed(ope
     process = started(opened)
     wait_for(lambda: at_work(opened))
     whom(process.pid, number)
-    _, errors = process.communicate(timeout=PATIENCE)
-    assert process.returncode == -number and errors == ""
+    assert ended(process, opened) == (-number, "")
     wait_for(lambda: not workers_of(process))
     assert_ends_well(opened, BEFORE)
 
@@ -165,8 +166,8 @@ def test_an_interrupt_of_all_processes_is_the_runs_alone(opened, moment):
     process = started(opened)
     wait_for(lambda: workers_of(process) if moment == "as they start" else at_work(opened))
     os.killpg(process.pid, signal.SIGINT)
-    _, errors = process.communicate(timeout=PATIENCE)
-    assert process.returncode == 130
+    code, errors = ended(process, opened)
+    assert code == 130
     text = errors.removeprefix("\n")  # of a line of progress, if there was one
     assert text in ("", "interrupted; finished blocks are kept, the same command goes on from there\n"), "or it began"
     wait_for(lambda: not workers_of(process))

@@ -1,0 +1,108 @@
+"""The kernel of a batch of layers at the nodes of the quadrature: a part for each class of stiffness, and for films."""
+
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from . import film
+from .kernel import decaying_part
+from .tables import table
+from .wave_rule import CUT, FILM, few, place_of, quadrature
+
+#: Numbers in one block of kernel values: its temporaries stay in the cache.
+_BLOCK = 16384
+
+
+class Part(NamedTuple):
+    """The kernel of cases of one class of stiffness, or of films of one.
+
+    `index` (b,) are their places in the batch, `octave` (b,) those of h/a, equal ones next to each other, `radius` (b,)
+    is a, and L1, uL (b, M) are L - 1 and -u dL/du at the few nodes k of the tables. Films have χ (L - n') in place of
+    L - 1, their convolution c and its derivative by ln a (b, T), and n' (b, 1).
+    """
+
+    stiffness: int
+    index: np.ndarray
+    octave: np.ndarray
+    radius: np.ndarray
+    L1: np.ndarray
+    uL: np.ndarray
+    film: np.ndarray | None = None
+    d_film: np.ndarray | None = None
+    level: np.ndarray | None = None
+
+    def tables(self, mesh):
+        """Pairs of a :class:`~solver.body.tables.Table` on a mesh and its own rows (slice)."""
+        for octave, rows in runs(self.octave):
+            yield table(mesh, octave, self.stiffness), rows
+
+    @property
+    def share(self):
+        """The share (b, 1) of the half-space that stands beside Λ: 1 but for films."""
+        return 1.0 if self.level is None else self.level
+
+    def take(self, rows, index):
+        """The sub-batch at `rows`, at the places `index` in another batch."""
+        return Part(self.stiffness, index, *(None if v is None else v[rows] for v in self[2:]))
+
+
+def runs(octave):
+    """Pairs of an octave and the slice of its equal neighbours."""
+    ends = np.flatnonzero(np.diff(octave)) + 1
+    for low, high in pairwise([0, *ends.tolist(), len(octave)]):
+        yield int(octave[low]), slice(low, high)
+
+
+def join(parts):
+    """One part from several of one class."""
+    stiffness, *arrays = zip(*parts, strict=True)
+    whole = Part(stiffness[0], *(None if v[0] is None else np.concatenate(v) for v in arrays))
+    order = np.argsort(whole.octave, kind="stable")
+    return whole.take(order, whole.index[order])
+
+
+def parts_of(layer, a, index):
+    """The kernel of the cases `index` at radii a (B,): a list of :class:`Part`."""
+    octave, stiffness = place_of(layer.take(index), a[index])
+    order, parts = np.lexsort((octave, stiffness, octave == FILM)), []
+    index, octave, stiffness = index[order], octave[order], stiffness[order]
+    for _, rows in runs(2 * stiffness + (octave == FILM)) if len(index) else ():
+        own, of_film = index[rows], octave[rows][0] == FILM
+        make = _film_part if of_film else _plain_part
+        place = octave[rows], int(stiffness[rows][0])
+        parts.append(Part(place[1], own, place[0], a[own], *make(layer.take(own), layer.h[own] / a[own], *place)))
+    return parts
+
+
+def _plain_part(layer, eta, octave, stiffness):
+    k = [few(one, stiffness).k for one, _ in runs(octave)]
+    return _kernel(layer, eta, np.repeat(k, [rows.stop - rows.start for _, rows in runs(octave)], axis=0))
+
+
+def _film_part(layer, eta, octave, stiffness):
+    k, _ = quadrature(FILM, stiffness)
+    level = layer.whole(CUT * eta / 2)[:, None]
+    kappa, _, _ = film.waves()
+    below = _kernel(layer, eta, k, level, film.step(k / CUT))
+    beyond, d_beyond = _kernel(layer, eta, CUT * kappa, level, 1 - film.step(kappa))
+    p, end = CUT * eta[:, None], level - 1
+    return *below, np.pi / 2 * film.transform(beyond, end, p), np.pi / 2 * film.transform(d_beyond, 0 * end, p), level
+
+
+def _kernel(layer, eta, k, level=None, factor=1.0):
+    """L less `level` (b, 1), or less 1, and -u dL/du, both times a factor (M,), at the nodes k, (b, M) or (M,): (b, M)
+    each."""
+    size, count = len(eta), k.shape[-1]
+    L1, uL = np.empty((2, size, count))
+    many, yields = max(1, _BLOCK // count), layer.m.any()  # few punches do
+    for of_interface in (np.flatnonzero(layer.bonded), np.flatnonzero(~layer.bonded)):
+        for low in range(0, len(of_interface), many):
+            rows = of_interface[low : low + many]
+            u = (k if k.ndim == 1 else k[rows]) * eta[rows, None]
+            above, slope = decaying_part(u, *(field[rows, None] for field in layer.material))
+            if yields:
+                above, slope = above / (1 + layer.m[rows, None]), slope / (1 + layer.m[rows, None])
+            L1[rows] = factor * (above if level is None else above - (level[rows] - 1))
+            uL[rows] = -factor * slope
+    return L1, uL

@@ -63,6 +63,17 @@ def test_noise_is_smoothed_and_said(table):
     assert found.status == 0 and found.model_error == law.error
 
 
+@pytest.mark.parametrize("rows", [7, 10, 20])
+def test_the_error_covers_what_is_between_few_rows(rows):
+    def disc(p):
+        return laws.LAWS["disc_cell"].at(p, 1.0, **ASPERITIES)
+
+    rows, between = np.geomspace(1e-5, 0.03, rows), np.geomspace(1e-5, 0.03, 300)
+    law = own_table.of_columns("table:few.csv", rows, *disc(rows))
+    truth = max(np.abs(found / true - 1).max() for found, true in zip(law.at(between, 1.0), disc(between), strict=True))
+    assert truth < law.error < 10 * truth
+
+
 def test_outside_its_range(table):
     """p(0) below the first row, pressures above the last one; in any units."""
     problem = {"h": 0.02, "n": 0.5, "base": ["half_space", "layered", "auto"], "micro": table()}

@@ -4,7 +4,8 @@
 PYTHON ?= python3
 # The studies of this repository. They may replace their own results of an older version; a study of yours may not.
 STUDIES := reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings \
-  extremes extremes_layered picard_domain
+  extremes extremes_layered picard_domain \
+  dlc_on_steel tin_on_steel ptfe_lining polymer_film_on_glass rubber_on_metal gel_on_glass
 # What `make clean` removes of figures/ and tables/.
 DRAWN := fig?? fig??_layered validity validity_load coatings extremes picard_domain tradeoff
 WRITTEN := table1 paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error

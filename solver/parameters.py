@@ -60,7 +60,7 @@ CONTROL = {
 #: default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
-    "n": Parameter(interval="[1e-9, 1e9]", needed_by=LAYERED),
+    "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
     "m": Parameter(0.0, interval="[0, 1e9]"),
     "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
     "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),

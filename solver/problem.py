@@ -23,7 +23,8 @@ class Problem:
     value
         Its value: load, radius of the nominal contact area or indentation depth.
     h, n : needed by every base but "half_space"
-        Thickness of the layer, and ratio of the reduced moduli E1*/E2*.
+        Thickness of the layer, and ratio of the reduced moduli E1*/E2*. n = 0 is a rigid base; E2* is infinite there,
+        and E1* is the unit of moduli, in numbers and as `E2`, in its place.
     m : 0
         Ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
         displacements of both bodies add; D is the approach of their distant points.

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from .body import BODIES
-from .body.springs import local_compliance, thin_layer_coefficients
+from .body.springs import STIFF, layer_modulus, local_compliance, thin_layer_coefficients
 from .contact.equation import Cases
 from .laws import LAWS
 from .parameters import PARAMETERS, allowed
@@ -58,12 +58,23 @@ def with_rigid_punch(problem):
     moved = (m > 0) & ((base == "half_space") | thin)
     return replace(
         problem,
-        E2=np.where(moved, problem.E2 * n / (n + m), problem.E2),
+        E2=np.where(moved, problem.E2 * layer_modulus(n) / (n + m), problem.E2),
         n=np.where(moved, (n + m) / (1 + m), problem.n),
         h=np.where(moved, 2 * A2 * problem.h / (1 + m), problem.h),
         bonding=np.where(moved, "frictionless", problem.bonding),
         m=np.where(moved, 0.0, m),
     )
+
+
+def with_a_stiff_base(problem):
+    """The problem with a thin layer on a rigid base, n = 0, as that on a half-space whose part is below rounding.
+
+    Layers that are judged by the exact one stay as they are.
+    """
+    stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
+    if not stiff.any():
+        return problem
+    return replace(problem, n=np.where(stiff, STIFF, problem.n), E2=np.where(stiff, problem.E2 / STIFF, problem.E2))
 
 
 def refused(problem, scaled):
@@ -86,7 +97,7 @@ def as_cases(part):
 def law_of(part):
     """The law of cases of one law, bound to their numbers."""
     law = LAWS[str(part.micro[0])]
-    return law.bind(part.n / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
+    return law.bind(layer_modulus(part.n) / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
 
 
 def _layer(problem):

@@ -14,7 +14,7 @@ from .models.model_error import closed_form, judged
 from .models.range_of_law import refuse_outside
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
-from .scaling import as_cases, dimensionless, refused, restore, with_rigid_punch, without_springs
+from .scaling import as_cases, dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
@@ -69,7 +69,7 @@ def _of_a_model(problem, x):
 
 
 def _solved(given, x, invalid):
-    problem = with_rigid_punch(given)
+    problem = with_a_stiff_base(with_rigid_punch(given))
     scaled = dimensionless(problem)
     no_springs = ~invalid & without_springs(scaled)
     status = np.select([invalid, no_springs], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)

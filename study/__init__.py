@@ -18,6 +18,7 @@ _HOME = {
     "from_physical": "data.units",
     "reduced_modulus": "data.units",
     "summary": "in_words",
+    "readable": "physical.readable",
 }
 _MODULES = {
     "derived": "data.derived",

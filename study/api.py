@@ -8,16 +8,18 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from .data.dataset import labelled
+from .data.dataset import parts
 from .data.provenance import command_line
 from .files.access import Unusable
 from .files.examine import Condition
 from .files.results_file import open_lazily, open_results
 from .in_words import doubts
 from .physical.reading import read as read_scene
-from .spec.definition import LARGE, POINTS, Definition, StudyError, complete, read
+from .physical.scene import shown
+from .physical.study_file import complete as complete_scene
+from .physical.study_file import read
+from .spec.definition import LARGE, POINTS, Definition, StudyError, complete
 from .spec.given import Draft
-from .spec.grid import LONGEST_AXIS
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, statuses
@@ -27,7 +29,6 @@ from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look, results_path
 from .work.run import dry_run, partial_dataset, run
 
-DIMENSIONLESS = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
 LAZY = 200_000_000  # bytes of a results file that is not read at once
 
 
@@ -41,9 +42,10 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
         study.vocabulary), and those of registered laws. Each a scalar, a 1-D sequence (which makes a dimension of that
         name, in the order given) or a DataArray over dimensions of its own. `micro` may be a `solver.laws.Law` itself
         (docs/extending.md), or "table:" and the path of a CSV file.
-        Or physical: R, E1, E2, E_punch (radius of the punch, Young's moduli of layer, body and punch; a punch without
-        is rigid), nu_punch (0.3), and the others as texts with units ("5 mm", "200 ± 10 GPa"), as quantities of pint,
-        or as DataArrays with an attribute `units`. n and m follow from the moduli. One without a unit is refused.
+        Or physical: R (or R1 and R2 of two bodies, R = 1/(1/R1 + 1/R2), a cup negative), E1, E2, E_punch (Young's
+        moduli of layer, body and punch; a punch without is rigid, and so is a body of E2 = "rigid"), nu_punch (0.3),
+        and the others as texts with units ("5 mm", "200 ± 10 GPa"), as quantities of pint, or as DataArrays with an
+        attribute `units`. n and m follow from the moduli. One without a unit is refused.
     cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
         which comes first
     x : number of points r/a of the profiles, or the points, from 0 to 1
@@ -72,23 +74,22 @@ def solve(*, cases=None, x=POINTS, profiles=True, title: str = "", **parameters)
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
     scene = read_scene(parameters, cases)
+    about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
-        parameters, cases = scene.parameters, None
-    if cases is not None:
-        draft.cases(cases)
-    for name, given in parameters.items():
-        _add(draft, name, given)
-    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
-    try:
-        definition = complete(draft, tables, "solve", "", "solve", most=LARGE)
-    except StudyError as error:
-        raise StudyError([*error.messages, *([DIMENSIONLESS] if scene else [])]) from None
-    found = labelled(definition, compute(parcel(definition, np.arange(definition.grid.size))), "study.solve")
+        definition = complete_scene(draft, scene, [], about, most=LARGE)
+    else:
+        if cases is not None:
+            draft.cases(cases)
+        for name, given in parameters.items():
+            draft.of_any_form(name, given)
+        definition = complete(draft, *about, LARGE)
+    arrays = compute(parcel(definition, np.arange(definition.grid.size)))
+    found = shown(definition, parts(definition, arrays, "study.solve"))
     if not scene:
         return found
-    found = scene.dressed(found)
-    if doubts(found):
-        warnings.warn("\n".join(["this contact is beyond what the model describes:", *doubts(found)]), stacklevel=2)
+    beyond = doubts(found)
+    if beyond:
+        warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
 
 
@@ -172,16 +173,3 @@ class Study:
 def load(path, results="results") -> Study:
     """Read and check a study file. Raises StudyError with all that is wrong with it."""
     return Study(read(os.path.expanduser(path)), Path(os.path.expanduser(results)))
-
-
-def _add(draft: Draft, name: str, given) -> None:
-    """Sort a parameter of `solve` by its form: DataArray, 1-D sequence, scalar."""
-    if isinstance(given, xr.DataArray):
-        draft.array(name, given)
-        return
-    if hasattr(given, "tolist"):  # numpy and pandas
-        given = given.tolist()
-    if isinstance(given, (list, tuple, range)):
-        draft.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless
-    else:
-        draft.scalar(name, given, "")

@@ -6,6 +6,7 @@ import xarray as xr
 from solver import Status
 
 from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from .physical.bodies import BODIES
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
 from .spec.vocabulary import VOCABULARY
@@ -14,7 +15,26 @@ MOST_CASES = 20  # that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: In a smooth contact the real pressure is the nominal one, and the real area all of it.
 _OF_ASPERITIES = ("p_max", "Ar_An")
-INPUTS = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "n", "m", "h", "bonding", "Nbar", "Ra")
+INPUTS = (
+    "R1",
+    "R2",
+    "R",
+    "punch",
+    "E_punch",
+    "nu_punch",
+    "layer",
+    "E1",
+    "nu1",
+    "body",
+    "E2",
+    "nu2",
+    "n",
+    "m",
+    "h",
+    "bonding",
+    "Nbar",
+    "Ra",
+)
 MODELS = {
     "half_space": "a half-space under the asperities",
     "smooth_half_space": "a half-space, without asperities",
@@ -86,8 +106,8 @@ def _one(case: xr.Dataset, dims=()) -> str:
     """The text of one case."""
     rough = str(case["micro"].values) != "smooth"
     inputs = [name for name in INPUTS if name in case and name not in dims and _matters(case, name, rough)]
-    given = ["a rigid punch"] if case.get("m", 0.0) == 0 else []
-    lines = ["Given: " + ", ".join(given + [_given(case, name) for name in inputs]), ""]
+    rigid = ["a rigid punch"] * _is_rigid(case, "punch") + ["a rigid base"] * _is_rigid(case, "base")
+    lines = ["Given: " + ", ".join(rigid + [_given(case, name) for name in inputs]), ""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:
@@ -95,12 +115,24 @@ def _one(case: xr.Dataset, dims=()) -> str:
     return "\n".join([*lines, "", *_sentences(case)])
 
 
+def _is_rigid(case: xr.Dataset, body: str) -> bool:
+    """Whether the punch, or the base under a layer, is rigid."""
+    if body == "punch":
+        return bool(case.get("m", 0.0) == 0)
+    return bool(case.get("n", 1.0) == 0) and str(case["base"].values) != "half_space"
+
+
 def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
     """Whether a parameter has a value that the case uses."""
     value = case[name].values
+    of_the_rigid = {"nu_punch": "punch", "punch": "punch", "nu2": "base", "body": "base"}
+    if name in of_the_rigid and _is_rigid(case, of_the_rigid[name]) or name == "n" and _is_rigid(case, "base"):
+        return False
+    if name == "R" and "R1" in case:
+        return False
     if name in ("Nbar", "Ra"):
         return rough
-    if name in ("E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
+    if name in ("layer", "E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
         return False
     if name in ("n", "m") and "E2" in case:
         return False
@@ -113,7 +145,7 @@ def _given(case: xr.Dataset, name: str) -> str:
         return str(name)
     value = case[name].values[()]
     if isinstance(value, (str, np.str_)):
-        return str(value)
+        return f"{name} of {value}" if name in BODIES else str(value)
     return f"{name} = {_text(case, name, float(value), _spread(case, name))}"
 
 
@@ -173,13 +205,13 @@ def _word(flag: xr.DataArray) -> str:
 
 def doubts(contact: xr.Dataset) -> list[str]:
     """Sentences about the cases of a dataset that are beyond what the model describes; none: all is well."""
-    flags = contact["validity"]
-    found = []
-    for mask, word in zip(np.atleast_1d(flags.attrs["flag_masks"]), flags.attrs["flag_meanings"].split(), strict=True):
-        count = int(((flags.values & mask) != 0).sum())
-        of_all = f"{count} of {flags.size} cases: " if flags.size > 1 else ""
+    v = contact.variables  # a DataArray compares its coordinates at every step, which takes longer than a contact
+    flags, values, found = v["validity"].attrs, v["validity"].values, []
+    for mask, word in zip(np.atleast_1d(flags["flag_masks"]), flags["flag_meanings"].split(), strict=True):
+        count = int(((values & mask) != 0).sum())
+        of_all = f"{count} of {values.size} cases: " if values.size > 1 else ""
         found += [of_all + BROKEN[word]] if count else []
-    if {"Ra", "Nbar"} <= set(contact.coords) and (contact["micro"] != "smooth").any():
-        sharp = looks_like_iso_ra(*(array.values for array in xr.broadcast(contact["Ra"], contact["Nbar"])))
+    if {"Ra", "Nbar"} <= set(contact.coords) and (v["micro"].values != "smooth").any():
+        sharp = looks_like_iso_ra((v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values)
         found += [sharp] if sharp else []
     return found

@@ -78,7 +78,7 @@ def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
     from study.evidence.tradeoff import WAYS, measure
     from study.files.results_file import write
-    from study.spec.definition import from_tables
+    from study.physical.study_file import from_tables
     from study.work.run import run
 
     for toml in STUDIES:

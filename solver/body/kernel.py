@@ -29,8 +29,8 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     ----------
     u : array, >= 0
         Wave number times thickness; broadcast against the others.
-    n : array, > 0
-        E1*/E2*.
+    n : array, >= 0
+        E1*/E2*; 0 on a rigid base, where L(0) = 0.
     nu1, nu2 : array, (-1, 0.5]
         Poisson ratios of layer and half-space; not used without friction.
     bonded : array of bool

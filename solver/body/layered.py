@@ -18,7 +18,7 @@ from ..numerics.mesh import Mesh
 from .kernel import whole
 from .operator import fitted_nodes
 from .part import join, parts_of
-from .springs import thin_layer
+from .springs import layer_modulus, thin_layer
 from .tables import between, felt, film_rows
 from .wave_rule import CUT, FILM, place_of
 
@@ -44,7 +44,7 @@ class Layered(NamedTuple):
     @property
     def E(self):
         """Modulus (B,) in E2* of a half-space of the layer's material and the punch, to which K is relative."""
-        return self.n / (1 + self.m)
+        return layer_modulus(self.n) / (1 + self.m)
 
     @property
     def material(self):

@@ -11,6 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..body.kernel import decaying_part, whole
+from ..body.springs import layer_modulus
 from ..contact.start import guess_radius
 from ..laws import LAWS, smooth
 from ..numerics.quadrature import gauss_legendre
@@ -92,7 +93,7 @@ def bounds(part):
     found = {Model.LAYER_ALONE: alone + of_law, Model.THIN_LAYER: thin + of_law}
     if not cases.law.rough:
         return {Model(model + 1): bound for model, bound in found.items()}
-    p0 = 2 / np.pi * a * part.n / whole(1.5 * x, *material)
+    p0 = 2 / np.pi * a * layer_modulus(part.n) / whole(1.5 * x, *material)
     asperities = _ASPERITIES[part.control] * (cases.law.at(p0[:, None]).A[:, 0] / a**2) ** 0.75
     return {Model(model + 1): bound + asperities for model, bound in found.items()} | found
 
@@ -100,7 +101,7 @@ def bounds(part):
 def _on_model(model, part, x, solve):
     """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
-    base = _with(part, base="thin_layer") if thin else replace(_with(part, base="half_space"), E2=part.n)
+    base = _with(part, base="thin_layer") if thin else replace(_with(part, base="half_space"), E2=layer_modulus(part.n))
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
         return solve(base, x)
     s, weight = _area_rule()

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ..body.springs import layer_modulus
 from ..laws import LAWS
 from ..status import Status
 
@@ -24,7 +25,7 @@ def outside_law(problem, solution):
         if law.least > 0 or law.most < np.inf:
             index = np.flatnonzero(problem.micro == law.name)
             part, p0 = problem.take(index), solution.p0[index]
-            E = part.E2 * np.where(part.base == "half_space", 1.0, part.n) / (1 + part.m)
+            E = part.E2 * np.where(part.base == "half_space", 1.0, layer_modulus(part.n)) / (1 + part.m)
             largest = np.maximum(p0, solution.p[index].max(axis=1, initial=0.0))
             outside[index] = (p0 < law.least * E) | (largest > law.most * E)
     return outside

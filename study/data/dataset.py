@@ -1,15 +1,18 @@
 """Results as datasets: flat arrays -> labelled Dataset with CF-1.11 attributes."""
 
+from typing import NamedTuple
+
 import numpy as np
 import xarray as xr
 
 from solver import Model, Status
 
 from ..spec.definition import Definition
+from ..spec.given import is_rigid
 from ..spec.grid import unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
-from .derived import validity
+from .derived import validity_of
 from .provenance import provenance
 
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
@@ -25,33 +28,54 @@ def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     return found
 
 
+class Parts(NamedTuple):
+    """What a dataset is made of: to make one takes as long as a contact, so that it is done once."""
+
+    variables: dict[str, xr.Variable]
+    coords: dict[str, xr.Variable]
+    attributes: dict
+
+    def dataset(self) -> xr.Dataset:
+        """The dataset of these parts."""
+        return plainly_written(xr.Dataset(*self))
+
+
 def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> xr.Dataset:
     """Dataset of the whole grid from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
-    dataset = assembled(definition, arrays, "x", definition.x, command)
-    dataset["status"].attrs |= status_attributes()
-    dataset["model_used"].attrs |= model_attributes()
-    return dataset.assign(validity=validity(dataset))
+    return parts(definition, arrays, command).dataset()
+
+
+def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
+    """The :class:`Parts` of the dataset of the whole grid from flat arrays (B, ...)."""
+    found = assembled(definition, arrays, "x", definition.x, command)
+    found.variables["status"].attrs |= status_attributes()
+    found.variables["model_used"].attrs |= model_attributes()
+    found.variables["validity"] = validity_of(found.variables | found.coords)
+    return found
 
 
 def assembled(
     definition: Definition, arrays: dict[str, np.ndarray], last: str, points: np.ndarray, command: str
-) -> xr.Dataset:
-    """Dataset of flat arrays: (B,) over the grid, (B, m) over the grid and the dimension `last` with its m points."""
+) -> Parts:
+    """:class:`Parts` of flat arrays: (B,) over the grid, (B, m) over the grid and the dimension `last` with its m
+    points."""
     grid = definition.grid
-    known = {name: attributes(name) for name in (*PARAMETERS, *names("coordinate"))}
+    rigid = bool(is_rigid(grid).any())  # then all layers are on a rigid base
+    known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate"))}
     coordinates = {
-        name: (dims, array, known.get(name, {})) for name, (dims, array) in (grid.values | grid.labels).items()
+        name: xr.Variable(dims, array, known.get(name, {}))
+        for name, (dims, array) in (grid.values | grid.labels).items()
     }
-    coordinates[last] = (last,), points, attributes(last)
+    coordinates[last] = xr.Variable((last,), points, attributes(last))
     dims = tuple(grid.sizes)
     variables = {
-        name: (dims + (last,) * (flat.ndim - 1), unflatten(grid, flat), attributes(name))
+        name: xr.Variable(dims + (last,) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
         for name, flat in arrays.items()
         if name not in grid.values
     }
     laws = law_versions(grid)
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
-    return plainly_written(xr.Dataset(variables, coordinates, about))
+    return Parts(variables, coordinates, about)
 
 
 def plainly_written(dataset: xr.Dataset) -> xr.Dataset:

@@ -4,9 +4,12 @@ Every function takes an opened dimensionless dataset and returns a DataArray who
 vocabulary.
 """
 
+from collections.abc import Mapping
+
 import numpy as np
 import xarray as xr
 
+from solver.body.springs import layer_modulus
 from solver.laws import LAWS
 
 from ..spec.vocabulary import attributes
@@ -44,10 +47,18 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that
     need none. int32 over the dimensions of `status`.
     """
-    v = dataset.variables  # a DataArray compares its coordinates at every step, 20 ms in all
+    found = validity_of(dataset.variables)
+    flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
+    flags.attrs = found.attrs
+    return flags
+
+
+def validity_of(v: Mapping) -> xr.Variable:
+    """:func:`validity` of the variables of a dataset: a DataArray compares its coordinates at every step, 20 ms in
+    all."""
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
-    compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * n)
+    compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
     violated = {
         1: _used_a_thin_layer(v["model_used"]) & (v["model_error"] > NOT_THIN),
         2: rough & (_spots(v) < FEW_SPOTS),
@@ -58,9 +69,10 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     }
     none = xr.zeros_like(v["status"], dtype=np.int32)
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), none)
-    flags = named(xr.DataArray(flags, dataset["status"].coords), "validity")
-    flags.attrs["flag_masks"] = np.array(list(ASSUMPTIONS), dtype=np.int32)
-    flags.attrs["flag_meanings"] = " ".join(ASSUMPTIONS.values())
+    flags.attrs = attributes("validity") | {
+        "flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32),
+        "flag_meanings": " ".join(ASSUMPTIONS.values()),
+    }
     return flags
 
 
@@ -100,7 +112,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
     profile p; NaN for a law that is not registered.
     """
-    E1 = xr.where(dataset["base"] == "half_space", 1.0, _given(dataset, "n"))
+    E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch together
     found = xr.full_like(dataset["p"], np.nan)
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
@@ -164,5 +176,5 @@ def named(array: xr.DataArray, name: str) -> xr.DataArray:
             f"{name} is derived from dimensionless datasets: derive first, then convert with study.to_physical"
         )
     array = array.rename(name)
-    array.attrs = attributes(name)
+    array.attrs = attributes(name, rigid="n" in array.coords and bool((array.coords["n"] == 0).any()))
     return array

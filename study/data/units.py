@@ -1,5 +1,7 @@
 """Physical and dimensionless quantities: lengths in R, pressures in E2*, loads in E2* R², asperity densities in R⁻²."""
 
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -14,21 +16,32 @@ def reduced_modulus(E, nu):
 
 
 def factor(name: str, R: float, E2_star: float) -> float:
-    """What a dimensionless number is multiplied by to give its physical unit (see `vocabulary`): R m, E2* Pa."""
+    """What a dimensionless number is multiplied by to be in SI units: R m, E2* Pa."""
     for word, value in (("R", R), ("E2_star", E2_star)):
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{word} = {value}: must be > 0 and finite")
-    entry = VOCABULARY[name]
-    i, j = entry.powers
-    return E2_star**i * R**j / entry.unit[1]
+    return with_unit(1.0, VOCABULARY[name].powers, E2_star, R)
+
+
+def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """An SI value over unit^i R^j, (i, j) = `powers`."""
+    return with_unit(value, (-powers[0], -powers[1]), unit, R)
+
+
+def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """A dimensionless value times unit^i R^j."""
+    for factor, power in ((unit, powers[0]), (R, powers[1])):
+        for _ in range(abs(power)):
+            value = value * factor if power > 0 else value / factor
+    return value
 
 
 def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
-    """The dataset in physical units: P in N, lengths in µm, pressures in MPa, Nbar in mm⁻², stiffness in N/m.
+    """The dataset in SI units, each named by the attribute `units`; `study.readable` gives µm, mN, MPa.
 
     Parameters
     ----------
-    R : radius of the punch, m; E2_star : reduced modulus E2/(1 - ν2²) of the half-space, Pa
+    R : radius of the punch, m; E2_star : reduced modulus E2/(1 - ν2²) of the half-space, Pa; E1* on a rigid base
 
     Raises
     ------
@@ -36,13 +49,13 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     """
     if DONE in dataset.attrs:
         raise ValueError(f"the dataset is in physical units already: {dataset.attrs[DONE]}")
-    if any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
+    if "status" not in dataset and any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
         raise ValueError("pressures of a micro-law study are in E1*, not in E2*: no half-space is defined there")
     changed = {}
     for name, array in dataset.variables.items():
         if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
             attributes = {key: text for key, text in array.attrs.items() if key != "scale"}
-            attributes["units"] = VOCABULARY[name].unit[0]
+            attributes["units"] = VOCABULARY[name].unit
             fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
             changed[name] = array.dims, array.data * factor(name, R, E2_star), attributes, fill
     physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})
@@ -55,7 +68,7 @@ def from_physical(*, R: float, E2_star: float, **parameters) -> dict:
 
     Parameters
     ----------
-    R : m; E2_star : Pa; P : N; a, D, h, Ra : µm; Nbar : mm⁻²; everything else is a pure number or text and passes
+    R : m; E2_star : Pa; P : N; a, D, h, Ra : m; Nbar : 1/m²; everything else is a pure number or text and passes
         unchanged
 
     Returns

@@ -1,7 +1,7 @@
 """From the parameters of `study.solve`, with units, to a scene and its dimensionless parameters.
 
-The scene has the radius R of the punch, Young's moduli E1 of the layer, E2 of the body below and E_punch of the punch,
-with Poisson ratios nu1, nu2 and nu_punch. The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1.
+The scene has the radius R of the punch (or R1 and R2 of two bodies), Young's moduli E1 of the layer, E2 of the body
+below and E_punch of the punch, with Poisson ratios nu1, nu2 and nu_punch.
 """
 
 from typing import Any
@@ -9,23 +9,28 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.units import reduced_modulus
-from ..scene.quantities import READABLE, has_unit, quantity
+from ..scene.quantities import READABLE, Quantity, has_unit, quantity
 from ..spec.definition import StudyError
+from ..spec.grid import shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from .names import SCENE, unit_of
+from ..terminal import on_one_line
+from .bodies import BODIES, with_materials
+from .names import SCENE, Known, Row, dim_of, si, unit_of
+from .scales import make_dimensionless, over_dimensions
 from .scene import MOVED, STEP, Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
+LONGEST_SHOWN = 60  # characters of a value in a message
 _PARTS = ("value", "spread")  # of a Quantity
+_RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
 def is_physical(parameters: dict) -> bool:
     """Whether parameters of `study.solve` describe a physical scene: one has a unit, or is only in such a scene."""
-    return any(name in SCENE or _has_unit(given) for name, given in parameters.items())
+    return any(name in SCENE or name in BODIES or _has_unit(given) for name, given in parameters.items())
 
 
 def _has_unit(given: Any) -> bool:
@@ -35,14 +40,11 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
-class Row(list):
-    """The values of a parameter over the dimension `case`."""
-
-
-def read(parameters: dict, cases: list | None = None) -> Scene | None:
+def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> Scene | None:
     """The scene of physical parameters of `study.solve`; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
+    spreads : whether materials given by name have those of the table
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
@@ -51,17 +53,13 @@ def read(parameters: dict, cases: list | None = None) -> Scene | None:
     if not any(is_physical(given) for given in (parameters, *rows)):
         return None
     scene, errors = Scene(), []
-    for name in dict.fromkeys(name for row in rows for name in row):
-        lacking = [i for i, row in enumerate(rows) if name not in row]
-        if name in parameters or lacking:
-            errors.append(f"{name} must be given in every case, or once for all")
-        else:
-            parameters = parameters | {name: Row([row[name] for row in rows])}
+    parameters = _with_rows(parameters, rows, errors)
+    parameters, scene.names = with_materials(parameters, spreads, errors)
     for name, given in parameters.items():
         if name == "label" and isinstance(given, Row):
             scene.labels = list(map(str, given))
         elif name not in SCENE and not is_parameter(name):
-            errors.append(f'"{name}" is not a parameter{suggest(name, [*PARAMETERS, *SCENE])}')
+            errors.append(f"{shown(name)} is not a parameter{suggest(name, [*PARAMETERS, *SCENE, *BODIES])}")
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)
@@ -69,41 +67,70 @@ def read(parameters: dict, cases: list | None = None) -> Scene | None:
                 errors.append(str(error))
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, Row) else given
-    errors += _missing(scene, parameters)
+    errors += _missing(parameters)
+    errors += [] if errors else _impossible(scene)
     if errors:
         raise StudyError(errors)
     _move(scene)
-    _make_dimensionless(scene)
+    make_dimensionless(scene)
     return scene
+
+
+def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
+    """The parameters, with those of the rows as a :class:`Row` each; first, as their dimension comes first."""
+    found = {}
+    for name in dict.fromkeys(name for row in rows for name in row):
+        if name in parameters or not all(name in row for row in rows):
+            errors.append(f"{name} must be given in every case, or once for all")
+        else:
+            found[name] = Row([row[name] for row in rows])
+    return found | {name: given for name, given in parameters.items() if name not in found}
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:
     """Put SI values and spreads of a parameter into the scene."""
-    unit = unit_of(name)
     if isinstance(given, xr.DataArray):
-        value, spread = _of_array(name, given, unit), 0.0
+        value, spread = _of_array(name, given, unit_of(name)), 0.0
     else:
-        given = given.tolist() if isinstance(given, np.ndarray) else given
-        given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
-        if isinstance(given, (list, tuple, range)):
-            if not len(given):
-                raise ValueError(f"{name} is empty: must have at least one value")
-            found = [quantity(f"{name}[{i}]", one, unit) for i, one in enumerate(given)]
-            dim = "case" if isinstance(given, Row) else name if unit == "1" else f"{name} in SI"
-            scene.dims |= {} if dim == "case" else {dim: name}
-            value, spread = (xr.DataArray([getattr(one, part) for one in found], dims=dim) for part in _PARTS)
+        found = given if isinstance(given, (Known, Quantity)) else _quantities(name, given)
+        if isinstance(found, Known):
+            scene.dims |= {found.dim: name} if found.dim == dim_of(name) else {}
+            columns = ([getattr(one, part) for one in found.quantities] for part in _PARTS)
+            value, spread = (xr.DataArray(column, dims=found.dim) for column in columns)
+            if found.dim == dim_of(name):
+                _check_distinct(name, value.values.tolist())
         else:
-            found = quantity(name, given, unit)
             value, spread = found.value, found.spread
+    if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
+        raise ValueError(f"{name} = {_text(given)}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
-    reach = STEP * np.asarray(spread)
     if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
-        raise ValueError(f"{name} = {given}: {limits}")
-    if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
-        raise ValueError(f"{name} = {given}: with its spread it {limits}; at the limit itself give no spread")
-    scene.given[name] = value
+        raise ValueError(f"{name} = {_text(given)}: {limits}")
     if np.any(np.asarray(spread) > 0):
+        reach = STEP * np.asarray(spread)
+        if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
+            text = f"with its spread it {limits}; at the limit itself give no spread"
+            raise ValueError(f"{name} = {_text(given)}: {text}")
         scene.spreads[name] = spread
+    scene.given[name] = value
+
+
+def _check_distinct(name: str, values: list) -> None:
+    for i, j in twins(values):
+        text = f"{values[i]:g} {unit_of(name)}".removesuffix(" 1")
+        raise ValueError(f"{name}[{i}] and {name}[{j}] are both {text}: values of an axis must differ")
+
+
+def _quantities(name: str, given: Any) -> Known | Quantity:
+    """The quantities in a list, array or single value."""
+    given = given.tolist() if isinstance(given, np.ndarray) else given
+    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
+    if not isinstance(given, (list, tuple, range)):
+        return si(name, given)
+    if not len(given):
+        raise ValueError(f"{name} is empty: must have at least one value")
+    found = [si(name, one, f"{name}[{i}]") for i, one in enumerate(given)]
+    return Known(found, "case" if isinstance(given, Row) else dim_of(name))
 
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
@@ -115,10 +142,20 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
 
 
-def _missing(scene: Scene, parameters: dict) -> list[str]:
-    """Messages for what a physical scene cannot do without."""
-    asked = {"R": "the radius of the punch", "E2": "Young's modulus of the body (under the layer, if there is one)"}
-    messages = [f"{name} is missing: {what}" for name, what in asked.items() if name not in parameters]
+def _text(given: Any) -> str:
+    return on_one_line(str(given), LONGEST_SHOWN)
+
+
+def _missing(parameters: dict) -> list[str]:
+    """Messages for what a physical scene cannot do without, and for what cannot be given together."""
+    pair = [name for name in ("R1", "R2") if name in parameters]
+    messages = [_RADIUS] if "R" not in parameters and not pair else []
+    if len(pair) == 1:
+        messages.append(f"{'R2' if pair == ['R1'] else 'R1'} is missing: R1 and R2 go together")
+    if pair and "R" in parameters:
+        messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
+    if "E2" not in parameters:
+        messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
     layered = not isinstance(parameters.get("base"), str) or parameters["base"] != "half_space"
     if layered and "E1" not in parameters and "n" not in parameters:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
@@ -131,6 +168,25 @@ def _missing(scene: Scene, parameters: dict) -> list[str]:
     return messages
 
 
+def _impossible(scene: Scene) -> list[str]:
+    """Messages for bodies that cannot touch as they are given."""
+    given, messages = scene.given, []
+    if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
+        R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
+        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
+    rigid = np.isinf(given["E2"])
+    if np.any(rigid & (over_dimensions(scene.parameters.get("base", "layered"), "base") == "half_space")):
+        swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
+        messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
+    if np.any(rigid) and "n" in scene.parameters:
+        messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
+    return messages
+
+
+def _shown(value: Any) -> str:
+    return ", ".join(f"{one:g}" for one in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)
+
+
 def _move(scene: Scene) -> None:
     """Give inputs with spreads the dimension along which they are moved: as given, then each up and down."""
     count = len(scene.spreads)
@@ -138,28 +194,3 @@ def _move(scene: Scene) -> None:
         steps = np.zeros(1 + 2 * count)
         steps[1 + 2 * i : 3 + 2 * i] = STEP, -STEP
         scene.given[name] = scene.given[name] + spread * xr.DataArray(steps, dims=MOVED)
-
-
-def _make_dimensionless(scene: Scene) -> None:
-    """The parameters of the solver, in R and E2*."""
-    given = scene.given
-
-    def modulus(name: str, nu: str) -> Any:
-        return reduced_modulus(given[name], given.get(nu, 0.3))
-
-    scene.R, scene.E2_star = given["R"], modulus("E2", "nu2")
-    if "E1" in given:
-        scene.parameters["n"] = modulus("E1", "nu1") / scene.E2_star
-    if "E_punch" in given:
-        n = given["n"] if "n" in given else _along(scene.parameters.get("n", 1.0), "n")
-        surface = xr.where(_along(scene.parameters.get("base", "layered"), "base") == "half_space", 1.0, n)
-        scene.parameters["m"] = surface * scene.E2_star / modulus("E_punch", "nu_punch")
-    for name, value in given.items():
-        if name not in SCENE:
-            i, j = VOCABULARY[name].powers
-            scene.parameters[name] = value / (scene.E2_star**i * scene.R**j)
-
-
-def _along(given: Any, name: str) -> Any:
-    """Values of a parameter without a unit, as an array over the dimension of its name where they are several."""
-    return xr.DataArray(list(given), dims=name) if isinstance(given, (list, tuple, range, np.ndarray)) else given

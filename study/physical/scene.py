@@ -1,19 +1,24 @@
 """A physical scene: what it gives the solver, and the results in SI units with their spreads."""
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..data.units import DONE
+from ..data.dataset import Parts
+from ..data.units import DONE, with_unit
+from ..spec.definition import Definition
 from ..spec.vocabulary import VOCABULARY
-from .names import SCENE, UnitIndex, unit_of
+from .index import searchable
+from .names import SCENE, unit_of
 
 #: Part of a spread by which an input is moved for its derivative: small against what is not linear, large against rtol.
 STEP = 0.1
 #: The dimension along which inputs are moved, while the cases are solved.
 MOVED = "moved input"
+#: Results that have no spread of their own.
+_ABOUT = ("error", "model_error", "residual")
 
 
 @dataclass
@@ -21,73 +26,116 @@ class Scene:
     """A physical scene: `parameters` are dimensionless, for the solver; `dressed` gives its results in SI units.
 
     given : name -> SI values, a float or a DataArray; spreads : the same of the inputs that have spreads;
-    dims : dimension while solving -> name of the parameter; labels : of the dimension `case`
+    R, unit : the radius, m, and the modulus, Pa, that are 1 for the solver: E2*, or E1* on a rigid base;
+    dims : dimension while solving -> name of the parameter; labels : of the dimension `case`;
+    names : punch, layer, body -> (dimension or "", names of materials along it)
     """
 
     given: dict = field(default_factory=dict)
     spreads: dict = field(default_factory=dict)
     dims: dict = field(default_factory=dict)
     labels: list = field(default_factory=list)
+    names: dict = field(default_factory=dict)
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
-    E2_star: Any = 1.0
+    unit: Any = 1.0
 
-    def dressed(self, dataset: xr.Dataset) -> xr.Dataset:
-        """The dimensionless results of `parameters` in SI units, the inputs as given, with spreads of the results."""
-        changed = {}
-        for name in dataset.variables:
-            if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
-                i, j = VOCABULARY[name].powers
-                changed[name] = dataset[name].variable * _variable(self.E2_star**i * self.R**j)
-                attributes = {key: text for key, text in dataset[name].attrs.items() if key != "scale"}
-                changed[name].attrs = attributes | {"units": unit_of(name)}
-        coords = {name: array for name, array in changed.items() if name in dataset.coords}
-        found = dataset.assign_coords(coords)
-        found = found.assign({name: array for name, array in changed.items() if name in dataset.data_vars})
-        if MOVED in dataset.dims:
-            found = _with_spreads(found)
-        return self._named(found).assign_attrs({DONE: "SI; R, E1, E2 and E_punch are coordinates"})
-
-    def _named(self, found: xr.Dataset) -> xr.Dataset:
-        """With the inputs as coordinates in SI, under their own names."""
-        inputs = {name for name in found.variables if name in self.given}
-        found = found.drop_vars(inputs).rename_dims({dim: name for dim, name in self.dims.items() if dim in found.dims})
-        for name, given in self.given.items():
-            long_name = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
-            found = found.assign_coords({name: self._coordinate(given, name, long_name)})
-        for name, spread in self.spreads.items():
-            long_name = f"standard deviation of {name}, as given"
-            found = found.assign_coords({f"{name}_spread": self._coordinate(spread, name, long_name)})
-        if self.labels:
-            found = found.assign_coords(label=("case", self.labels))
-        for name in self.dims.values():
-            if name in found.dims and unit_of(name) != "1":
-                found = found.drop_indexes(name).set_xindex(name, UnitIndex)
+    def sizes(self, axes: list[str]) -> dict[str, int]:
+        """Dimension while solving -> its length, of `case` and of the axes in their order."""
+        names, found = {name: dim for dim, name in self.dims.items()}, {}
+        arrays = [v for v in (*self.given.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
+        known = {dim: size for array in arrays for dim, size in array.sizes.items()}
+        for dim in ("case", *(names.get(axis, axis) for axis in axes)):
+            if dim in known:
+                found[dim] = known[dim]
+            elif isinstance(self.parameters.get(dim), list):
+                found[dim] = len(self.parameters[dim])
         return found
 
-    def _coordinate(self, given: Any, name: str, long_name: str) -> xr.Variable:
-        """SI values as given, over the dimensions of the results, with the unit of the parameter `name`."""
-        variable = _variable(given)
+    def within(self, window: dict[str, slice]) -> "Scene":
+        """The scene of the cases within a window, a slice for each dimension while solving."""
+
+        def cut(value: Any) -> Any:
+            if not isinstance(value, xr.DataArray):
+                return value
+            return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
+
+        given, spreads = ({name: cut(v) for name, v in table.items()} for table in (self.given, self.spreads))
+        labels = self.labels[window["case"]] if self.labels else []
+        names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
+        return replace(
+            self, given=given, spreads=spreads, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit)
+        )
+
+    def dressed(self, parts: Parts) -> xr.Dataset:
+        """The dimensionless results of `parameters` in SI units, the inputs as given, with spreads of the results."""
+        results, coords = {}, {}
+        for name, variable in (parts.variables | parts.coords).items():
+            if name in self.given or name == MOVED:
+                continue
+            known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
+            found = _in_si(name, variable, self.unit, self.R) if known else variable
+            if MOVED in found.dims:
+                results |= _spread(name, found)
+                found = found.isel({MOVED: 0})
+            (coords if name in parts.coords else results)[name] = self._renamed(found)
+        results = {name: self._renamed(variable) for name, variable in results.items()}
+        coords |= {name: self._coordinate(name, value) for name, value in self.given.items()}
+        for name, value in self.spreads.items():
+            coords[f"{name}_spread"] = self._coordinate(name, value, f"standard deviation of {name}, as given")
+        for body, (dim, texts) in self.names.items():
+            values = texts if dim else texts[0]
+            coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
+        if self.labels:
+            coords["label"] = xr.Variable("case", self.labels)
+        attributes = parts.attributes | {DONE: "SI; R, E1, E2 and E_punch are coordinates"}
+        return searchable(Parts(results, coords, attributes).dataset())
+
+    def _coordinate(self, name: str, value: Any, long_name: str = "") -> xr.Variable:
+        """SI values of an input, with the unit of the parameter `name`."""
+        variable = _variable(value)
         variable = variable.isel({MOVED: 0}) if MOVED in variable.dims else variable
+        long_name = long_name or (SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name)
+        attributes = {"long_name": long_name, "units": unit_of(name)}
+        return self._renamed(xr.Variable(variable.dims, variable.data, attributes))
+
+    def _renamed(self, variable: xr.Variable) -> xr.Variable:
+        """The variable over the dimensions that the results have."""
+        if not self.dims:
+            return variable
         dims = [self.dims.get(dim, dim) for dim in variable.dims]
-        return xr.Variable(dims, variable.data, {"long_name": long_name, "units": unit_of(name)})
+        return xr.Variable(dims, variable.data, variable.attrs, variable.encoding)
+
+
+def shown(definition: Definition, parts: Parts) -> xr.Dataset:
+    """The dataset of a study as users see it: in SI units, if the study has units."""
+    return definition.scene.dressed(parts) if definition.scene else parts.dataset()
 
 
 def _variable(value: Any) -> xr.Variable:
     return value.variable if isinstance(value, xr.DataArray) else xr.Variable((), value)
 
 
-def _with_spreads(found: xr.Dataset) -> xr.Dataset:
-    """The results as given, each with its standard deviation `NAME_spread`, to first order, of independent inputs."""
-    centre = found.isel({MOVED: 0}).drop_vars(MOVED, errors="ignore")
-    for name, array in found.data_vars.items():
-        if MOVED not in array.dims or VOCABULARY[name].role not in ("control", "result", "profile"):
-            continue
-        if name in ("error", "model_error", "residual"):
-            continue
-        up, down = (array.isel({MOVED: slice(first, None, 2)}) for first in (1, 2))
-        spread = np.sqrt((((up - down) / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
-        spread.attrs = {"long_name": f"standard deviation of {name}, from the spreads of the inputs"}
-        spread.attrs["units"] = array.attrs.get("units", "1")
-        centre[f"{name}_spread"] = spread
-    return centre
+def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
+    """A dimensionless variable in the SI unit of its name, its dimensions first."""
+    powers = VOCABULARY[name].powers
+    if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
+        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
+    else:  # most often; arithmetic of labelled arrays takes as long as a contact
+        found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
+    if found.dtype != variable.dtype:
+        found = found.astype(variable.dtype)
+    found.attrs = {key: text for key, text in variable.attrs.items() if key != "scale"} | {"units": unit_of(name)}
+    found.encoding = variable.encoding
+    return found
+
+
+def _spread(name: str, variable: xr.Variable) -> dict[str, xr.Variable]:
+    """The standard deviation `NAME_spread` of a result, to first order, of independent inputs; {} where it has none."""
+    if VOCABULARY[name].role not in ("control", "result", "profile") or name in _ABOUT:
+        return {}
+    up, down = (variable.isel({MOVED: slice(first, None, 2)}) for first in (1, 2))
+    spread = np.sqrt((((up - down) / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
+    spread.attrs = {"long_name": f"standard deviation of {name}, from the spreads of the inputs"}
+    spread.attrs["units"] = variable.attrs.get("units", "1")
+    return {f"{name}_spread": spread}

@@ -8,8 +8,10 @@ import numbers
 import re
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any
+
+from ..terminal import on_one_line
 
 #: SI unit -> what it measures, and the multiples in which it is read most easily (name, size), the largest first.
 READABLE = {
@@ -25,6 +27,9 @@ LONGEST = 100  # characters of a text with a unit: pint computes what is written
 _SURE = 1e-5  # relative spread of a number that is not worth a ±
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+
+#: A number and a unit, which is a product of powers: what it is in SI is the number times a size that is kept.
+_PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
 
 
 @dataclass(frozen=True)
@@ -56,16 +61,19 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     ------
     ValueError : no number, no unit, a unit of something else; the message says what was understood
     """
-    what, multiples = READABLE[unit]
+    what = READABLE[unit][0] if unit in READABLE else f"a number of {unit}"
     wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
     if isinstance(given, numbers.Real) and not isinstance(given, bool):
         if unit != "1":
-            raise ValueError(f"{name} = {given!r} has no unit: {wanted}")
-        return Quantity(float(given))
+            raise ValueError(f"{name} = {_shown(given)} has no unit: {wanted}")
+        try:
+            return Quantity(float(given))
+        except OverflowError as error:
+            raise ValueError(f"{name} = {_shown(given)}: must be finite") from error
     if isinstance(given, str):
         return _from_text(name, given.strip(), unit, wanted)
     if not has_unit(given):
-        raise ValueError(f"{name} = {given!r}: {wanted}")
+        raise ValueError(f"{name} = {_shown(given)}: {wanted}")
     try:
         return Quantity(float(given.to(_pint_name(unit)).magnitude))
     except Exception as error:  # of whatever registry the quantity is
@@ -76,12 +84,12 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     """The quantity in a text; a unit behind the spread holds for the value as well."""
     head, *spread = _SPREAD.split(text)
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
-        raise ValueError(f'{name} = "{text[:LONGEST]}": {wanted}')
+        raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": {wanted}')
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
     if not number:
-        raise ValueError(f'{name} = "{text}": behind ± must be a number')
+        raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind ± must be a number')
     if spread[0].endswith("%"):
         value = _si(name, head, unit, wanted)
         return Quantity(value, abs(value) * float(number[0]) / 100)
@@ -90,20 +98,44 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     return Quantity(_si(name, head, unit, wanted), abs(_si(name, spread[0], unit, wanted)))
 
 
+@lru_cache(maxsize=4096)  # to read a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """A text without spread in the SI unit, rounded once: "3 um" is the number 3e-6."""
+    said, text = on_one_line(text, LONGEST), text.replace("⁻²", "^-2").replace("²", "^2")
+    plain = _PLAIN.fullmatch(text)
+    size = _size(plain[2], unit) if plain else None
+    if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):
+        return value
     try:
-        found = _registry().Quantity(text.replace("⁻²", "^-2").replace("²", "^2"))
+        found = _registry().Quantity(text)
     except Exception as error:  # pint raises of many kinds
-        raise ValueError(f'{name} = "{text}": no unit is called like this; {wanted}') from error
+        raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
-        raise ValueError(f'{name} = "{text}" has no unit: {wanted}')
+        raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
     if not found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
-        raise ValueError(f'{name} = "{text}" is {_understood(found)}: {wanted}')
+        raise ValueError(f'{name} = "{said}" is {_understood(found)}: {wanted}')
     value = float(found.to(_pint_name(unit)).magnitude)
     if not math.isfinite(value):
-        raise ValueError(f'{name} = "{text}": must be finite')
+        raise ValueError(f'{name} = "{said}": must be finite')
     return value
+
+
+@lru_cache(maxsize=256)
+def _size(word: str, unit: str) -> Decimal | None:
+    """A unit such as "um" or "1/mm^2" in the SI `unit`; None if it is none, or one of something else."""
+    try:
+        found = _registry().Quantity(word).to(_pint_name(unit)).magnitude
+    except Exception:  # the whole text will be read, and what is wrong with it said
+        return None
+    return found if isinstance(found, Decimal) and unit != "1" else None
+
+
+def _shown(given: Any) -> str:
+    """What was given, on a line."""
+    try:
+        return on_one_line(repr(given), LONGEST)
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return "a number of more than 4300 digits"
 
 
 def _understood(found: Any) -> str:
@@ -127,8 +159,8 @@ def _registry() -> Any:
 
 
 def _example(unit: str) -> str:
-    name = READABLE[unit][1][min(1, len(READABLE[unit][1]) - 1)][0]
-    return f"2 {name}"
+    multiples = READABLE[unit][1] if unit in READABLE else ((unit, 1.0),)
+    return f"2 {multiples[min(1, len(multiples) - 1)][0]}"
 
 
 def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> str:

@@ -5,6 +5,7 @@ import tomllib
 from dataclasses import dataclass, replace
 from itertools import islice
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -47,6 +48,7 @@ class Definition:
     dtype : "float64" or "float32", of the stored numbers
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
+    scene : of a study with units, a `study.physical.scene.Scene`; its grid is dimensionless, its results are in SI
     """
 
     name: str
@@ -58,15 +60,29 @@ class Definition:
     dtype: str
     block: int
     digest: str
+    scene: Any = None
 
     @property
     def numbers(self) -> int:
         """How many numbers the results hold, roughly."""
         return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
 
+    def named(self, of_dims: dict) -> dict:
+        """A dictionary of the dimensions of the grid, under the names that these have in the results."""
+        names = self.scene.dims if self.scene else {}
+        return {names.get(dim, dim): value for dim, value in of_dims.items()}
+
 
 def read(path) -> Definition:
-    """Definition of a study file. Raises StudyError with all that is wrong with it."""
+    """Definition of a study file without units. Raises StudyError with all that is wrong with it.
+
+    `study.physical.study_file.read` reads those with units as well.
+    """
+    return from_tables(*parsed(path))
+
+
+def parsed(path) -> tuple[dict, str, str, str]:
+    """The tables of a study file, its name, its text, and what begins every message. Raises StudyError for no TOML."""
     path = Path(path)
     where = path.as_posix()
     if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
@@ -81,11 +97,26 @@ def read(path) -> Definition:
     except ValueError as error:  # wrong TOML, wrong UTF-8
         reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
         raise StudyError([f"{where}: is not valid TOML: {reason}"]) from None
-    return from_tables(tables, path.stem, text, where)
+    return tables, path.stem, text, where
 
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
+    draft, given = begun(tables, where)
+    for key, value in given["model"].items():
+        draft.scalar(key, value, "[model]")
+    add_numerics(draft, given)
+    if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
+        draft.cases(tables["cases"])
+    if "sample" in tables:
+        draft.sample(tables["sample"])
+    for key, value in given["axes"].items():
+        draft.axis(key, value, "[axes]")
+    return complete(draft, given, name, text, where)
+
+
+def begun(tables: dict, where: str) -> tuple[Draft, dict]:
+    """A new draft, with messages about sections, and the tables with all their sections."""
     kind = tables.get("kind", "contact")
     if kind != "contact":
         gone = "; a micro law needs no study: call solver.fit_power_law" if kind == "micro_law" else ""
@@ -96,18 +127,14 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
         for key in islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
     ]
     given = tables | {section: _table(tables, section, keys, draft.errors) for section, keys in KEYS.items()}
-    for key, value in given["model"].items():
-        draft.scalar(key, value, "[model]")
+    return draft, given
+
+
+def add_numerics(draft: Draft, given: dict) -> None:
+    """Add the parameters of the section [numerics]."""
     for key in NUMERICS:
         if key in given["numerics"]:
             draft.scalar(key, given["numerics"][key], "[numerics]")
-    if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
-        draft.cases(tables["cases"])
-    if "sample" in tables:
-        draft.sample(tables["sample"])
-    for key, value in given["axes"].items():
-        draft.axis(key, value, "[axes]")
-    return complete(draft, given, name, text, where)
 
 
 def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
@@ -133,10 +160,15 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
             f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
         )
     if errors:
-        more = len(errors) - MOST_MESSAGES
-        shortened = errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
-        raise StudyError(f"{where}: {message}" for message in shortened)
+        raise refusal(where, errors)
     return replace(made, digest=digest_of(made))
+
+
+def refusal(where: str, errors: list[str]) -> StudyError:
+    """The error with messages that each begin with `where`: no more of them than one reads."""
+    more = len(errors) - MOST_MESSAGES
+    shortened = errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
+    return StudyError(f"{where}: {message}" for message in shortened)
 
 
 def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:

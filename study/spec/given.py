@@ -6,7 +6,7 @@ from functools import partial
 
 import numpy as np
 
-from .grid import Grid, along, as_array, axis_values, shown, twins
+from .grid import LONGEST_AXIS, Grid, along, as_array, axis_values, shown, twins
 from .laws import is_parameter, law_names, learn, smooth_laws
 from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
@@ -20,7 +20,8 @@ class Draft:
     """Collects parameters; `finish` makes the Grid of them.
 
     errors : messages, no file name; sizes, values, labels : as of the Grid; sections : where each parameter was given;
-    claims : (parameter, dimension, its size, its coordinate or None) of each DataArray
+    claims : (parameter, dimension, its size, its coordinate or None) of each DataArray; physical : the results will be
+    in SI units
     """
 
     errors: list[str] = field(default_factory=list)
@@ -29,6 +30,7 @@ class Draft:
     labels: dict = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
     claims: list = field(default_factory=list)
+    physical: bool = False
 
     def __post_init__(self):
         learn()
@@ -52,6 +54,18 @@ class Draft:
             array = self._checked(name, axis_values(raw, name, self.errors), distinct=True)
             self.sizes[name], self.values[name] = len(array), ((name,), array)
 
+    def of_any_form(self, name: str, given) -> None:
+        """A parameter given in Python: a DataArray, a 1-D sequence or a scalar."""
+        if hasattr(given, "dims"):
+            self.array(name, given)
+            return
+        if hasattr(given, "tolist"):  # numpy and pandas
+            given = given.tolist()
+        if isinstance(given, (list, tuple, range)):
+            self.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless
+        else:
+            self.scalar(name, given, "")
+
     def cases(self, rows) -> None:
         """Points that are no product: the dimension `case`. What a row leaves out takes its default, or NaN."""
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
@@ -61,7 +75,7 @@ class Draft:
             self.errors.append("cases is empty: must have at least one case")
             return
         before = len(self.errors)
-        self._number_cases(len(rows))
+        self.number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
                 self._label_cases([row.get("label", "") for row in rows])
@@ -81,7 +95,7 @@ class Draft:
             self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
             return
         for name, values in draw(known if given else table, self.errors).items():
-            self._number_cases(len(values))
+            self.number_cases(len(values))
             self.values[name] = ("case",), self._checked(name, values)
 
     def array(self, name: str, given) -> None:
@@ -109,7 +123,7 @@ class Draft:
                 self.values[name] = (), np.array(default)
         grid = Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
         if not self.errors:
-            self.errors += missing_parameters(grid) + lost_scheme(grid)
+            self.errors += missing_parameters(grid) + lost_scheme(grid) + ([] if self.physical else mixed_units(grid))
         return grid
 
     def _accept(self, name: str, section: str) -> bool:
@@ -148,7 +162,8 @@ class Draft:
                 f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
             )
 
-    def _number_cases(self, count: int) -> None:
+    def number_cases(self, count: int) -> None:
+        """Make the dimension `case`."""
         self.sizes["case"] = count
         self.labels["case"] = ("case",), np.arange(count, dtype=np.int32)
 
@@ -194,6 +209,24 @@ def missing_parameters(grid: Grid) -> list[str]:
             reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
             messages.append(f"{name} is missing{f' in case {case}' if name in grid.values else ''}{reason}")
     return messages
+
+
+def is_rigid(grid: Grid) -> np.ndarray:
+    """Where the ratio n says that the base is rigid, along the dimensions of the grid."""
+    return along(grid, "n") == 0
+
+
+def mixed_units(grid: Grid) -> list[str]:
+    """A message if layers on a rigid base, whose numbers are in E1*, are among others, whose numbers are in E2*."""
+    if not is_rigid(grid).any():
+        return []
+    n, layered = np.broadcast_arrays(along(grid, "n"), having("n", partial(along, grid)))
+    if not (n[layered] > 0).any():
+        return []
+    return [
+        "n = 0, a rigid base, is among others: its numbers are in E1*, theirs in E2*. Make two studies, or give "
+        'physical values (R, E1, E2 = "rigid", ... with units)'
+    ]
 
 
 def lost_scheme(grid: Grid) -> list[str]:

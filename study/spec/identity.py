@@ -44,7 +44,7 @@ def digest_of(definition) -> str:
     content = {
         "numerics_version": NUMERICS_VERSION,
         "sizes": list(grid.sizes.items()),
-        "arrays": {name: (dims, _digest_of_array(array)) for name, (dims, array) in arrays.items()},
+        "arrays": {name: (dims, digest_of_array(array)) for name, (dims, array) in arrays.items()},
         "values": {name: _digest_of_values(grid, name) for name in PARAMETERS if name not in grid.sizes},
         "profiles": definition.profiles,
         "dtype": definition.dtype,
@@ -59,10 +59,10 @@ def _digest_of_values(grid: Grid, name: str) -> tuple:
     values = along(grid, name)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
     mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
-    return (values.shape, _digest_of_array(mask), _digest_of_array(values[mask])) if mask.any() else ()
+    return (values.shape, digest_of_array(mask), digest_of_array(values[mask])) if mask.any() else ()
 
 
-def _digest_of_array(array: np.ndarray) -> str:
+def digest_of_array(array: np.ndarray) -> str:
     """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
     numbers = array.dtype.kind in "iufb"
     raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()

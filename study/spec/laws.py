@@ -5,7 +5,7 @@ from contextlib import suppress
 from solver import laws
 from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
-from .vocabulary import PARAMETERS, UNITS, VOCABULARY, Entry, names
+from .vocabulary import PARAMETERS, VOCABULARY, Entry, names
 
 laws.RESERVED.update(set(VOCABULARY) - set(OF_THE_SOLVER))
 
@@ -18,9 +18,8 @@ def learn() -> None:
     PARAMETERS[:] = own
     for name, told in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
         if name not in PARAMETERS:
-            unit = UNITS.get(told.powers, ("Pa{} m{}".format(*told.powers), 1.0))
             words = told.long_name or f"parameter of the micro law {' and '.join(OF_THE_SOLVER[name].needed_by[1])}"
-            VOCABULARY[name] = Entry(name, told.symbol or name, words, "roughness", told.powers, unit)
+            VOCABULARY[name] = Entry(name, told.symbol or name, words, "roughness", told.powers)
             PARAMETERS.append(name)
 
 

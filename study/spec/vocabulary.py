@@ -16,18 +16,16 @@ INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "node
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
-MICRON, PRESSURE = ("um", 1e-6), ("MPa", 1e6)
-FORCE, STIFFNESS, DENSITY = ("N", 1.0), ("N m-1", 1.0), ("mm-2", 1e6)
-UNITS = {(0, 0): ("1", 1.0), (0, 1): MICRON, (0, -2): DENSITY, (1, 0): PRESSURE}
-"""Units of the parameters of registered laws, by their powers of E2* and R; of others SI."""
+SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
+"""SI units by their powers of E2* and R; those of others are written in Pa and m."""
 
 
 @dataclass(frozen=True)
 class Entry:
     """One name.
 
-    `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity, printed in `unit`
-    (name, size in SI). `interval` is for a parameter that has narrower bounds in a study than in the solver.
+    `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity. `interval` is
+    for a parameter that has narrower bounds in a study than in the solver.
     """
 
     name: str
@@ -35,7 +33,6 @@ class Entry:
     long_name: str
     role: str
     powers: tuple[int, int] = (0, 0)
-    unit: tuple[str, float] = ("1", 1.0)
     equation: str = ""
     interval: str = ""
 
@@ -44,6 +41,11 @@ class Entry:
         """What the solver's table says of a parameter: bounds, choices, default, which cases need it."""
         known = CONTROL.get(self.name) or BESIDE_IT.get(self.name, Parameter())
         return known._replace(interval=self.interval) if self.interval else known
+
+    @property
+    def unit(self) -> str:
+        """The SI unit of the physical quantity."""
+        return SI.get(self.powers, "Pa^{} m^{}".format(*self.powers))
 
     @property
     def scale(self) -> str:
@@ -56,22 +58,22 @@ LISTED = 40  # names in a message
 
 # fmt: off
 _ENTRIES = (
-    Entry("P", "P", "load", "control", (1, 2), FORCE, "(5)"),
-    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), MICRON, "(4)"),
-    Entry("D", "D", "indentation depth", "control", (0, 1), MICRON, "(14)"),
-    Entry("h", "h", "thickness of the layer", "material", (0, 1), MICRON),
+    Entry("P", "P", "load", "control", (1, 2), equation="(5)"),
+    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), equation="(4)"),
+    Entry("D", "D", "indentation depth", "control", (0, 1), equation="(14)"),
+    Entry("h", "h", "thickness of the layer", "material", (0, 1)),
     Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material"),
     Entry("m", "m", "ratio of the reduced moduli of layer and punch, 0: rigid", "material"),
     Entry("nu1", "ν1", "Poisson ratio of the layer", "material"),
     Entry("nu2", "ν2", "Poisson ratio of the half-space", "material"),
     Entry("bonding", "", "interface of layer and half-space", "material"),
     Entry("base", "", "elastic base", "material"),
-    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2), DENSITY),
-    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1), MICRON),
+    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2)),
+    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1)),
     Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)"),
     Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness"),
     Entry("beta", "β", "exponent of the power law A = B p^β", "roughness"),
-    Entry("sigma", "σ", "standard deviation of the heights of the asperities", "roughness", (0, 1), MICRON),
+    Entry("sigma", "σ", "standard deviation of the heights of the asperities", "roughness", (0, 1)),
     Entry("cut", "c", "largest height of an asperity above the mean, over σ", "roughness"),
     Entry("scheme", "", "scheme of solution", "numerics"),
     Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)"),
@@ -80,14 +82,14 @@ _ENTRIES = (
     Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics"),
     Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics"),
     Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics"),
-    Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), PRESSURE, "(3)"),
-    Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), PRESSURE,
-          "(13)"),
+    Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), equation="(3)"),
+    Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), equation="(13)"),
     Entry("Ar_An", "Ar/An", "real over nominal contact area", "result", equation="(12)"),
-    Entry("A0", "A[p(0)]", "additional displacement of the rough layer in the centre", "result", (0, 1), MICRON, "(6)"),
-    Entry("dP_dD", "dP/dD", "contact stiffness", "result", (1, 1), STIFFNESS),
+    Entry("A0", "A[p(0)]", "additional displacement of the rough layer in the centre", "result", (0, 1),
+          equation="(6)"),
+    Entry("dP_dD", "dP/dD", "contact stiffness", "result", (1, 1)),
     Entry("lam0", "λ(0)", "relative contact area in the centre", "result", equation="(11)"),
-    Entry("p", "p(r)", "nominal contact pressure", "profile", (1, 0), PRESSURE, "(3)"),
+    Entry("p", "p(r)", "nominal contact pressure", "profile", (1, 0), equation="(3)"),
     Entry("lam", "λ(r)", "relative contact area", "profile", equation="(11)"),
     Entry("status", "", "how the solution of the case ended", "flag"),
     Entry("error", "", "estimated relative error of the results", "result"),
@@ -97,13 +99,13 @@ _ENTRIES = (
     Entry("iterations", "", "number of iterations", "count"),
     Entry("nodes_used", "", "number of nodes used", "count"),
     Entry("validity", "", "assumptions of the model that the case violates; 0: none", "flag"),
-    Entry("An", "An", "nominal contact area", "derived", (0, 2), ("mm2", 1e-6)),
+    Entry("An", "An", "nominal contact area", "derived", (0, 2)),
     Entry("An_ratio", "An/(π a0²)", "nominal contact area over a reference area", "derived"),
-    Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0), PRESSURE),
+    Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0)),
     Entry("spots", "N̄ An", "number of contact spots", "derived"),
-    Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), MICRON, "(7)"),
-    Entry("p_peak", "", "largest real pressure in the contact, wherever it is", "derived", (1, 0), PRESSURE, "(13)"),
-    Entry("E_eff", "Eeff", "effective reduced modulus (dP/dD)/(2a)", "derived", (1, 0), PRESSURE),
+    Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), equation="(7)"),
+    Entry("p_peak", "", "largest real pressure in the contact, wherever it is", "derived", (1, 0), equation="(13)"),
+    Entry("E_eff", "Eeff", "effective reduced modulus (dP/dD)/(2a)", "derived", (1, 0)),
     Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
     Entry("case", "", "number of the case", "coordinate"),
     Entry("label", "", "label of the case", "coordinate"),
@@ -130,10 +132,14 @@ def having(name: str, values) -> np.ndarray:
     return among(VOCABULARY[name].own.needed_by, values)
 
 
-def attributes(name: str) -> dict:
-    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation."""
+def attributes(name: str, rigid: bool = False) -> dict:
+    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation.
+
+    rigid : of layers on a rigid base, where E1* is the unit of moduli
+    """
     entry = VOCABULARY[name]
-    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    scale = entry.scale.replace("E2*", "E1*") if rigid else entry.scale
+    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": scale, "equation": entry.equation}
     if not entry.own.choices and entry.role != "flag" and name != "label":
         found["units"] = "1"
     return {key: text for key, text in found.items() if text}

@@ -9,10 +9,13 @@ from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
+from ..data.units import DONE
 from ..files.access import Unusable
 from ..files.checksums import ATTRIBUTE, identity, parsed
 from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
 from ..files.netcdf import File
+from ..physical.again import dimensionless, in_results, in_units, units_of
+from ..physical.names import SCENE
 from ..spec.definition import Definition, StudyError
 from ..spec.grid import Grid, columns_at
 from ..spec.vocabulary import NOT_RUN, PARAMETERS
@@ -25,7 +28,8 @@ MEND = "run the study as it was (its text is the attribute study), which mends i
 
 @dataclass(frozen=True, eq=False)
 class ResultsSource:
-    """The N cases of a results file, on a `grid`. names : of the columns; seen : the file as it was, see `stamp`."""
+    """The N cases of a results file, on a `grid`. names : of the columns; seen : the file as it was, see `stamp`;
+    units : of a file in SI units, the grid of the radius and the modulus that are 1 for the solver."""
 
     path: Path
     grid: Grid
@@ -33,6 +37,7 @@ class ResultsSource:
     status: np.ndarray
     names: tuple[str, ...]
     seen: tuple | None
+    units: Grid | None = None
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
         """Columns of the cases at `rows`, read by the windows in which the file was examined: what can be read and what
@@ -51,6 +56,9 @@ class ResultsSource:
                     found[name][here] = piece[rows[here] - start]
         if stamp(self.path) != self.seen:
             raise Damaged(f"{self.path}: has been replaced while its cases were read; the same command goes on")
+        if self.units:
+            units = columns_at(self.units, rows)
+            found |= {name: in_units(name, found[name], units) for name in over}
         return found
 
 
@@ -88,7 +96,7 @@ def _described(definition: Definition, found: Condition, file: File) -> Earlier:
     told = _told(definition, found, file)
     if told is None:
         return Earlier(found, Grid(found.sizes, {}).size)
-    grid, x, numerics = told
+    grid, x, numerics, units = told
     names = tuple(not_run(definition, 0))
     columns = {name: np.empty(0, file.dtype(name)) for name in names if name in file.variables}
     columns |= {name: array[:0] for name, (_, array) in grid.values.items() if array.ndim}
@@ -96,26 +104,28 @@ def _described(definition: Definition, found: Condition, file: File) -> Earlier:
         return Earlier(found, grid.size, True, numerics)
     status = file.read("status").ravel()
     status = status if found.intact is None else np.where(found.intact, status, np.int8(NOT_RUN))
-    source = ResultsSource(found.path, grid, case_keys(grid), status, names, stamp(found.path))
+    source = ResultsSource(found.path, grid, case_keys(grid), status, names, stamp(found.path), units)
     return Earlier(found, grid.size, True, numerics, source)
 
 
 def _told(definition: Definition, found: Condition, file: File) -> tuple | None:
-    """Grid, points x and numerics of the cases in a file: its own, or of the definition where those are damaged."""
-    if not {*PARAMETERS, "x", "=structure", "@numerics_version"} & set(found.damage):
-        return _grid_in(file), file.read("x"), found.numerics
+    """Grid, points x, numerics and units of the cases in a file: its own, or of the definition where those are
+    damaged."""
+    if not {*PARAMETERS, *SCENE, "x", "=structure", "@numerics_version"} & set(found.damage):
+        grid, units = _grid_in(file)
+        return grid, file.read("x"), found.numerics, units
     lines = parsed(str(file.attribute(ATTRIBUTE))) if ATTRIBUTE in file.attributes() else {}
     grid, x = definition.grid, definition.x
-    same = list(grid.sizes.items()) == list(found.sizes.items())
+    same = list(in_results(definition, grid).sizes.items()) == list(found.sizes.items())
     if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
-        return grid, x, NUMERICS_VERSION
+        return in_results(definition, grid), x, NUMERICS_VERSION, units_of(definition)
     return None
 
 
-def _grid_in(file: File) -> Grid:
-    """The grid that a results file was computed on, from its coordinates."""
+def _grid_in(file: File) -> tuple[Grid, Grid | None]:
+    """The grid that a results file was computed on, from its coordinates; and its units, if it is in SI."""
     dims, values = file.variables, {}
-    for name in PARAMETERS:
+    for name in (*PARAMETERS, *SCENE):
         if name in dims and name in coordinates_of(file):
             array = file.read(name)  # texts without the dimension of their characters
             values[name] = dims[name][: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
@@ -124,7 +134,11 @@ def _grid_in(file: File) -> Grid:
         own, words = values["micro"]
         old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
         values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
-    return Grid({dim: file.sizes[dim] for dim in dims["status"]}, values)
+    sizes = {dim: file.sizes[dim] for dim in dims["status"]}
+    if DONE not in file.attributes():
+        return Grid(sizes, values), None
+    values, units = dimensionless(values)
+    return Grid(sizes, values), Grid(sizes, units)
 
 
 def statuses(path: Path) -> np.ndarray:

@@ -6,13 +6,14 @@ from pathlib import Path
 
 from solver import NUMERICS_VERSION
 
-from ..data.dataset import assembled, labelled
+from ..data.dataset import assembled, parts
 from ..files.atomic import replacing
 from ..files.checksums import Rows, identity
 from ..files.examine import CHUNK
 from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, set_aside
 from ..files.seal import seal
+from ..physical.scene import shown
 from ..spec.grid import box, cut_out, windows
 from .blocks import Inventory, Store, gather
 
@@ -42,17 +43,19 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
     definition, start = store.definition, 0
     rows = Rows(definition.grid.size)
     most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
-    chunk = dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True))
+    chunk = definition.named(dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True)))
     for window in windows(definition.grid, most, CHUNK):
         grid = cut_out(definition.grid, window)
         while (known.source[start : start + grid.size] < 0).any():
             yield
         arrays = gather(store, known, start, start + grid.size)
-        part = labelled(replace(definition, grid=grid), arrays, command)
+        here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))
+        part, place = shown(here, parts(here, arrays, command)), definition.named(window)
         if not start:
-            create(file, part, assembled(definition, {}, "x", definition.x, command), chunk)
+            whole = shown(definition, assembled(definition, {}, "x", definition.x, command))
+            create(file, part, whole, chunk)
         for name, array in part.data_vars.items():
-            file.write(name, array.values, window)
+            file.write(name, array.values, place)
             rows.add(name, array.values.reshape(grid.size, -1))
             yield
         start += grid.size

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from ..data.dataset import NO_SOLUTION, labelled, status_words
+from ..data.dataset import NO_SOLUTION, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
+from ..physical.scene import shown
 from ..spec.definition import Definition
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.earlier import check_replaceable, earlier
@@ -165,4 +166,5 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
 def partial_dataset(definition: Definition, results) -> xr.Dataset:
     """The grid with the blocks computed so far; the rest is NaN with status 127, not run."""
     store = Store(definition, Path(results))
-    return labelled(definition, gather(store, inventory(store), 0, definition.grid.size), "partial results")
+    arrays = gather(store, inventory(store), 0, definition.grid.size)
+    return shown(definition, parts(definition, arrays, "partial results"))

@@ -116,8 +116,10 @@ def test_a_study_says_what_is_allowed(name, value):
     case = ({} if name == "a" else {"P": LOAD}) | MAIN | {"micro": "power_law", name: value}
     with pytest.raises(study.StudyError) as caught:
         study.solve(**case)
-    low, high = VOCABULARY[name].own.interval[1:-1].split(", ")
-    assert caught.value.messages == (f"solve: {name} = {value}: must be in [{low}, {high}]",)
+    own = VOCABULARY[name].own
+    low, high = own.interval[1:-1].split(", ")
+    single = "".join(f"{also} or " for also in own.also)
+    assert caught.value.messages == (f"solve: {name} = {value}: must be {single}in [{low}, {high}]",)
 
 
 def test_a_study_file_says_it_with_exit_code_2(tmp_path, monkeypatch, capsys):
@@ -125,7 +127,7 @@ def test_a_study_file_says_it_with_exit_code_2(tmp_path, monkeypatch, capsys):
     (tmp_path / "s.toml").write_text('[model]\nn = 1e308\nh = 5e-324\nmicro = "smooth"\n[axes]\na = [0.1, 1.7e-251]\n')
     assert main(["run", "s.toml"]) == 2
     assert capsys.readouterr().err.splitlines() == [
-        "s.toml: n = 1e+308: must be in [1e-9, 1e9]",
+        "s.toml: n = 1e+308: must be 0 or in [1e-9, 1e9]",
         "s.toml: h = 5e-324: must be in [1e-12, 1e6]",
         "s.toml: a[1] = 1.7e-251: must be in [1e-9, 1e3]",
     ]

@@ -12,14 +12,14 @@ from study.spec.vocabulary import PARAMETERS, VOCABULARY
 SCALE = {"R": 5e-3, "E2_star": 2e11}
 
 
-# Physical sizes, in the printed units, of dimensionless ones on a sphere of 5 mm on 200 GPa.
+# SI sizes of dimensionless ones on a sphere of 5 mm on 200 GPa.
 FACTORS = {
-    **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0", "A_exact", "A_fit"), 5e3),  # µm
-    **dict.fromkeys(("p0", "p_max", "p", "p_mean", "p_peak", "E_eff"), 2e5),  # MPa
+    **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0", "A_exact", "A_fit"), 5e-3),  # m
+    **dict.fromkeys(("p0", "p_max", "p", "p_mean", "p_peak", "E_eff"), 2e11),  # Pa
     "P": 5e6,  # N: 2e11 Pa (5e-3 m)²
-    "Nbar": 0.04,  # mm⁻²: 1/(5 mm)²
+    "Nbar": 4e4,  # 1/(5 mm)²
     "dP_dD": 1e9,  # N/m: 2e11 Pa 5e-3 m
-    "An": 25.0,  # mm²
+    "An": 25e-6,  # (5 mm)²
 }
 
 
@@ -30,8 +30,8 @@ def test_factors(name):
 
 def test_scenes_of_another_size_and_stiffness_are_the_same_contact():
     """All lengths times 2, pressures times 3: areas grow by 4, loads by 12."""
-    scene = {"R": 5e-3, "E2_star": 2e11, "P": 10.0, "a": 50.0, "D": 0.5, "h": 20.0, "Nbar": 1e4, "Ra": 8.0}
-    scaled = {"R": 1e-2, "E2_star": 6e11, "P": 120.0, "a": 100.0, "D": 1.0, "h": 40.0, "Nbar": 2500.0, "Ra": 16.0}
+    scene = {"R": 5e-3, "E2_star": 2e11, "P": 10.0, "a": 5e-5, "D": 5e-7, "h": 2e-5, "Nbar": 1e10, "Ra": 8e-6}
+    scaled = {"R": 1e-2, "E2_star": 6e11, "P": 120.0, "a": 1e-4, "D": 1e-6, "h": 4e-5, "Nbar": 2.5e9, "Ra": 1.6e-5}
     pure = {"n": 0.5, "nu1": 0.3, "B": 0.1, "k": 2.0, "nodes": 16, "micro": "smooth"}
     first, second = (study.from_physical(**given) for given in (scene, scaled))
     assert first == pytest.approx(second, rel=1e-14)  # a few roundings
@@ -39,17 +39,16 @@ def test_scenes_of_another_size_and_stiffness_are_the_same_contact():
 
 
 def test_rough_contact_in_physical_units():
-    """Equations (6), (11) and (13) and the equilibrium, in SI units, from the numbers and units as they are printed."""
+    """Equations (6), (11) and (13) and the equilibrium, in SI units, from the numbers as they are."""
     s, w = np.polynomial.legendre.leggauss(40)
     s, w = (1 - s) / 2, w / 2
     x = np.sqrt(1 - s**2)
-    given = study.from_physical(**SCALE, P=10.0, Nbar=1e4, Ra=20.0)
+    given = study.from_physical(**SCALE, P=10.0, Nbar=1e10, Ra=20e-6)
     found = study.solve(**given, base="half_space", rtol=1e-10, x=[0.0, *x, 1.0])
     quantities = (derived.nominal_area, derived.mean_pressure, derived.spot_radius, derived.peak_pressure)
     more = xr.merge([found, *(quantity(found) for quantity in quantities)])
     physical = study.to_physical(more, **SCALE)
-    size = {"N": 1.0, "um": 1e-6, "MPa": 1e6, "mm-2": 1e6, "N m-1": 1.0, "mm2": 1e-6, "1": 1.0}
-    si = {name: physical[name].values * size[physical[name].units] for name in (*FACTORS, "lam0") if name in physical}
+    si = {name: physical[name].values for name in (*FACTORS, "lam0") if name in physical}
     assert si["P"] == pytest.approx(10, rel=1e-14) and si["Nbar"] == pytest.approx(1e10, rel=1e-14)  # a few roundings
     E, Ra, p0, lam = 2e11, 20e-6, si["p0"], si["lam0"]
     b, cell = np.sqrt(lam / (np.pi * 1e10)), np.sqrt(1 / (np.pi * 1e10))
@@ -68,13 +67,13 @@ def test_hertz_in_physical_units():
     found = study.to_physical(study.solve(**given), **SCALE)
     a = (3 * 10 * 5e-3 / (4 * 2e11)) ** (1 / 3)
     assert found.P.item() == pytest.approx(10, rel=1e-14)  # a few roundings
-    assert found.a.item() == pytest.approx(a * 1e6, rel=1e-12)  # closed form
-    assert found.D.item() == pytest.approx(a**2 / 5e-3 * 1e6, rel=1e-12)  # closed form
-    assert found.p0.item() == pytest.approx(1.5 * 10 / (np.pi * a**2) / 1e6, rel=1e-12)  # closed form
+    assert found.a.item() == pytest.approx(a, rel=1e-12)  # closed form
+    assert found.D.item() == pytest.approx(a**2 / 5e-3, rel=1e-12)  # closed form
+    assert found.p0.item() == pytest.approx(1.5 * 10 / (np.pi * a**2), rel=1e-12)  # closed form
     assert found.dP_dD.item() == pytest.approx(2 * 2e11 * a, rel=1e-9)
     modulus = study.to_physical(derived.effective_modulus(study.solve(**given)).to_dataset(), **SCALE).E_eff
-    assert (modulus.item(), modulus.units) == (pytest.approx(2e5, rel=1e-9), "MPa")
-    assert [found[name].units for name in ("P", "a", "p0", "dP_dD", "nu1")] == ["N", "um", "MPa", "N m-1", "1"]
+    assert (modulus.item(), modulus.units) == (pytest.approx(2e11, rel=1e-9), "Pa")
+    assert [found[name].units for name in ("P", "a", "p0", "dP_dD", "nu1")] == ["N", "m", "Pa", "N/m", "1"]
     assert "scale" not in found.P.attrs
     assert found.physical_scale == "R = 0.005 m, E2* = 200000000000.0 Pa"
 
@@ -88,17 +87,30 @@ def test_axes_are_converted_and_stay_selectable():
 def test_there_and_back():
     parameters = {name: 0.25 for name in PARAMETERS if not VOCABULARY[name].own.choices}
     physical = {name: value * factor(name, **SCALE) for name, value in parameters.items()}
-    assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-15)  # one rounding
+    assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-14)  # a few roundings
 
 
 def test_forms_are_kept():
-    array = xr.DataArray([5e3, 1e4], dims="sample")
-    found = study.from_physical(**SCALE, h=array, Ra=[5e3, 1e4], a=5e3, bonding=["bonded"])
+    array = xr.DataArray([5e-3, 1e-2], dims="sample")
+    found = study.from_physical(**SCALE, h=array, Ra=[5e-3, 1e-2], a=5e-3, bonding=["bonded"])
     assert found["h"].dims == ("sample",)
     np.testing.assert_allclose(found["h"], [1, 2], rtol=1e-15, atol=0)  # one rounding
     np.testing.assert_allclose(found["Ra"], [1, 2], rtol=1e-15, atol=0)  # one rounding
     assert found["a"] == 1
     assert found["bonding"] == ["bonded"]
+
+
+def test_both_ways_to_physical_units_agree():
+    """A scene of `solve`, and dimensionless results converted: one convention, to the rounding of the units."""
+    pytest.importorskip("pint")
+    modulus = study.reduced_modulus(210e9, 0.3)
+    given = {"R": 5e-3, "E2_star": modulus, "P": 10.0, "h": 2e-4, "n": 0.5, "micro": "smooth"}
+    converted = study.to_physical(study.solve(**study.from_physical(**given), x=3), R=5e-3, E2_star=modulus)
+    scene = study.solve(R="5 mm", E2="210 GPa", nu2=0.3, P="10 N", h="200 um", n=0.5, micro="smooth", x=3)
+    for name in ("P", "h", "a", "D", "p0", "p", "dP_dD"):
+        np.testing.assert_allclose(converted[name], scene[name], rtol=1e-14, err_msg=name)
+        assert converted[name].attrs["units"] == scene[name].attrs["units"]
+    assert study.readable(converted).h.attrs["units"] == "µm"
 
 
 def test_reduced_modulus():

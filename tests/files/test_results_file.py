@@ -125,7 +125,7 @@ def test_units_of_a_lazily_opened_file_are_converted_lazily(opened, monkeypatch)
     monkeypatch.setattr(study.api, "LAZY", 0)
     found = study.to_physical(opened.open(), **SCALE)
     assert found.p.chunks and found.a.chunks
-    np.testing.assert_allclose(found.p, opened.open().p * 2e5, rtol=1e-15, atol=0)  # MPa; one rounding
+    np.testing.assert_allclose(found.p, opened.open().p * 2e11, rtol=1e-15, atol=0)  # one rounding
 
 
 def test_coordinates_are_those_of_the_study(opened):

@@ -102,8 +102,8 @@ def test_units():
     assert_allclose([s.a, s.D, s.p_max], [one.a * R, one.D * R, one.p_max * E2], rtol=1e-12, atol=0)
     found = study.solve(P=1e-5, micro=spaced, h=0.02, n=0.5, alpha=1.3, spacing=[0.002, 0.003], x=2)
     physical = study.to_physical(found, R=R, E2_star=E2)
-    assert_allclose(physical.spacing, [20, 30], rtol=1e-14)
-    assert physical.spacing.attrs["units"] == "um" and np.isnan(study.derived.spot_radius(found)).all()
+    assert_allclose(physical.spacing, [20e-6, 30e-6], rtol=1e-14)
+    assert physical.spacing.attrs["units"] == "m" and np.isnan(study.derived.spot_radius(found)).all()
 
 
 def of_spacing(E, spacing, alpha):

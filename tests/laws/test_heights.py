@@ -145,6 +145,6 @@ def test_through_a_study():
     assert (found.a[1, 1] > found.a[1, 0]) and (found.p0[1] < found.p0[0]).all()
     above = found.D - found.cut * found.sigma  # depth of the mean plane
     assert_allclose(above[1, 0], above[1, 1], rtol=0.01)
-    assert study.to_physical(found, R=0.01, E2_star=2e11).sigma.attrs["units"] == "um"
+    assert study.to_physical(found, R=0.01, E2_star=2e11).sigma.attrs["units"] == "m"
     with pytest.raises(study.StudyError, match='sigma is missing: micro = "normal_heights" needs it'):
         study.solve(**given, micro="normal_heights")

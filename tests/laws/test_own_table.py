@@ -85,6 +85,15 @@ def test_outside_its_range(table):
         assert_allclose(found.P, P * 4e9)
 
 
+def test_on_a_rigid_base(table):
+    """There E1* is the unit of pressure."""
+    given = {"P": 1e-5, "h": 0.02, "n": 0.0, "base": ["thin_layer", "layered"]}
+    found = solve(Problem.of(**given, micro=table()))
+    disc = solve(Problem.of(**given, micro="disc_cell", **ASPERITIES))
+    assert (found.status == 0).all()
+    assert_allclose(found.a, disc.a, rtol=1e-4)
+
+
 def test_the_edge_goes_on_as_the_first_rows(table):
     law = own_table.read(table())
     p = np.array([1e-9, 1e-7, 1e-5])

@@ -12,7 +12,7 @@ import solver
 import study
 from study import open_results
 from study.__main__ import main, parser
-from study.spec.definition import from_tables
+from study.physical.study_file import from_tables, read
 
 TEXT = {page: pages.read(page) for page in pages.PAGES}
 
@@ -65,9 +65,14 @@ def test_commands_parse(page):
 
 @pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
 def test_study_files_are_valid(page):
-    (text,) = pages.blocks(page, "toml")
-    definition = from_tables(tomllib.loads(text), "mine", text, page)
-    assert dict(definition.grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}
+    definitions = [from_tables(tomllib.loads(text), "mine", text, page) for text in pages.blocks(page, "toml")]
+    assert dict(definitions[0].grid.sizes) == {"bonding": 2, "h": 2, "n": 9, "P": 21}
+
+
+def test_the_table_of_real_systems_has_their_numbers_of_cases():
+    rows = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \|$", TEXT["docs/studies.md"], flags=re.MULTILINE)
+    assert len(rows) == 6
+    assert all(read(ROOT / f"studies/{name}.toml").grid.size == int(cases) for name, cases in rows)
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md"])

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import study
-from study.spec import definition, grid, sample
+from study.spec import definition, given, grid, sample
 from study.spec.definition import from_tables
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
@@ -67,15 +67,15 @@ def test_just_allowed_and_just_refused():
 
 
 def test_longest_axis(monkeypatch):
-    assert grid.LONGEST_AXIS == study.api.LONGEST_AXIS == sample.LIMITS["size"][1] == 1_000_000
-    for module in (grid, study.api):
+    assert grid.LONGEST_AXIS == given.LONGEST_AXIS == sample.LIMITS["size"][1] == 1_000_000
+    for module in (grid, given):
         monkeypatch.setattr(module, "LONGEST_AXIS", 100)
     assert sized(100).grid.size == 100
     with pytest.raises(study.StudyError, match=r"P: num = 101: must be a whole number in \[2, 100\]"):
         sized(101)
-    for given in (range(1, 102), list(range(1, 102)), range(1, 10**12), np.arange(1.0, 102.0)):
+    for values in (range(1, 102), list(range(1, 102)), range(1, 10**12), np.arange(1.0, 102.0)):
         with pytest.raises(study.StudyError, match="P is too long: at most 100 values are allowed"):
-            study.solve(P=given, **SMOOTH)
+            study.solve(P=values, **SMOOTH)
     assert study.solve(P=range(1, 101), **SMOOTH).sizes["P"] == 100
     with pytest.raises(study.StudyError, match="P is too long"):
         from_tables({"model": SMOOTH, "axes": {"P": [1.0] * 101}}, "s", "", "s")

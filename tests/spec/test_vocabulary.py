@@ -10,32 +10,31 @@ FORCE, LENGTH, PRESSURE = (1, 1, -2), (0, 1, 0), (1, -1, -2)
 STIFFNESS, AREA, PER_AREA = (1, 0, -2), (0, 2, 0), (0, -2, 0)
 DIMENSIONS = {
     "P": (FORCE, "N"),
-    "a": (LENGTH, "um"),
-    "D": (LENGTH, "um"),
-    "h": (LENGTH, "um"),
-    "Nbar": (PER_AREA, "mm-2"),
-    "Ra": (LENGTH, "um"),
-    "sigma": (LENGTH, "um"),
-    "p0": (PRESSURE, "MPa"),
-    "p_max": (PRESSURE, "MPa"),
-    "A0": (LENGTH, "um"),
-    "dP_dD": (STIFFNESS, "N m-1"),
-    "p": (PRESSURE, "MPa"),
-    "An": (AREA, "mm2"),
-    "p_mean": (PRESSURE, "MPa"),
-    "b0": (LENGTH, "um"),
-    "p_peak": (PRESSURE, "MPa"),
-    "E_eff": (PRESSURE, "MPa"),
+    "a": (LENGTH, "m"),
+    "D": (LENGTH, "m"),
+    "h": (LENGTH, "m"),
+    "Nbar": (PER_AREA, "1/m^2"),
+    "Ra": (LENGTH, "m"),
+    "sigma": (LENGTH, "m"),
+    "p0": (PRESSURE, "Pa"),
+    "p_max": (PRESSURE, "Pa"),
+    "A0": (LENGTH, "m"),
+    "dP_dD": (STIFFNESS, "N/m"),
+    "p": (PRESSURE, "Pa"),
+    "An": (AREA, "m^2"),
+    "p_mean": (PRESSURE, "Pa"),
+    "b0": (LENGTH, "m"),
+    "p_peak": (PRESSURE, "Pa"),
+    "E_eff": (PRESSURE, "Pa"),
 }
-# Size of the printed units in SI.
 UNITS = {
-    "N": (FORCE, 1.0),
-    "um": (LENGTH, 1e-6),
-    "MPa": (PRESSURE, 1e6),
-    "mm-2": (PER_AREA, 1e6),
-    "N m-1": (STIFFNESS, 1.0),
-    "mm2": (AREA, 1e-6),
-    "1": ((0, 0, 0), 1.0),
+    "N": FORCE,
+    "m": LENGTH,
+    "Pa": PRESSURE,
+    "1/m^2": PER_AREA,
+    "N/m": STIFFNESS,
+    "m^2": AREA,
+    "1": (0, 0, 0),
 }
 # fmt: off
 PURE = {
@@ -57,7 +56,7 @@ def test_dimensions_and_units(name):
     entry = VOCABULARY[name]
     i, j = entry.powers
     assert (i, j - i, -2 * i) == dimension
-    assert entry.unit[0] == unit and (dimension, entry.unit[1]) == UNITS[unit]
+    assert entry.unit == unit and dimension == UNITS[unit]
 
 
 def words(text: str) -> dict:

@@ -1,0 +1,54 @@
+"""Materials by name in a physical scene: `punch`, `layer` and `body` in place of E and ν of each."""
+
+from typing import Any
+
+import numpy as np
+
+from ..scene import materials
+from ..scene.quantities import Quantity
+from ..spec.grid import twins
+from .names import RIGID_TEXTS, Known, Row
+
+#: Body -> its modulus and Poisson ratio, and the ratio of moduli that follows from it.
+BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
+_MAY_BE_RIGID = ("punch", "body")
+
+
+def with_materials(parameters: dict, spreads: bool, errors: list[str]) -> tuple[dict, dict]:
+    """The parameters with E and ν of the materials named, and body -> (dimension, their names as in the table).
+
+    spreads : with those of the table; messages are appended to `errors`
+    """
+    found, names = dict(parameters), {}
+    for body, follows in BODIES.items():
+        if body not in parameters:
+            continue
+        given = found.pop(body)
+        errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
+        given = given.tolist() if isinstance(given, np.ndarray) else given
+        several = isinstance(given, (list, tuple))
+        try:
+            rows = [_material(body, one) for one in (given if several else [given])]
+        except LookupError as error:
+            errors.append(f"{body}: {error.args[0]}")
+            found[follows[0]] = Quantity(1.0)  # it is not missing
+            continue
+        texts, *numbers = zip(*rows, strict=True)
+        for i, j in twins(texts) if several and not isinstance(given, Row) else ():
+            errors.append(f"{body}[{i}] and {body}[{j}] are both {texts[i]}: values of an axis must differ")
+        dim = ("case" if isinstance(given, Row) else body) if several else ""
+        for name, column in zip(follows, numbers, strict=False):
+            column = [one if spreads else Quantity(one.value) for one in column]
+            found[name] = Known(column, dim) if several else column[0]
+        names[body] = dim, list(texts)
+    return found, names
+
+
+def _material(body: str, name: Any) -> tuple[str, Quantity, Quantity]:
+    """Name, E and ν of a material. Raises LookupError when there is none."""
+    if body in _MAY_BE_RIGID and name in RIGID_TEXTS:
+        return "rigid", Quantity(np.inf), Quantity(0.3)
+    if not isinstance(name, str):
+        raise LookupError(f'{name} is no name of a material, such as "steel 52100"')
+    found = materials.get(name)
+    return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)

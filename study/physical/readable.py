@@ -1,0 +1,39 @@
+"""Results in the multiples of SI units in which they are read: µm, mN, GPa."""
+
+import numpy as np
+import xarray as xr
+
+from ..data.units import DONE
+from ..scene.quantities import READABLE
+
+
+def readable(dataset: xr.Dataset) -> xr.Dataset:
+    """A dataset in SI units with each variable in the multiple that suits its largest number, for plots and tables.
+
+    Coordinates have it too: a thickness of 2e-6 m is found by sel(h=2.0), in the µm of its attribute `units`. A spread
+    has the multiple of its quantity.
+
+    Raises ValueError for a dataset without physical units.
+    """
+    if DONE not in dataset.attrs:
+        raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
+    found = {}
+    for name, variable in dataset.variables.items():
+        owner = dataset.variables.get(str(name).removesuffix("_spread"), variable)
+        unit = variable.attrs.get("units", "1")
+        if unit not in READABLE or unit == "1" or variable.dtype.kind != "f":
+            continue
+        word, size = _multiple(owner.values, unit)
+        found[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
+    coords = {name: variable for name, variable in found.items() if name in dataset.coords}
+    made = dataset.drop_vars(list(coords)).assign_coords(coords)
+    made = made.assign({name: variable for name, variable in found.items() if name in dataset.data_vars})
+    return made.assign_attrs({DONE: "readable multiples of SI units, by the attribute units"})
+
+
+def _multiple(values: np.ndarray, unit: str) -> tuple[str, float]:
+    """Name and size of the largest multiple that is no larger than the largest number."""
+    multiples = READABLE[unit][1]
+    sizes = np.abs(values[np.isfinite(values)])
+    most = sizes.max(initial=0.0)
+    return next(((word, size) for word, size in multiples if most >= size), multiples[0 if most == 0 else -1])

@@ -1,0 +1,116 @@
+"""Layers on a rigid base, n = 0, in units R = E1* = 1: limits, asymptotes and formulations of their own."""
+
+import numpy as np
+import pytest
+from layered_independent import fredholm
+from numpy.testing import assert_allclose
+
+from solver import Problem, Status, solve
+from solver.body.kernel import layered_kernel
+from solver.closed_forms import thin_layer_on_rigid_base
+from solver.models.thin_layer_error import edge_shift, thin_layer_error
+
+ROUGH = {"Nbar": 250000.0, "Ra": 0.004}
+POWER = ROUGH | {"micro": "power_law", "B": 0.1, "beta": 0.5}
+NAMES = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD")
+
+
+def numbers(**given):
+    found = solve(Problem.of(**given))
+    assert (found.status == Status.CONVERGED).all()
+    return np.array([getattr(found, name) for name in NAMES])
+
+
+@pytest.mark.parametrize("nu1", [-0.9, 0.0, 0.3, 0.49, 0.5])
+def test_kernel(nu1):
+    """L = (g sinh 2u - 2u)/(g cosh 2u + 2u² + (1 + g²)/2), g = 3 - 4 nu1, in long doubles; of nu2 nothing is left."""
+    u, g = np.geomspace(0.02, 12, 60, dtype=np.longdouble), np.longdouble(3 - 4 * nu1)
+    L = (g * np.sinh(2 * u) - 2 * u) / (g * np.cosh(2 * u) + 2 * u**2 + (1 + g**2) / 2)
+    for nu2 in (-0.5, 0.3, 0.5):
+        assert_allclose(layered_kernel(u.astype(float), 0.0, nu1, nu2, True).L, L.astype(float), rtol=1e-13)
+
+
+def test_kernel_of_long_waves():
+    """L(0) = 0 and the first terms: u/2 without friction, 2 u³/3 of an incompressible bond, else A2 u."""
+    u = np.array([0.0, 1e-9, 1e-6, 1e-4])
+    assert_allclose(layered_kernel(u, 0.0, 0.3, 0.3, False).L, u / 2, rtol=1e-12)
+    assert_allclose(layered_kernel(u, 0.0, 0.5, 0.3, True).L, 2 / 3 * u**3, rtol=1e-7)
+    assert_allclose(layered_kernel(u[:3], 0.0, 0.3, 0.3, True).L, 0.4 / (2 * 0.49) * u[:3], rtol=2e-6)
+
+
+@pytest.mark.parametrize("micro", [{"micro": "smooth"}, ROUGH, POWER], ids=["smooth", "disc_cell", "power_law"])
+@pytest.mark.parametrize("base", ["thin_layer", "layered"])
+def test_limit_of_soft_layers(base, micro):
+    """n = 1e-6 and its half, E1* held, extrapolated to 0: what is left is (1e-6)² a/h."""
+    for control in ({"P": 1e-5}, {"a": 0.04}, {"D": 1e-3}):
+        for m, bonding in ((0.0, "bonded"), (0.7, "frictionless")):
+            given = control | micro | {"h": 0.004, "m": m, "bonding": bonding, "base": base, "rtol": 1e-9}
+            n = 1e-6
+            soft = [numbers(**given, n=value, E2=1 / value) for value in (n, n / 2)]
+            assert_allclose(numbers(**given, n=0), 2 * soft[1] - soft[0], rtol=2e-9)
+
+
+def test_force_over_hertz():
+    """Incompressible bond: the force over that of Hertz at the same depth, at a/h = 0.1 to 4 (six digits known)."""
+    a_h = np.array([0.1, 0.5, 1.0, 2.0, 4.0])
+    P, D = numbers(a=0.04, h=0.04 / a_h, n=0, nu1=0.5, bonding="bonded", micro="smooth")[1:3]
+    assert_allclose(P / (4 / 3 * D**1.5), [1.12354, 1.85712, 3.37110, 8.46801, 29.0573], rtol=5e-6)
+
+
+@pytest.mark.parametrize("m", [0.0, 0.8])
+def test_fredholm(m):
+    """a/h from 0.1 to 10 and every kind of nu1, by an equation that shares nothing with the solver."""
+    cases = [(eta, nu1, bonded) for eta in (0.1, 1.0, 10.0) for nu1 in (-0.5, 0.0, 0.3, 0.49, 0.5) for bonded in (0, 1)]
+    eta, nu1, bonded = np.array(cases).T
+    bonding, a = np.where(bonded == 1, "bonded", "frictionless"), 0.04
+    given = {"h": eta * a, "n": 0, "nu1": nu1, "bonding": bonding, "m": m, "micro": "smooth", "rtol": 1e-10}
+    found = solve(Problem.of(a=a, **given))
+    expected = np.array([fredholm(e, 0.0, nu, 0.3, bond == 1, m=m) for e, nu, bond in cases])
+    Ec = 1 / (1 + m)
+    for i, (name, unit) in enumerate({"P": Ec * a**3, "D": a**2, "p0": Ec * a, "dP_dD": Ec * a}.items()):
+        assert_allclose(getattr(found, name) / unit, expected[:, i], rtol=1e-9, err_msg=name)
+
+
+def test_thin_films_of_johnson():
+    """The thin-layer equation is Johnson's foundation of springs, at any load and thickness within the bounds."""
+    P, h = np.array([1e-24, 1e-5, 1e3, 1e-5, 1e-5]), np.array([0.01, 0.01, 0.01, 1e-12, 1e6])
+    for bonding in ("frictionless", "bonded"):
+        found = solve(Problem.of(P=P, h=h, n=0, bonding=bonding, base="thin_layer", micro="smooth"))
+        expected = thin_layer_on_rigid_base(P=P, h=h, bonded=bonding == "bonded")
+        for name in ("a", "D", "p0"):
+            assert_allclose(getattr(found, name), getattr(expected, name), rtol=1e-12, err_msg=name)
+    exact = solve(Problem.of(a=0.1, h=[1e-4, 1e-5], n=0, micro="smooth"))
+    error = exact.P / thin_layer_on_rigid_base(a=0.1, h=np.array([1e-4, 1e-5])).P - 1
+    assert (np.abs(error) < [5e-3, 5e-4]).all(), "what the exact layer leaves to the springs falls like h/a"
+
+
+def test_an_incompressible_film():
+    """Squeezed out sideways as by Reynolds' equation: L ~ 2 u³/3 makes ∇²p = -(3 E1*/(4 h³)) (D - r²/2) at h << a.
+
+    With p and its slope 0 at the edge, D = a²/4, p = (3 E1*/(128 h³)) (a² - r²)² and P = π E1* a⁶/(128 h³).
+    """
+    a, h = 0.1, np.array([2e-3, 1e-3])
+    found = solve(Problem.of(a=a, h=h, n=0, nu1=0.5, bonding="bonded", micro="smooth"))
+    error = np.abs(found.P * 128 * h**3 / (np.pi * a**6) - 1)
+    assert error[1] < 0.55 * error[0] < 0.11, "of the order h/a"
+    assert_allclose(found.D[1], a**2 / 4, rtol=0.05)
+
+
+def test_smaller_models_and_their_errors():
+    given = {"P": [1e-6, 1e-5], "n": 0, "h": [3e-4, 3e-2], **ROUGH}
+    exact = solve(Problem.of(**given))
+    for more in ({"base": "auto", "accuracy": 0.05}, {"base": "thin_layer", "model_check": "first_order"}):
+        found = solve(Problem.of(**given, **more))
+        error = np.max([np.abs(getattr(found, name) / getattr(exact, name) - 1) for name in NAMES[:6]], axis=0)
+        assert (found.status == 0).all() and (error <= 1.2 * found.model_error + 1e-5).all()
+    for bonded in (False, True):
+        assert_allclose(edge_shift(0.0, 0.3, 0.3, bonded), edge_shift(1e-9, 0.3, 0.3, bonded), rtol=1e-5)
+        near = thin_layer_error([0.1, 1.0], 1e-9, 0.3, 0.3, bonded)
+        assert_allclose(thin_layer_error([0.1, 1.0], 0.0, 0.3, 0.3, bonded), near, rtol=1e-5)
+
+
+def test_bounds_and_what_has_no_springs():
+    found = solve(Problem.of(P=1e-5, h=0.01, n=[0, 1e-10, -0.0], micro="smooth"))
+    assert found.status.tolist() == [Status.CONVERGED, Status.INVALID_INPUT, Status.CONVERGED]
+    thin = Problem.of(P=1e-5, h=0.01, n=0, nu1=[0.49, 0.5], bonding="bonded", base="thin_layer", micro="smooth")
+    assert solve(thin).status.tolist() == [Status.CONVERGED, Status.THIN_LAYER_NOT_APPLICABLE]

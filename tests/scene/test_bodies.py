@@ -1,0 +1,73 @@
+"""Materials by name in place of E and ν."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import study
+from study import materials
+from study.physical.study_file import from_tables
+
+pytest.importorskip("pint")
+pytestmark = pytest.mark.filterwarnings("ignore:this contact is beyond")
+COATED = {"R": "5 mm", "punch": "100Cr6", "layer": "PTFE", "body": "steel 52100", "h": "100 um", "micro": "smooth"}
+
+
+def numbers(E: str, nu: str, name: str, spreads: bool) -> dict:
+    found = materials.get(name)
+    ends = (f" ± {found.E_spread!r}", f" ± {found.nu_spread!r}") if spreads else ("", "")
+    return {E: f"{found.E!r}{ends[0]} Pa", nu: f"{found.nu!r}{ends[1]}"}
+
+
+def test_a_name_stands_for_both_numbers_and_their_spreads():
+    found = study.solve(**COATED, P="10 N", x=2)
+    given = {"R": "5 mm", "h": "100 um", "micro": "smooth", "P": "10 N"}
+    given |= numbers("E_punch", "nu_punch", "100Cr6", True) | numbers("E1", "nu1", "PTFE", True)
+    expected = study.solve(**given, **numbers("E2", "nu2", "100Cr6", True), x=2)
+    for name in ("a", "a_spread", "D_spread", "p0_spread"):
+        np.testing.assert_allclose(found[name], expected[name], rtol=1e-12, err_msg=name)
+    text = study.summary(found)
+    assert "punch of steel 52100, E_punch = 207.0 ± 3.0 GPa" in text and "layer of PTFE, E1 = 490 ± 50 MPa" in text
+
+
+def test_several_materials_are_one_axis():
+    names = ["PTFE", "PEEK", "PMMA"]
+    found = study.solve(**COATED | {"layer": names, "body": ["rigid", "glass"]}, P="10 N", x=2)
+    assert found.sizes == {"layer": 3, "body": 2, "x": 2} and found.layer.values.tolist() == names
+    alone = study.solve(**COATED | {"layer": "peek", "body": "rigid"}, P="10 N", x=2)
+    chosen = found.sel(layer="PEEK", body="rigid")
+    np.testing.assert_allclose([chosen.a, chosen.a_spread], [alone.a, alone.a_spread], rtol=1e-12)
+    assert "a rigid base" in study.summary(chosen) and chosen.E1.item() == materials.get("PEEK").E
+    rows = [{"label": "soft", "layer": "PTFE"}, {"label": "hard", "layer": "PEEK"}]
+    cases = study.solve(cases=rows, **{k: v for k, v in COATED.items() if k != "layer"}, P="10 N", x=2)
+    assert cases.layer.values.tolist() == ["PTFE", "PEEK"] and cases.label.values.tolist() == ["soft", "hard"]
+
+
+def test_study_files_take_the_values_without_the_spreads(tmp_path):
+    text = "".join(f"{name} = {value!r}\n" for name, value in COATED.items() if name != "layer")
+    text = f'[model]\n{text}[axes]\nlayer = ["PTFE", "PEEK"]\nP = ["1 N", "10 N"]\n'
+    made = study.Study(from_tables(tomllib.loads(text), "lining", text, "lining.toml"), tmp_path)
+    assert made.run(workers=1).computed == 4
+    found = made.open().sel(layer="PTFE", P="10 N")
+    assert "a_spread" not in found and found.punch.item() == "steel 52100"
+    np.testing.assert_allclose(found.a, study.solve(**COATED, P="10 N", x=2).a, rtol=1e-12)
+    edited = text.replace('"PEEK"]', '"PEEK", "PMMA"]')
+    assert study.Study(from_tables(tomllib.loads(edited), "lining", edited, "x"), tmp_path).run(workers=1).computed == 2
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"layer": "unobtainium"}, '^layer: "unobtainium" is no material; did you mean[^\n]*$'),
+        ({"layer": "rigid"}, 'layer: "rigid" is no material'),
+        ({"body": 5.0}, "body: 5.0 is no name of a material"),
+        ({"E1": "1 GPa"}, "layer and E1 are both given: E1 follows from layer"),
+        ({"nu2": 0.3}, "body and nu2 are both given"),
+        ({"m": 0.5}, "punch and m are both given"),
+        ({"coating": "PTFE"}, '"coating" is not a parameter'),
+    ],
+)
+def test_slips_are_named(change, message):
+    with pytest.raises(study.StudyError, match=message):
+        study.solve(**COATED | change, P="10 N")

@@ -1,0 +1,28 @@
+"""Results in readable multiples: the same numbers, in units that are named."""
+
+import numpy as np
+import pytest
+from test_physical import COATED, quiet
+
+import study
+
+pytest.importorskip("pint")
+
+
+def test_multiples():
+    found = quiet(**COATED | {"h": ["50 nm ± 5 nm", "2 um"], "E2": "rigid"}, P="10 mN", x=3)
+    shown = study.readable(found)
+    units = {name: shown[name].attrs["units"] for name in ("h", "h_spread", "P", "a", "p", "E1", "E2", "R", "dP_dD")}
+    assert units == {
+        "h": "µm", "h_spread": "µm", "P": "mN", "a": "µm", "p": "GPa", "E1": "GPa", "E2": "GPa", "R": "mm",
+        "dP_dD": units["dP_dD"],
+    }  # fmt: skip
+    assert shown.P == 10.0 and shown.sel(h=2.0).a.item() == pytest.approx(found.sel(h="2 um").a.item() * 1e6)
+    np.testing.assert_allclose(shown.a_spread * 1e-6, found.a_spread, rtol=1e-15)
+    assert np.isinf(shown.E2) and shown.nu1.attrs["units"] == "1" and shown.status.dtype == found.status.dtype
+    assert shown.a.dims == found.a.dims and "readable" in shown.attrs["physical_scale"]
+
+
+def test_numbers_without_units_have_no_multiples():
+    with pytest.raises(ValueError, match="the dataset is dimensionless"):
+        study.readable(study.solve(P=1e-5, base="half_space", micro="smooth", x=2))

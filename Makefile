@@ -40,7 +40,7 @@ help: ## this list
 
 setup: $(READY) ## install the pinned packages and roughcoat into .venv
 
-figures: $(READY) ## the paper's figures 1 to 10, those on the exact layer, validity, coatings: figures/*
+figures: $(READY) ## the paper's figures, those on the exact layer, validity, coatings, captions: figures/*
 	$(RUN) plot --run all
 
 table1: tables/table1.txt ## Table 1 of the paper, printed and refitted: tables/table1.txt, .csv, .tex
@@ -87,7 +87,7 @@ lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .
 
 clean: ## remove figures, tables and caches; results and .venv stay
-	rm -f $(foreach kind,pdf png csv svg,$(DRAWN:%=figures/%.$(kind))) bench.json
+	rm -f $(foreach kind,pdf png csv svg,$(DRAWN:%=figures/%.$(kind))) figures/captions.md bench.json
 	rm -f $(foreach kind,txt csv tex,$(WRITTEN:%=tables/%.$(kind)))
 	rm -rf .pytest_cache .ruff_cache .hypothesis
 	find solver study tests -name __pycache__ -type d -prune -exec rm -rf {} +

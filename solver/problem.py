@@ -90,6 +90,11 @@ class Problem:
     E2: np.ndarray
     more: dict[str, np.ndarray] = field(default_factory=dict)
 
+    def __repr__(self):
+        given = f"{self.control} = {self.value.min():g} ... {self.value.max():g}" if len(self) else self.control
+        kinds = [", ".join(sorted(set(values.tolist()))) for values in (self.base, self.micro)]
+        return f"Problem({len(self)} cases, {given}, base: {kinds[0]}, micro: {kinds[1]})"
+
     def __getattr__(self, name):
         """A parameter of `more`; NaN of a law that was registered later."""
         if name not in PARAMETERS:

@@ -89,6 +89,13 @@ class Solution:
     p: np.ndarray
     lam: np.ndarray
 
+    def __repr__(self):
+        values, counts = np.unique(self.status, return_counts=True)
+        ended = ", ".join(
+            f"{n} {Status(v).name.lower()}" for v, n in zip(values.tolist(), counts.tolist(), strict=True)
+        )
+        return f"Solution({len(self.a)} cases: {ended or 'none'}; profiles at {self.p.shape[1]} radii)"
+
     @classmethod
     def of(cls, size, points, **values):
         """`size` cases with profiles of `points` radii and the given arrays; what is not given is NaN, a count 0."""

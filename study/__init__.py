@@ -1,24 +1,26 @@
 """Parameter studies of rough coated contacts: labelled grids, results that resume, figures and tables.
 
-`solve` and `load` are the entrance, `summary` says in words what `solve` found; `python -m study` is the same from a
-shell. `study.derived`, `study.materials`, `study.roughness`, `study.units` and `study.vocabulary` are there without an
-import of their own. Names are imported when they are first used, so that `python -m study --help` and complaints about
-a study file answer at once.
+`solve` and `load` are the entrance, `summary` says in words what `solve` found, `plot` draws it; `python -m study`, or
+`roughcoat`, is the same from a shell. `study.derived`, `study.materials`, `study.roughness`, `study.units` and
+`study.vocabulary` are there without an import of their own. Names are imported when they are first used, so that
+`python -m study --help` and complaints about a study file answer at once.
 """
 
 from importlib import import_module
 
 _HOME = {
-    "solve": "api",
+    "solve": "solving",
     "load": "api",
     "Study": "api",
     "open_results": "files.results_file",
     "StudyError": "spec.definition",
+    "decode": "data.flags",
     "to_physical": "data.units",
     "from_physical": "data.units",
     "reduced_modulus": "data.units",
     "summary": "in_words",
     "readable": "physical.readable",
+    "plot": "figures.lines",
 }
 _MODULES = {
     "derived": "data.derived",

@@ -1,6 +1,6 @@
-"""Command line of roughcoat: python -m study COMMAND, one of
+"""Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-list | check | run | retry | status | verify | clean | plot | table | tradeoff.
+point | list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. They say what
 became of the work, whoever hears of it: nothing stops because a terminal is gone, or a reader has left. Only where
@@ -11,10 +11,13 @@ import argparse
 import logging
 import os
 import sys
+from contextlib import suppress
+from functools import partial
 from importlib import import_module
+from pathlib import Path
 
 from .commands import ending
-from .commands.arguments import STUDIES, Parser, Version, add_engine, folder, part
+from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
 from .terminal import empty_buffers, open_the_closed, say
 
@@ -29,7 +32,8 @@ KEPT = "; finished blocks are kept, the same command goes on from there"
 
 def parser() -> argparse.ArgumentParser:
     """All subcommands and their options."""
-    top = Parser(prog="python -m study", description="Parameter studies of rough coated contacts.")
+    name = "roughcoat" if Path(sys.argv[0]).name.startswith("roughcoat") else "python -m study"
+    top = Parser(prog=name, description="Parameter studies of rough coated contacts.")
     top.add_argument("-v", "--verbose", action="store_true", help="show the log")
     top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
@@ -38,12 +42,19 @@ def parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(name.removesuffix("_"), help=text, description=text)
         sub.set_defaults(action=(module, name), items=[name])
         if items:
-            sub.add_argument("items", nargs="+", metavar=items)
-        sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
+            given = sub.add_argument("items", nargs="+", metavar=items)
+            given.completer = partial(proposed, name)
+        if name != "point":
+            sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
+    sub = command("point", "point", "solve one contact and say in words what was found", "NAME=VALUE")
+    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.epilog = (
+        'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
+    )
     sub = command("computing", "list_", "list the study files, their size and state")
-    sub.add_argument("folder", type=folder, nargs="?", default=STUDIES)
+    sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
     command("checking", "check", "check study files without computing", "FILE")
     sub = command("computing", "run", "compute what is missing and write the results", "FILE")
     add_engine(sub)
@@ -64,6 +75,8 @@ def parser() -> argparse.ArgumentParser:
         sub = command("drawing", name, f"{text}; all: those that no long study is needed for", "NAME")
         sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
         sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
+        if name == "plot":
+            add_curves(sub)
     sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top
@@ -73,7 +86,9 @@ def main(arguments=None) -> int:
     """Run one command; returns the exit code."""
     kept = ""
     try:
-        options = parser().parse_args(arguments)
+        commands = parser()
+        complete(commands)
+        options = commands.parse_args(arguments)
         level = logging.DEBUG if options.verbose else logging.WARNING
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         kept = KEPT if options.command in ("run", "retry") else ""
@@ -90,6 +105,15 @@ def main(arguments=None) -> int:
     finally:
         empty_buffers()
     return code
+
+
+def complete(commands: argparse.ArgumentParser) -> None:
+    """Answer a shell that completes a command line, if argcomplete is installed (an extra), and end."""
+    if "_ARGCOMPLETE" in os.environ:
+        with suppress(ImportError):
+            import argcomplete
+
+            argcomplete.autocomplete(commands)
 
 
 def perform(options, kept: str) -> int:
@@ -116,10 +140,23 @@ def _attempt(act, options, item, kept: str) -> int:
     return code
 
 
-if __name__ == "__main__":
+def own_modules_first() -> None:
+    """Look for modules in the working folder last, where `python -m` looks first: a user may have a solver.py there."""
+    first = Path(sys.path[0]).resolve()
+    if not sys.flags.safe_path and first == Path.cwd() != Path(__file__).resolve().parents[1]:
+        sys.path.append(sys.path.pop(0))
+
+
+def command() -> None:
+    """What a process of the command line does: `main`, and its exit code as the last thing that is decided."""
     open_the_closed()
     ending.start()
-    _code = main()
-    if _code == INTERRUPTED:
-        os._exit(_code)  # does not wait for the blocks in work
-    sys.exit(_code)
+    code = main()
+    if code == INTERRUPTED:
+        os._exit(code)  # does not wait for the blocks in work
+    sys.exit(code)
+
+
+if __name__ == "__main__":
+    own_modules_first()
+    command()

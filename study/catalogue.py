@@ -1,13 +1,10 @@
 """All figures and tables by name: what each needs, whether it is up to date, and the files that it is written to."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
 from importlib import import_module
-from importlib.resources import as_file, files
+from importlib.resources import files
 from pathlib import Path
 from pkgutil import iter_modules
 
-import matplotlib.style
 import numpy as np
 from matplotlib.figure import Figure
 
@@ -15,10 +12,15 @@ import solver
 
 from . import evidence, figures, paper
 from .figures.formats import as_csv, as_latex, as_text, csv_text, write_text
+from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
+from .figures.style import style
 
-SCHEMES = ("fig01", "fig02")
-"""Figures 1 and 2 of the paper: the contact and one asperity. They show no results, and are kept as drawings."""
+SCHEMES = {
+    "fig01": "The contact: a sphere of radius R with asperities, pressed by P on a coated half-space.",
+    "fig02": "One asperity of radius Ra and its cell; the contact spot has the radius b.",
+}
+"""Figures 1 and 2 of the paper, with their captions. They show no results, and are kept as drawings."""
 for _room in (figures, paper, evidence):
     for _module in iter_modules(_room.__path__, f"{_room.__name__}."):
         import_module(_module.name)  # which registers what it has
@@ -26,6 +28,10 @@ for _room in (figures, paper, evidence):
 
 FIGURE, SCHEME, TABLE = ("csv", "pdf", "png"), ("svg", "pdf", "png"), ("txt", "csv", "tex")
 """Kinds of files that are written."""
+CAPTIONS = "captions"
+"""What stands for the file of all captions among the figures."""
+LETTERS = 21
+"""Of the line that states parameters, on an inch."""
 LONG = ("extremes", "extremes_layered", "picard_domain", "tradeoff")
 """Studies that take minutes to compute: `make figures` goes without them."""
 
@@ -33,16 +39,18 @@ LONG = ("extremes", "extremes_layered", "picard_domain", "tradeoff")
 def usual(known: dict) -> list[str]:
     """Names of the FIGURES, with the schemes, or of the TABLES, that no long study is needed for."""
     names = [name for name, entry in known.items() if not set(entry.studies) & set(LONG)]
-    return sorted([*names, *SCHEMES] if known is FIGURES else names)
+    return [*sorted([*names, *SCHEMES]), CAPTIONS] if known is FIGURES else sorted(names)
 
 
 def needed(name: str, known: dict) -> tuple[str, ...]:
     """The studies that a figure or table needs. Raises StudyError if there is none of this name."""
-    return () if name in SCHEMES and known is FIGURES else entry(name, known).studies
+    return () if name in (*SCHEMES, CAPTIONS) and known is FIGURES else entry(name, known).studies
 
 
 def outdated(name: str, known: dict, results, folder) -> bool:
     """Whether a file of a figure or table is missing, or older than its results or than a file of the program."""
+    if name == CAPTIONS and known is FIGURES:
+        return True  # of whatever figures there are
     kinds = TABLE if known is TABLES else SCHEME if name in SCHEMES else FIGURE
     written = [Path(folder) / f"{name}.{kind}" for kind in kinds]
     inputs = [Path(results) / f"{study}.nc" for study in needed(name, known)]
@@ -64,25 +72,33 @@ def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     with style():
         figure = Figure(figsize=recipe.size, layout="constrained")
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
+        if not figure.get_suptitle():
+            figure.suptitle(wrapped(stated(datasets), LETTERS * recipe.size[0]), fontsize=7)
     return figure, columns, f"{name}, studies {' '.join(digests)}".removesuffix(", studies ")
-
-
-@contextmanager
-def style() -> Iterator[None]:
-    """Draw, and write, in the style of all figures."""
-    with as_file(files(figures) / "roughcoat.mplstyle") as sheet, matplotlib.style.context(sheet):
-        yield
 
 
 def draw(name: str, results="results", folder="figures") -> list[Path]:
     """Write a figure as FOLDER/NAME.csv, its numbers, .pdf and .png; returns the three paths.
 
-    A scheme is copied as .svg, .pdf and .png. The same datasets give the same bytes: no file carries a date. Raises
-    what `compose` raises.
+    A scheme is copied as .svg, .pdf and .png; "captions" is FOLDER/captions.md. The same datasets give the same bytes:
+    no file carries a date. Raises what `compose` raises.
     """
     if name in SCHEMES:
         return copied(name, Path(folder))
+    if name == CAPTIONS:
+        return [write_text(Path(folder) / "captions.md", captions(results))]
     return save(Path(folder) / name, *compose(name, results))
+
+
+def captions(results="results") -> str:
+    """A paragraph for each figure whose studies have results: what it shows, and the parameters of its studies."""
+    lines = ["# Captions", "", "Lengths are in R, pressures in E2*, loads in E2* R² unless an axis says otherwise.", ""]
+    lines += [f"**{name}.** {text}\n" for name, text in SCHEMES.items()]
+    for name, recipe in sorted(FIGURES.items()):
+        if all((Path(results) / f"{study}.nc").exists() for study in recipe.studies):
+            given = ", ".join(stated(open_studies(name, FIGURES, results)))
+            lines.append(f"**{name}.** {recipe.caption}{f' Parameters: {given}.' if given else ''}\n")
+    return "\n".join(lines)
 
 
 def copied(name: str, folder: Path) -> list[Path]:

@@ -16,24 +16,8 @@ SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: In a smooth contact the real pressure is the nominal one, and the real area all of it.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 INPUTS = (
-    "R1",
-    "R2",
-    "R",
-    "punch",
-    "E_punch",
-    "nu_punch",
-    "layer",
-    "E1",
-    "nu1",
-    "body",
-    "E2",
-    "nu2",
-    "n",
-    "m",
-    "h",
-    "bonding",
-    "Nbar",
-    "Ra",
+    *("R1", "R2", "R", "punch", "E_punch", "nu_punch", "layer", "E1", "nu1", "body", "E2", "nu2", "n", "m", "h"),
+    *("bonding", "Nbar", "Ra", "B", "beta"),
 )
 MODELS = {
     "half_space": "a half-space under the asperities",
@@ -132,6 +116,8 @@ def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
         return False
     if name in ("Nbar", "Ra"):
         return rough
+    if name in ("B", "beta"):
+        return str(case["micro"].values) == "power_law"
     if name in ("layer", "E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
         return False
     if name in ("n", "m") and "E2" in case:
@@ -146,7 +132,9 @@ def _given(case: xr.Dataset, name: str) -> str:
     value = case[name].values[()]
     if isinstance(value, (str, np.str_)):
         return f"{name} of {value}" if name in BODIES else str(value)
-    return f"{name} = {_text(case, name, float(value), _spread(case, name))}"
+    text = f"{name} = {_text(case, name, float(value), _spread(case, name))}"
+    unit = " Ra/E1*^beta" if name == "B" else ""
+    return text + unit + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
 
 
 def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:

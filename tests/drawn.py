@@ -29,13 +29,14 @@ class Line:
 
 
 WORDS = {  # of the legend, by the masks of `validity`
-    1: "layer not thin",
-    2: r"$\bar N A_n < 100$",
-    4: r"$b > 0.1\,h$",
-    8: r"$n \geq 1$",
-    16: r"$\lambda(0) > 0.4$",
+    1: "layer not thin, error > 10 %",
+    2: "fewer than 100 spots",
+    4: r"spots not small, $b > 0.1\,h$",
+    8: r"layer not soft, $n \geq 1$",
+    16: r"spots merge, $\lambda(0) > 0.4$",
     32: r"$a > 0.2\,R$ or strain $> 0.1$",
 }
+NOTED = WORDS | {1: WORDS[1] + r" in $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$"}  # above the axes
 
 
 def look(line) -> Look:

@@ -9,6 +9,7 @@ from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
 STUDIES = Path("studies")
+PACKAGE = Path(__file__).resolve().parents[1]
 MOST_DIGITS = 9  # Python itself refuses to read 4301
 
 
@@ -39,20 +40,78 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
     sub.add_argument("--yes", action="store_true", help="go on however large the study is")
 
 
+def add_curves(sub: argparse.ArgumentParser) -> None:
+    """Options of `plot` that draw the results of any study, or any file of results, instead of a known figure."""
+    group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
+    group.add_argument("--x", metavar="QUANTITY", help="abscissa, such as P, or a")
+    group.add_argument("--y", metavar="QUANTITY", help="ordinate, such as p_max; also An, spots, p_peak, E_eff ...")
+    group.add_argument("--hue", metavar="AXIS", default="", help="a curve for each of its values, such as n, or label")
+    group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
+
+
+def assignment(text: str) -> tuple[str, float | str]:
+    """NAME=VALUE, the value as a number if it is one."""
+    name, _, value = (part.strip() for part in text.partition("="))
+    if not name or not value:
+        raise argparse.ArgumentTypeError(f'"{on_one_line(text, 60)}": must be NAME=VALUE')
+    return name, number_or_text(value)
+
+
+def number_or_text(value: str) -> float | str:
+    """A text that is a number as such."""
+    try:
+        return float(value)
+    except ValueError:
+        return value
+
+
+def packaged() -> Path:
+    """Folder of the studies that come with roughcoat: in the installed package, or beside it in a clone."""
+    inside = PACKAGE / "studies"
+    return inside if inside.is_dir() else PACKAGE.parent / "studies"
+
+
 def study_file(text: str) -> Path:
-    """The study file at a path, or of a study in studies/ by its name. Raises StudyError when there is none."""
+    """The study file at a path, or of a study by its name: in studies/, or of those that come with roughcoat.
+
+    Raises StudyError when there is none.
+    """
     from ..spec.definition import StudyError
     from ..spec.vocabulary import suggest
 
     given, short = Path(os.path.expanduser(text)), STUDIES / f"{text}.toml"
     by_path = given.suffix == ".toml"
-    for path in (given,) if by_path else (given, short):
+    ours = [packaged() / f"{text}.toml"] if given.name == text else []
+    for path in (given,) if by_path else (given, short, *ours):
         if path.exists():
             return path
-    folders = [given.parent, STUDIES] if by_path else [STUDIES]
-    known = [path.as_posix() if by_path else path.stem for folder in folders for path in sorted(folder.glob("*.toml"))]
+    paths = [path.as_posix() for folder in (given.parent, STUDIES) for path in sorted(folder.glob("*.toml"))]
+    known = paths if by_path else known_studies()
     looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
     raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
+
+
+def proposed(command: str, prefix: str, **_) -> list[str]:
+    """What a shell may complete a word of a command to: names of studies, figures, tables, or of parameters."""
+    if command == "point":
+        from ..physical.names import SCENE
+        from ..spec.vocabulary import CONTROLS, names
+
+        known = [f"{name}=" for name in (*SCENE, *CONTROLS, *names("material", "roughness"), "punch", "layer", "body")]
+    elif command in ("plot", "table"):
+        from .. import catalogue
+
+        figures = [*catalogue.FIGURES, *catalogue.SCHEMES, *known_studies()]
+        known = ["all", *(figures if command == "plot" else catalogue.TABLES)]
+    else:
+        files = [*Path().glob("*.toml"), *STUDIES.glob("*.toml")]
+        known = [*known_studies(), *(path.as_posix() for path in sorted(files))]
+    return [name for name in known if name.startswith(prefix)]
+
+
+def known_studies() -> list[str]:
+    """Names of the studies in studies/, and of those that come with roughcoat."""
+    return list(dict.fromkeys(path.stem for where in (STUDIES, packaged()) for path in sorted(where.glob("*.toml"))))
 
 
 def folder(text: str) -> str:

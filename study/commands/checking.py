@@ -1,6 +1,9 @@
 """The command that reads study files only; it answers at once, for it imports neither xarray nor netCDF4."""
 
+import numpy as np
+
 from ..physical.study_file import read
+from ..spec.definition import Definition
 from ..terminal import answer
 from .arguments import study_file
 
@@ -8,5 +11,13 @@ from .arguments import study_file
 def check(_, file: str) -> int:
     """Read a study file and say its size."""
     definition = read(study_file(file))
-    dims = " x ".join(f"{name} {size}" for name, size in definition.named(definition.grid.sizes).items()) or "one case"
-    return answer(f"{file}: {definition.grid.size} cases ({dims}), digest {definition.digest[:16]}")
+    return answer(f"{file}: {definition.cases}, digest {definition.digest[:16]}", *law_lines(definition))
+
+
+def law_lines(definition: Definition) -> list[str]:
+    """What is fitted, and that it is."""
+    if not definition.grid.fitted:
+        return []
+    ends = [np.unique(definition.grid.values[name][1])[[0, -1]] for name in ("B", "beta")]
+    B, beta = (f"{low:.4g}" if low == high else f"{low:.4g} to {high:.4g}" for low, high in ends)
+    return [f"    power law fitted to Nbar and Ra: B = {B} (in Ra/E1*^beta), beta = {beta}"]

@@ -8,16 +8,17 @@ from ..files.examine import examine
 from ..terminal import answer, say
 from ..work.plan import status_values
 from .answers import cost_line, count_lines, failure_lines, report_line, state_line, verified_line
-from .arguments import study_file
+from .arguments import STUDIES, packaged, study_file
 
 
 def items(options) -> list:
     """What the command is for: the files that were given, or those of a folder."""
     if options.command != "list":
         return options.items
-    files = sorted(Path(options.folder).glob("*.toml"))
+    folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
+    files = sorted(folder.glob("*.toml"))
     if not files:
-        answer(f"no study files in {options.folder}")
+        answer(f"no study files in {folder.as_posix()}")
     return files
 
 

@@ -1,23 +1,53 @@
 """The commands that draw and tabulate results. Each does it for one name and returns an exit code."""
 
+from pathlib import Path
+
+from matplotlib.figure import Figure
+
 from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
 from ..evidence import tradeoff as measured
+from ..figures.lines import drawn
+from ..figures.style import style
+from ..files.results_file import open_results
+from ..spec.definition import StudyError
 from ..terminal import answer
 from .arguments import study_file
 from .computing import completed
 
 
 def items(options) -> list[str]:
-    """Names of figures or tables; "all" stands for those that no long study is needed for."""
+    """Names of figures or tables, or of studies; "all" stands for those that no long study is needed for."""
     known = catalogue.FIGURES if options.command == "plot" else catalogue.TABLES
     return catalogue.usual(known) if options.items == ["all"] else options.items
 
 
 def plot(options, name: str) -> int:
-    """Draw a figure, and say which files it is in."""
+    """Draw a figure, or curves of results, and say which files it is in."""
+    if options.x or options.y or options.hue or options.where:
+        return _curves(options, name)
     return _write(options, name, catalogue.FIGURES, catalogue.draw)
+
+
+def _curves(options, name: str) -> int:
+    """Draw one quantity of the results of a study, or of a file, against another."""
+    if not (options.x and options.y):
+        raise StudyError(["curves of results need both --x and --y, such as --x P --y p_max"])
+    if Path(name).suffix == ".nc":
+        if not Path(name).exists():
+            raise StudyError([f"{name}: does not exist"])
+        found = open_results(name)
+    else:
+        study = load(study_file(name), options.results)
+        if options.run and (code := completed(study)):
+            return code
+        found = study.open()
+    with style():
+        figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
+    stem = f"{Path(name).stem}_{options.y}"
+    title = f"{Path(name).stem}: {options.y} against {options.x}"
+    return answer(*catalogue.save(Path(options.folder) / stem, figure, columns, title))
 
 
 def table(options, name: str) -> int:

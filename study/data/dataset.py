@@ -8,6 +8,7 @@ import xarray as xr
 from solver import Model, Status
 
 from ..spec.definition import Definition
+from ..spec.fitted import COMMENT
 from ..spec.given import is_rigid
 from ..spec.grid import unflatten
 from ..spec.identity import law_versions
@@ -62,6 +63,8 @@ def assembled(
     grid = definition.grid
     rigid = bool(is_rigid(grid).any())  # then all layers are on a rigid base
     known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate"))}
+    for name in ("B", "beta") if grid.fitted else ():
+        known[name]["comment"] = COMMENT
     coordinates = {
         name: xr.Variable(dims, array, known.get(name, {}))
         for name, (dims, array) in (grid.values | grid.labels).items()

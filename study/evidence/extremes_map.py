@@ -22,6 +22,7 @@ AXES = {
 }
 ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_layer", "h", "n"),
         ("layered", "P", "N Ra^2"), ("layered", "h", "n"))  # fmt: skip
+BARS = ("estimated error / rtol, median of the cell", "iterations, largest of the cell")
 BINS = 24
 #: Cases in a map from which on the points of those that converged are the smallest.
 _MANY = 10_000
@@ -31,7 +32,16 @@ COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"),
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 
 
-@figure("extremes", "extremes", "extremes_layered", size=(TWO_COLUMNS, 9.2), panels=(5, 3))
+@figure(
+    "extremes",
+    "extremes",
+    "extremes_layered",
+    size=(TWO_COLUMNS, 9.2),
+    panels=(5, 3),
+    caption="""Random cases far beyond any scene, drawn as studies/extremes.toml and extremes_layered.toml say. Rows: a
+    base and two of its parameters. Columns: every case as a point by its status; of the converged cases of
+    a cell the median of error over rtol, and the largest number of iterations.""",
+)
 def maps(panels, *studies: xr.Dataset) -> Columns:
     """Rows: a base and two of its parameters; columns: every case as a point, by its status; of the converged cases of
     a cell the median error over rtol, and the largest number of iterations. The numbers are those of the cells that
@@ -106,9 +116,10 @@ def shaded(axes, edges: list[np.ndarray], values: np.ndarray, norm):
 def legend(panels, images, present: np.ndarray) -> None:
     """What the colours mean, below the columns; `present`: the statuses that occur."""
     figure = panels[0, 0].figure
-    for column, image in zip(panels.T[1:], images, strict=True):
+    for column, image, label in zip(panels.T[1:], images, BARS, strict=True):
         bar = figure.colorbar(image, ax=column, location="bottom", fraction=0.03, pad=0.01, aspect=25)
         bar.ax.tick_params(labelsize=7)
+        bar.set_label(label, fontsize=8)
     handles = []
     for status, colour in COLOURS.items():
         if status in present:

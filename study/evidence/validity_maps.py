@@ -33,7 +33,15 @@ TITLES = {
 MAIN_CASE = {"h": 0.02, "n": 0.5}
 
 
-@figure("validity", "validity", size=(TWO_COLUMNS, 7.4), panels=(5, 5))
+@figure(
+    "validity",
+    "validity",
+    size=(TWO_COLUMNS, 7.6),
+    panels=(5, 5),
+    caption="""Error of the thin layer against the exact one under one load, over h/a (a of the exact layer) and n:
+    rows are quantities, columns materials. Star: the paper's main case. Hatched: the thin-layer equation does
+    not apply.""",
+)
 def given_load(panels, found: xr.Dataset) -> Columns:
     """Errors of a, p(0), D, Ar/An, p_max under one load, paper's main roughness; a row each, a column per material."""
     rough = found.sel(micro="disc_cell")
@@ -44,7 +52,15 @@ def given_load(panels, found: xr.Dataset) -> Columns:
     return columns
 
 
-@figure("validity_load", "validity_load", size=(TWO_COLUMNS, 3.7), panels=(2, 5))
+@figure(
+    "validity_load",
+    "validity_load",
+    size=(TWO_COLUMNS, 3.9),
+    panels=(2, 5),
+    caption="""Error of the load of the thin layer against the exact one at one contact radius, over h/a and n: smooth
+    and rough punch. Dashed: the closed form of docs/accuracy.md. Star: the paper's main case. Hatched: the
+    thin-layer equation does not apply.""",
+)
 def given_radius(panels, found: xr.Dataset) -> Columns:
     """Error of the load at one contact radius: smooth punch, with the estimate dashed, and the paper's roughness."""
     rows = [(micro, found.sel(micro=micro), "P") for micro in ("smooth", "disc_cell")]

@@ -1,20 +1,21 @@
 """Marks on axes that several figures share: names of curves, the axis of loads, shading of broken assumptions."""
 
-import matplotlib
 import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, SPOT_OVER_LAYER, STEEP
+from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
 
 ASSUMPTION_TEXT = {
-    "layer_not_thin": "layer not thin",
-    "few_spots": rf"$\bar N A_n < {FEW_SPOTS:g}$",
-    "spot_not_small_against_h": rf"$b > {SPOT_OVER_LAYER:g}\,h$",
-    "n_not_below_one": r"$n \geq 1$",
-    "spots_merging": rf"$\lambda(0) > {MERGING:g}$",
+    "layer_not_thin": f"layer not thin, error > {NOT_THIN * 100:g} %",
+    "few_spots": f"fewer than {FEW_SPOTS:g} spots",
+    "spot_not_small_against_h": rf"spots not small, $b > {SPOT_OVER_LAYER:g}\,h$",
+    "n_not_below_one": r"layer not soft, $n \geq 1$",
+    "spots_merging": rf"spots merge, $\lambda(0) > {MERGING:g}$",
     "strain_not_small": rf"$a > {STEEP:g}\,R$ or strain $> {COMPRESSED:g}$",
 }
+OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
+"""What a note adds, where there is room for it: which quantities the criterion is about."""
 GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9")
 
 
@@ -38,48 +39,53 @@ def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", 
 
 
 def load_axis(axes, largest: float, P0: float) -> None:
-    """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5, with the load P0 of the main case marked above the legend."""
+    """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5; the load P0 of the main case is marked, and said to be it."""
     axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
-    axes.axvline(P0 * 1e5, ymin=0.4, color="0.4", linestyle=(0, (1, 2)), linewidth=0.8, zorder=0)
-    axes.annotate(
-        "$P_0$", (P0 * 1e5, 1), (0, 2), xycoords=("data", "axes fraction"), textcoords="offset points", ha="center"
-    )
+    axes.axvline(P0 * 1e5, ymin=0.4, color="0.55", linestyle="-", linewidth=0.6, zorder=0)
+    place = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "ha": "right", "va": "top"}
+    axes.annotate("$P_0$, load of Figs 3, 7, 10 ", (P0 * 1e5, 0.98), (0, 0), fontsize=7, color="0.3", **place)
 
 
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
     """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
 
-    What is broken at every load is written in the upper left corner instead.
+    What is broken at every load is noted above the axes instead.
 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
-    flags, nowhere = next(iter(validity.values())).attrs, []
-    meanings = flags["flag_meanings"].split()
-    for mask, meaning, grey in zip(np.atleast_1d(flags["flag_masks"]), meanings, GREYS, strict=True):
-        broken = {name: (array.values & mask) != 0 for name, array in validity.items()}
+    everywhere = {}
+    for (meaning, broken), grey in zip(violations(validity).items(), GREYS, strict=True):
         curves = [name for name, where in broken.items() if where.any()]
-        if not curves:
-            continue
-        where = np.any([broken[name] for name in curves], axis=0)
-        text = f"{ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
+        where = np.any([broken[name] for name in curves], axis=0) if curves else np.zeros(1, bool)
         if where.all():
-            nowhere.append(text)
-            continue
-        label = f"not valid: {text}"
-        for start, stop in bands(P, where):
-            axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
-            label = "_"  # one entry in the legend
-    if nowhere:
-        axes.annotate(
-            "\n".join(["nowhere valid:", *nowhere]), (0, 1), (7, -5), xycoords="axes fraction",
-            textcoords="offset points", va="top", fontsize=matplotlib.rcParams["legend.fontsize"],
-        )  # fmt: skip
+            everywhere[meaning] = curves
+        elif curves:
+            label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
+            for start, stop in bands(P, where):
+                axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
+                label = "_"  # one entry in the legend
+    note(axes, everywhere)
 
 
-def violated(validity: xr.DataArray) -> list[str]:
-    """Texts of the assumptions that one case breaks."""
-    masks, meanings = np.atleast_1d(validity.attrs["flag_masks"]), validity.attrs["flag_meanings"].split()
-    return [ASSUMPTION_TEXT[word] for mask, word in zip(masks, meanings, strict=True) if int(validity) & mask]
+def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
+    """Above the axes: which curves break which assumptions; of each the flags of one case."""
+    found = {meaning: [name for name, where in broken.items() if where.any()]
+             for meaning, broken in violations(validity).items()}  # fmt: skip
+    note(axes, {meaning: curves for meaning, curves in found.items() if curves})
+
+
+def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndarray]]:
+    """Assumption -> curve -> where it is broken; of all assumptions, in the order of their masks."""
+    told = next(iter(validity.values())).attrs
+    masks = zip(np.atleast_1d(told["flag_masks"]), told["flag_meanings"].split(), strict=True)
+    return {meaning: {name: (flags.values & mask) != 0 for name, flags in validity.items()} for mask, meaning in masks}
+
+
+def note(axes, broken: dict[str, list[str]]) -> None:
+    """A line for each assumption that is broken wherever its curves are drawn."""
+    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH.get(meaning, '')}"
+             for meaning, curves in broken.items()]  # fmt: skip
+    axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 
 
 def bands(P: np.ndarray, where: np.ndarray) -> list[tuple[float, float]]:

@@ -5,21 +5,34 @@ import xarray as xr
 from matplotlib.lines import Line2D
 
 from ..data.derived import effective_modulus, peak_pressure
+from .labels import stated, written
 from .registry import TWO_COLUMNS, Columns, figure
 
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
 }  # fmt: skip
 """By n, from soft (blue) to hard (red)."""
+PALE = 0.4
+"""Of stretches outside validity."""
 RANGE = (0.05, 20.0)
 
 
-@figure("coatings", "coatings", size=(TWO_COLUMNS, 7.0), panels=(3, 2))
+@figure(
+    "coatings",
+    "coatings",
+    size=(TWO_COLUMNS, 7.2),
+    panels=(3, 2),
+    caption="""Coatings from soft (blue) to hard (red) under loads from 1e-14 to 1e-3 E2* R², film-dominated contacts
+    to the left, substrate-dominated ones to the right; frictionless and bonded. E_eff is (dP/dD)/(2a). Curves
+    of the rough punch begin where there are 100 spots; pale: another assumption of the model does not hold
+    (spots merge, or the strain is not small).""",
+)
 def master_curves(panels, found: xr.Dataset) -> Columns:
     """Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two
     interfaces.
 
-    A rough curve is drawn where the spots are many (`validity`). E_eff of the smooth punch is dashed.
+    A rough curve is drawn where the spots are many, and pale where `validity` is not 0. E_eff of the smooth punch is
+    dashed.
     """
     peak = peak_pressure(found)
     bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # equal ν: no layer at all
@@ -34,7 +47,8 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
         for n in found["n"].values.tolist():
             for micro in ("disc_cell", "smooth"):
                 where = {"bonding": bonding, "n": n, "micro": micro}
-                shown = (found["validity"].sel(where) & 2).values == 0
+                flags = found["validity"].sel(where).values
+                shown, valid = flags & 2 == 0, flags == 0
                 x = a_h.sel(where).values[shown]
                 for name, values in {"bonded": bonding == "bonded", "rough": micro != "smooth", "n": n}.items():
                     parts[name].append(np.full(len(x), float(values)))
@@ -46,7 +60,9 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
                     if micro != "smooth" or name == "E_eff/E1*":
                         dashes = "-" if micro != "smooth" else (0, (2.5, 1.5))
                         width = 1.3 if micro != "smooth" else 0.8
-                        axes.plot(x, y, linestyle=dashes, color=COLOURS[n], linewidth=width)
+                        look = {"linestyle": dashes, "color": COLOURS[n]}
+                        axes.plot(x, y, alpha=PALE, linewidth=0.7 * width, **look)
+                        axes.plot(x, np.where(valid[shown], y, np.nan), linewidth=width, **look)
         column[0].set_title(bonding)
     decorate(panels, found)
     return {name: np.concatenate(part) for name, part in parts.items()}
@@ -69,6 +85,9 @@ def decorate(panels, found: xr.Dataset) -> None:
         Line2D([], [], color=COLOURS[n], linewidth=1.3, label=f"$n = {power(n)}$") for n in found["n"].values.tolist()
     ]
     handles.append(Line2D([], [], color="0.2", linewidth=0.8, linestyle=(0, (2.5, 1.5)), label="smooth punch"))
+    handles.append(Line2D([], [], color="0.2", linewidth=0.9, alpha=PALE, label="outside validity"))
+    P = rf"$P/(E_2^* R^2)$ from {written(float(found['P'][0]))} to {written(float(found['P'][-1]))}"
+    panels[0, 0].figure.suptitle(", ".join([*stated([found]), P]), fontsize=7)
     panels[0, 0].figure.legend(handles=handles, loc="outside lower center", ncols=4)
 
 

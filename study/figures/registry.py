@@ -28,6 +28,7 @@ class Figure(NamedTuple):
     draw: Callable[..., Columns]
     size: tuple[float, float]
     panels: tuple[int, int]
+    caption: str
 
 
 class Column(NamedTuple):
@@ -51,7 +52,7 @@ FIGURES: dict[str, Figure] = {}
 TABLES: dict[str, Table] = {}
 
 
-def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1)):
+def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), caption: str = ""):
     """Register `draw(axes, *datasets)`, which draws the figure NAME and returns the numbers that it shows.
 
     Parameters
@@ -59,10 +60,13 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1)):
     studies : names of the studies whose datasets `draw` takes, in this order
     size : width and height in inches
     panels : rows and columns; several make `axes` an array
+    caption : what the figure shows, for those who only see it; without, the first paragraph of the docstring. The
+        parameters that the studies share need not be said: they are added, and stand above the figure
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
-        FIGURES[name] = Figure(studies, draw, size, panels)
+        words = caption or (draw.__doc__ or "").partition("\n\n")[0]
+        FIGURES[name] = Figure(studies, draw, size, panels, re.sub(r"\s+", " ", words).strip())
         return draw
 
     return register
@@ -114,7 +118,7 @@ def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Da
 
 def command_of(study: str) -> str:
     """The command that makes the results of a study; the trade-off is measured, which no study file says."""
-    return study if study == "tradeoff" else f"run studies/{study}.toml"
+    return study if study == "tradeoff" else f"run {study}"
 
 
 def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:

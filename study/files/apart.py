@@ -6,6 +6,10 @@ from pathlib import Path
 
 
 def python(statement: str) -> tuple[list[str], dict[str, str]]:
-    """Command and environment of a Python process that executes a statement."""
+    """Command and environment of a Python process that executes a statement.
+
+    It looks for modules in the working folder last: a user may have a solver.py there, which is not ours.
+    """
     where = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH")]))
-    return [sys.executable, "-c", statement], os.environ | {"PYTHONPATH": where}
+    command = [sys.executable, "-P", "-c", f"import sys; sys.path.append(''); {statement}"]
+    return command, os.environ | {"PYTHONPATH": where}

@@ -8,22 +8,32 @@ from functools import partial
 
 import xarray as xr
 
-from ..figures.annotate import load_axis, name_curve, shade_violations, violated
+from ..figures.annotate import load_axis, name_curve, note_violations, shade_violations
 from ..figures.registry import ONE_COLUMN, Columns, figure, pick
 
 CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
 DEPTH = r"$D\ /\ (10^{-3} R)$"
 PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9, "zorder": 1.5}
+LAYER_THIN = """The layer is the paper's thin one. The note says where it is not thin: the largest relative error of a,
+P, D, p(0), pmax and Ar/An against the exact layer exceeds 10 %."""
+LAYER_EXACT = "The layer is exact; dotted: the same on the paper's thin layer."
+OVER_LOADS = """P0 is the load of figures 3, 7 and 10. Grey: loads at which an assumption of the model does not hold,
+for the curves named in the legend."""
 PAPER_LABEL = "thin layer (the paper)"
 
 
-def with_companion(name: str, *studies: str, height: float = 2.6):
-    """Register `draw(axes, *datasets, exact)` as the figure NAME and, with exact = True, as its companion."""
+def with_companion(name: str, *studies: str, caption: str, height: float = 3.0):
+    """Register `draw(axes, *datasets, exact)` as the figure NAME and, with exact = True, as its companion.
+
+    caption : of both; what holds for the layer is added
+    """
 
     def register(draw):
         for suffix, exact in (("", False), ("_layered", True)):
-            figure(name + suffix, *studies, size=(ONE_COLUMN, height))(partial(draw, exact=exact))
+            layer = LAYER_EXACT if exact else LAYER_THIN
+            named = figure(name + suffix, *studies, size=(ONE_COLUMN, height), caption=f"{caption} {layer}")
+            named(partial(draw, exact=exact))
         return draw
 
     return register
@@ -67,37 +77,53 @@ def pressure_axes(axes, exact: bool) -> None:
 def pressures(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Columns:
     """p(r) of the curves named in `sides` over the paper's contact radius a0 of the rough layered contact."""
     a0 = float(pick(main, label=CURVES["1"])["a"])
-    columns = {}
+    columns, validity = {}, {}
     for curve, side in sides.items():
-        columns |= profile(axes, cases_of(main, curve, exact), a0, f"{curve}: {CURVES[curve]}", side)
+        cases = cases_of(main, curve, exact)
+        columns |= profile(axes, cases, a0, f"{curve}: {CURVES[curve]}", side)
+        validity[curve] = cases[curve]["validity"]
     pressure_axes(axes, exact)
+    note_violations(axes, validity)
     return columns
 
 
-@with_companion("fig03", "main_case")
+@with_companion(
+    "fig03",
+    "main_case",
+    caption="Nominal pressure under the rough punch with a layer (1) and without (2); a0 is the radius of contact 1.",
+)
 def rough_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Figure 3: pressure of the rough punch."""
     return pressures(axes, main, {"1": "above", "2": "above"}, exact)
 
 
-@with_companion("fig07", "main_case")
+@with_companion(
+    "fig07",
+    "main_case",
+    caption="Nominal pressure, rough and smooth (primes), with a layer (1) and without (2); a0: radius of 1.",
+)
 def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Figure 7: pressure of the rough and of the smooth punch."""
     return pressures(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
 
 
-@with_companion("fig10", "spot_density")
+@with_companion(
+    "fig10",
+    "spot_density",
+    caption="Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1.",
+)
 def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     """Figure 10: nominal pressure on the layer for three densities of asperities under one load, over the paper's a0
     of the first."""
     paper = [pick(found, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
-    columns, a0 = {}, float(paper[0]["a"])
+    columns, validity, a0 = {}, {}, float(paper[0]["a"])
     for thin, (name, side) in zip(paper, {"1": "above", "2": "below", "3": "below"}.items(), strict=True):
         layered = pick(found, Nbar=float(thin["Nbar"]), base="layered")
         cases = {name: layered, f"{name}, thin layer": thin} if exact else {name: thin}
-        label = ", ".join([rf"{name}: $\bar N R^2 = {int(thin['Nbar'])}$", *violated(cases[name]["validity"])])
-        columns |= profile(axes, cases, a0, label, side)
+        columns |= profile(axes, cases, a0, rf"{name}: $\bar N R^2 = {int(thin['Nbar'])}$", side)
+        validity[name] = cases[name]["validity"]
     pressure_axes(axes, exact)
+    note_violations(axes, validity)
     return columns
 
 
@@ -123,32 +149,45 @@ def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, sides
     load_axis(axes, P[-1], float(main["P"]))
     axes.set_ylim(0, 1.08 * max(float(case[quantity].max()) for case in first.values()) / scale)
     shade_violations(axes, P, {curve: case["validity"] for curve, case in first.items()})
-    axes.legend(loc="lower right")
+    axes.legend(loc="lower right", fontsize=7)
     return columns
 
 
-@with_companion("fig04", "load_sweep", "main_case")
+@with_companion(
+    "fig04", "load_sweep", "main_case", caption="Real over nominal contact area against the load. " + OVER_LOADS
+)
 def contact_area(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Figure 4: real over nominal contact area against the load."""
     axes.set_ylabel("$A_r/A_n$")
     return against_load(axes, data, "Ar_An", {"1": "above", "2": "below"}, exact)
 
 
-@with_companion("fig05", "load_sweep", "main_case")
+@with_companion(
+    "fig05",
+    "load_sweep",
+    "main_case",
+    caption="Largest real pressure in the middle of the contact against the load. " + OVER_LOADS,
+)
 def largest_pressure(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Figure 5: largest real pressure in the middle against the load."""
     axes.set_ylabel(r"$p_{\max}/E_2^*$")
     return against_load(axes, data, "p_max", {"1": "below", "2": "below"}, exact)
 
 
-@with_companion("fig06", "load_sweep", "main_case")
+@with_companion("fig06", "load_sweep", "main_case", caption="Depth of the rough punch against the load. " + OVER_LOADS)
 def depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Figure 6: depth of the rough punch against the load."""
     axes.set_ylabel(DEPTH)
     return against_load(axes, data, "D", {"1": "above", "2": "below"}, exact, 1e-3)
 
 
-@with_companion("fig08", "load_sweep", "main_case", height=3.2)
+@with_companion(
+    "fig08",
+    "load_sweep",
+    "main_case",
+    height=3.6,
+    caption="Depth of the rough punch, and of the smooth one (primes), against the load. " + OVER_LOADS,
+)
 def rough_and_smooth_depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Figure 8: depth of the rough and of the smooth punch against the load."""
     axes.set_ylabel(DEPTH)

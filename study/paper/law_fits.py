@@ -16,6 +16,7 @@ from . import numbers
 PRESSURES = np.linspace(1e-4, 0.025, 250)
 """p/E1* of the paper's fit, Section 4.1: from 1e-4 to 0.025 in steps of 1e-4."""
 EXACT_LAW = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
+PAPERS_LAW = {"linestyle": (0, (1, 1.2)), "linewidth": 1.3}
 PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_000) for Ra in (0.004, 0.002, 0.001)]}
 """Ra and N̄ of the curves in each panel of Figure 9."""
 
@@ -43,6 +44,12 @@ def fitted(Ra: float, Nbar: float) -> Fitted:
     return Fitted(B * Ra, beta, error)
 
 
+def printed(Ra: float, Nbar: float) -> np.ndarray:
+    """A/R at PRESSURES with the constants that the paper prints."""
+    B, beta = next(row[2:] for row in numbers.TABLE1 if row[:2] == (Ra, Nbar))
+    return B * PRESSURES**beta
+
+
 def printed_error(Ra: float, Nbar: float, B: float, beta: float) -> float:
     """Largest |B p^β / A[p] - 1| of printed constants over the paper's interval; B in R/E1*^β."""
     low, high = numbers.ERROR_INTERVAL
@@ -58,8 +65,9 @@ def bound(Ra: float, Nbar: float) -> str:
 
 @table(
     "table1",
-    caption="""Power law fitted to the additional displacement of a rough layer: the paper's constants, the error that
-    it states and the one that we find; our constants and their error.""",
+    caption="""Power law A = B p^beta fitted to the additional displacement of a rough layer: the paper's constants, the
+    error that it states and the one that we find; our constants and their error. B is in R/E1*^beta; the B of a study,
+    which is in Ra/E1*^beta, is this over Ra/R.""",
     columns=r"""
     Ra/R | g | $R_a/R$
     N R^2 | d | $\bar N R^2$
@@ -81,20 +89,29 @@ def table1() -> list[tuple]:
     return rows
 
 
-@figure("fig09", size=(TWO_COLUMNS, 2.7), panels=(1, 2))
+@figure(
+    "fig09",
+    size=(TWO_COLUMNS, 2.9),
+    panels=(1, 2),
+    caption="""Additional displacement against pressure: the exact law (dashed), the power law B p^beta fitted to it,
+    and that with the constants of the paper's Table 1, which are rounded (dotted). (a) Three densities of
+    asperities, (b) three radii.""",
+)
 def laws(panels) -> Columns:
-    """Figure 9: additional displacement against pressure, exact and fitted; (a) three densities, (b) three radii."""
+    """Figure 9: additional displacement against pressure, exact, fitted, and with the paper's constants."""
     p, columns = PRESSURES, {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
         for i, (Ra, Nbar) in enumerate(roughnesses):
-            A = {"exact": exact(Ra, Nbar), "fit": fitted(Ra, Nbar).displacement()}
+            A = {"exact": exact(Ra, Nbar), "fit": fitted(Ra, Nbar).displacement(), "paper": printed(Ra, Nbar)}
             lines = axes.plot(p, A["fit"] * 1e4, "-", color=f"C{i}")
             axes.plot(p, A["exact"] * 1e4, **EXACT_LAW)
+            axes.plot(p, A["paper"] * 1e4, color=f"C{i}", **PAPERS_LAW)
             name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
             name_curve(axes, lines, name, 0.95 * p[-1], align="right")
             columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": values for kind, values in A.items()}
         axes.plot([], [], label="exact, Eqs (6), (7)", **EXACT_LAW)
         axes.plot([], [], "-", color="0.5", label=r"fitted, $B p^{\beta}$")
+        axes.plot([], [], color="0.5", label="with the paper's $B$, $\\beta$", **PAPERS_LAW)
         given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
         axes.legend(title=f"({panel}) {given}", loc="upper left")
         limits = {"xlim": (0, p[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}

@@ -22,7 +22,7 @@ NUMBERS = {
     "p_max homogeneous": ("pmax, rough, homogeneous", 0.097),
     "D smooth layered": ("D, smooth, layered", 1.003e-3),
     "D smooth homogeneous": ("D, smooth, homogeneous (Hertz)", 7.418e-4),
-    "B": ("B of the fit (units Ra/E1*), first row of Table 1", 0.092),
+    "B": ("B of the fit, in Ra/E1*^beta, first row of Table 1", 0.092),
     "beta": ("beta of the fit, first row of Table 1", 0.491),
 }
 """Sections 4.1 to 5 of the paper; the load of all contacts is that of the first line."""

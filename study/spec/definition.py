@@ -62,6 +62,15 @@ class Definition:
     digest: str
     scene: Any = None
 
+    def __repr__(self) -> str:
+        return f'Definition("{self.name}", {self.cases})'
+
+    @property
+    def cases(self) -> str:
+        """Number of cases and axes in words: "12 cases (h 2 x P 6)"."""
+        dims = " x ".join(f"{name} {size}" for name, size in self.grid.sizes.items()) or "one case"
+        return f"{self.grid.size} cases ({dims})"
+
     @property
     def numbers(self) -> int:
         """How many numbers the results hold, roughly."""

@@ -1,11 +1,12 @@
 """A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
 
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
 
+from .fitted import fitted, wants_a_fit
 from .grid import LONGEST_AXIS, Grid, along, as_array, axis_values, shown, twins
 from .laws import is_parameter, law_names, learn, smooth_laws
 from .sample import LIMITS, draw
@@ -121,10 +122,18 @@ class Draft:
             default = VOCABULARY[name].own.default
             if name not in self.sections and default is not None:
                 self.values[name] = (), np.array(default)
-        grid = Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
+        grid = self._grid()
+        if not self.errors and wants_a_fit(grid):
+            laws, errors = fitted(grid)
+            self.values |= laws
+            self.errors += errors
+            grid = replace(self._grid(), fitted=True)
         if not self.errors:
             self.errors += missing_parameters(grid) + lost_scheme(grid) + ([] if self.physical else mixed_units(grid))
         return grid
+
+    def _grid(self) -> Grid:
+        return Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
 
     def _accept(self, name: str, section: str) -> bool:
         """Whether the name is known and new; otherwise a message."""

@@ -26,6 +26,7 @@ class Grid:
     sizes: dict[str, int]
     values: dict[str, tuple[tuple[str, ...], np.ndarray]]
     labels: dict[str, tuple[tuple[str, ...], np.ndarray]] = field(default_factory=dict)
+    fitted: bool = False
 
     @property
     def shape(self) -> tuple[int, ...]:
@@ -67,7 +68,7 @@ def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
         return {name: (dims, array[tuple(window[dim] for dim in dims)]) for name, (dims, array) in table.items()}
 
     sizes = {dim: len(range(size)[window[dim]]) for dim, size in grid.sizes.items()}
-    return Grid(sizes, within(grid.values), within(grid.labels))
+    return Grid(sizes, within(grid.values), within(grid.labels), grid.fitted)
 
 
 def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:

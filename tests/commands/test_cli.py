@@ -7,7 +7,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
-from conftest import ROOT
+from conftest import ROOT, STUDIES
 
 import study
 from study.__main__ import main
@@ -24,6 +24,9 @@ P = [1e-6, 2e-6, 3e-6]
 [numerics]
 block = 1
 """
+
+
+OURS = ", ".join(file.stem for file in STUDIES)
 
 
 @pytest.fixture(autouse=True)
@@ -59,21 +62,26 @@ def test_a_study_that_is_not_there(studies, command, capsys):
     printed = capsys.readouterr()
     assert printed.out == "" and printed.err.splitlines() == [
         'par_map: not found (looked for par_map and studies/par_map.toml); did you mean "par_maps"?',
-        "q: not found (looked for q and studies/q.toml); known: good, par_maps",
+        f"q: not found (looked for q and studies/q.toml); known: good, par_maps, {OURS}",
         'studies/par_map.toml: not found; did you mean "studies/par_maps.toml"?',
         'good.toml: not found; did you mean "studies/good.toml"?',
-        "a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps",
+        f"a/b: not found (looked for a/b and studies/a/b.toml); known: good, par_maps, {OURS}",
     ]
     assert not Path("results").exists()
 
 
-def test_where_there_are_no_studies_none_is_suggested(studies, monkeypatch, capsys):
+def test_where_there_are_no_studies_those_of_the_package_are_known_by_name(studies, monkeypatch, capsys):
     monkeypatch.chdir(studies)
     assert main(["status", "goood", "goood.toml"]) == 2
     assert capsys.readouterr().err.splitlines() == [
-        "goood: not found (looked for goood and studies/goood.toml)",
+        f"goood: not found (looked for goood and studies/goood.toml); known: {OURS}",
         'goood.toml: not found; did you mean "good.toml"?',
     ]
+    assert main(["check", "main_case"]) == 0
+    assert capsys.readouterr().out.startswith("main_case: 6 cases (case 6), digest ")
+    assert main(["list"]) == 0
+    assert [line.split()[0] for line in capsys.readouterr().out.splitlines()] == OURS.split(", ")
+    assert main(["check", "main_case.toml"]) == 2
 
 
 def test_a_path_goes_before_a_name(studies, capsys):

@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
-from drawn import WORDS, bands, legend
+from drawn import NOTED, WORDS, bands, legend
 from matplotlib.figure import Figure
 
 from study.data.derived import ASSUMPTIONS
-from study.figures.annotate import ASSUMPTION_TEXT, GREYS, name_curve, shade_violations, violated
+from study.figures.annotate import ASSUMPTION_TEXT, GREYS, name_curve, note_violations, shade_violations
 from study.figures.annotate import bands as intervals
 
 
@@ -22,14 +22,24 @@ def test_shading_names_the_assumption_and_its_curves():
     attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
     first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
     shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
-    thick, few = "layer not thin", r"$\bar N A_n < 100$"
-    assert axes.get_legend_handles_labels()[1] == [f"not valid: {thick} (1)", f"not valid: {few} (1)"]
-    assert violated(first[1]) == [thick]
+    assert axes.get_legend_handles_labels()[1] == [f"not valid: {WORDS[1]} (1)", f"not valid: {WORDS[2]} (1)"]
+    assert axes.get_title("left") == ""
     bands_so_far = len(axes.patches)
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": first * 0 + 1})
-    assert [text.get_text() for text in axes.texts] == [f"nowhere valid:\n{thick} (3)"]
+    everywhere = (first * 0 + 1).assign_attrs(attributes)
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": everywhere, "4": first * 0, "5": everywhere * 2 + 1})
+    assert axes.get_title("left") == f"3, 5: {NOTED[1]}\n5: {NOTED[2]}"
     assert len(axes.get_legend_handles_labels()[1]) == 2
     assert len(axes.patches) == bands_so_far
+
+
+def test_a_note_says_which_curves_break_what():
+    axes = Figure().subplots()
+    attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+    flags = {name: xr.DataArray(value, attrs=attributes) for name, value in {"1": 1, "2": 0, "3": 18}.items()}
+    note_violations(axes, flags)
+    assert axes.get_title("left") == f"1: {NOTED[1]}\n3: {NOTED[2]}\n3: {NOTED[16]}"
+    note_violations(axes, {"2": flags["2"]})
+    assert axes.get_title("left") == ""
 
 
 def test_a_name_stands_above_or_below_and_to_the_side_that_is_asked():
@@ -67,4 +77,4 @@ def test_one_entry_of_the_legend_stands_for_all_bands_of_the_curves_that_have_so
         {curve: xr.DataArray(values, dims="P", attrs=attributes) for curve, values in flags.items()},
     )
     assert [band[:2] for band in bands(axes)] == [pytest.approx(band) for band in ((0, 1.5), (2.5, 3.5), (4.5, 5))]
-    assert axes.get_legend_handles_labels()[1] == [r"not valid: $\bar N A_n < 100$ (1, 2)"]
+    assert axes.get_legend_handles_labels()[1] == ["not valid: fewer than 100 spots (1, 2)"]

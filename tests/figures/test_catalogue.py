@@ -1,6 +1,7 @@
 """Every study runs, every figure draws from it, and the numbers beside a figure are those of the datasets."""
 
 import csv
+import re
 from functools import cache
 from pathlib import Path
 from xml.etree import ElementTree
@@ -167,7 +168,7 @@ def test_schemes_are_copies_with_every_letter_of_the_model(name, letters, tmp_pa
 def test_messages_of_plot(results, tmp_path):
     with pytest.raises(StudyError, match='"fig3" is not known; did you mean "fig03"?'):
         draw("fig3", results, tmp_path)
-    with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run studies/main_case.toml"):
+    with pytest.raises(StudyError, match="main_case.nc: does not exist, .* run main_case"):
         draw("fig03", tmp_path, tmp_path)
 
 
@@ -189,3 +190,16 @@ def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
     assert title.encode() in (figures("fig04").with_suffix(".pdf")).read_bytes()
     assert {recipe.size[0] for recipe in FIGURES.values()} == {3.35, 6.9}  # inches: one and two columns
     assert max(recipe.size[1] for recipe in FIGURES.values()) < 9.5
+
+
+def test_captions_of_all_figures_that_have_results(results, tmp_path):
+    (path,) = draw("captions", results, tmp_path)
+    said = dict(re.findall(r"^[*]{2}(\w+)\.[*]{2} (.*)$", path.read_text(encoding="utf-8"), flags=re.MULTILINE))
+    assert set(said) == {*FIGURES, *SCHEMES} and all(len(text) > 40 for text in said.values())
+    assert "Parameters: $P/(E_2^*\\,R^2)$ = $2.704\\times10^{-5}$, $h/R$ = 0.02" in said["fig03"]
+    assert "The layer is exact" in said["fig03_layered"] and "1e-14 to 1e-3" in said["coatings"]
+    found = open_results(results / "coatings.nc")
+    assert (float(found["P"].min()), float(found["P"].max())) == pytest.approx((1e-14, 1e-3))
+    (path,) = draw("captions", tmp_path, tmp_path)
+    said = re.findall(r"^[*]{2}(\w+)\.", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
+    assert said == ["fig01", "fig02", "fig09"], "of what is there"

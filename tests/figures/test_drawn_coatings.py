@@ -6,7 +6,7 @@ import xarray as xr
 from drawn import frame, legend, lines, ticks
 
 from study import open_results
-from study.figures.coatings import COLOURS, power
+from study.figures.coatings import COLOURS, PALE, power
 
 # Row -> label, scale of the ordinate, column of the CSV.
 ROWS = (
@@ -51,13 +51,19 @@ def test_curves_are_the_datasets(drawing, found):
     figure, _, _ = drawing("coatings")
     assert found.n.values.tolist() == list(NAMES)
     assert not np.all([many for _, _, many in curves(found, "bonded")]), "some are left out"
+    assert any((case.validity.values[many] != 0).any() for case, _, many in curves(found, "bonded")), "some are pale"
+    told = figure.get_suptitle()
+    assert "$\\bar N\\,R^2$ = $4\\times10^{8}$, $R_a/R$ = 0.0001, $P/(E_2^* R^2)$ from $10^{-14}$ to 0.001" in told
     for i, axes in enumerate(figure.axes):
         row, bonding = divmod(i, 2)[0], INTERFACES[i % 2]
         shown = [c for c in curves(found, bonding) if row == 0 or c[0].micro == "disc_cell"]
-        for line, (case, bare, many) in zip(lines(axes), shown, strict=True):
-            np.testing.assert_allclose(line.x, (case.a / found.h).values[many], rtol=1e-14)  # one division
-            # the same arithmetic
-            np.testing.assert_allclose(line.y, quantities(case, bare)[row].values[many], rtol=1e-13)
+        for pale, line, (case, bare, many) in zip(lines(axes)[::2], lines(axes)[1::2], shown, strict=True):
+            valid = (case.validity == 0).values[many]
+            for drawn, where in ((pale, np.ones(len(valid), bool)), (line, valid)):
+                np.testing.assert_allclose(drawn.x, (case.a / found.h).values[many], rtol=1e-14)  # one division
+                wanted = np.where(where, quantities(case, bare)[row].values[many], np.nan)
+                np.testing.assert_allclose(drawn.y, wanted, rtol=1e-13)  # the same arithmetic
+        assert [line.get_alpha() for line in axes.lines] == [PALE, None] * len(shown)
 
 
 def test_the_csv_holds_the_curves_of_both_punches(drawing, found):
@@ -92,7 +98,7 @@ def test_labels_scales_and_limits(drawing):
 
 def margins(axes, scale) -> tuple[float, float]:
     """What matplotlib leaves around curves: a twentieth of what they span."""
-    y = scale(np.concatenate([line.y for line in lines(axes)]))
+    y = scale(np.concatenate([line.y for line in lines(axes)[::2]]))
     return y.min() - 0.05 * np.ptp(y), y.max() + 0.05 * np.ptp(y)
 
 
@@ -100,11 +106,11 @@ def test_the_legend_tells_the_coatings_and_the_punches_apart(drawing):
     figure, _, _ = drawing("coatings")
     (box,) = figure.legends
     entries = legend(box)
-    assert list(entries) == [*NAMES.values(), "smooth punch"]
+    assert list(entries) == [*NAMES.values(), "smooth punch", "outside validity"]
     assert len({entry.colour for entry in entries.values()}) == len(NAMES), "black serves n = 1 and the smooth punch"
     for i, axes in enumerate(figure.axes):
         names = [name for name in NAMES.values() for _ in range(2 if i < 2 else 1)]
-        for j, (line, name) in enumerate(zip(lines(axes), names, strict=True)):
+        for j, (line, name) in enumerate(zip(lines(axes)[::2], names, strict=True)):
             assert line.look.colour == entries[name].colour
             assert line.look.dashes == entries["smooth punch" if i < 2 and j % 2 else name].dashes
     assert entries["smooth punch"].dashes != entries["$n = 1$"].dashes

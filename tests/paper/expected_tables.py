@@ -47,7 +47,7 @@ def paper_numbers(folder) -> list[list]:
         ("pmax, rough, homogeneous", 0.097, homogeneous.p_max),
         ("D, smooth, layered", 1.003e-3, smooth.D),
         ("D, smooth, homogeneous (Hertz)", 7.418e-4, hertz.D),
-        ("B of the fit (units Ra/E1*), first row of Table 1", 0.092, fit.B),
+        ("B of the fit, in Ra/E1*^beta, first row of Table 1", 0.092, fit.B),
         ("beta of the fit, first row of Table 1", 0.491, fit.beta),
     ]
     rows = [[quantity, printed, float(ours), float(ours) / printed - 1] for quantity, printed, ours in rows]

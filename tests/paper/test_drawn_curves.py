@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
-from drawn import WORDS, bands, frame, legend, lines, texts
+from drawn import NOTED, WORDS, bands, frame, legend, lines, texts
 
 from solver import fit_power_law
 from solver.laws.disc_cell import displacement
@@ -85,8 +85,8 @@ def test_curves_against_the_load_are_the_datasets(drawing, results, name, exact)
     assert axes.get_ylim() == (0, pytest.approx(1.08 * max(line.y.max() for line in drawn if line.label)))
     check_legend(axes, drawn, [f"{curve}: {CASES[curve]}" for curve in curves], exact)
     same(mark.x, P0)
-    assert texts(axes)["$P_0$"] == (pytest.approx(P0), 1)  # above the frame
-    assert mark.y[-1] == 1, "up to there"
+    assert texts(axes)["$P_0$, load of Figs 3, 7, 10 "] == (pytest.approx(P0), 0.98)
+    assert mark.y[-1] == 1 and mark.look.dashes == ("solid",), "unlike every dotted line"
 
 
 @BOTH
@@ -101,21 +101,21 @@ def test_loads_are_shaded_where_a_curve_breaks_an_assumption(drawing, results, n
     trial = np.linspace(1e-4, 5, 997)
     nearest = np.abs(trial[:, None] - P).argmin(1)
     entries = check_legend(axes, drawn, [line.label for line in drawn if line.label], exact)
-    nowhere = ["nowhere valid:"]
+    everywhere = {}
     for mask, words in WORDS.items():
         broken = {c: flags & mask != 0 for c, flags in validity.items()}
         whose = [c for c, where in broken.items() if where.any()]
         somewhere = np.any(list(broken.values()), axis=0)
         words = f"{words} ({', '.join(whose)})"
         if somewhere.all():
-            nowhere.append(words)
+            everywhere[mask] = whose
         elif whose:
             colour = entries.pop(f"not valid: {words}")
             shaded = np.any([(a <= trial) & (trial < b) for a, b, c in bands(axes) if c == colour], axis=0)
             np.testing.assert_array_equal(shaded, somewhere[nearest])
     assert not entries, "nothing else in the legend"
-    written = [text for text in texts(axes) if "\n" in text]
-    assert written == (["\n".join(nowhere)] if len(nowhere) > 1 else [])
+    assert axes.get_title("left") == noted(everywhere)
+    assert bool(everywhere) != exact, "the paper's layer is not thin"
 
 
 @BOTH
@@ -126,7 +126,7 @@ def test_pressures_are_the_profiles_of_the_datasets(drawing, results, name, exac
     found = open_results(results / f"{study}.nc")
     a0 = float(found.a[0])
     assert a0 == pytest.approx(0.04, rel=1e-6), "the paper's"
-    expected, words = [], []
+    expected, words, broken = [], [], {}
     for curve, (paper, layered) in curves.items():
         case = found.isel(case=layered if exact else paper)
         expected.append((curve, case))
@@ -134,9 +134,10 @@ def test_pressures_are_the_profiles_of_the_datasets(drawing, results, name, exac
         if study == "main_case":
             words.append(f"{curve}: {CASES[curve]}")
         else:
-            broken = [text for mask, text in WORDS.items() if int(case.validity) & mask]
             density = {"1": 250000, "2": 62500, "3": 15625}[curve]
-            words.append(", ".join([rf"{curve}: $\bar N R^2 = {density}$", *broken]))
+            words.append(rf"{curve}: $\bar N R^2 = {density}$")
+        for mask in WORDS:
+            broken.setdefault(mask, []).extend([curve] if int(case.validity) & mask else [])
     assert list(columns) == [head for key, _ in expected for head in (f"r/a0 ({key})", f"p/E2* ({key})")]
     for line, (key, case) in zip(drawn, expected, strict=True):
         same(line.x, case.x * case.a / a0)
@@ -147,6 +148,24 @@ def test_pressures_are_the_profiles_of_the_datasets(drawing, results, name, exac
     assert axes.get_xlim()[0] == 0 and axes.get_xlim()[1] >= max(line.x.max() for line in drawn)
     assert axes.get_ylim() == (0, pytest.approx(1.1 * max(line.y.max() for line in drawn)))
     assert not check_legend(axes, drawn, words, exact)
+    assert axes.get_title("left") == noted({mask: curves for mask, curves in broken.items() if curves})
+
+
+def noted(broken: dict[int, list[str]]) -> str:
+    """The note above the axes: a line for each assumption that curves break wherever they are drawn."""
+    return "\n".join(f"{', '.join(curves)}: {NOTED[mask]}" for mask, curves in broken.items())
+
+
+@pytest.mark.parametrize("name", [*PROFILES, *AGAINST_LOAD])
+def test_every_figure_states_its_parameters(drawing, name):
+    for suffix in ("", "_layered"):
+        told = drawing(name + suffix)[0].get_suptitle().replace(",\n", ", ")
+        roughness = "$R_a/R$ = 0.004" if name == "fig10" else "$\\bar N\\,R^2$ = 250000, $R_a/R$ = 0.004"
+        assert told.removeprefix("$P/(E_2^*\\,R^2)$ = $2.704\\times10^{-5}$, ").startswith(
+            f"$h/R$ = 0.02, $n$ = 0.5, frictionless interface, {roughness}"
+        )
+        assert told.startswith("$P") == (name in PROFILES)
+        assert told.endswith("$B$ = 0.1 $R_a/E_1^{*\\beta}$, $\\beta$ = 0.5") == (name != "fig10")
 
 
 @BOTH
@@ -185,19 +204,25 @@ def test_figure_9_shows_the_exact_law_and_its_fit(drawing):
         drawn = lines(axes)
         entries = legend(axes.get_legend())
         assert axes.get_legend().get_title().get_text() == title
-        assert list(entries) == ["exact, Eqs (6), (7)", r"fitted, $B p^{\beta}$"]
-        for fit, exact, (name, (Ra, Nbar)) in zip(drawn[::2], drawn[1::2], cases.items(), strict=True):
+        rounded = "with the paper's $B$, $\\beta$"
+        assert list(entries) == ["exact, Eqs (6), (7)", r"fitted, $B p^{\beta}$", rounded]
+        for fit, exact, paper, (name, (Ra, Nbar)) in zip(*(drawn[i::3] for i in range(3)), cases.items(), strict=True):
             B, beta, _ = fit_power_law(Nbar * Ra**2)
-            for line, kind, A in ((fit, "fit", B * Ra * p**beta), (exact, "exact", displacement(p, 1.0, Nbar, Ra))):
+            printed = {4.0: (0.1, 0.50), 1.0: (0.3, 0.53), 0.25: (1.0, 0.57)}[round(Nbar * Ra**2, 9)]  # in Ra
+            law = printed[0] * Ra * p ** printed[1]
+            for line, kind, A in (
+                (fit, "fit", B * Ra * p**beta), (exact, "exact", displacement(p, 1.0, Nbar, Ra)), (paper, "paper", law)
+            ):  # fmt: skip
                 np.testing.assert_allclose(line.x, p, rtol=1e-12)  # the steps, summed
                 np.testing.assert_allclose(line.y, 1e4 * A, rtol=1e-12)
                 same(columns[f"A/R Ra={Ra} N={Nbar} {kind}"], 1e-4 * line.y)
                 heads.add(f"A/R Ra={Ra} N={Nbar} {kind}")
             assert exact.look == entries["exact, Eqs (6), (7)"] and exact.look.dashes != ("solid",)
+            assert paper.look.dashes == entries[rounded].dashes and paper.look.colour == fit.look.colour
             assert fit.look.dashes == entries[r"fitted, $B p^{\beta}$"].dashes == ("solid",)
             assert texts(axes)[name] == (pytest.approx(0.95 * p[-1]), pytest.approx(np.interp(0.95 * p[-1], p, fit.y)))
-        assert len({line.look.colour for line in drawn[::2]}) == 3
+        assert len({line.look.colour for line in drawn[::3]}) == 3
         assert frame(axes) == ("$p/E_1^*$", "linear", r"$A[p]\ /\ (10^{-4} R)$", "linear", "")
         assert axes.get_xlim() == (0, pytest.approx(0.025))
-        assert axes.get_ylim()[0] == 0 and axes.get_ylim()[1] > 1.2 * drawn[-2].y.max(), "room for the legend"
+        assert axes.get_ylim()[0] == 0 and axes.get_ylim()[1] > 1.2 * drawn[-3].y.max(), "room for the legend"
     assert set(columns) == heads

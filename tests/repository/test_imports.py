@@ -21,8 +21,8 @@ ROOMS = {
         *("contact", "scaling", "models", "solve"),
     ),
     "study": (
-        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work", "api"),
-        *("figures", "paper", "evidence"),
+        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),
+        *("solving", "figures", "api", "paper", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }
@@ -77,9 +77,10 @@ def test_importing_the_solver_does_nothing_to_the_process(path):
 
 @pytest.mark.parametrize("path", STUDY, ids=name)
 def test_study_imports_what_is_declared(path):
-    """And SurfaceTopography, an extra, in the one file that reads scans."""
+    """And extras in one file each: SurfaceTopography, which reads scans, and argcomplete, which serves shells."""
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
+    allowed |= {"argcomplete"} if path.name == "__main__.py" else set()
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
 
 
@@ -161,12 +162,22 @@ def test_public_names():
         study.sovle  # noqa: B018
 
 
-def test_solve_names_every_parameter():
+def test_solve_names_every_parameter_with_its_default_and_its_choices():
+    """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
+    from solver.parameters import PARAMETERS as OWN
+    from study.physical.bodies import BODIES
+    from study.physical.names import SCENE
     from study.spec.vocabulary import PARAMETERS
 
-    listed = study.solve.__doc__.split("**parameters :")[1].split("all dimensionless")[0]
-    assert set(PARAMETERS) - set(re.findall(r"\w+", listed)) == set()
+    known = inspect.signature(study.solve).parameters
+    beside = {"cases", "x", "profiles", "title", "parameters"}
+    assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
-    arguments = re.findall(r"^[*]{0,2}(\w+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
-    assert set(arguments) - {"StudyError"} == set(inspect.signature(study.solve).parameters)
+    lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)
+    assert sorted(name for line in lines for name in line.split(", ")) == sorted([*known, "StudyError"])
+    for name in set(PARAMETERS) & set(OWN):  # E2 is a modulus here, with a unit
+        literal = re.search(r"Literal\[(.*?)\]", known[name].annotation)
+        assert known[name].default == OWN[name].default
+        choices = ast.literal_eval(f"({literal[1]},)") if literal else ()
+        assert sorted(choices) == sorted(OWN[name].choices), name

@@ -1,6 +1,7 @@
 """README and docs: what stands in a block runs, commands and links exist, numbers are those of the code."""
 
 import re
+import shlex
 import tomllib
 
 import pages
@@ -55,8 +56,9 @@ def test_what_a_page_names_exists(page):
 @pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
 def test_commands_parse(page):
     found = [line for block in pages.blocks(page, "sh") for line in block.splitlines()]
-    found += re.findall(r"`(python -m study [^`]+)`", TEXT[page])
-    commands = [line.split("-m study ")[1].split() for line in found if "-m study " in line]
+    found += re.findall(r"`((?:python -m study|roughcoat) [^`]+)`", TEXT[page])
+    calls = [re.match(r"(?:.*-m study|roughcoat) (.*)", line) for line in found]
+    commands = [shlex.split(call[1]) for call in calls if call]
     commands += [line.split() for line in re.findall(r"`((?:run|status|retry|clean) mine[^`|]*)`", TEXT[page])]
     assert len(commands) >= 3
     for command in commands:

@@ -4,6 +4,7 @@ import os
 import re
 import shutil
 import subprocess
+import sys
 import tomllib
 from fnmatch import fnmatch
 from pathlib import Path
@@ -164,6 +165,20 @@ def test_versions_agree():
     assert f"version: {PROJECT['project']['version']}\n" in citation
     assert "license: BSD-3-Clause" in citation and PROJECT["project"]["license"] == "BSD-3-Clause"
     assert (ROOT / "LICENSE").read_text(encoding="utf-8").startswith("BSD 3-Clause License")
+
+
+def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
+    """As a wheel has it: `roughcoat plot --run fig03` works in an empty folder."""
+    command = [sys.executable, "setup.py", "--quiet", "build_py", "--build-lib", str(tmp_path)]
+    subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=120)
+    for package in ("solver", "study"):
+        ours = {path.relative_to(ROOT) for path in (ROOT / package).rglob("*") if "__pycache__" not in path.parts}
+        built = {path.relative_to(tmp_path) for path in (tmp_path / package).rglob("*")}
+        assert ours - built == set()
+    installed = {path.name: path.read_bytes() for path in (tmp_path / "study/studies").iterdir()}
+    assert installed == {file.name: file.read_bytes() for file in STUDIES}
+    assert {path.name for path in tmp_path.iterdir()} == {"solver", "study"}
+    assert PROJECT["project"]["scripts"] == {"roughcoat": "study.__main__:command"}
 
 
 def test_ci_runs_the_tests_of_the_readme():

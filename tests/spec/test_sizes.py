@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import study
+from study import solving
 from study.spec import definition, given, grid, sample
 from study.spec.definition import from_tables
 
@@ -34,7 +35,7 @@ def test_a_call_that_is_absurdly_large_is_refused_before_it_computes(monkeypatch
     def parcel(*_):
         raise AssertionError("computed")
 
-    monkeypatch.setattr(study.api, "parcel", parcel)
+    monkeypatch.setattr(solving, "parcel", parcel)
     loads, ratios = np.linspace(1e-6, 1e-4, 10_000), np.linspace(0.0, 0.4, 1_000)
     with pytest.raises(
         study.StudyError,

@@ -1,0 +1,69 @@
+"""One contact in the terminal, in words."""
+
+import json
+import math
+import warnings
+
+import xarray as xr
+
+from ..data.flags import decode
+from ..in_words import INPUTS, SHOWN, summary
+from ..solving import solve
+from ..spec.definition import StudyError
+from ..terminal import answer, on_one_line
+from .arguments import number_or_text
+
+
+def items(options) -> list[list[str]]:
+    """All that was given describes one contact."""
+    return [options.items]
+
+
+def point(options, given: list[str]) -> int:
+    """Solve the contact and say what was found; exit code 1 for one that has no solution."""
+    parameters = parameters_of(given)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # the summary says it
+        found = solve(**parameters, x=2, profiles=False)
+    answer(json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found))
+    return 0 if int(found["status"]) == 0 else 1
+
+
+def parameters_of(given: list[str]) -> dict[str, float | str]:
+    """Parameters of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
+    found, errors = {}, []
+    for text in given:
+        name, equals, value = (part.strip() for part in text.partition("="))
+        if not equals or not name or not value:
+            errors.append(f'"{on_one_line(text, 60)}": must be NAME=VALUE, such as R="5 mm"')
+            continue
+        errors += [f"{name} is given twice"] * (name in found)
+        found[name] = number_or_text(value)
+    if errors:
+        raise StudyError(errors)
+    return found
+
+
+def as_numbers(found: xr.Dataset) -> dict:
+    """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
+    shown = {name: described(found, name) for name in (*INPUTS, *SHOWN) if name in found}
+    shown |= {name: number(found[name]) for name in ("error", "model_error")}
+    shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
+    shown["validity"] = decode(found["validity"]).item().split()
+    return shown
+
+
+def described(found: xr.Dataset, name: str) -> dict | str:
+    """Value, unit and spread of a variable; a text as it is."""
+    array = found[name]
+    if array.dtype.kind in "UO":
+        return str(array.values)
+    unit = array.attrs.get("scale") or array.attrs.get("units", "1")
+    spread = {"spread": number(found[f"{name}_spread"])} if f"{name}_spread" in found else {}
+    return {"value": number(array), "unit": unit} | spread
+
+
+def number(array: xr.DataArray) -> float | None:
+    """A number, None for NaN, which JSON does not have."""
+    value = float(array)
+    return value if math.isfinite(value) else None

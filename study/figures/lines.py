@@ -1,0 +1,218 @@
+"""Any quantity of any results against another one: curves by a third, panels for the rest."""
+
+from collections.abc import Callable
+from itertools import product
+from math import prod
+
+import numpy as np
+import xarray as xr
+from matplotlib import colormaps
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+
+from ..data import derived
+from ..scene.quantities import quantity
+from ..spec.definition import StudyError
+from ..spec.vocabulary import CONTROLS, suggest
+from .labels import axis_label, multiple, stated, value_text, wrapped, written
+from .registry import Columns
+from .style import style
+
+DERIVED = {
+    "An": derived.nominal_area, "p_mean": derived.mean_pressure, "spots": derived.number_of_spots,
+    "b0": derived.spot_radius, "p_peak": derived.peak_pressure, "E_eff": derived.effective_modulus,
+}  # fmt: skip
+"""What can be drawn and is not in the dataset."""
+MOST_PANELS, MOST_NAMES = 12, 12
+OUTSIDE = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
+
+
+def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
+    """A figure of `y` against `x`, a curve for each value of `hue`, a panel for each combination of the other axes.
+
+    Parameters
+    ----------
+    dataset : of `study.solve`, or the results of a study
+    x, y : names of variables of the dataset, or of study.derived (An, p_mean, spots, b0, p_peak, E_eff)
+    hue : name of a dimension, or "label" of the cases
+    **where : values of dimensions to be drawn alone, such as bonding="bonded"
+
+    Returns
+    -------
+    A figure of pyplot. Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps.
+
+    Raises
+    ------
+    StudyError : a name is not there, a value neither, or there are more than 12 panels
+    """
+    from matplotlib import pyplot
+
+    with style():
+        return drawn(dataset, x, y, hue, where, pyplot.figure)[0]
+
+
+def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:
+    """What `plot` draws on a `new` figure, and the numbers that it shows: (Figure, Columns)."""
+    found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
+    hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
+    pair = xr.broadcast(found[x], found[y])
+    dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
+    if hue and hue not in dims:
+        raise StudyError([f"hue = {hue} is no axis of {y}; its axes: {', '.join(dims)}"])
+    along = running(found, x, [dim for dim in dims if dim != hue])
+    rest = [dim for dim in dims if dim not in (along, hue)]
+    count = prod(found.sizes[dim] for dim in rest)
+    if count > MOST_PANELS:
+        sizes = ", ".join(f"{dim} ({found.sizes[dim]})" for dim in rest)
+        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose with --where NAME=VALUE"])
+    found = found.assign({name: array for name, array in zip((x, y), pair, strict=True) if name not in found.dims})
+    columns = 2 if count == 4 else min(count, 3)
+    rows = -(-count // columns)
+    size = max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), 2.2 * rows + 0.4
+    figure = new(figsize=size, layout="constrained")
+    panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
+    parts = []
+    for axes, place in zip(panels, product(*(range(found.sizes[dim]) for dim in rest)), strict=False):
+        case = found.isel(dict(zip(rest, place, strict=True)))
+        axes.set_title(", ".join(name_of(found, dim, i) for dim, i in zip(rest, place, strict=True)), fontsize=8)
+        parts += curves(axes, case, (x, y, hue, along), found)
+    for axes in panels[count:]:
+        axes.set_visible(False)
+    decorate(figure, panels[:count], found, (x, y, hue))
+    return figure, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
+    """The dataset with those of the names that have to be derived. Raises StudyError for one that is not there."""
+    errors = []
+    for name in names:
+        if name in DERIVED and name not in dataset:
+            try:
+                dataset = dataset.assign({name: DERIVED[name](dataset)})
+            except (KeyError, ValueError) as error:
+                errors.append(f"{name} cannot be derived from these results: {error}")
+        elif name not in dataset.variables:
+            errors.append(f'"{name}" is not in these results{suggest(name, [*dataset.variables, *DERIVED])}')
+    if errors:
+        raise StudyError(errors)
+    return dataset
+
+
+def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
+    """The cases that have the wanted values. Raises StudyError for a value that is not there."""
+    for name, value in where.items():
+        if name not in dataset.coords or dataset[name].ndim != 1:
+            axes = [str(dim) for dim in dataset.dims]
+            raise StudyError([f"{name} is no axis of these results{suggest(name, axes)}"])
+        values = dataset[name].values
+        (dim,), unit = dataset[name].dims, dataset[name].attrs.get("units", "1")
+        if values.dtype.kind in "UO":
+            fits = values == str(value)
+        else:
+            fits = np.isclose(values, number(name, value, unit), rtol=1e-6, atol=0)
+        if not fits.any():
+            listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in values[:20])
+            raise StudyError([f"{name} = {value} is not there; there are {listed}{' ...' * (len(values) > 20)}"])
+        dataset = dataset.isel({dim: int(np.argmax(fits))})
+    return dataset
+
+
+def number(name: str, value: float | str, unit: str) -> float:
+    """A value as a number in the unit of the dataset: 2e-6, or "2 um" of physical results. Raises StudyError."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return quantity(name, value, unit).value
+    except (KeyError, ValueError) as error:  # of a unit that READABLE does not have, or of the value
+        raise StudyError([str(error)]) from None
+
+
+def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
+    """The dimension along which a curve runs: `x` itself, or what `x` varies with, first of all load, radius, depth."""
+    if x in dims:
+        return x
+    varies = [dim for dim in (*CONTROLS, *dims) if dim in dims and dim in found[x].dims]
+    if not varies:
+        raise StudyError([f"x = {x} has one value only; axes: {', '.join(dims) or 'none'}"])
+    return varies[0]
+
+
+def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
+    """The curves of one panel, solid where the case is valid, dotted where not; their numbers."""
+    x, y, hue, along = names
+    parts, colours = [], shades(case.sizes[hue] if hue else 1)
+    sizes = [multiple(whole[name])[1] for name in (x, y)]
+    for i in range(len(colours)):
+        one = case.isel({hue: i}) if hue else case
+        across, up = (np.broadcast_to(one[name].values, one.sizes[along]) for name in (x, y))
+        valid = np.ones(len(up), bool)
+        if "validity" in one:
+            valid = np.broadcast_to(one["validity"].values == 0, len(up))
+        axes.plot(across / sizes[0], up / sizes[1], color=colours[i], **OUTSIDE)
+        axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colours[i], linestyle="-")
+        fixed = {
+            name: np.full(len(up), array.item())
+            for name, array in one.coords.items()
+            if name in whole.dims and not array.ndim
+        }
+        parts.append(fixed | {x: across, y: up, "valid": valid.astype(int)})
+    return parts
+
+
+def shades(count: int) -> list:
+    """Colours from dark to light, told apart in grey as well; black for a single curve."""
+    return [colormaps["viridis"](0.9 * i / (count - 1)) for i in range(count)] if count > 1 else ["black"]
+
+
+def name_of(found: xr.Dataset, dim: str, i: int) -> str:
+    """What a place along a dimension is called: its value, or the label of a case."""
+    known = "label" if dim == "case" and "label" in found else dim
+    if known not in found.coords:
+        return f"{dim} {i}"
+    value = found[known].values[i]
+    if known == "case":
+        return f"case {value}"
+    return value_text(known, found[known], value if isinstance(value, str) else float(value))
+
+
+def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
+    """Labels, scales and the legend; the parameters stand above."""
+    x, y, hue = names
+    spread = graded(found[x].values)
+    tall = spread and np.nanmin(found[y].values) > 0 and np.nanmax(found[y].values) > 30 * np.nanmin(found[y].values)
+    for axes in panels:
+        grid = axes.get_subplotspec()
+        axes.set(xscale="log" if spread else "linear", yscale="log" if tall else "linear")
+        axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
+        axes.set_xlabel(axis_label(x, found[x]))
+        axes.label_outer()
+    figure.suptitle(wrapped(stated([found]), 21 * figure.get_figwidth()), fontsize=7)
+    handles, title = [], ""
+    if hue:
+        every = -(-found.sizes[hue] // MOST_NAMES)
+        colours = shades(found.sizes[hue])
+        named = range(0, found.sizes[hue], every)
+        title, texts = entries(found, hue)
+        handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
+    if "validity" in found and (found["validity"] != 0).any():
+        handles.append(Line2D([], [], color="0.4", label="not valid", **OUTSIDE))
+    if handles:
+        figure.legend(handles=handles, title=title, loc="outside right center")
+
+
+def entries(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
+    """Title of the legend, and what each curve is called in it."""
+    known = "label" if hue == "case" and "label" in found else hue
+    if known not in found.coords or found[known].dtype.kind not in "fi" or known == "case":
+        return "", [name_of(found, hue, i) for i in range(found.sizes[hue])]
+    size = multiple(found[known])[1]
+    return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]
+
+
+def graded(values: np.ndarray) -> bool:
+    """Whether values are spaced as by factors rather than by steps: their median is nearer to the geometric mean."""
+    known = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
+    if not len(known) or known.min() <= 0 or known.max() < 10 * known.min():
+        return False
+    middle = np.log(np.median(known))
+    return abs(middle - np.log(known).mean()) < abs(middle - np.log(known.mean()))

@@ -1,0 +1,181 @@
+"""The public function `solve`: a grid given in Python, a labelled dataset back."""
+
+from __future__ import annotations
+
+import inspect
+import warnings
+from collections.abc import Sequence
+from typing import Any, Literal, TypedDict, Unpack
+
+import numpy as np
+import xarray as xr
+
+from solver.laws import Law
+
+from .data.dataset import parts
+from .in_words import doubts
+from .physical.reading import read as read_scene
+from .physical.scene import shown
+from .physical.study_file import complete as complete_scene
+from .spec.definition import LARGE, POINTS, complete
+from .spec.given import Draft
+from .spec.vocabulary import NUMERICS, VOCABULARY
+from .work.cases import compute, parcel
+
+Many = Sequence | np.ndarray | xr.DataArray
+"""Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
+Value = float | str | Many | Any
+"""A number, a text with a unit ("5 mm", "200 ± 10 GPa"), a quantity of pint, or many of them."""
+
+
+class Parameters(TypedDict, total=False):
+    """What `solve` takes, for editors; parameters of registered laws beside these."""
+
+    P: Value
+    a: Value
+    D: Value
+    h: Value
+    n: Value
+    m: Value
+    nu1: Value
+    nu2: Value
+    bonding: Literal["frictionless", "bonded"] | Many
+    base: Literal["half_space", "thin_layer", "layered", "auto"] | Many
+    Nbar: Value
+    Ra: Value
+    micro: (
+        Literal["disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights"]
+        | str
+        | Law
+        | Many
+    )
+    B: Value
+    beta: Value
+    sigma: Value
+    cut: Value
+    R: Value
+    R1: Value
+    R2: Value
+    E1: Value
+    E2: Value
+    E_punch: Value
+    nu_punch: Value
+    punch: str
+    layer: str
+    body: str
+    scheme: Literal["newton", "picard"] | Many
+    k: Value
+    rtol: Value
+    accuracy: Value
+    model_check: Literal["closed_form", "first_order"] | Many
+    nodes: int | Many
+    max_iterations: int | Many
+
+
+def solve(
+    *,
+    cases: list[dict] | None = None,
+    x: int | Sequence[float] | np.ndarray = POINTS,
+    profiles: bool | Sequence[str] = True,
+    title: str = "",
+    **parameters: Unpack[Parameters],
+) -> xr.Dataset:
+    """Solve the contact problem on a grid and return a labelled dataset.
+
+    Each parameter is a scalar, a 1-D sequence (which makes a dimension of that name, in the order given) or a DataArray
+    over dimensions of its own. Without units all is dimensionless: lengths in R, pressures in E2*, loads in E2* R².
+    With R, E1, E2 or a text with a unit it is physical ("5 mm", "200 ± 10 GPa", pint, or a DataArray with an attribute
+    `units`): n and m follow from the moduli, and what has no unit is refused.
+
+    Parameters
+    ----------
+    P, a, D : load, radius of the nominal contact area, indentation depth; exactly one of them
+    h, n : thickness of the layer, and E1*/E2*; needed by every base but "half_space"
+    m : E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch
+    nu1, nu2 : Poisson ratios of the layer and of the body under it
+    bonding : the interface of layer and body
+    base : what lies under the punch
+    Nbar, Ra : number of asperities per unit area, and the radius of an asperity; not needed by micro = "smooth"
+    micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), or a `solver.laws.Law` itself
+    B, beta : of micro = "power_law", A = B Ra (p/E1*)^beta, so B is in Ra/E1*^beta. Without both the law is fitted to
+        Nbar and Ra, as the paper's is
+    sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it
+    R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
+        so is a body of E2 = "rigid"
+    R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative
+    punch, layer, body : names of materials (docs/materials.md) in place of their moduli and Poisson ratios
+    nu_punch : Poisson ratio of the punch, 0.3 if not given
+    scheme, k : how it is solved, and the relaxation of "picard"
+    rtol : wanted relative error
+    accuracy : allowed relative model error of base = "auto"
+    model_check : how the model error of base = "thin_layer" is estimated
+    nodes, max_iterations : of the numerical solution; 0: chosen
+    cases : list of dictionaries of parameters (and `label`): points that are not a product, the dimension `case`,
+        which comes first
+    x : number of points r/a of the profiles, or the points, from 0 to 1
+    profiles : whether the dataset holds p and lam, or a list of those that it shall hold
+    title : of the dataset
+    parameters : of registered laws
+
+    Returns
+    -------
+    xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
+    is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
+    spreads: one standard deviation, to first order. Numerical settings of one value are attributes. `study.summary`
+    says it in words. A warning tells of physical cases that violate an assumption of the model.
+
+    Raises
+    ------
+    StudyError : a ValueError with every message, for input that cannot be used
+
+    Examples
+    --------
+    >>> import study
+    >>> found = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
+    >>> found.a.sel(P=2e-5).round(5).item()
+    0.02466
+    """
+    rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
+    draft = Draft()
+    draft.laws([given.get("micro") for given in (parameters, *rows)])
+    scene = read_scene(parameters, cases)
+    about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
+    if scene:
+        definition = complete_scene(draft, scene, [], about, most=LARGE)
+    else:
+        if cases is not None:
+            draft.cases(cases)
+        for name, given in parameters.items():
+            draft.of_any_form(name, given)
+        definition = complete(draft, *about, LARGE)
+    arrays = compute(parcel(definition, np.arange(definition.grid.size)))
+    found = settings_apart(shown(definition, parts(definition, arrays, "study.solve")))
+    if not scene:
+        return found
+    beyond = doubts(found)
+    if beyond:
+        warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
+    return found
+
+
+def signature() -> inspect.Signature:
+    """That of `solve` with every name, its choices and its default, for `help` and notebooks.
+
+    `solve` itself takes them as they come, because their order is that of the dimensions.
+    """
+    kept, named = inspect.signature(solve).parameters.values(), []
+    for name, hint in Parameters.__annotations__.items():
+        default = VOCABULARY[name].own.default if name in VOCABULARY else None
+        hint = getattr(hint, "__forward_arg__", hint)
+        named.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint))
+    return inspect.Signature([*named, *kept], return_annotation="xr.Dataset")
+
+
+solve.__signature__ = signature()
+
+
+def settings_apart(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with numerical settings that all cases share as attributes: they are no coordinates of a contact."""
+    v = dataset.variables  # a DataArray of each would take longer
+    shared = {name: v[name].values.item() for name in NUMERICS if name in v and not v[name].ndim}
+    return dataset.drop_vars(list(shared)).assign_attrs(shared)

@@ -1,0 +1,52 @@
+"""Power laws without B and beta: fitted to Nbar and Ra, as the paper fits its own."""
+
+import numpy as np
+
+from solver.laws.fit import fit_power_law
+from solver.parameters import allowed
+
+from .grid import Grid, along
+from .vocabulary import VOCABULARY
+
+MOST_FITS = 1000
+"""Values of Nbar Ra² to which laws are fitted, 2 ms each."""
+DIGITS = 10
+"""Of B and beta that are kept. They are part of what a result is found by on disk, and the last digits of a fit depend
+on the processor."""
+COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.025 E1*, as in Section 4.1 of the paper"
+
+
+def wants_a_fit(grid: Grid) -> bool:
+    """Whether some case has the power law, none has B or beta, and Nbar and Ra are known where they are needed."""
+    power = along(grid, "micro") == "power_law"
+    if not power.any() or {"B", "beta"} & set(grid.values):
+        return False
+    return bool((np.isfinite(along(grid, "Nbar") * along(grid, "Ra")) | ~power).all())
+
+
+def fitted(grid: Grid) -> tuple[dict, list[str]]:
+    """Values of B and beta over the dimensions of Nbar and Ra, as in `Grid.values`; and what is wrong with them."""
+    both = along(grid, "Nbar") * along(grid, "Ra") ** 2
+    known = np.unique(both[np.isfinite(both)])
+    if len(known) > MOST_FITS:
+        few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(known)}"
+        return {}, [f"B and beta are missing: {few}"]
+    laws = {value: fit_power_law(value)[:2] for value in known.tolist()}
+    dims = tuple(dim for dim, size in zip(grid.sizes, both.shape, strict=True) if dim in _dims(grid))
+    found, errors = {}, []
+    for i, name in enumerate(("B", "beta")):
+        numbers = [
+            float(f"{laws[value][i]:.{DIGITS}g}") if value in laws else np.nan for value in both.ravel().tolist()
+        ]
+        found[name] = dims, np.array(numbers).reshape([grid.sizes[dim] for dim in dims])
+        own = VOCABULARY[name].own
+        wrong = [value for value in laws if not allowed(own, laws[value][i])]
+        if wrong:
+            errors.append(
+                f"{name} fitted to Nbar Ra^2 = {wrong[0]:g} is {laws[wrong[0]][i]:g}: must be in {own.interval}"
+            )
+    return found, errors
+
+
+def _dims(grid: Grid) -> set[str]:
+    return {dim for name in ("Nbar", "Ra") for dim in grid.values[name][0]}

@@ -1,0 +1,85 @@
+"""One contact from the command line: the words are those of `study.summary`, the numbers those of `study.solve`."""
+
+import json
+import math
+
+import pytest
+
+import study
+from study.__main__ import main
+
+BALL = {"R": "5 mm", "E_punch": "210 GPa", "E2": "70 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
+
+
+def words(**parameters) -> list[str]:
+    return [f"{name}={value}" for name, value in parameters.items()]
+
+
+def test_a_contact_in_words(capsys):
+    assert main(["point", *words(**BALL, P="10 N")]) == 0
+    assert capsys.readouterr().out == study.summary(study.solve(**BALL, P="10 N", x=2)) + "\n"
+
+
+def test_numbers_without_units_are_dimensionless(capsys):
+    assert main(["point", "P=1e-5", "base = half_space", "micro=smooth"]) == 0
+    assert "P      = 1e-05 E2* R^2" in capsys.readouterr().out
+
+
+def test_a_contact_as_numbers(capsys):
+    assert main(["point", "--json", *words(**BALL | {"E2": "70 ± 7 GPa"}, P="10 N")]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    found = study.solve(**BALL | {"E2": "70 ± 7 GPa"}, P="10 N", x=2)
+    assert printed["a"] == {"value": found.a.item(), "unit": "m", "spread": found.a_spread.item()}
+    assert printed["R"] == {"value": 0.005, "unit": "m"} and printed["bonding"] == "frictionless"
+    assert [printed[name] for name in ("status", "model_used", "validity")] == ["converged", "smooth_half_space", []]
+    assert printed["error"] == found.error.item()
+
+
+def test_what_the_model_does_not_describe_is_said_and_is_no_traceback(capsys):
+    assert main(["point", "--json", *words(P=1e-5, h=0.02, n=0.5, Nbar=25000, Ra=0.004)]) == 0
+    assert json.loads(capsys.readouterr().out)["validity"] == ["few_spots"]
+    steep = words(**BALL, P="1 MN")
+    assert main(["point", *steep]) == 0
+    assert "Beware: The strain is not small" in capsys.readouterr().out
+
+
+def test_a_contact_without_a_solution(capsys):
+    stiff = words(P=1e-5, h=0.02, n=0.5, nu1=0.5, bonding="bonded", base="thin_layer", micro="smooth")
+    assert main(["point", *stiff]) == 1
+    assert "NOT SOLVED (thin_layer_not_applicable)" in capsys.readouterr().out
+    assert main(["point", "--json", *stiff]) == 1
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["a"]["value"] is None and printed["status"] == "thin_layer_not_applicable"
+
+
+def test_materials_by_name_bring_their_spreads(capsys):
+    given = words(R="5 mm", punch="100Cr6", layer="DLC a-C:H", body="PDMS", h="2 um", P="1 N", micro="smooth")
+    assert main(["point", "--json", *given]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    for who, name in (("punch", "steel 52100"), ("1", "DLC a-C:H"), ("2", "PDMS")):
+        known, under = study.materials.get(name), "_" * (who == "punch")
+        assert printed[f"E{under}{who}"] == {"value": known.E, "unit": "Pa", "spread": known.E_spread}
+        assert printed[f"nu{under}{who}"]["value"] == known.nu
+    assert printed["a"]["spread"] > 0 and math.isfinite(printed["a"]["spread"])
+
+
+@pytest.mark.parametrize(
+    ("given", "messages"),
+    [
+        (["P"], ['"P": must be NAME=VALUE, such as R="5 mm"']),
+        (["P=", "=3"], ['"P=": must be NAME=VALUE, such as R="5 mm"', '"=3": must be NAME=VALUE, such as R="5 mm"']),
+        (["P=1e-5", "P=2e-5"], ["P is given twice"]),
+        (["body=steel 52100", "E2=210 GPa"], ["body and E2 are both given: E2 follows from body"]),
+        (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"?']),
+        (["P=1e-5", "mirco=smooth"], ['solve: "mirco" is not a parameter; did you mean "micro"?']),
+    ],
+)
+def test_bad_input_is_said_before_anything_is_computed(given, messages, capsys):
+    assert main(["point", *given]) == 2
+    printed = capsys.readouterr()
+    assert printed.out == "" and printed.err.splitlines()[: len(messages)] == messages
+
+
+def test_a_unit_of_something_else(capsys):
+    assert main(["point", *words(**BALL, P="10 GPa")]) == 2
+    assert capsys.readouterr().err == 'P = "10 GPa" is a pressure: must be a force, such as "2 N"\n'

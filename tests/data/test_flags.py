@@ -1,0 +1,45 @@
+"""Flags by name, and what objects show of themselves."""
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+from solver import Problem, Status, solve
+
+
+def test_every_flag_of_a_dataset_has_its_name():
+    grid = {"P": [1e-6, 1e-3], "bonding": ["frictionless", "bonded"], "nu1": 0.5, "n": 0.5, "h": 0.02}
+    found = study.solve(**grid, Nbar=250000, Ra=0.004, base="thin_layer")
+    status = study.decode(found.status)
+    assert status.dims == found.status.dims and status.name == "status"
+    assert set(status.sel(bonding="bonded").values) == {"thin_layer_not_applicable"}
+    assert set(status.sel(bonding="frictionless").values) == {"converged"}
+    assert (study.decode(found.model_used) == "thin_layer").all()
+    words = study.decode(found.validity)
+    for flags, text in zip(found.validity.values.ravel(), words.values.ravel(), strict=True):
+        assert text.split() == [name for mask, name in study.derived.ASSUMPTIONS.items() if flags & mask]
+    assert words.sel(P=1e-6, bonding="frictionless").item() == "layer_not_thin"
+
+
+def test_names_survive_arithmetic_and_unknown_numbers_stay():
+    bare = xr.DataArray(np.array([0, 5, 127, 99]), dims="case", name="status")
+    assert study.decode(bare).values.tolist() == ["converged", "tolerance_not_met", "not_run", "99"]
+    assert study.decode(xr.DataArray(6, name="validity")).item() == "few_spots spot_not_small_against_h"
+    assert study.decode(xr.DataArray(0, name="validity")).item() == ""
+    with pytest.raises(ValueError, match="P is none of status, model_used, validity"):
+        study.decode(xr.DataArray([1.0], name="P"))
+
+
+def test_objects_show_themselves_in_one_line(tmp_path):
+    problem = Problem.of(P=[1e-6, 2e-5], micro="smooth", base="half_space")
+    assert repr(problem) == "Problem(2 cases, P = 1e-06 ... 2e-05, base: half_space, micro: smooth)"
+    solution = solve(problem, [0.0, 1.0])
+    solution.status[1] = Status.DIVERGED
+    assert repr(solution) == "Solution(2 cases: 1 converged, 1 diverged; profiles at 2 radii)"
+    file = tmp_path / "mine.toml"
+    text = 'axes.P = [1e-6, 1e-5]\naxes.h = [0.01]\nmodel.n = 0.5\nmodel.micro = "smooth"'
+    file.write_text(text, encoding="utf-8")
+    loaded = study.load(file)
+    assert repr(loaded) == 'Study("mine", 2 cases (P 2 x h 1), results/mine.nc)'
+    assert repr(loaded.definition) == 'Definition("mine", 2 cases (P 2 x h 1))'

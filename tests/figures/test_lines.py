@@ -1,0 +1,172 @@
+"""Curves of any results: every line against the dataset, what the axes are called, and what cannot be drawn."""
+
+import warnings
+
+import numpy as np
+import pytest
+import xarray as xr
+from drawn import frame, legend, lines
+from matplotlib.figure import Figure
+
+import study
+from study.__main__ import main
+from study.figures.labels import axis_label, stated, written
+from study.figures.lines import drawn, graded
+from study.spec.definition import StudyError
+
+AXES = {"P": [1e-6, 1e-5, 1e-4], "n": [0.2, 0.5], "bonding": ["frictionless", "bonded"]}
+ROUGH = {"h": 0.02, "Nbar": 250000, "Ra": 0.004}
+
+
+@pytest.fixture(scope="module")
+def found() -> xr.Dataset:
+    return study.solve(**AXES, **ROUGH, x=5)
+
+
+@pytest.fixture(scope="module")
+def physical() -> xr.Dataset:
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        steel = {"R": "5 mm", "E1": "200 GPa", "E2": "210 GPa", "micro": "smooth"}
+        return study.solve(**steel, P=["1 N", "10 N"], h=["2 um", "5 um"], x=2)
+
+
+def shown(dataset, x, y, hue="", **where):
+    return drawn(dataset, x, y, hue, where, Figure)
+
+
+def test_a_curve_for_each_hue_and_a_panel_for_each_of_the_rest(found):
+    figure, columns = shown(found, "P", "p_max", "n")
+    for axes, bonding in zip(figure.axes, AXES["bonding"], strict=True):
+        assert axes.get_title() == f"{bonding} interface"
+        for (whole, valid), n in zip(np.reshape(lines(axes), (-1, 2)), AXES["n"], strict=True):
+            case = found.sel(n=n, bonding=bonding)
+            np.testing.assert_array_equal(whole.x, AXES["P"])
+            np.testing.assert_array_equal(whole.y, case.p_max)
+            np.testing.assert_array_equal(valid.y, case.p_max.where(case.validity == 0))
+            assert (whole.look.colour, whole.look.dashes != ("solid",)) == (valid.look.colour, True)
+    assert (found.validity != 0).any() and (found.validity == 0).any(), "both are shown"
+    (box,) = figure.legends
+    entries = legend(box)
+    assert box.get_title().get_text() == "$n$" and list(entries) == ["0.2", "0.5", "not valid"]
+    assert entries["0.5"].colour == lines(figure.axes[0])[2].look.colour
+    assert frame(figure.axes[0])[:4] == ("$P/(E_2^*\\,R^2)$", "log", "$p_{\\max}/E_2^*$", "linear")
+    assert list(columns) == ["n", "bonding", "P", "p_max", "valid"] and len(columns["P"]) == 12
+    at = (columns["n"] == 0.5) & (columns["bonding"] == "bonded")
+    np.testing.assert_array_equal(columns["p_max"][at], found.p_max.sel(n=0.5, bonding="bonded"))
+
+
+def test_a_quantity_against_another_one_runs_with_the_load(found):
+    figure, _ = shown(found, "a", "E_eff", "bonding", n=0.5)
+    for line, bonding in zip(lines(figure.axes[0])[::2], AXES["bonding"], strict=True):
+        case = found.sel(n=0.5, bonding=bonding)
+        np.testing.assert_array_equal(line.x, case.a)
+        np.testing.assert_allclose(line.y, case.dP_dD / (2 * case.a), rtol=1e-14)  # one quotient
+    assert figure.get_suptitle().startswith("$\\nu_1$ = 0.3, ") and "$n$ = 0.5" in figure.get_suptitle()
+
+
+def test_profiles(found):
+    figure, _ = shown(found, "x", "p", "P", n=0.5, bonding="bonded")
+    for line, P in zip(lines(figure.axes[0])[::2], AXES["P"], strict=True):
+        np.testing.assert_array_equal(line.y, found.p.sel(n=0.5, bonding="bonded", P=P))
+
+
+def test_physical_results_have_units_that_are_read_easily(physical):
+    figure, columns = shown(physical, "P", "a", "h")
+    assert frame(figure.axes[0])[0:3:2] == ("$P$, N", "$a$, µm")
+    np.testing.assert_allclose(lines(figure.axes[0])[0].y, physical.a.sel(h="2 um") * 1e6, rtol=1e-14)  # one product
+    np.testing.assert_array_equal(columns["a"][:2], physical.a.sel(h=2e-6))
+    assert list(legend(figure.legends[0]))[:2] == ["2", "5"]
+    assert figure.legends[0].get_title().get_text() == "$h$, µm"
+    assert shown(physical, "P", "a", h="2 um")[1]["a"].tolist() == physical.a.sel(h=2e-6).values.tolist()
+
+
+def test_labels_of_cases_and_gaps_of_failed_ones():
+    rows = [{"label": "thin", "h": 0.01}, {"label": "incompressible", "h": 0.01, "nu1": 0.5, "bonding": "bonded"}]
+    found = study.solve(cases=rows, P=[1e-6, 1e-5], n=0.5, base="thin_layer", micro="smooth", x=2)
+    figure, _ = shown(found, "P", "D", "label")
+    assert list(legend(figure.legends[0]))[:2] == ["thin", "incompressible"]
+    assert np.isnan(lines(figure.axes[0])[2].y).all() and np.isfinite(lines(figure.axes[0])[0].y).all()
+
+
+@pytest.mark.parametrize(
+    ("wanted", "message"),
+    [
+        (("P", "pmax", ""), '"pmax" is not in these results; did you mean "p_max"?'),
+        (("P", "a", "h"), "hue = h is no axis of a; its axes: P, n, bonding"),
+        (("h", "a", "n"), "x = h has one value only; axes: P, bonding"),
+    ],
+)
+def test_what_is_not_there(found, wanted, message):
+    with pytest.raises(StudyError) as caught:
+        shown(found, *wanted)
+    assert str(caught.value) == message
+
+
+@pytest.mark.parametrize(
+    ("where", "message"),
+    [
+        ({"n": 0.3}, "n = 0.3 is not there; there are 0.2, 0.5"),
+        ({"bonding": "glued"}, "bonding = glued is not there; there are frictionless, bonded"),
+        ({"hh": 1}, "hh is no axis of these results; known: "),
+        ({"n": "thick"}, 'n = "thick": must be a number'),
+    ],
+)
+def test_values_that_are_not_there(found, where, message):
+    with pytest.raises(StudyError) as caught:
+        shown(found, "P", "a", **where)
+    assert str(caught.value).startswith(message)
+
+
+def test_too_many_panels():
+    found = study.solve(P=[1e-6, 1e-5], h=np.linspace(0.01, 0.02, 13), n=0.5, micro="smooth", x=2)
+    with pytest.raises(StudyError, match=r"13 panels, of h \(13\): at most 12; choose with --where"):
+        shown(found, "P", "a")
+
+
+def test_the_command_and_the_methods(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies/mine.toml").write_text(
+        'axes.P = [1e-6, 1e-5]\naxes.h = [0.01, 0.02]\nmodel.n = 0.5\nmodel.micro = "smooth"', encoding="utf-8"
+    )
+    assert main(["plot", "mine", "--run", "--x", "P", "--y", "a", "--hue", "h", "--figures", "there"]) == 0
+    assert capsys.readouterr().out.splitlines()[1:] == [f"there/mine_a.{kind}" for kind in ("csv", "pdf", "png")]
+    found = study.load("studies/mine.toml").open()
+    rows = (tmp_path / "there/mine_a.csv").read_text().splitlines()
+    assert rows[0] == "h,P,a,valid" and rows[1].split(",")[2] == repr(found.a.sel(h=0.01)[0].item())
+    assert main(["plot", "results/mine.nc", "--x", "P", "--y", "D", "--where", "h=0.01"]) == 0
+    figure = study.load("studies/mine.toml").plot("P", "a", hue="h")
+    np.testing.assert_array_equal(lines(figure.axes[0])[0].y, found.a.sel(h=0.01))
+    for command, message in (
+        ("plot mine --x P", "curves of results need both --x and --y, such as --x P --y p_max"),
+        ("plot none.nc --x P --y a", "none.nc: does not exist"),
+    ):
+        assert main(command.split()) == 2
+        assert capsys.readouterr().err.splitlines()[-1] == message
+
+
+def test_scales_follow_the_spacing():
+    assert graded(np.geomspace(1e-6, 1e-4, 21)) and not graded(np.linspace(1e-8, 5e-5, 251))
+    assert not graded(np.array([0.1, 0.2])) and not graded(np.array(["a", "b"]))
+
+
+def test_names_and_numbers_of_labels(found):
+    wanted = {"h": "$h/R$", "Nbar": "$\\bar N\\,R^2$", "n": "$n$", "dP_dD": "$(dP/dD)/(E_2^*\\,R)$", "x": "$r/a$"}
+    assert {name: axis_label(name, found[name]) for name in wanted} == wanted
+    assert axis_label("iterations", found["iterations"]) == "iterations"
+    assert axis_label("a", study.to_physical(found, R=0.01, E2_star=2e11)["a"]) == "$a$, um"
+    numbers = {0.02: "0.02", 250000.0: "250000", 2.7040777e-5: "$2.704\\times10^{-5}$", 1e-6: "$10^{-6}$"}
+    assert {value: written(value) for value in numbers} == numbers
+
+
+def test_only_what_is_used_is_stated():
+    bare = study.solve(
+        P=1e-5, h=0.02, n=0.5, Nbar=250000, Ra=0.004, B=0.1, beta=0.5, base="half_space", micro="smooth", x=2
+    )
+    assert stated([bare]) == ["$P/(E_2^*\\,R^2)$ = $10^{-5}$"]
+    power = study.solve(P=1e-5, h=0.02, n=0.5, micro="power_law", Nbar=250000, Ra=0.004, B=0.1, beta=0.5)
+    assert stated([power])[1:] == [
+        "$h/R$ = 0.02", "$n$ = 0.5", "frictionless interface", "$\\bar N\\,R^2$ = 250000", "$R_a/R$ = 0.004",
+        "$B$ = 0.1 $R_a/E_1^{*\\beta}$", "$\\beta$ = 0.5"
+    ]  # fmt: skip

@@ -11,6 +11,7 @@ from .contact.answer import answer
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
+from .models.range_of_law import refuse_outside
 from .numerics.ladder import start_nodes
 from .numerics.mesh import mesh
 from .scaling import as_cases, dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch, without_springs
@@ -76,7 +77,8 @@ def _solved(given, x, invalid):
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
     for index, solver in _routes(problem, ~(invalid | no_springs)):
         pieces.append((index, solver(scaled.take(index), x)))
-    return _with_models(given, restore(Solution.join(*size, pieces), problem))
+    solution = _with_models(given, restore(Solution.join(*size, pieces), problem))
+    return refuse_outside(given, solution)
 
 
 def _routes(problem, solvable):
@@ -143,5 +145,6 @@ def _with_models(problem, solution):
     error[solved & named & ~thin] = 0.0
     judged = np.flatnonzero(solved & thin & (problem.model_check == "closed_form"))
     error[judged] = closed_form(problem.take(judged), solution.a[judged])
+    error += sum(law.error * (named & (problem.micro == name)) for name, law in LAWS.items())
     used = np.where(named, auto.model_of(problem), solution.model_used)
     return replace(solution, model_used=used, model_error=error)

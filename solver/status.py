@@ -15,6 +15,7 @@ class Status(IntEnum):
     INVALID_INPUT = 6  # 7 was in numerics version 2
     LIFT_OFF = 8
     BUDGET_SPENT = 9
+    OUTSIDE_LAW = 10
 
     @property
     def meaning(self):
@@ -31,5 +32,6 @@ _MEANINGS = {
     Status.TOLERANCE_NOT_MET: "the estimated error exceeds rtol at the finest mesh; the numbers are kept",
     Status.LIFT_OFF: "the punch lifts off inside the contact, or the pressure is tensile there; no numbers",
     Status.BUDGET_SPENT: "the work that one case may take is spent; last numbers, if any, kept",
+    Status.OUTSIDE_LAW: "the nominal pressures are not in the range that the micro law knows; no numbers",
     Status.INVALID_INPUT: "a parameter is not finite or out of bounds, or a smooth case asks for picard; no numbers",
 }

@@ -43,9 +43,16 @@ class Parameters(TypedDict, total=False):
     base: Literal["half_space", "thin_layer", "layered", "auto"] | Many
     Nbar: Value
     Ra: Value
-    micro: Literal["disc_cell", "power_law", "smooth"] | str | Law | Many
+    micro: (
+        Literal["disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights"]
+        | str
+        | Law
+        | Many
+    )
     B: Value
     beta: Value
+    sigma: Value
+    cut: Value
     R: Value
     R1: Value
     R2: Value
@@ -89,9 +96,10 @@ def solve(
     bonding : the interface of layer and body
     base : what lies under the punch
     Nbar, Ra : number of asperities per unit area, and the radius of an asperity; not needed by micro = "smooth"
-    micro : law of the asperities, or a `solver.laws.Law` itself (docs/extending.md)
+    micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), or a `solver.laws.Law` itself
     B, beta : of micro = "power_law", A = B Ra (p/E1*)^beta, so B is in Ra/E1*^beta. Without both the law is fitted to
         Nbar and Ra, as the paper's is
+    sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative

@@ -6,7 +6,7 @@ from functools import cache
 import numpy as np
 
 from ..parameters import CONTROL, PARAMETERS
-from . import disc_cell, power_law, smooth
+from . import disc_cell, heights, lattice, own_table, power_law, smooth
 from .law import Bound, Curve, Law, Spots
 
 __all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "named", "register"]
@@ -31,7 +31,7 @@ def register(law):
     """
     if LAWS.get(law.name) is law:
         return law
-    if LAWS.get(law.name, law) in BUILT_IN or not re.fullmatch(r"[A-Za-z]\w*", law.name):
+    if LAWS.get(law.name, law) in BUILT_IN or not re.fullmatch(rf"[A-Za-z]\w*|{own_table.PREFIX}\S+", law.name):
         raise ValueError(f'micro law "{law.name}": must have a name of its own, of letters, digits and _')
     if not (law.version and isinstance(law.version, str)):
         raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
@@ -79,9 +79,15 @@ def load():
 
 
 def named(given):
-    """Names in place of laws: of one, or of each in a list. A law given as an object becomes known by its name."""
+    """Names in place of laws: of one, or of each in a list. A law given as an object, or as "table:" and the path of a
+    table of one's own, becomes known by its name.
+
+    Raises ValueError for a table that cannot be used.
+    """
     if isinstance(given, (list, tuple)):
         return [named(one) for one in given]
+    if isinstance(given, str) and given.startswith(own_table.PREFIX):
+        given = own_table.read(given)
     return register(given).name if isinstance(given, Law) else given
 
 
@@ -96,6 +102,6 @@ def identity(name):
     return f"{name} {law.version}" if law and law.version else name
 
 
-BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW)
+BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW)
 #: Name -> Law.
 LAWS = _declare({law.name: law for law in BUILT_IN})

@@ -59,6 +59,10 @@ class Law:
     edge : (*own) -> (gamma, beta) of g ~ gamma q^beta for small q; floats, or arrays that broadcast to (B, m)
     version : text that changes whenever the numbers of the law may change; part of the keys of its cases
     rough : False of no asperities at all: A = 0, and the equation of the contact is linear in y = q
+    error : largest relative error of A, λ and p_max themselves, of a law that comes from a table; part of `model_error`
+    least, most : smallest and largest p/E that it knows: a contact with a p(0) below it, or a pressure above it, gets
+        no numbers
+    smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
     rise : how fast the number of nodes that a case wants grows with the share of the asperities in the displacement of
         the centre: 0.5 of power laws, 1.1 of a law that saturates, as random cases have it. The error is not left to it
 
@@ -78,6 +82,10 @@ class Law:
     parameters: dict[str, Parameter] = field(default_factory=dict)
     version: str = ""
     rough: bool = True
+    error: float = 0.0
+    least: float = 0.0
+    most: float = np.inf
+    smears: bool = True
     rise: float = 0.5
     from_pressure: Callable | None = None
     from_displacement: Callable | None = None

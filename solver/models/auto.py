@@ -84,12 +84,13 @@ def bounds(part):
     a = guess_radius(cases)
     x, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")
     alone, thin = np.full((2, len(part)), np.inf)
+    of_law = cases.law.law.error
     i = np.flatnonzero(x > _THICKEST)
     L1, _ = decaying_part(_U * np.ones((len(i), 1)), *(v[i, None] for v in material))
     alone[i] = _ALONE * (np.abs(L1) @ _WEIGHTS) / x[i]
     i = np.flatnonzero(x < _THINNEST)
     thin[i] = np.nan_to_num(_THIN * closed_form(part.take(i), a[i]), nan=np.inf)
-    found = {Model.LAYER_ALONE: alone, Model.THIN_LAYER: thin}
+    found = {Model.LAYER_ALONE: alone + of_law, Model.THIN_LAYER: thin + of_law}
     if not cases.law.rough:
         return {Model(model + 1): bound for model, bound in found.items()}
     p0 = 2 / np.pi * a * layer_modulus(part.n) / whole(1.5 * x, *material)

@@ -43,9 +43,9 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     """Assumptions that each case violates, a sum of masks; 0: all hold.
 
     1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
-    8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING; 32 a/R > STEEP, or both D/h
-    and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that need none. int32 over the
-    dimensions of `status`.
+    8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING, but on a lattice; 32
+    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that
+    need none. int32 over the dimensions of `status`.
     """
     found = validity_of(dataset.variables)
     flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
@@ -64,7 +64,7 @@ def validity_of(v: Mapping) -> xr.Variable:
         2: rough & (_spots(v) < FEW_SPOTS),
         4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
         8: (v["base"] == "thin_layer") & (n >= 1),
-        16: rough & (v["lam0"] > MERGING),
+        16: rough & _smeared(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
     }
     none = xr.zeros_like(v["status"], dtype=np.int32)
@@ -149,6 +149,11 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
 def _rough(micro):
     """Whether there are asperities; a law that is not registered has some."""
     return sum(micro == name for name, law in LAWS.items() if not law.rough) == 0
+
+
+def _smeared(micro):
+    """Whether the law spreads the pressure of the neighbours evenly; one that is not registered may."""
+    return sum(micro == name for name, law in LAWS.items() if not law.smears) == 0
 
 
 def _spots(values):

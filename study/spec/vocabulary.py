@@ -73,6 +73,8 @@ _ENTRIES = (
     Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)"),
     Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness"),
     Entry("beta", "β", "exponent of the power law A = B p^β", "roughness"),
+    Entry("sigma", "σ", "standard deviation of the heights of the asperities", "roughness", (0, 1)),
+    Entry("cut", "c", "largest height of an asperity above the mean, over σ", "roughness"),
     Entry("scheme", "", "scheme of solution", "numerics"),
     Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)"),
     Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]"),

@@ -23,6 +23,7 @@ DEFAULTS = {
     "rtol": 1e-6,
     "nodes": 0,
     "max_iterations": 0,
+    "cut": 4.0,
     "R": 1.0,
     "E2": 1.0,
 }
@@ -45,6 +46,7 @@ COUNTS = [
     ("rtol", CASE, 1e-2, "a"),
     ("nodes", CASE, 8, "a"),
     ("max_iterations", CASE, 1, "a"),
+    ("cut", CASE | {"micro": "normal_heights", "sigma": 1e-5}, 3.0, "a"),
     ("R", CASE, 2.0, "a"),
     ("E2", CASE, 2.0, "a"),
 ]

@@ -15,6 +15,7 @@ DIMENSIONS = {
     "h": (LENGTH, "m"),
     "Nbar": (PER_AREA, "1/m^2"),
     "Ra": (LENGTH, "m"),
+    "sigma": (LENGTH, "m"),
     "p0": (PRESSURE, "Pa"),
     "p_max": (PRESSURE, "Pa"),
     "A0": (LENGTH, "m"),
@@ -37,9 +38,9 @@ UNITS = {
 }
 # fmt: off
 PURE = {
-    "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "scheme", "k", "rtol", "accuracy", "model_check",
-    "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "model_error", "model_used", "residual",
-    "iterations", "nodes_used", "validity", "An_ratio", "spots", "x", "case", "label",
+    "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "cut", "scheme", "k", "rtol", "accuracy",
+    "model_check", "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "model_error", "model_used",
+    "residual", "iterations", "nodes_used", "validity", "An_ratio", "spots", "x", "case", "label",
 }
 # fmt: on
 
@@ -80,6 +81,8 @@ WORDS = words("""
     micro   :          :         : (6), (7) : micro law A[p]
     B       : B        :         :          : coefficient of the power law A = B p^β, in Ra/E1*^β
     beta    : β        :         :          : exponent of the power law A = B p^β
+    sigma   : σ        : R       :          : standard deviation of the heights of the asperities
+    cut     : c        :         :          : largest height of an asperity above the mean, over σ
     k       : k        :         : (8)      : iteration parameter of the successive approximations
     rtol    :          :         :          : wanted relative error
     accuracy :         :         :          : allowed relative model error of the base auto
@@ -106,7 +109,7 @@ WORDS = words("""
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
     "base": {"half_space", "thin_layer", "layered", "auto"},
-    "micro": {"smooth", "disc_cell", "power_law"},
+    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
 }
@@ -127,7 +130,8 @@ def test_only_names_of_words_and_flags_have_no_unit():
 def test_parameters_are_in_their_order():
     """In this order they are columns of an inventory, and coordinates of a file."""
     assert " ".join(PARAMETERS) == (
-        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta scheme k rtol accuracy model_check nodes max_iterations"
+        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta sigma cut scheme k rtol accuracy model_check nodes "
+        "max_iterations"
     )
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
 
@@ -147,6 +151,8 @@ LIMITS = {
     "nu1": (-0.999, -1, 0.5, 0.501),
     "nu2": (-0.999, -1, 0.5, 0.501),
     "beta": (0.01, 0.0099, 1, 1.001),
+    "sigma": (0, -1e-9, 10, 10.1),
+    "cut": (3, 2.99, 5, 5.01),
     "k": (0, -1e-9, 1e6, 1.01e6),
     "rtol": (1e-12, 0.99e-12, 0.1, 0.101),
     "accuracy": (1e-12, 0, 0.999, 1),

@@ -1,0 +1,153 @@
+"""A micro law from a table of one's own: a measurement, or another code.
+
+``micro = "table:mine.csv"``, where mine.csv has a heading with the columns p, A, lam, p_max and a row for a pressure:
+the nominal one over E, the additional displacement over R, the relative contact area λ, and the largest real
+pressure over E. E is E1* (E2* without a layer), of base and punch together. The curves go near the rows; the law's
+`error` is how far a row is from the curve through the others, at most. Below the first row A goes on as the power of p
+that the first two rows have: that is where every contact has its edge, so begin the table at a thousandth of p(0), or
+below. A contact whose p(0) is below the first row, or with pressures above the last one, is not solved:
+``Status.OUTSIDE_LAW``.
+"""
+
+import csv
+import hashlib
+from functools import lru_cache, partial
+from pathlib import Path
+
+import numpy as np
+
+from .tabulated import Table, fitted, law_of, t_of
+
+PREFIX = "table:"
+COLUMNS = ("p", "A", "lam", "p_max")
+#: Fewest rows; highest degree of the polynomials; distance from the rows that needs no higher one, and the largest: a
+#: curve farther away is none through these rows.
+_FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
+#: A degree is as good as the best one if its distance is within this of it: higher ones follow the noise.
+_HARDLY = 1.5
+#: Exponents of the edge, A ~ p^β, that the curves can have.
+_BETA = (0.2, 1.5)
+
+
+def read(name):
+    """:class:`~solver.laws.law.Law` of the table that `name`, "table:" and a path, stands for.
+
+    Its version is a digest of the numbers. Raises ValueError, with file, column and row.
+    """
+    file = name.removeprefix(PREFIX)
+    try:
+        if any(letter.isspace() for letter in file):
+            raise ValueError("the path has a blank; give the file another name")
+        return _of_text(name, Path(file).expanduser().read_text(encoding="utf-8-sig"))
+    except OSError as error:
+        raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
+    except ValueError as error:
+        raise ValueError(f"{file}: {error}") from None
+
+
+@lru_cache(maxsize=16)
+def _of_text(name, text):
+    """The law of a table: a study asks several times for it, and the fits take 30 ms."""
+    columns = _columns(text)
+    _check(**columns)
+    return of_columns(name, **columns)
+
+
+def _columns(text):
+    """Name -> numbers (n,) of the columns of a table."""
+    rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].startswith("#")]
+    heading = [word.strip() for word in rows[0]] if rows else []
+    missing = [name for name in COLUMNS if heading.count(name) != 1]
+    if missing:
+        raise ValueError(f"column {missing[0]}: the heading must have it once, with {', '.join(COLUMNS)}")
+    if len(rows) <= _FEWEST:
+        raise ValueError(f"has {len(rows) - 1} rows: must have at least {_FEWEST}")
+    return {name: np.array([_number(name, i, row, heading) for i, row in enumerate(rows[1:], 1)]) for name in COLUMNS}
+
+
+def _number(name, i, row, heading):
+    """The number of the column `name` in the row i."""
+    cell = row[heading.index(name)].strip() if len(row) == len(heading) else None
+    if cell is None:
+        raise ValueError(f"row {i}: has {len(row)} cells, the heading {len(heading)}")
+    try:
+        number = float(cell)
+    except ValueError:
+        number = np.nan
+    if not 0 < number < np.inf:
+        raise ValueError(f'column {name}, row {i}: "{cell}": must be a finite number > 0')
+    return number
+
+
+def _check(p, A, lam, p_max):
+    """Raise ValueError where the rows cannot be those of a law."""
+    rules = (
+        ("p", p[1:] > p[:-1], 2, "must be larger than that of the row before"),
+        ("A", A[1:] > A[:-1], 2, "must be larger than that of the row before"),
+        ("lam", lam[1:] >= lam[:-1], 2, "must not be smaller than that of the row before"),
+        ("lam", lam <= 1, 1, "must be at most 1"),
+        ("p_max", p_max > p, 1, "must be larger than p"),
+    )
+    for name, kept, first, words in rules:
+        if not kept.all():
+            row = first + int(np.argmin(kept))
+            value = {"p": p, "A": A, "lam": lam, "p_max": p_max}[name][row - 1]
+            raise ValueError(f"column {name}, row {row}: {value:g}: {words}")
+
+
+def of_columns(name, p, A, lam, p_max):
+    """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked."""
+    digest = hashlib.sha256(np.stack([p, A, lam, p_max]).astype("<f8").tobytes()).hexdigest()[:16]
+    beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
+    s, q = 2 / beta - 1, p / p[-1]
+    t = t_of(q, s)
+    curves = [
+        _curve("A", t, q, A / A[-1], 2),
+        _curve("lam", t, q, lam, 2),
+        _curve("p_max", t, q, (p_max - p) / p[-1], 1),
+    ]
+    return law_of(
+        Table(*(curve for curve, _ in curves), s),
+        name=name,
+        version=digest,
+        scales=partial(_scales, p[-1], A[-1]),
+        error=max(error for _, error in curves),
+        least=p[0],
+        most=p[-1],
+        smears=False,
+        rise=1.1,
+    )
+
+
+def _scales(p_star, A_star, E):
+    return p_star * E, A_star
+
+
+def _curve(column, t, q, X, power):
+    """:class:`~solver.laws.tabulated.Quantity` near the rows (n,), and how far it is from them.
+
+    Its degree is the lowest that is hardly farther than any other. Raises ValueError where all are too far, or fall.
+    """
+    degrees = range(1, min(_DEGREE, len(t) - 2) + 1)
+    tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
+    far = np.array([error[1:-1].max() for _, error in tried])  # nothing is beyond the ends
+    if far.min() > _FAR:
+        row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
+        raise ValueError(
+            f"column {column}, row {row}: is {100 * far.min():.0f} % off a smooth curve through the other rows: "
+            f"at most {100 * _FAR:.0f} % are allowed"
+        )
+    falls = np.array([column == "A" and _falls(found, t) for found, _ in tried])
+    good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= _FAR)
+    if not good.any():
+        raise ValueError(
+            f"column {column}: no smooth curve through the rows rises throughout: add rows, or smooth them"
+        )
+    best = int(np.argmax(good))
+    return tried[best][0], float(far[best])
+
+
+def _falls(found, t):
+    """Whether a :class:`~solver.laws.tabulated.Quantity` falls somewhere between the rows, and behind them."""
+    points = np.append(np.geomspace(1e-6, t[0], 50), np.linspace(t[0], 1, 2000)[:-1])
+    return bool((found.power / points + found.exponent(points)[1] <= 0).any())

@@ -1,0 +1,162 @@
+"""A micro law through the rows of a table: smooth curves that rise, with the ends that are known.
+
+With t = y/(1 + y), from 0 to 1, the pressure is q = y t^s. A small q is then y^(1 + s), so that g ~ y² is g ~ q^β for
+s = 2/β - 1, and a large one is y - s. A quantity that begins as t^m and tends to a limit by exp(-rate q) is
+
+    X = 1/(1/limit + exp(-rate q - V(t))/t^m),
+
+in which V is smooth up to both ends: a polynomial, by least squares. A spline through the rows would carry their noise
+to its knots, where a mesh has to resolve it: with one, random cases took a sixth more nodes at rtol = 1e-6, and a third
+more at 1e-8. Without a limit this is infinity, and the rate 0. p_max is q and such a quantity.
+"""
+
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial import chebyshev, polynomial
+
+from .law import Curve, Law, inverse
+
+
+class Quantity(NamedTuple):
+    """One X of the module; V is a polynomial in 2 t - 1, its coefficients in ascending order.
+
+    span : the smallest and the largest t of the polynomial. Below, V goes on as a straight line; above, V + m ln t.
+    """
+
+    power: int
+    rate: float
+    limit: float
+    V: np.ndarray
+    span: tuple[float, float] = (0.0, 1.0)
+
+    def at(self, t, q):
+        """X at t and q of any shape."""
+        if self.span == (0.0, 1.0):
+            V = polynomial.polyval(2 * t - 1, self.V)
+        else:
+            V, _ = self.exponent(t)
+        return 1 / (1 / self.limit + self.rest(t, q, V))
+
+    def rest(self, t, q, V):
+        """1/X - 1/limit."""
+        return np.exp(-self.rate * q - V) / t**self.power
+
+    def exponent(self, t):
+        """V and dV/dt."""
+        low, high = self.span
+        inside = np.clip(t, low, high)
+        x = 2 * inside - 1
+        V, slope = np.full_like(x, self.V[-1]), np.zeros_like(x)
+        for coefficient in self.V[-2::-1]:
+            slope *= x
+            slope += V
+            V *= x
+            V += coefficient
+        slope *= 2
+        if low > 0 or high < 1:
+            above = t > high
+            slope = slope + above * self.power / high
+            V = V + slope * (t - inside) - self.power * np.log(np.maximum(t, high) / high)
+            slope = slope - above * self.power / np.maximum(t, high)
+        return V, slope
+
+    def with_slope(self, t, q, dq):
+        """X, its rest, and d ln(1/rest)/dy, where dq = dq/dy and dt/dy = (1 - t)²."""
+        V, dV = self.exponent(t)
+        rest = self.rest(t, q, V)
+        return 1 / (1 / self.limit + rest), rest, (self.power / t + dV) * (1 - t) ** 2 + self.rate * dq
+
+
+class Table(NamedTuple):
+    """A/A*, λ and (p_max - p)/p* of a law, and the exponent s of q = y t^s."""
+
+    A: Quantity
+    lam: Quantity
+    above: Quantity
+    s: float = 2.0
+
+    def pressure(self, y):
+        """t, q and dq/dy at y."""
+        t = y / (1 + y)
+        power = t * t if self.s == 2 else t**self.s
+        return t, y * power, power * (1 + self.s * (1 - t))
+
+
+def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
+    """:class:`Quantity` near the values X (n,) at t and q (n,), and how far each of them is from the one through the
+    others, relative (n,): that is what rows far apart leave unsaid between them.
+
+    degree : of the polynomial
+    guides : t and V (k,) where there are no rows, and their weight, small enough to take nothing from the rows
+    first : X/t^power for t -> 0, if it is known; met exactly
+    form : power, and rate, limit and span of the Quantity
+    """
+    one = Quantity(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
+    share = 1 - X / one.limit  # dX/X = (1 - X/limit) dV
+    V = -one.rate * q - np.log((1 / X - 1 / one.limit) * t**one.power)
+    points, values = np.append(t, guides[0]), np.append(V, guides[1])
+    weights = np.append(share, np.full(len(guides[0]), guides[2]))[:, None]
+    lowest, factor = (0.0, np.ones_like(points)) if first is None else (np.log(first), points)
+    basis = factor[:, None] * chebyshev.chebvander(2 * points - 1, degree)
+    Q, R = np.linalg.qr(basis * weights)
+    found = np.linalg.solve(R, Q.T @ ((values - lowest) * weights[:, 0]))
+    V = chebyshev.cheb2poly(found)
+    if first is not None:
+        V = polynomial.polyadd(polynomial.polymul(V, [0.5, 0.5]), [lowest])
+    one = one._replace(V=V)
+    own = (Q[: len(t)] ** 2).sum(axis=1)  # share of a row in the curve at it
+    return one, np.abs(one.at(t, q) / X - 1) / np.maximum(1 - own, 1e-9)
+
+
+def t_of(q, s=2.0):
+    """t (n,) at which y t^s = q (n,) > 0."""
+    y = _from_pressure(Table(None, None, None, s), np.asarray(q, dtype=float))
+    return y / (1 + y)
+
+
+def law_of(table, **known):
+    """:class:`~solver.laws.law.Law` of a :class:`Table`; `known`: name, scales and all else that a table does not say.
+
+    Its functions can be pickled.
+    """
+    functions = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge}
+    functions |= {"from_pressure": _from_pressure, "from_displacement": _from_displacement}
+    return Law(**{name: partial(function, table) for name, function in functions.items()}, **known)
+
+
+def _curve(table, y, *own):
+    t, q, dq = table.pressure(np.asarray(y, dtype=float))
+    g, rest, slope = table.A.with_slope(t, q, dq)
+    return Curve(q, g, dq, g * (g * rest) * slope)
+
+
+def _area(table, y, q, *own):
+    return np.minimum(table.lam.at(y / (1 + y), q), 1.0)
+
+
+def _peak(table, y, q, *own):
+    return q + table.above.at(y / (1 + y), q)
+
+
+def _edge(table, *own):
+    return float(np.exp(table.A.exponent(np.zeros(1))[0][0])), 2 / (1 + table.s)
+
+
+def _from_pressure(table, q, *own):
+    start = np.maximum(q, 0.0)
+    return inverse(lambda y: table.pressure(y)[1:], q, start ** (1 / (1 + table.s)) + start)
+
+
+def _from_displacement(table, g, *own):
+    """By 1/rest, which is g itself without a limit, and grows to infinity where g comes near one."""
+    A, g = table.A, np.asarray(g, dtype=float)
+    odds = 1 / (1 / np.where(g < A.limit, g, np.nan) - 1 / A.limit)
+
+    def value(y):
+        t, q, dq = table.pressure(y)
+        _, rest, slope = A.with_slope(t, q, dq)
+        return 1 / rest, slope / rest
+
+    return inverse(value, odds, np.minimum(np.sqrt(np.maximum(odds, 0.0)), 3.0))

@@ -1,0 +1,150 @@
+"""Asperities of random heights: against quadrature of the equations, one height, Greenwood and Tripp, and contacts."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from solver_cases import difference
+
+import study
+from solver import Problem, Status, laws, solve
+from solver.laws import disc_cell, heights
+
+LAW = heights.LAW
+CASE = {"Nbar": 250_000.0, "Ra": 0.004, "h": 0.02, "n": 0.5}
+A_STAR = 1 / (np.pi * CASE["Nbar"] * CASE["Ra"])
+
+
+def bound(spread, cut):
+    """The law of one case, its spread over A*."""
+    one = np.ones(1)
+    return LAW.bind(one, Nbar=one, Ra=one, sigma=one * spread / np.pi, cut=one * cut)
+
+
+@pytest.fixture(autouse=True)
+def quiet():
+    """As in the solver."""
+    with np.errstate(all="ignore"):
+        yield
+
+
+@pytest.mark.parametrize("spread", [0.02, 0.2])
+def test_against_the_equations(spread):
+    """b of each height from (6), its load from (7) with the others smeared, the mean by adaptive quadrature. Units B̄ =
+    Ra = 1 and p* = 2 E/3 = 1."""
+    E, cut = 1.5, 3.0
+    own = bound(spread, cut)
+    share = quad(lambda z: np.exp(-(z**2) / 2), -cut, cut)[0]
+
+    for y in (0.05, 0.4, 1.5):
+        found = own.evaluate(np.array([[y]]))
+        p, A = found.q[0, 0], found.g[0, 0]
+
+        def spot(z, p=p, A=A):
+            approach = A - (cut - z) * spread
+            if approach <= -2 * p / E:
+                return 0.0
+            return brentq(lambda b: b**2 - 2 * p / E * np.sqrt(1 - b**2) - approach, 0, 1, xtol=1e-15)
+
+        def load(z, p=p):
+            b = spot(z)
+            return (4 * E / 3 * b**3 + 2 * p * (np.arcsin(b) - b * np.sqrt(1 - b**2))) / np.pi
+
+        lowest = max(-cut, cut - (A + 2 * p / E) / spread)
+        mean = [quad(lambda z, f=f: f(z) * np.exp(-(z**2) / 2) / share, lowest, cut, epsabs=0, epsrel=1e-10)[0]
+                for f in (load, lambda z: spot(z) ** 2)]  # fmt: skip
+        assert_allclose(p, mean[0], rtol=1e-8, atol=0)
+        assert_allclose(own.area(np.array([[y]]), found.q)[0, 0], mean[1], rtol=1e-8, atol=0)
+        highest = spot(cut)
+        peak = 2 * E * highest / np.pi + 2 * p / np.pi * np.arcsin(highest)
+        assert_allclose(LAW.peak(y, p, spread, cut), peak, rtol=1e-9, atol=0)
+
+
+def test_one_height_is_the_disc_cell():
+    y = np.geomspace(1e-6, 1e3, 40)[None]
+    own, disc = bound(0.0, 4.0).evaluate(y), disc_cell.spot_curve(y)
+    assert_allclose(own.q, disc.q, rtol=1e-14, atol=0)
+    assert_allclose(own.g, disc.g, rtol=1e-14, atol=0)
+    assert_allclose(own.dq, disc.dq, rtol=1e-13, atol=0)
+    assert_allclose(own.dg[y < 5], disc.dg[y < 5], rtol=1e-12, atol=0)
+    for base in ("half_space", "layered"):
+        given = CASE | {"P": 1e-5, "base": base, "rtol": 1e-9, "nodes": 32}
+        same = solve(Problem.of(**given, micro="disc_cell"))
+        found = solve(Problem.of(**given, micro=LAW, sigma=0.0))
+        assert difference(found, same)[0] < 1e-11
+
+
+@pytest.mark.parametrize("spread", [0.003, 0.1, 0.5])
+def test_derivatives_inverses_and_edge(spread):
+    own, y = bound(spread, 4.0), np.geomspace(1e-4, 5, 25)[None]
+    step = 1e-4 * y
+    below, at, above = (own.evaluate(v) for v in (y - step, y, y + step))
+    assert_allclose((above.q - below.q) / (2 * step), at.dq, rtol=1e-6, atol=0)
+    assert_allclose((above.g - below.g) / (2 * step), at.dg, rtol=1e-6, atol=0)
+    assert (at.dq > 0).all() and (at.dg > 0).all()
+    assert_allclose(own.from_pressure(at.q), y, rtol=1e-11, atol=0)
+    assert_allclose(own.from_displacement(at.g), y, rtol=1e-9, atol=0)
+    few = own.evaluate(np.array([[1e-4, 2e-4]])).q[0]
+    assert_allclose(few[1] / few[0], 2**5, rtol=1e-4)  # p ~ A^(5/2)
+    if spread > 0.03:
+        gamma, beta = own.edge()
+        assert_allclose(gamma * few[0] ** beta, 1e-8, rtol=1e-4)
+
+
+#: Spread over a²/R of Hertz, p(0) and a_eff over those of Hertz, for μ = 4.
+GREENWOOD_TRIPP = np.array([
+    [3.257, 0.2270, 2.237], [1.168, 0.4385, 1.592], [0.4124, 0.6791, 1.2575],
+    [0.1953, 0.8097, 1.138], [0.0682, 0.9153, 1.057], [0.0255, 0.9604, 1.026],
+])  # fmt: skip
+
+
+def test_without_a_field_it_is_greenwood_and_tripp():
+    """1967, μ = (8/3) Nbar σ sqrt(2 R Ra) = 4, a_eff = (3π/4) ∫ r p dr/∫ p dr: p(0) and a_eff of a solver of their
+    equations. The cut moves the edge; these it leaves alone: to 5e-3 at 4 σ, to 5e-4 at 5 σ."""
+    alpha, p0, a_eff = GREENWOOD_TRIPP.T
+    free = laws.register(heights.law("free_heights", field=0.0, version="1"))
+    a, Ra = 0.01, 1e-6
+    sigma = alpha * a**2
+    points, weights = np.polynomial.legendre.leggauss(40)
+    x, w = (points + 1) / 2, weights / 2
+    for cut, most in ((4.0, 5e-3), (5.0, 5e-4)):
+        given = {"Nbar": 1.5 / (sigma * np.sqrt(2 * Ra)), "Ra": Ra, "sigma": sigma, "cut": cut}
+        s = solve(Problem.of(P=4 / 3 * a**3, base="half_space", micro=free, rtol=1e-5, **given), x)
+        assert (s.status == 0).all()
+        assert_allclose(s.p0 / (2 * a / np.pi), p0, rtol=most, atol=0)
+        found = 3 * np.pi / 4 * s.a * (s.p @ (x * w)) / (s.p @ w)
+        assert_allclose(found / a, a_eff, rtol=most, atol=0)
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
+def test_accuracy(base):
+    """Every case converges, and the truth (on 96 nodes) is within the error, for each control."""
+    given = CASE | {"base": base, "micro": "normal_heights", "sigma": A_STAR * np.array([0.005, 0.05, 0.2])}
+    P = solve(Problem.of(P=[1e-6, 1e-5, 5e-5], **given, rtol=1e-5))
+    assert (P.status == 0).all()
+    for control in ("P", "a", "D"):
+        case = given | {control: getattr(P, control)}
+        found = solve(Problem.of(**case, rtol=1e-5))
+        fine = solve(Problem.of(**case, rtol=1e-9, nodes=96))
+        assert (found.status == 0).all() and (found.error <= 1e-5).all()
+        assert (difference(found, fine) <= np.maximum(found.error, 1e-9)).all()
+
+
+def test_the_highest_summit_fills_its_cell():
+    """Beyond that the equations have no answer: a status, and no number that looks like one."""
+    s = solve(Problem.of(P=[1e-5, 1e-3], base="half_space", micro="normal_heights", **CASE, sigma=2 * A_STAR))
+    assert s.status[1] not in (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
+
+
+def test_through_a_study():
+    given = {"P": 1e-5, "x": 3} | CASE
+    found = study.solve(**given, micro="normal_heights", sigma=[0.0, 0.1 * A_STAR], cut=[3.0, 4.0])
+    assert (found.status == 0).all() and found.sizes == {"sigma": 2, "cut": 2, "x": 3}
+    assert_allclose(found.a[0, 0], found.a[0, 1], rtol=1e-6)
+    assert (found.a[1, 1] > found.a[1, 0]) and (found.p0[1] < found.p0[0]).all()
+    above = found.D - found.cut * found.sigma  # depth of the mean plane
+    assert_allclose(above[1, 0], above[1, 1], rtol=0.01)
+    assert study.to_physical(found, R=0.01, E2_star=2e11).sigma.attrs["units"] == "m"
+    with pytest.raises(study.StudyError, match='sigma is missing: micro = "normal_heights" needs it'):
+        study.solve(**given, micro="normal_heights")

@@ -1,0 +1,157 @@
+"""A table of one's own as the micro law: its curves, its range, its mistakes, and how a study uses it."""
+
+import pickle
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+import study
+from solver import Problem, Status, laws, solve
+from solver.laws import own_table
+from study.spec.definition import from_tables
+from study.store.keys import case_keys
+from study.work.cases import compute, parcel
+
+ASPERITIES = {"Nbar": 250_000.0, "Ra": 0.004}
+CASE = {"h": 0.02, "n": 0.5, "x": 3}
+HEAD = "p,A,lam,p_max\n"
+ROWS = ["0.001,1,0.01,0.1", "0.002,2,0.02,0.2", "0.003,3,0.03,0.3", "0.004,4,0.04,0.4", "0.005,5,0.05,0.5"]
+
+
+@pytest.fixture
+def table(tmp_path, monkeypatch):
+    """Writes mine.csv in an empty folder, the current one: of the disc cell, or a text."""
+    monkeypatch.chdir(tmp_path)
+
+    def write(text=None, noise=0.0):
+        if text is None:
+            p = np.geomspace(1e-5, 0.3, 40)
+            spots = laws.LAWS["disc_cell"].at(p, 1.0, **ASPERITIES)
+            wave = 1 + noise * np.sin(37 * np.arange(40))
+            rows = zip(p, spots.A * wave, spots.lam, spots.p_max, strict=True)
+            text = "# of the disc cell\n" + HEAD + "".join(",".join(map(repr, map(float, row))) + "\n" for row in rows)
+        (tmp_path / "mine.csv").write_text(text, encoding="utf-8")
+        return "table:mine.csv"
+
+    return write
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered", "auto"])
+def test_the_table_of_a_law_is_that_law(table, base):
+    """For every control, within the error that the table itself has, which is part of the model error."""
+    name = table()
+    error = own_table.read(name).error
+    assert 1e-6 < error < 1e-3
+    for control, value in (("P", [1e-6, 1e-5]), ("a", [0.02, 0.04]), ("D", [2e-4, 1e-3])):
+        found = study.solve(**CASE, **{control: value}, base=base, micro=name)
+        disc = study.solve(**CASE, **{control: value}, base=base, micro="disc_cell", **ASPERITIES)
+        assert (found.status == 0).all() and (found.error <= 1e-6).all()
+        for quantity in {"a", "P", "D", "p0", "p_max", "Ar_An", "A0"} - {control}:
+            assert_allclose(found[quantity], disc[quantity], rtol=2 * error, atol=0)
+        assert_allclose(found.model_error, disc.model_error + error, rtol=1e-3, atol=0)
+        assert_allclose(found.nodes_used, disc.nodes_used, rtol=0.5)
+
+
+def test_noise_is_smoothed_and_said(table):
+    name = table(noise=0.01)
+    law = own_table.read(name)
+    assert 0.003 < law.error < 0.03
+    p = np.geomspace(1e-5, 0.3, 500)
+    assert (np.diff(law.at(p, 1.0).A) > 0).all()
+    found = study.solve(P=1e-5, **CASE, micro=name)
+    assert found.status == 0 and found.model_error == law.error
+
+
+@pytest.mark.parametrize("rows", [7, 10, 20])
+def test_the_error_covers_what_is_between_few_rows(rows):
+    def disc(p):
+        return laws.LAWS["disc_cell"].at(p, 1.0, **ASPERITIES)
+
+    rows, between = np.geomspace(1e-5, 0.03, rows), np.geomspace(1e-5, 0.03, 300)
+    law = own_table.of_columns("table:few.csv", rows, *disc(rows))
+    truth = max(np.abs(found / true - 1).max() for found, true in zip(law.at(between, 1.0), disc(between), strict=True))
+    assert truth < law.error < 10 * truth
+
+
+def test_outside_its_range(table):
+    """p(0) below the first row, pressures above the last one; in any units."""
+    problem = {"h": 0.02, "n": 0.5, "base": ["half_space", "layered", "auto"], "micro": table()}
+    for P, status in ((1e-13, Status.OUTSIDE_LAW), (1e-5, Status.CONVERGED), (1.0, Status.OUTSIDE_LAW)):
+        found = solve(Problem.of(P=P * 4e9, **problem | {"h": 0.04}, R=2.0, E2=1e9))
+        assert found.status.tolist() == [status] * 3
+        for name in ("a", "D", "p0", "p_max", "Ar_An", "error", "model_error"):
+            assert np.isnan(getattr(found, name)).all() == (status != 0)
+        assert_allclose(found.P, P * 4e9)
+
+
+def test_on_a_rigid_base(table):
+    """There E1* is the unit of pressure."""
+    given = {"P": 1e-5, "h": 0.02, "n": 0.0, "base": ["thin_layer", "layered"]}
+    found = solve(Problem.of(**given, micro=table()))
+    disc = solve(Problem.of(**given, micro="disc_cell", **ASPERITIES))
+    assert (found.status == 0).all()
+    assert_allclose(found.a, disc.a, rtol=1e-4)
+
+
+def test_the_edge_goes_on_as_the_first_rows(table):
+    law = own_table.read(table())
+    p = np.array([1e-9, 1e-7, 1e-5])
+    slope = np.diff(np.log(law.at(p, 1.0).A)) / np.diff(np.log(p))
+    assert_allclose(slope, law.edge()[1], rtol=2e-3)
+
+
+WRONG = {
+    "": "column p: the heading must have it once, with p, A, lam, p_max",
+    "p,A,lam\n": "column p_max: the heading must have it once, with p, A, lam, p_max",
+    HEAD + "1,1,1,2\n": "has 1 rows: must have at least 5",
+    "\n".join([HEAD, *ROWS[:3], "0.004,4,0.04", ROWS[4]]): "row 4: has 3 cells, the heading 4",
+    "\n".join([HEAD, *ROWS[:3], "0.004,four,0.04,0.4", ROWS[4]]): 'column A, row 4: "four": must be a finite number',
+    "\n".join([HEAD, *ROWS[:3], "0.004,4,0.04,inf", ROWS[4]]): 'column p_max, row 4: "inf": must be a finite number',
+    "\n".join([HEAD, *ROWS[:3], "-1,4,0.04,1", ROWS[4]]): 'column p, row 4: "-1": must be a finite number > 0',
+    "\n".join([HEAD, *ROWS[:3], "0.003,4,0.04,1", ROWS[4]]): "column p, row 4: 0.003: must be larger than that of the",
+    "\n".join([HEAD, *ROWS[:3], "0.004,3,0.04,1", ROWS[4]]): "column A, row 4: 3: must be larger than that of the row",
+    "\n".join([HEAD, *ROWS[:3], "0.004,4,0.02,1", ROWS[4]]): "column lam, row 4: 0.02: must not be smaller than that",
+    "\n".join([HEAD, *ROWS[:4], "0.005,5,1.05,0.5"]): "column lam, row 5: 1.05: must be at most 1",
+    "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.004"]): "column p_max, row 5: 0.004: must be larger than p",
+    "\n".join(
+        [HEAD, *ROWS[:4], "0.005,50,0.05,0.5"]
+    ): " % off a smooth curve through the other rows: at most 5 % are allowed",
+}
+
+
+@pytest.mark.parametrize(("text", "expected"), WRONG.items(), ids=list(WRONG.values()))
+def test_mistakes(table, text, expected):
+    """One message, with file, column and row, before anything is solved."""
+    with pytest.raises(study.StudyError) as error:
+        study.solve(P=1e-5, **CASE, micro=table(text))
+    (message,) = error.value.messages
+    assert message.startswith("solve: micro: mine.csv: ") and expected in message
+
+
+def test_files_that_cannot_be_read(table):
+    for name, words in (("table:none.csv", "none.csv: cannot be read: No such"), ("table:a b.csv", "has a blank")):
+        with pytest.raises(study.StudyError, match=words):
+            study.solve(P=1e-5, **CASE, micro=name)
+
+
+def test_keys_carry_the_numbers(table):
+    """Not the words: a comment changes nothing, a number all."""
+    tables = {"model": {"h": 0.02, "n": 0.5, "P": 1e-5}, "axes": {"micro": [table(), "smooth"]}}
+    found = []
+    text = HEAD + "\n".join(ROWS)
+    for changed in (text, "# the same\n" + text, text.replace("0.004,4,", "0.00401,4,")):
+        table(changed)
+        definition = from_tables(tables, "mine", "", "mine.toml")
+        found.append((definition.digest, case_keys(definition.grid).tolist()))
+    assert found[0] == found[1] and found[0][0] != found[2][0]
+    assert found[0][1][0] != found[2][1][0] and found[0][1][1] == found[2][1][1]
+
+
+def test_it_travels_with_its_cases(table):
+    """To a process that has not read it, and may not be able to."""
+    definition = from_tables({"model": {"h": 0.02, "n": 0.5, "P": 1e-5, "micro": table()}}, "mine", "", "mine.toml")
+    sent = pickle.dumps(parcel(definition, np.arange(1)))
+    del laws.LAWS["table:mine.csv"]
+    laws._declare(laws.LAWS)
+    assert compute(pickle.loads(sent))["status"] == 0

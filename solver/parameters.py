@@ -7,7 +7,6 @@ import numpy as np
 
 BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto")
-SCHEMES = ("newton", "picard")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
 
@@ -55,8 +54,8 @@ CONTROL = {
     "D": Parameter(interval="[1e-18, 1e3]"),
 }
 
-#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`. Units are
-#: said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out (study/store/keys.py): whoever changes a
+#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`; those of
+#: `scheme` are in `schemes`. Units are said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out (study/store/keys.py): whoever changes a
 #: default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
@@ -69,7 +68,7 @@ PARAMETERS = {
     "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),
     "model_check": Parameter("closed_form", MODEL_CHECKS, needed_by=("base", ("thin_layer",))),
     "micro": Parameter("disc_cell"),
-    "scheme": Parameter("newton", SCHEMES),
+    "scheme": Parameter("newton"),
     "k": Parameter(1.0, interval="[0, 1e6]", used_by=("scheme", ("picard",))),
     "rtol": Parameter(1e-6, interval="[1e-15, 1)"),
     "nodes": Parameter(0, whole=True, interval="[4, 256]", also=(0,)),

@@ -6,15 +6,13 @@ from itertools import product
 import numpy as np
 
 from .body import BODIES
-from .contact import adaptive, picard, smooth
-from .contact.answer import answer
+from .contact import smooth
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
 from .models.range_of_law import refuse_outside
-from .numerics.ladder import start_nodes
-from .numerics.mesh import mesh
 from .scaling import as_cases, dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch, without_springs
+from .schemes import SCHEMES
 from .solution import Solution
 from .status import Status
 from .threads import one_blas_thread
@@ -77,7 +75,10 @@ def _solved(given, x, invalid):
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
     for index, solver in _routes(problem, ~(invalid | no_springs)):
         pieces.append((index, solver(scaled.take(index), x)))
-    solution = _with_models(given, restore(Solution.join(*size, pieces), problem))
+    found = Solution.join(*size, pieces)
+    missed = (found.status == Status.CONVERGED) & ~(found.error <= problem.rtol)
+    found.status[missed] = Status.TOLERANCE_NOT_MET
+    solution = _with_models(given, restore(found, problem))
     return refuse_outside(given, solution)
 
 
@@ -87,17 +88,14 @@ def _routes(problem, solvable):
     yield from _route(solvable & judged, _judged)
     yield from _route(solvable & (problem.base == "auto"), _auto)
     solvable = solvable & ~judged & (problem.base != "auto")
-    is_smooth, by_picard = ~problem.rough(), problem.scheme == "picard"
+    is_smooth = ~problem.rough()
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
     iterated = solvable & (~is_smooth | (problem.base == "layered"))
-    for law, body in product(LAWS, BODIES):
-        of_law = iterated & (problem.micro == law) & (problem.base == body)
-        for limit in np.unique(problem.max_iterations[of_law]):
-            chosen = of_law & (problem.max_iterations == limit)
-            yield from _route(chosen & ~by_picard, _newton)
-            for nodes in np.unique(_picard_nodes(problem)[chosen & by_picard]):
-                yield from _route(chosen & by_picard & (_picard_nodes(problem) == nodes), _picard)
+    for law, body, scheme in product(LAWS, BODIES, SCHEMES):
+        chosen = iterated & (problem.micro == law) & (problem.base == body) & (problem.scheme == scheme)
+        for limit in np.unique(problem.max_iterations[chosen]):
+            yield from _route(chosen & (problem.max_iterations == limit), SCHEMES[scheme])
 
 
 def _route(mask, solver):
@@ -119,23 +117,6 @@ def _smooth_half_space(part, x):
 
 def _smooth_layer(part, x):
     return smooth.thin_layer(part.control, part.value, as_cases(part).body.C, part.rtol, part.nodes, x)
-
-
-def _newton(part, x):
-    return adaptive.solve_newton(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
-
-
-def _picard_nodes(problem):
-    return np.where(problem.nodes > 0, problem.nodes, start_nodes(problem.rtol))
-
-
-def _picard(part, x):
-    """Successive approximations on one mesh; their error is the distance to one Newton step on the next finer mesh."""
-    grid = mesh(int(_picard_nodes(part)[0]))
-    iterated, status = picard.solve(as_cases(part), grid, part.k, part.rtol, int(part.max_iterations[0]))
-    found = answer(iterated, x).solution
-    status = np.where(iterated.closed & (found.error > part.rtol), Status.TOLERANCE_NOT_MET, status)
-    return replace(found, status=status.astype(np.int8))
 
 
 def _with_models(problem, solution):

@@ -18,7 +18,7 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "laws", "body", "problem", "solution"),
-        *("contact", "scaling", "models", "solve"),
+        *("contact", "scaling", "schemes", "models", "solve"),
     ),
     "study": (
         *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),

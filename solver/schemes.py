@@ -1,0 +1,50 @@
+"""The schemes by which rough cases, and all on the exact layer, are solved. Each is one function."""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .contact import adaptive
+from .contact import picard as approximations
+from .contact.answer import answer
+from .numerics.ladder import start_nodes
+from .numerics.mesh import mesh
+from .parameters import PARAMETERS
+from .scaling import as_cases
+from .solution import Solution
+
+#: Name -> ``solve(part, x)``.
+SCHEMES = {}
+
+
+def scheme(solve):
+    """Decorator: make a function a scheme of its name, and the name a choice of the parameter `scheme`.
+
+    ``solve(part, x) -> Solution`` gets a :class:`~solver.problem.Problem` of one micro law, one body and one
+    `max_iterations`, in units R = E2* = 1, and the radii x (m,). ``as_cases(part)`` is the equation, of which
+    :mod:`solver.contact` has the residual and the derivatives; docs/extending.md shows one. A case whose error is above
+    its rtol is ``Status.TOLERANCE_NOT_MET``, whatever the scheme says.
+    """
+    SCHEMES[solve.__name__] = solve
+    PARAMETERS["scheme"] = PARAMETERS["scheme"]._replace(choices=tuple(SCHEMES))
+    return solve
+
+
+@scheme
+def newton(part, x):
+    """Newton's method, on the mesh that meets rtol."""
+    return adaptive.solve_newton(as_cases(part), part.rtol, part.nodes, int(part.max_iterations[0]), x)
+
+
+@scheme
+def picard(part, x):
+    """The paper's successive approximations on one mesh, of `nodes` or of as many as rtol is likely to need. Their error is
+    the distance to one Newton step on the next finer mesh."""
+    nodes = np.where(part.nodes > 0, part.nodes, start_nodes(part.rtol))
+    groups = [(n, np.flatnonzero(nodes == n)) for n in np.unique(nodes).tolist()]
+    return Solution.join(len(nodes), len(x), [(i, _approximated(part.take(i), mesh(n), x)) for n, i in groups])
+
+
+def _approximated(part, grid, x):
+    iterated, status = approximations.solve(as_cases(part), grid, part.k, part.rtol, int(part.max_iterations[0]))
+    return replace(answer(iterated, x).solution, status=status)

@@ -1,0 +1,36 @@
+"""A scheme of somebody else's: what docs/extending.md says, done as it stands there."""
+
+import re
+
+import pages
+import pytest
+from numpy.testing import assert_allclose
+from solver_cases import MAIN
+
+from solver import Problem, Status, schemes, solve
+from solver.parameters import PARAMETERS
+
+_, SECTION = pages.read("docs/extending.md").split("\n## A scheme\n")
+(CODE,) = re.findall(r"^```python\n(.*?)^```", SECTION, re.DOTALL | re.MULTILINE)
+
+
+@pytest.fixture(autouse=True)
+def one_mesh():
+    """The scheme of the page, for one test."""
+    before, choices = dict(schemes.SCHEMES), PARAMETERS["scheme"]
+    exec(CODE, {})
+    yield
+    schemes.SCHEMES.clear()
+    schemes.SCHEMES.update(before)
+    PARAMETERS["scheme"] = choices
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
+def test_a_scheme_of_ones_own(base):
+    """The numbers of Newton on as many nodes; one that is not as accurate as asked for says so."""
+    case = MAIN | {"a": [0.02, 0.04], "base": base}
+    own = solve(Problem.of(**case, scheme="one_mesh", rtol=[1e-6, 1e-14]))
+    newton = solve(Problem.of(**case, nodes=32))
+    assert own.status.tolist() == [Status.CONVERGED, Status.TOLERANCE_NOT_MET]
+    assert_allclose(own.P, newton.P, rtol=1e-11, atol=0)
+    assert own.error[1] > 1e-14

@@ -54,9 +54,9 @@ CONTROL = {
     "D": Parameter(interval="[1e-18, 1e3]"),
 }
 
-#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`; those of
-#: `scheme` are in `schemes`. Units are said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out (study/store/keys.py): whoever changes a
-#: default changes `NUMERICS_VERSION`.
+#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`; `schemes`
+#: does so with those of `scheme`. Units are said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out
+#: (study/store/keys.py): whoever changes a default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
     "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base

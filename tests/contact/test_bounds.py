@@ -20,7 +20,7 @@ USED = {
     "Ra": (1e-5, 0.1),
     "Nbar": (1e-4, 1e16), "B": (1e-6, 100.0), "beta": (0.022, 1.0), "k": (0.0, 50.0), "nodes": (4, 256),
     "rtol": (1e-12, 0.1), "R": (1e-300, 1e300), "E2": (1e-300, 1e300), "nu1": (-0.9, 0.5), "nu2": (-0.9, 0.5),
-    "accuracy": (1e-6, 0.5), "max_iterations": (1, 100_000),
+    "accuracy": (1e-6, 0.5), "max_iterations": (1, 100_000), "sigma": (0.0, 1.0), "cut": (3.0, 5.0),
 }  # fmt: skip
 BOUNDS = {name: ends(own.interval)[:2] for name, own in (CONTROL | PARAMETERS).items() if own.interval}
 X = np.linspace(0.0, 1.0, 5)
@@ -52,8 +52,9 @@ def just_outside(name):
 
 
 #: Powers of R = 2 and E2 = 4, which scale without rounding.
-UNITS = {"P": 16.0, "a": 2.0, "D": 2.0, "h": 2.0, "Ra": 2.0, "Nbar": 0.25}
-CASE = MAIN | {"base": "auto", "micro": "power_law", "R": 2.0, "E2": 4.0}
+UNITS = {"P": 16.0, "a": 2.0, "D": 2.0, "h": 2.0, "Ra": 2.0, "Nbar": 0.25, "sigma": 2.0}
+CASE = MAIN | {"base": "auto", "R": 2.0, "E2": 4.0}
+HEIGHTS = ("sigma", "cut")
 
 
 @pytest.mark.parametrize("name", BOUNDS)
@@ -63,7 +64,8 @@ def test_a_number_is_allowed_up_to_its_bounds(name):
     inside = [low if with_low else 0.1, high if with_high else 0.1, *(CONTROL | PARAMETERS)[name].also]
 
     def problem(values):
-        case = ({} if name in CONTROL else {"P": LOAD}) | CASE | {name: values}
+        law = "normal_heights" if name in HEIGHTS else "power_law"
+        case = ({} if name in CONTROL else {"P": LOAD}) | CASE | {"micro": law, "sigma": 1e-4, "cut": 4.0, name: values}
         return Problem.of(**{key: np.multiply(v, UNITS[key]) if key in UNITS else v for key, v in case.items()})
 
     allowed = problem(inside)

@@ -155,7 +155,7 @@ def test_names_and_numbers_of_labels(found):
     wanted = {"h": "$h/R$", "Nbar": "$\\bar N\\,R^2$", "n": "$n$", "dP_dD": "$(dP/dD)/(E_2^*\\,R)$", "x": "$r/a$"}
     assert {name: axis_label(name, found[name]) for name in wanted} == wanted
     assert axis_label("iterations", found["iterations"]) == "iterations"
-    assert axis_label("a", study.to_physical(found, R=0.01, E2_star=2e11)["a"]) == "$a$, um"
+    assert axis_label("a", study.to_physical(found, R=0.01, E2_star=2e11)["a"]) == "$a$, µm"
     numbers = {0.02: "0.02", 250000.0: "250000", 2.7040777e-5: "$2.704\\times10^{-5}$", 1e-6: "$10^{-6}$"}
     assert {value: written(value) for value in numbers} == numbers
 

@@ -53,32 +53,33 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     return flags
 
 
-def validity_of(v: Mapping) -> xr.Variable:
-    """:func:`validity` of the variables of a dataset: a DataArray compares its coordinates at every step, 20 ms in
-    all."""
+def validity_of(variables: Mapping) -> xr.Variable:
+    """:func:`validity` of the variables of a dataset, in arithmetic of arrays: that of xarray takes as long as a
+    contact."""
+    status, used = variables["status"], variables["model_used"].attrs
+    v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
+    models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
+    thin = sum(v["model_used"] == value for value, word in models if word.endswith("thin_layer")) > 0
     violated = {
-        1: _used_a_thin_layer(v["model_used"]) & (v["model_error"] > NOT_THIN),
+        1: thin & (v["model_error"] > NOT_THIN),
         2: rough & (_spots(v) < FEW_SPOTS),
         4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _smeared(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
     }
-    none = xr.zeros_like(v["status"], dtype=np.int32)
-    flags = sum((np.int32(mask) * where for mask, where in violated.items()), none)
-    flags.attrs = attributes("validity") | {
-        "flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32),
-        "flag_meanings": " ".join(ASSUMPTIONS.values()),
-    }
-    return flags
+    flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
+    masks = {"flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+    return xr.Variable(status.dims, flags, attributes("validity") | masks)
 
 
-def _used_a_thin_layer(model_used: xr.Variable) -> xr.Variable:
-    words = zip(model_used.attrs["flag_values"], model_used.attrs["flag_meanings"].split(), strict=True)
-    return sum(model_used == value for value, word in words if word.endswith("thin_layer")) > 0
+def _along(dims: tuple, variable: xr.Variable):
+    """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
+    own = variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
 
 
 def nominal_area(dataset: xr.Dataset) -> xr.DataArray:
@@ -166,7 +167,7 @@ def _spot_radius(values):
 
 def _given(values, name: str):
     """A parameter of a dataset, or of its variables; NaN when the study does not have it."""
-    return values.get(name, xr.Variable((), np.nan))
+    return values.get(name, np.nan)
 
 
 def named(array: xr.DataArray, name: str) -> xr.DataArray:

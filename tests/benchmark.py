@@ -61,6 +61,26 @@ def problem(micro: str, base: str, rtol: float, size: int = CASES) -> Problem:
     )
 
 
+def coatings(size: int) -> Problem:
+    """Random coatings on the exact layer: n from 1e-3 to 1e3, both interfaces, ν up to 0.49."""
+    random = np.random.default_rng(2)
+
+    def between(low, high):
+        return np.exp(random.uniform(np.log(low), np.log(high), size))
+
+    return Problem.of(
+        P=between(1e-7, 1e-3),
+        Ra=random.choice([0.002, 0.004, 0.008], size),
+        Nbar=250_000.0,
+        n=between(1e-3, 1e3),
+        h=between(1e-3, 0.5),
+        nu1=random.uniform(0, 0.49, size),
+        nu2=random.uniform(0, 0.49, size),
+        bonding=random.choice(["frictionless", "bonded"], size),
+        rtol=1e-6,
+    )
+
+
 def processor_seconds(action) -> float:
     """Processor time of one run."""
     start = time.process_time()
@@ -95,17 +115,23 @@ def speed() -> list[dict]:
     random = np.random.default_rng(0)
     matrices = random.standard_normal((SYSTEMS, ORDER, ORDER)) + ORDER * np.eye(ORDER)
     right = random.standard_normal((SYSTEMS, ORDER, 1))
+
+    def row(cases, size):
+        """One row of a problem of `size` cases, by turns with the linear systems."""
+        times = by_turns(lambda: solve(cases, X), lambda: np.linalg.solve(matrices, right))
+        rate, systems = (size, SYSTEMS) / times
+        solution = solve(cases, X)
+        found = {"cases_per_second": rate, "r": rate / systems, "systems_17_per_second": systems}
+        found |= {"converged": float(np.mean(solution.status == Status.CONVERGED))}
+        return found | {"largest_error": float(np.nanmax(solution.error))}
+
     rows = []
     for micro, base in product(("smooth", "disc_cell"), ("thin_layer", "layered")):
         for rtol in (1e-3, 1e-6, 1e-9):
-            cases = problem(micro, base, rtol)
-            times = by_turns(lambda cases=cases: solve(cases, X), lambda: np.linalg.solve(matrices, right))
-            rate, systems = (CASES, SYSTEMS) / times
-            solution = solve(cases, X)
-            row = {"micro": micro, "base": base, "rtol": rtol, "cases_per_second": rate, "r": rate / systems}
-            row |= {"systems_17_per_second": systems}
-            row |= {"converged": float(np.mean(solution.status == Status.CONVERGED))}
-            rows.append(row | {"largest_error": float(np.nanmax(solution.error))})
+            rows.append({"micro": micro, "base": base, "rtol": rtol} | row(problem(micro, base, rtol), CASES))
+    for size in (4000, 100):
+        kind = {"micro": "disc_cell", "base": f"coatings {size}", "rtol": 1e-6}
+        rows.append(kind | row(coatings(size), size))
     return rows
 
 
@@ -196,10 +222,10 @@ def measure() -> dict:
 def report(result: dict) -> None:
     """Print the tables."""
     print(f"{result['systems_17_per_second']:.3g} systems of 17 x 17 per second (numpy.linalg.solve, stacked)")
-    print(f"{'micro law':<10} {'base':<10} {'rtol':>6} {'cases/s':>9} {'r':>7} {'converged':>9} {'largest error':>13}")
+    print(f"{'micro law':<10} {'base':<13} {'rtol':>6} {'cases/s':>9} {'r':>7} {'converged':>9} {'largest error':>13}")
     for row in result["rows"]:
         print(
-            f"{row['micro']:<10} {row['base']:<10} {row['rtol']:>6.0e} {row['cases_per_second']:>9.3g} {row['r']:>7.4f}"
+            f"{row['micro']:<10} {row['base']:<13} {row['rtol']:>6.0e} {row['cases_per_second']:>9.3g} {row['r']:>7.4f}"
             f" {row['converged']:>9.2%} {row['largest_error']:>13.1e}"
         )
     for micro, ratio in result["layered_over_thin"].items():

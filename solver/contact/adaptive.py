@@ -42,8 +42,9 @@ def solve_newton(cases, rtol, nodes, limit, x):
         error = np.where(free[index] & found.unsure, np.inf, found.solution.error)
         return np.where(useless, np.nan, error), found.finer, found._replace(finer=None)
 
-    first, order = first_rung(nodes_wanted(cases, rtol)), cases.body.order(guess_radius(cases))
-    found = _together(climb(rtol, nodes, on_mesh, first, order), size, len(x))
+    a = guess_radius(cases)
+    rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
+    found = _together(rungs, size, len(x))
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
     missed = closed & ((found.solution.error > rtol) | (free & found.unsure))
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(cases, found, rtol)) & free & (limit == 0)

@@ -74,10 +74,10 @@ def approach(cases, grid):
     return evaluate(cases, State(interpolate(ev, grid.s, 1e-2), ev.state.eta), grid, ev.operator)
 
 
-def nodes_wanted(cases, rtol):
+def nodes_wanted(cases, rtol, a):
     """Number of nodes (B,) that just about meet rtol (B,), as random samples have it: the fewer, the wider the layer at
-    the edge in which the asperities yield more than the body; of a smooth punch, the thicker the layer."""
-    a = guess_radius(cases)
+    the edge in which the asperities yield more than the body; of a smooth punch, the thicker the layer. a (B,):
+    :func:`guess_radius`."""
     if not cases.law.rough:
         return cases.body.first_nodes(rtol, a, None)
     q = guess_pressure(cases, a, np.ones(1))

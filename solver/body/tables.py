@@ -152,7 +152,7 @@ def between(grid, octave, stiffness, x):
     return (_between_kept if small else _between_kept.__wrapped__)(*key)
 
 
-@lru_cache(maxsize=256)
+@lru_cache(maxsize=600)
 def _between_kept(grid, octave, stiffness, x_bytes):
     tab = table(grid, octave, stiffness)
     return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]

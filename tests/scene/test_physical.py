@@ -25,8 +25,11 @@ def test_a_scene_is_the_dimensionless_contact_in_si():
     found = quiet(**COATED, P=["1 N", "10 N"], x=3)
     loads = [P / (E2_STAR * R**2) for P in (1.0, 10.0)]
     inside = study.solve(P=loads, h=2e-6 / R, n=E1_STAR / E2_STAR, nu1=0.25, nu2=0.3, micro="smooth", x=3)
-    for name, scale in (("a", R), ("D", R), ("p0", E2_STAR), ("p", E2_STAR), ("dP_dD", E2_STAR * R), ("error", 1.0)):
-        np.testing.assert_allclose(found[name].values, inside[name].values * scale, rtol=1e-12, err_msg=name)
+    for name, scale in (("a", R), ("D", R), ("p0", E2_STAR), ("p", E2_STAR), ("dP_dD", E2_STAR * R)):
+        # the last digits of P and h differ, and the iteration closes at a residual of 1e-13
+        np.testing.assert_allclose(found[name].values, inside[name].values * scale, rtol=1e-11, atol=0, err_msg=name)
+    # the difference of numbers that agree to 1e-8
+    np.testing.assert_allclose(found.error, inside.error, rtol=0, atol=1e-12)
     assert found.P.values.tolist() == [1.0, 10.0] and float(found.h) == 2e-6 and float(found.E1) == 200e9
     units = {name: found[name].attrs["units"] for name in ("P", "a", "p0", "dP_dD", "h", "E1", "R")}
     assert units == {"P": "N", "a": "m", "p0": "Pa", "dP_dD": "N/m", "h": "m", "E1": "Pa", "R": "m"}

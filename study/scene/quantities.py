@@ -106,8 +106,9 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     size = _size(plain[2], unit) if plain else None
     if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):
         return value
+    registry = _registry()
     try:
-        found = _registry().Quantity(text)
+        found = registry.Quantity(text)
     except Exception as error:  # pint raises of many kinds
         raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
@@ -123,8 +124,9 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
 @lru_cache(maxsize=256)
 def _size(word: str, unit: str) -> Decimal | None:
     """A unit such as "um" or "1/mm^2" in the SI `unit`; None if it is none, or one of something else."""
+    registry = _registry()  # where pint itself does not work, nobody's unit is to blame
     try:
-        found = _registry().Quantity(word).to(_pint_name(unit)).magnitude
+        found = registry.Quantity(word).to(_pint_name(unit)).magnitude
     except Exception:  # the whole text will be read, and what is wrong with it said
         return None
     return found if isinstance(found, Decimal) and unit != "1" else None

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Status
+from solver.laws import LAWS
 
 from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
 from .physical.bodies import BODIES
@@ -17,7 +18,7 @@ SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _OF_ASPERITIES = ("p_max", "Ar_An")
 INPUTS = (
     *("R1", "R2", "R", "punch", "E_punch", "nu_punch", "layer", "E1", "nu1", "body", "E2", "nu2", "n", "m", "h"),
-    *("bonding", "Nbar", "Ra", "B", "beta"),
+    *("bonding", "micro", "Nbar", "Ra", "B", "beta", "sigma", "cut"),
 )
 MODELS = {
     "half_space": "a half-space under the asperities",
@@ -109,15 +110,16 @@ def _is_rigid(case: xr.Dataset, body: str) -> bool:
 def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
     """Whether a parameter has a value that the case uses."""
     value = case[name].values
-    of_the_rigid = {"nu_punch": "punch", "punch": "punch", "nu2": "base", "body": "base"}
+    of_the_rigid = {"m": "punch", "nu_punch": "punch", "punch": "punch", "nu2": "base", "body": "base"}
     if name in of_the_rigid and _is_rigid(case, of_the_rigid[name]) or name == "n" and _is_rigid(case, "base"):
         return False
     if name == "R" and "R1" in case:
         return False
-    if name in ("Nbar", "Ra"):
+    if name in ("micro", "Nbar", "Ra"):
         return rough
-    if name in ("B", "beta"):
-        return str(case["micro"].values) == "power_law"
+    if name in ("B", "beta", "sigma", "cut"):
+        law = LAWS.get(str(case["micro"].values))
+        return law is not None and name in law.parameters
     if name in ("layer", "E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
         return False
     if name in ("n", "m") and "E2" in case:
@@ -131,7 +133,7 @@ def _given(case: xr.Dataset, name: str) -> str:
         return str(name)
     value = case[name].values[()]
     if isinstance(value, (str, np.str_)):
-        return f"{name} of {value}" if name in BODIES else str(value)
+        return f"{name} of {value}" if name in BODIES else str(value).replace("_", " ")
     text = f"{name} = {_text(case, name, float(value), _spread(case, name))}"
     unit = " Ra/E1*^beta" if name == "B" else ""
     return text + unit + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
@@ -176,7 +178,9 @@ def _sentences(case: xr.Dataset) -> list[str]:
     model = MODELS.get(_word(case["model_used"]))
     if model:
         error = float(case["model_error"])
-        errs = f"; against the exact layered contact it errs by about {error:.1%}" if error > 0 else ""
+        exact = _word(case["model_used"]) in ("half_space", "layered")  # then it is the micro law that is not
+        against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
+        errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.")
     broken = doubts(case)
     found += [f"Beware: {sentence}" for sentence in broken]

@@ -3,8 +3,8 @@
     python tests/benchmark_engine.py [REPEATS [THOUSANDS]]
 
 For each, seconds until both workers have given a first answer, and wall and processor time of a run of so many
-thousand thin rough cases, 200 by default. Each measurement is a process of its own. `study/work/processes.py` says what
-was found.
+thousand thin rough cases, 200 by default. Each measurement is a process of its own. The module
+`study.work.processes` says what was found.
 """
 
 import os

@@ -21,11 +21,13 @@ FILM = OCTAVES[0] - 1
 #: Widest panel in k: wider ones would need Gauss rules that are slow to make.
 _WIDEST = 200.0
 #: Largest n of each class of stiffness, and how many dyadic panels towards k = 0 its quadrature has. A stiff layer is a
-#: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: the first panel ends below 0.15/n.
+#: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: beyond the first class the first panel
+#: ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
 #: Number of few nodes of each class: at most so many are needed in any octave.
 _FEW = (52, 90, 104, 104)
-#: Random layers from whose L - 1 and u dL/du the few nodes are found, and what is left out of them, over the largest.
+#: Number of random layers from whose L - 1 and u dL/du the few nodes are found; and at most what is left out of these
+#: functions, over the largest of them: rounding.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 
 

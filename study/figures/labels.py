@@ -6,12 +6,14 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
+from ..scene import quantities
 from ..scene.quantities import READABLE, readable
 from ..spec.vocabulary import VOCABULARY
 
 SYMBOLS = {
     "P": "P", "a": "a", "D": "D", "h": "h", "n": "n", "m": "m", "nu1": r"\nu_1", "nu2": r"\nu_2", "Nbar": r"\bar N",
-    "Ra": "R_a", "B": "B", "beta": r"\beta", "k": "k", "p0": "p(0)", "p_max": r"p_{\max}", "Ar_An": "A_r/A_n",
+    "Ra": "R_a", "B": "B", "beta": r"\beta", "sigma": r"\sigma", "k": "k",
+    "p0": "p(0)", "p_max": r"p_{\max}", "Ar_An": "A_r/A_n",
     "A0": "A[p(0)]", "dP_dD": "dP/dD", "lam0": r"\lambda(0)", "p": "p", "lam": r"\lambda", "An": "A_n",
     "An_ratio": r"A_n/(\pi a_0^2)", "p_mean": "P/A_n", "spots": r"\bar N A_n", "b0": "b(0)",
     "p_peak": r"p_{\mathrm{peak}}", "E_eff": r"E_{\mathrm{eff}}", "x": "r/a", "R": "R", "E1": "E_1", "E2": "E_2",
@@ -20,7 +22,7 @@ SYMBOLS = {
 """Names -> symbols in mathtext; what has none is called by its name."""
 OF_LAYERS, OF_ASPERITIES, OF_POWER_LAW = ("h", "n", "bonding"), ("Nbar", "Ra"), ("B", "beta")
 STATED = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "P", "a", "D", "h", "n", "m", "bonding", "Nbar", "Ra",
-          "B", "beta")  # fmt: skip
+          "B", "beta", "sigma", "cut")  # fmt: skip
 """Parameters that a figure states, in this order, where it has one value of them."""
 UNITS = {"B": r"R_a/E_1^{*\beta}"}
 """Units of what has no scale in E2* and R."""
@@ -36,9 +38,7 @@ def multiple(array: xr.DataArray) -> tuple[str, float]:
     unit = array.attrs.get("units", "1")
     if unit not in READABLE or unit == "1":
         return "" if unit == "1" else unit, 1.0
-    largest = np.nanmax(np.abs(array.values), initial=0.0)
-    multiples = READABLE[unit][1]
-    return next(((name, size) for name, size in multiples if largest >= size), multiples[-1])
+    return quantities.multiple(np.nanmax(np.abs(array.values), initial=0.0), unit)
 
 
 def axis_label(name: str, array: xr.DataArray) -> str:

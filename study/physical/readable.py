@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..data.units import DONE
-from ..scene.quantities import READABLE
+from ..scene.quantities import READABLE, multiple
 
 
 def readable(dataset: xr.Dataset) -> xr.Dataset:
@@ -23,17 +23,10 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
         unit = variable.attrs.get("units", "1")
         if unit not in READABLE or unit == "1" or variable.dtype.kind != "f":
             continue
-        word, size = _multiple(owner.values, unit)
+        finite = np.abs(owner.values[np.isfinite(owner.values)])
+        word, size = multiple(finite.max() if finite.size else np.inf, unit)
         found[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
     coords = {name: variable for name, variable in found.items() if name in dataset.coords}
     made = dataset.drop_vars(list(coords)).assign_coords(coords)
     made = made.assign({name: variable for name, variable in found.items() if name in dataset.data_vars})
     return made.assign_attrs({DONE: "readable multiples of SI units, by the attribute units"})
-
-
-def _multiple(values: np.ndarray, unit: str) -> tuple[str, float]:
-    """Name and size of the largest multiple that is no larger than the largest number."""
-    multiples = READABLE[unit][1]
-    sizes = np.abs(values[np.isfinite(values)])
-    most = sizes.max(initial=0.0)
-    return next(((word, size) for word, size in multiples if most >= size), multiples[0 if most == 0 else -1])

@@ -165,6 +165,13 @@ def _example(unit: str) -> str:
     return f"2 {multiples[min(1, len(multiples) - 1)][0]}"
 
 
+def multiple(largest: float, unit: str) -> tuple[str, float]:
+    """Name and size of the multiple of an SI unit, one of READABLE, in which numbers up to `largest` are read most
+    easily: the largest that is no larger, or the smallest."""
+    multiples = READABLE[unit][1]
+    return next(((name, size) for name, size in multiples if largest >= size), multiples[-1])
+
+
 def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> str:
     """A number in SI as text in the multiple that suits it: readable(2.5e-6, "m") is "2.5 µm"; with ± its spread.
 
@@ -173,8 +180,7 @@ def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> s
     """
     if not math.isfinite(value):
         return "unknown"
-    multiples = READABLE[unit][1]
-    name, size = next(((n, s) for n, s in multiples if abs(value) >= s), multiples[-1])
+    name, size = multiple(abs(value), unit)
     number, spread = value / size, spread / size
     if spread > _SURE * abs(number):
         places = max(0, 1 - math.floor(math.log10(spread)))  # two digits of the spread

@@ -119,9 +119,9 @@ class Draft:
             self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
         self._check_dimensions()
         for name in PARAMETERS:
-            default = VOCABULARY[name].own.default
-            if name not in self.sections and default is not None:
-                self.values[name] = (), np.array(default)
+            own = VOCABULARY[name].own
+            if name not in self.sections and own.default is not None and self._has_its_law(name):
+                self.values[name] = (), np.array(own.default)
         grid = self._grid()
         if not self.errors and wants_a_fit(grid):
             laws, errors = fitted(grid)
@@ -131,6 +131,11 @@ class Draft:
         if not self.errors:
             self.errors += missing_parameters(grid) + lost_scheme(grid) + ([] if self.physical else mixed_units(grid))
         return grid
+
+    def _has_its_law(self, name: str) -> bool:
+        """Whether some case has a law that a parameter belongs to, or it belongs to none."""
+        condition, laws = VOCABULARY[name].own.needed_by
+        return condition != "micro" or bool(np.isin(self.values["micro"][1], laws).any())
 
     def _grid(self) -> Grid:
         return Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)

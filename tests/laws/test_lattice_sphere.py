@@ -1,6 +1,7 @@
 """The two scales against one: a rough sphere on a half-space with every asperity resolved."""
 
 import numpy as np
+from conjugate_gradients import pressed
 from scipy import fft
 
 from solver import Problem, solve
@@ -29,26 +30,9 @@ def resolved():
     def displaced(p):
         return fft.irfft2(kernel * fft.rfft2(p, s=(2 * POINTS, 2 * POINTS)))[:POINTS, :POINTS]
 
-    p = np.where(np.hypot(x, y) < 0.8 * HALF, 1.0, 0.0)
-    p *= P / p.sum() / side**2
-    way, size, conjugate = np.zeros_like(p), 1.0, 0.0
-    for _ in range(300):
-        inside, gap = p > 0, displaced(p) + height
-        depth = gap[inside].mean()
-        gap -= depth
-        old_size, size = size, (gap[inside] ** 2).sum()
-        way = np.where(inside, gap + conjugate * size / old_size * way, 0.0)
-        change = displaced(way)
-        change -= change[inside].mean()
-        step = (gap * way)[inside].sum() / (change * way)[inside].sum()
-        old, p = p, np.maximum(p - step * way, 0.0)
-        returning = (p == 0) & (gap < 0)
-        conjugate = 0.0 if returning.any() else 1.0
-        p = np.where(returning, p - step * gap, p)
-        p *= P / p.sum() / side**2
-        if np.abs(p - old).sum() < 1e-5 * p.sum():
-            return depth, p.max()
-    raise AssertionError("conjugate gradients did not end")
+    start = np.where(np.hypot(x, y) < 0.8 * HALF, 1.0, 0.0)
+    depth, p = pressed(displaced, height, start, P / (2 * HALF) ** 2, 1e-5)
+    return depth, p.max()
 
 
 def test_a_sphere_with_sixty_spots():

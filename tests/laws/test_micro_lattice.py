@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from conjugate_gradients import pressed
 
 from solver.laws.disc_cell import contact_fraction, displacement, largest_pressure
 from study.data.derived import MERGING
@@ -27,24 +28,8 @@ def lattice(p, hexagonal):
     def displaced(q):
         return np.fft.irfft2(compliance * np.fft.rfft2(q), s=shape)
 
-    q, way, size, conjugate = np.full(shape, p), np.zeros(shape), 1.0, 0.0
-    for _ in range(500):
-        inside, gap = q > 0, displaced(q) + height
-        approach = gap[inside].mean()
-        gap -= approach
-        old_size, size = size, (gap[inside] ** 2).sum()
-        way = np.where(inside, gap + conjugate * size / old_size * way, 0.0)
-        change = displaced(way)
-        change -= change[inside].mean()
-        step = (gap * way)[inside].sum() / (change * way)[inside].sum()
-        old, q = q, np.maximum(q - step * way, 0.0)
-        returning = (q == 0) & (gap < 0)
-        conjugate = 0.0 if returning.any() else 1.0
-        q = np.where(returning, q - step * gap, q)
-        q *= p / q.mean()
-        if np.abs(q - old).mean() < 1e-7 * p:
-            return approach, (q > 0).mean(), q.max()
-    raise AssertionError("conjugate gradients did not end")
+    approach, q = pressed(displaced, height, np.ones(shape), p, 1e-7)
+    return approach, (q > 0).mean(), q.max()
 
 
 def deviations(p, hexagonal):

@@ -33,7 +33,7 @@ def test_the_model_error_is_in_the_plus_minus():
     size = {"GPa": 1e9, "MPa": 1e6}[spread[2]]
     total = found.p0 * np.hypot(found.error, found.model_error)
     assert float(spread[1]) * size == pytest.approx(total.item(), rel=0.06)
-    assert f"it errs by about {found.model_error.item():.1%}" in text
+    assert f"contact it errs by about {100 * found.model_error.item():.2g} %" in text
 
 
 def test_an_elastic_punch_is_no_rigid_one():
@@ -72,3 +72,17 @@ def test_every_flag_and_model_has_its_words():
     assert set(BROKEN) == set(ASSUMPTIONS.values())
     found = study.solve(P=1e-5, base="half_space", micro="smooth", x=2)
     assert set(MODELS) == set(found.model_used.attrs["flag_meanings"].split()) - {"none"}
+
+
+def test_the_micro_law_and_its_own_error():
+    found = study.solve(
+        P=1e-5, h=0.02, n=0.5, Nbar=250_000, Ra=0.004, micro=["square_lattice", "normal_heights"], sigma=1e-6
+    )
+    lattice, heights = (study.summary(found.isel(micro=i)) for i in (0, 1))
+    assert "frictionless, square lattice, Nbar" in lattice and "sigma" not in lattice
+    assert "the micro law itself errs by about 0.02 %" in lattice and "exact layered contact" not in lattice
+    assert "sigma = 1e-06 R, cut = 4" in heights and "itself errs" not in heights
+
+
+def test_a_parameter_that_no_case_has_is_no_coordinate():
+    assert "cut" not in study.solve(P=1e-5, h=0.02, n=0.5, Nbar=250_000, Ra=0.004, x=2).coords

@@ -1,0 +1,36 @@
+"""A rigid shape pressed on an elastic grid by conjugate gradients: Polonsky and Keer, Wear 231, 1999, 206."""
+
+import numpy as np
+
+#: Most steps; the tests take some 100.
+_STEPS = 500
+
+
+def pressed(displaced, height, p, mean, tolerance):
+    """Approach of the shape, and the pressure at the points of the grid, of its size.
+
+    displaced : displacement of the surface under a pressure
+    height : of the shape above its lowest point
+    p : pressure to begin with, of any size
+    mean : of the pressure over the grid, which is the load
+    tolerance : change of the pressure in a step, over it, that ends the search
+    """
+    p = p * mean / p.mean()
+    way, size, conjugate = np.zeros_like(p), 1.0, 0.0
+    for _ in range(_STEPS):
+        inside, gap = p > 0, displaced(p) + height
+        approach = gap[inside].mean()
+        gap -= approach
+        old_size, size = size, (gap[inside] ** 2).sum()
+        way = np.where(inside, gap + conjugate * size / old_size * way, 0.0)
+        change = displaced(way)
+        change -= change[inside].mean()
+        step = (gap * way)[inside].sum() / (change * way)[inside].sum()
+        old, p = p, np.maximum(p - step * way, 0.0)
+        returning = (p == 0) & (gap < 0)
+        conjugate = 0.0 if returning.any() else 1.0
+        p = np.where(returning, p - step * gap, p)
+        p *= mean / p.mean()
+        if np.abs(p - old).mean() < tolerance * mean:
+            return approach, p
+    raise AssertionError("conjugate gradients did not end")

@@ -6,20 +6,14 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
+from ..physical.names import SCENE
 from ..scene import quantities
 from ..scene.quantities import READABLE, readable
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import VOCABULARY, over_scale
 
-SYMBOLS = {
-    "P": "P", "a": "a", "D": "D", "h": "h", "n": "n", "m": "m", "nu1": r"\nu_1", "nu2": r"\nu_2", "Nbar": r"\bar N",
-    "Ra": "R_a", "B": "B", "beta": r"\beta", "sigma": r"\sigma", "k": "k",
-    "p0": "p(0)", "p_max": r"p_{\max}", "Ar_An": "A_r/A_n",
-    "A0": "A[p(0)]", "dP_dD": "dP/dD", "lam0": r"\lambda(0)", "p": "p", "lam": r"\lambda", "An": "A_n",
-    "An_ratio": r"A_n/(\pi a_0^2)", "p_mean": "P/A_n", "spots": r"\bar N A_n", "b0": "b(0)",
-    "p_peak": r"p_{\mathrm{peak}}", "E_eff": r"E_{\mathrm{eff}}", "x": "r/a", "R": "R", "E1": "E_1", "E2": "E_2",
-    "E_punch": r"E_{\mathrm{punch}}", "nu_punch": r"\nu_{\mathrm{punch}}",
-}  # fmt: skip
-"""Names -> symbols in mathtext; what has none is called by its name."""
+TIMES = r"\,"
+"""Between the factors of a product, in mathtext."""
+GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "π": r"\pi ", "σ": r"\sigma ", "²": "^2"}
 OF_LAYERS, OF_ASPERITIES, OF_POWER_LAW = ("h", "n", "bonding"), ("Nbar", "Ra"), ("B", "beta")
 STATED = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "P", "a", "D", "h", "n", "m", "bonding", "Nbar", "Ra",
           "B", "beta", "sigma", "cut")  # fmt: skip
@@ -30,7 +24,26 @@ UNITS = {"B": r"R_a/E_1^{*\beta}"}
 
 def symbol(name: str) -> str:
     """The symbol of a name: "$p_{\\max}$", or the name in words."""
-    return f"${SYMBOLS[name]}$" if name in SYMBOLS else name.replace("_", " ")
+    found = plain_symbol(name)
+    return f"${mathtext(found)}$" if found else name.replace("_", " ")
+
+
+def plain_symbol(name: str) -> str:
+    """The symbol of a name as the vocabulary has it, and those of a physical scene; "" if it has none."""
+    return VOCABULARY[name].symbol if name in VOCABULARY else name.replace("nu_", "ν_") if name in SCENE else ""
+
+
+def mathtext(plain: str) -> str:
+    """A symbol for matplotlib: "pmax" has an index, p_max, as E1 and Ra have; "N̄" a bar."""
+
+    def with_index(found: re.Match) -> str:
+        letter, index = found.groups()
+        word = r"\max" if index == "max" else rf"\mathrm{{{index}}}"
+        return f"{letter}_{index}" if len(index) == 1 else f"{letter}_{{{word}}}"
+
+    indexed = re.sub(r"([^\W\d_])_?([a-z]+|\d)", with_index, plain)
+    barred = re.sub("(.)\u0304", r"\\bar \1", indexed)
+    return re.sub(r" (?![A-Za-z])", "", "".join(GREEK.get(letter, letter) for letter in barred))
 
 
 def multiple(array: xr.DataArray) -> tuple[str, float]:
@@ -46,21 +59,9 @@ def axis_label(name: str, array: xr.DataArray) -> str:
     unit, _ = multiple(array)
     if unit:
         return f"{symbol(name)}, {unit}"
-    if not array.attrs.get("scale") or name not in SYMBOLS:
+    if not array.attrs.get("scale") or not plain_symbol(name):
         return symbol(name)
-    return f"${over_scale(SYMBOLS[name], VOCABULARY[name].powers)}$"
-
-
-def over_scale(text: str, powers: tuple[int, int]) -> str:
-    """A symbol over its scale E2*^i R^j, in mathtext."""
-    over, times = [], []
-    for word, power in zip(("E_2^*", "R"), powers, strict=True):
-        if power:
-            (over if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
-    text = rf"({text})" if "/" in text and over else text
-    text = "\\,".join([text, *times])
-    below = "\\,".join(over)
-    return text + (f"/({below})" if len(over) > 1 else f"/{below}" if over else "")
+    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, ('E_2^*', 'R'), TIMES)}$"
 
 
 def value_text(name: str, array: xr.DataArray, value) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..physical.names import SCENE
+from ..physical.told import in_order, told
 from ..scene import quantities
 from ..scene.quantities import READABLE, readable
 from ..spec.vocabulary import VOCABULARY, over_scale
@@ -14,10 +15,6 @@ from ..spec.vocabulary import VOCABULARY, over_scale
 TIMES = r"\,"
 """Between the factors of a product, in mathtext."""
 GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "π": r"\pi ", "σ": r"\sigma ", "²": "^2"}
-OF_LAYERS, OF_ASPERITIES, OF_POWER_LAW = ("h", "n", "bonding"), ("Nbar", "Ra"), ("B", "beta")
-STATED = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "P", "a", "D", "h", "n", "m", "bonding", "Nbar", "Ra",
-          "B", "beta", "sigma", "cut")  # fmt: skip
-"""Parameters that a figure states, in this order, where it has one value of them."""
 UNITS = {"B": r"R_a/E_1^{*\beta}"}
 """Units of what has no scale in E2* and R."""
 
@@ -83,21 +80,14 @@ def written(value: float) -> str:
 
 
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
-    """The parameters that have one value in all the datasets, each as `value_text`; those that no case uses are left
-    out, and so are axes, which the figure shows."""
-    datasets = list(datasets)
-    words = {name: _values(datasets, name) for name in ("base", "micro", "bonding")}
-    unused = set() if words["bonding"] == {"bonded"} or len(words["bonding"]) > 1 else {"nu1", "nu2"}
-    unused |= set(OF_LAYERS) if words["base"] == {"half_space"} else set()
-    unused |= set() if words["micro"] - {"smooth"} else set(OF_ASPERITIES)
-    unused |= set() if "power_law" in words["micro"] else set(OF_POWER_LAW)
-    unused |= {"n", "m"} if _values(datasets, "E2") else set()  # which follow from the moduli
-    found = []
-    for name in STATED:
+    """The inputs that have one value in all the datasets, each as `value_text`; those that no case uses are left out,
+    and so are axes, which the figure shows, and names."""
+    datasets, found = list(datasets), []
+    of_some = {name for dataset in datasets for name in told(dataset)}
+    for name in in_order():
         values = _values(datasets, name)
-        if len(values) != 1 or name in unused or (name == "m" and values == {0.0}):
+        if name not in of_some or len(values) != 1 or isinstance(value := values.pop(), str) and name != "bonding":
             continue
-        (value,) = values
         array = next(dataset[name] for dataset in datasets if name in dataset)
         found.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
     return found

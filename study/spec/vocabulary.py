@@ -154,6 +154,12 @@ def having(name: str, values) -> np.ndarray:
     return among(VOCABULARY[name].own.needed_by, values)
 
 
+def matters(name: str, values) -> bool:
+    """Whether the answer of some case may depend on a parameter; `values` as above, of many cases."""
+    own = VOCABULARY[name].own
+    return all(np.any(among(condition, values)) for condition in (own.needed_by, own.used_by))
+
+
 def attributes(name: str, rigid: bool = False) -> dict:
     """CF attributes of a dimensionless variable: long_name, and where they apply symbol, scale, equation.
 

@@ -6,6 +6,7 @@ import xarray as xr
 from solver import Status
 
 from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from .data.flags import broken, decode
 from .physical.bodies import BODIES
 from .physical.told import is_rigid, told
 from .scene.quantities import READABLE, readable
@@ -138,40 +139,33 @@ def _sure(case: xr.Dataset, name: str) -> str:
 def _sentences(case: xr.Dataset) -> list[str]:
     """How it was solved, and what the numbers rest on."""
     status = case["status"]
-    word = _word(status)
+    word, used = decode(status).item(), decode(case["model_used"]).item()
     if word == "converged":
         found = [f"Solved: the numbers are within a relative {float(case['error']):.1g} of the model's solution."]
     else:
         meaning = Status(int(status)).meaning if int(status) in list(Status) else "the case has not been computed"
         found = [f"NOT SOLVED ({word}): {meaning}."]
-    model = MODELS.get(_word(case["model_used"]))
+    model = MODELS.get(used)
     if model:
         error = float(case["model_error"])
-        exact = _word(case["model_used"]) in ("half_space", "layered")  # then it is the micro law that is not
+        exact = used in ("half_space", "layered")  # then it is the micro law that is not
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.")
-    broken = doubts(case)
-    found += [f"Beware: {sentence}" for sentence in broken]
-    if not broken and word == "converged":
+    beyond = doubts(case)
+    found += [f"Beware: {sentence}" for sentence in beyond]
+    if not beyond and word == "converged":
         found.append("None of the assumptions that are checked is violated (docs/model.md, Four answers).")
     return found
-
-
-def _word(flag: xr.DataArray) -> str:
-    """The word of a flag value."""
-    words = zip(np.atleast_1d(flag.attrs["flag_values"]).tolist(), flag.attrs["flag_meanings"].split(), strict=True)
-    return dict(words).get(int(flag), str(int(flag)))
 
 
 def doubts(contact: xr.Dataset) -> list[str]:
     """Sentences about the cases of a dataset that are beyond what the model describes; none: all is well."""
     v = contact.variables  # a DataArray compares its coordinates at every step, which takes longer than a contact
-    flags, values, found = v["validity"].attrs, v["validity"].values, []
-    for mask, word in zip(np.atleast_1d(flags["flag_masks"]), flags["flag_meanings"].split(), strict=True):
-        count = int(((values & mask) != 0).sum())
-        of_all = f"{count} of {values.size} cases: " if values.size > 1 else ""
-        found += [of_all + BROKEN[word]] if count else []
+    found = []
+    for word, where in broken(v["validity"]).items():
+        of_all = f"{where.sum()} of {where.size} cases: " if where.size > 1 else ""
+        found += [of_all + BROKEN[word]] if where.any() else []
     if {"Ra", "Nbar"} <= set(contact.coords) and (~np.isin(v["micro"].values, smooth_laws())).any():
         sharp = looks_like_iso_ra((v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values)
         found += [sharp] if sharp else []

@@ -12,7 +12,7 @@ DONE = "physical_scale"
 
 def reduced_modulus(E, nu):
     """E* = E/(1 - ν²), in the unit of E."""
-    return E / (1 - nu**2)
+    return E / (1 - nu * nu)  # a product is the same for one number and for an array of them, a power is not
 
 
 def factor(name: str, R: float, E2_star: float) -> float:

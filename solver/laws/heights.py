@@ -30,9 +30,9 @@ from .law import Curve, Law, inverse
 _POINTS = 24
 #: Most Newton steps on q, and the relative change that is the last: the next one would be below rounding.
 _STEPS, _LAST = 60, 1e-8
-#: σ/A* below which the summits that touch at the edge are as many as without a spread, to begin with.
+#: For σ/A* below this the first guess is that of equal heights.
 _ALIKE = 0.03
-#: y beyond which the highest summit fills its cell, but for a millionth: there nothing is looked for.
+#: Beyond this y the highest summit fills its cell but for a millionth; no solution is looked for there.
 _FULL = 1e3
 
 #: Standard deviation of the heights, in R, and the largest height above the mean over it.

@@ -28,9 +28,9 @@ _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 _SHARE = 0.3
 #: A panel is also resolved when they add less than this: for the smallest rtol the error of the operator is larger.
 _FLOOR = 1e-12
-#: Most work for one case: the sum of (nodes)² over its meshes of panels, the number of entries of the operators that are
-#: made for this case alone. It is not counted in seconds, so that it is the same on every machine. Nearly all cases need
-#: a hundredth of it.
+#: Most work for one case: the sum of (nodes)² over its meshes of panels, the number of entries of the operators made
+#: for this case alone. It is not counted in seconds, so that it is the same on every machine. Nearly all cases need a
+#: hundredth of it.
 BUDGET = 1_500_000
 
 

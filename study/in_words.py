@@ -6,7 +6,7 @@ import xarray as xr
 from solver import Status
 from solver.laws import LAWS
 
-from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
 from .physical.bodies import BODIES
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
@@ -43,6 +43,8 @@ BROKEN = {
     "yield by 10 % or more.",
     "strain_not_small": f"The strain is not small (a > {STEEP:g} R, or the layer gives way by more than "
     f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
+    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most materials "
+    "yield before that, and pmax is larger than any real pressure.",
 }
 
 

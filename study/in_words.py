@@ -43,8 +43,8 @@ BROKEN = {
     "yield by 10 % or more.",
     "strain_not_small": f"The strain is not small (a > {STEEP:g} R, or the layer gives way by more than "
     f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
-    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most materials "
-    "yield before that, and pmax is larger than any real pressure.",
+    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most "
+    "materials yield before that, and pmax is larger than any real pressure.",
 }
 
 

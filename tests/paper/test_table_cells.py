@@ -87,6 +87,21 @@ HEADS = {
         ("iterates", "iterates", ".5g"),
         ("iterates off", "iterates off", "+.2%"),
     ],
+    "literature": [
+        *((text, text, "s") for text in ("formula", "interface")),
+        *(("nu", r"$\nu$", "s"), ("1%", r"1\%", "s"), ("5%", r"5\%", "s")),
+        *((f"a/h = {x}", f"$a/h = {x}$", "+.2%") for x in ("0.1", "0.5", "1", "2", "4")),
+        ("constants read in", "constants read in", "s"),
+    ],
+    "literature_coatings": [
+        *(("formula", "formula", "s"), ("a/h up to", "$a/h$ up to", "g")),
+        *((f"n = {n}", f"$n = {n}$", ".2%") for n in ("0.01", "0.1", "0.5", "2", "10", "100")),
+        *(("1%", r"1\%", "s"), ("5%", r"5\%", "s"), ("constants read in", "constants read in", "s")),
+    ],
+    "literature_decided": [
+        *((text, text, "s") for text in ("quantity", "by")),
+        *(("says", "says", ".4g"), ("exact", "exact", ".5g"), ("off by", "off by", "+.1%")),
+    ],
 }
 
 
@@ -107,8 +122,9 @@ def rows_of(path) -> list[list[str]]:
 
 
 def test_every_table_is_checked():
-    """tests/evidence/test_tradeoff_shown.py has the numbers of two."""
-    assert {*EXPECTED, "tradeoff_cheapest", "tradeoff_factors"} == set(HEADS) == set(TABLES)
+    """tests/evidence/test_tradeoff_shown.py has the numbers of two, tests/literature/test_literature.py of three."""
+    elsewhere = {"tradeoff_cheapest", "tradeoff_factors", "literature", "literature_coatings", "literature_decided"}
+    assert set(EXPECTED) | elsewhere == set(HEADS) == set(TABLES)
 
 
 @pytest.mark.parametrize("name", EXPECTED)

@@ -9,14 +9,13 @@ import xarray as xr
 from ..data.dataset import Parts
 from ..data.units import DONE, with_unit
 from ..spec.definition import Definition
+from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY
 from .index import searchable
 from .names import SCENE, unit_of
 
 #: Part of a spread by which an input is moved for its derivative: small against what is not linear, large against rtol.
 STEP = 0.1
-#: The dimension along which inputs are moved, while the cases are solved.
-MOVED = "moved input"
 #: Results that have no spread of their own.
 _ABOUT = ("error", "model_error", "residual")
 

@@ -20,6 +20,11 @@ SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (
 """SI units by their powers of E2* and R; those of others are written in Pa and m."""
 
 
+def si_unit(powers: tuple[int, int]) -> str:
+    """The SI unit of E2*^i R^j, (i, j) = `powers`."""
+    return SI.get(powers, "Pa^{} m^{}".format(*powers))
+
+
 @dataclass(frozen=True)
 class Entry:
     """One name.
@@ -45,7 +50,7 @@ class Entry:
     @property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
-        return SI.get(self.powers, "Pa^{} m^{}".format(*self.powers))
+        return si_unit(self.powers)
 
     @property
     def scale(self) -> str:

@@ -14,7 +14,7 @@ from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, set_aside
 from ..files.seal import seal
 from ..physical.scene import shown
-from ..spec.grid import box, cut_out, windows
+from ..spec.grid import MOVED, Grid, box, cut_out, windows
 from .blocks import Inventory, Store, gather
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
@@ -41,10 +41,13 @@ def writing(store: Store, known: Inventory, path: Path, command: str, aside: boo
 
 def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator[None]:
     definition, start = store.definition, 0
-    rows = Rows(definition.grid.size)
-    most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
-    chunk = definition.named(dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True)))
-    for window in windows(definition.grid, most, CHUNK):
+    sizes = {dim: size for dim, size in definition.grid.sizes.items() if dim != MOVED}
+    in_file = Grid(sizes, {})
+    rows = Rows(in_file.size)
+    most = AT_ONCE * in_file.size // (8 * definition.numbers)
+    chunk = definition.named(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
+    for window in windows(in_file, most, CHUNK):
+        window |= {MOVED: slice(None)} if MOVED in definition.grid.sizes else {}
         grid = cut_out(definition.grid, window)
         while (known.source[start : start + grid.size] < 0).any():
             yield
@@ -56,7 +59,7 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
             create(file, part, whole, chunk)
         for name, array in part.data_vars.items():
             file.write(name, array.values, place)
-            rows.add(name, array.values.reshape(grid.size, -1))
+            rows.add(name, array.values.reshape(-1, *array.shape[len(sizes) :]))
             yield
         start += grid.size
     add_checksums(file, rows, {"=cases": identity(NUMERICS_VERSION, definition.x, known.keys)})

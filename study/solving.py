@@ -12,7 +12,7 @@ import xarray as xr
 
 from solver.laws import Law
 
-from .data.dataset import parts
+from .data.dataset import Parts, parts
 from .in_words import doubts
 from .physical.reading import read as read_scene
 from .physical.scene import shown
@@ -154,7 +154,7 @@ def solve(
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
     arrays = solved(definition, workers)
-    found = settings_apart(shown(definition, parts(definition, arrays, "study.solve")))
+    found = shown(definition, settings_apart(parts(definition, arrays, "study.solve")))
     if not scene:
         return found
     beyond = doubts(found)
@@ -179,8 +179,12 @@ def signature() -> inspect.Signature:
 solve.__signature__ = signature()
 
 
-def settings_apart(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with numerical settings that all cases share as attributes: they are no coordinates of a contact."""
-    v = dataset.variables  # a DataArray of each would take longer
-    shared = {name: v[name].values.item() for name in NUMERICS if name in v and not v[name].ndim}
-    return dataset.drop_vars(list(shared)).assign_attrs(shared)
+def settings_apart(found: Parts) -> Parts:
+    """The parts with numerical settings that all cases share as attributes: they are no coordinates of a contact.
+
+    Before there is a dataset: to take variables out of one copies all others.
+    """
+    shared = [name for name in NUMERICS if name in found.coords and not found.coords[name].ndim]
+    coords = {name: own for name, own in found.coords.items() if name not in shared}
+    attributes = {name: found.coords[name].values.item() for name in shared}
+    return Parts(found.variables, coords, found.attributes | attributes)

@@ -83,7 +83,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
 
 def _along(dims: tuple, variable: xr.Variable):
     """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
-    own = variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
     return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
 
 

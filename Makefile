@@ -4,12 +4,12 @@
 PYTHON ?= python3
 # The studies of this repository. They may replace their own results of an older version; a study of yours may not.
 STUDIES := reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings \
-  literature literature_coatings \
+  literature literature_coatings spot_density_lattice \
   extremes extremes_layered picard_domain \
   dlc_on_steel tin_on_steel ptfe_lining polymer_film_on_glass rubber_on_metal gel_on_glass
 # What `make clean` removes of figures/ and tables/.
-DRAWN := fig?? fig??_layered validity validity_load coatings extremes picard_domain tradeoff literature
-WRITTEN := table1 paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error \
+DRAWN := fig?? fig??_layered fig??_lattice validity validity_load coatings extremes picard_domain tradeoff literature
+WRITTEN := table1 table1_lattice paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error \
   literature literature_coatings literature_decided
 # Kernels of OpenBLAS for `make kernels`: one that every x86-64 processor runs. On another, all that it runs:
 # make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
@@ -42,7 +42,7 @@ help: ## this list
 
 setup: $(READY) ## install the pinned packages and roughcoat into .venv
 
-figures: $(READY) ## the paper's figures, those on the exact layer, validity, coatings, captions: figures/*
+figures: $(READY) ## the paper's figures, those on the exact layer and of lattices, validity, coatings, captions: figures/*
 	$(RUN) plot --run all
 
 table1: tables/table1.txt ## Table 1 of the paper, printed and refitted: tables/table1.txt, .csv, .tex

@@ -122,13 +122,12 @@ def columns(parts: list[tuple]) -> Columns:
     caption="""Formulas of the load on a smooth sphere on a layer on a rigid base: the a/h (0.01 to 20) up to which, or
     from which on, they err by less than 1% and 5% at one depth, and their errors.""",
     columns="\n".join(
-        ["formula", "interface", "nu | s | $\\nu$", "1% | s | 1\\%", "5% | s | 5\\%"]
+        ["formula", "interface", "nu | s | $\\nu$", "constants read in", "1% | s | 1\\%", "5% | s | 5\\%"]
         + [f"a/h = {x:g} | +.2% | $a/h = {x:g}$" for x in SHOWN_AT]
-        + ["constants read in"]
     ),
 )
 def loads(rigid: xr.Dataset) -> list[tuple]:
-    """Formula, interface, ν, the ranges of LEVELS, errors at SHOWN_AT, source of the constants."""
+    """Formula, interface, ν, source of the constants, the ranges of LEVELS, errors at SHOWN_AT."""
     rows = []
     for formula in formulas.LOADS:
         for nu in formula.nu:
@@ -137,7 +136,8 @@ def loads(rigid: xr.Dataset) -> list[tuple]:
             shown = np.interp(np.log(SHOWN_AT), np.log(x), error)
             any_nu = not formula.bonded and len(formula.nu) == 1 and not is_short(formula, False)
             interface = "bonded" if formula.bonded else "frictionless"
-            rows.append((formula.name, interface, "any" if any_nu else f"{nu:g}", *ranges, *shown, formula.read))
+            case = (formula.name, interface, "any" if any_nu else f"{nu:g}", formula.read)
+            rows.append((*case, *ranges, *shown))
     return rows
 
 
@@ -147,12 +147,12 @@ def loads(rigid: xr.Dataset) -> list[tuple]:
     caption="""Formulas of the stiffness of a smooth contact over 2a on a bonded coating, nu = 0.3: largest error over
     a/h from 0.01 to 2 and to 20, and the n around 1 for which it stays below 1% and 5%.""",
     columns="\n".join(
-        ["formula", "a/h up to | g | $a/h$ up to", *(f"n = {n:g} | .2% | $n = {n:g}$" for n in SHOWN_N)]
-        + ["1% | s | 1\\%", "5% | s | 5\\%", "constants read in"]
+        ["formula", "constants read in", "a/h up to | g | $a/h$ up to", "1% | s | 1\\%", "5% | s | 5\\%"]
+        + [f"n = {n:g} | .2% | $n = {n:g}$" for n in SHOWN_N]
     ),
 )
 def stiffnesses(coated: xr.Dataset) -> list[tuple]:
-    """Formula, its a/h, largest errors at SHOWN_N, the ranges of LEVELS, source of the constants."""
+    """Formula, source of its constants, a/h, the ranges of LEVELS, largest errors at SHOWN_N."""
     x, n, _ = stiffness(coated)
     places = [int(np.argmin(np.abs(np.log(n / wanted)))) for wanted in SHOWN_N]
     rows = []
@@ -163,7 +163,7 @@ def stiffnesses(coated: xr.Dataset) -> list[tuple]:
         for most in THIN_TO:
             largest = np.abs(error[:, x <= most * (1 + 1e-9)]).max(axis=1)
             ranges = [around_one(n, largest, level) for level in LEVELS]
-            rows.append((name, most, *largest[places], *ranges, read))
+            rows.append((name, read, most, *ranges, *largest[places]))
     return rows
 
 

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 from solver import NUMERICS_VERSION
 
@@ -20,10 +19,10 @@ from .blocks import Inventory, Store, gather
 AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
 
 
-def writing(store: Store, known: Inventory, path: Path, command: str, aside: bool = False) -> Iterator[None]:
+def writing(store: Store, known: Inventory, command: str, aside: bool = False) -> Iterator[None]:
     """Write the results file from the blocks, in steps, while other threads compute: each `next` is one step.
 
-    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is at `path`.
+    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is in its place.
     aside : keep what is there, as `set_aside` does
 
     Raises
@@ -31,12 +30,12 @@ def writing(store: Store, known: Inventory, path: Path, command: str, aside: boo
     Damaged : a block has been spoiled since the inventory was made
     OSError : the file cannot be written
     """
-    with replacing(path, store.folder) as temporary:
-        with File(temporary, "w", path) as file:
+    with replacing(store.path, store.folder) as temporary:
+        with File(temporary, "w", store.path) as file:
             yield from _steps(file, store, known, command)
         seal(temporary)
         if aside:
-            set_aside(path)
+            set_aside(store.path)
 
 
 def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator[None]:

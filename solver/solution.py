@@ -103,7 +103,9 @@ class Solution:
         def array(name):
             shape = (size, points) if name in _PROFILES else (size,)
             kind = _WHOLE.get(name, float)
-            return np.array(np.broadcast_to(values.get(name, np.nan if kind is float else 0), shape), dtype=kind)
+            found = np.empty(shape, dtype=kind)
+            found[...] = values.get(name, np.nan if kind is float else 0)
+            return found
 
         return cls(**{f.name: array(f.name) for f in fields(cls)})
 

@@ -1,6 +1,7 @@
 """A study file, its results and what can be done with them: `load`."""
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -57,6 +58,11 @@ class Study:
         count as computed; so do those in blocks. Raises StudyError for a very large study that is neither new nor
         done, unless `yes`: counting takes memory.
         """
+        with suppress(FileNotFoundError):  # somebody removed the results while they were looked at
+            return self._status(yes)
+        return self._status(yes)
+
+    def _status(self, yes: bool) -> dict:
         store = self._store
         found = look(store, ("status",))
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)

@@ -5,7 +5,7 @@ import xarray as xr
 
 from solver import Status
 
-from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
 from .data.flags import broken, decode
 from .physical.bodies import BODIES
 from .physical.told import is_rigid, told
@@ -41,6 +41,8 @@ BROKEN = {
     "yield by 10 % or more.",
     "strain_not_small": f"The strain is not small (a > {STEEP:g} R, or the layer gives way by more than "
     f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
+    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most "
+    "materials yield before that, and pmax is larger than any real pressure.",
 }
 
 

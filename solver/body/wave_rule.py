@@ -51,7 +51,8 @@ CUT = _end(FILM) * 2.0**-FILM
 def place_of(layer, a):
     """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each."""
     eta = layer.h / a
-    octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
+    octave = np.floor(np.log2(eta))
+    octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)  # of a film, that of its quadrature's end
     return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
 

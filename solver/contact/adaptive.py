@@ -34,9 +34,9 @@ def solve_newton(cases, rtol, nodes, limit, x):
     def on_mesh(index, n, start):
         part, grid, goes_on = cases.take(index), mesh(n), free[index] & (n < LADDER[-1])
         if start is not None or limit or n < 8:
-            begin = evaluate(part, first_guess(part, grid) if start is None else start, grid)
+            begin = evaluate(part, first_guess(part, grid, a[index]) if start is None else start, grid)
         else:
-            begin = approach(part, grid)
+            begin = approach(part, grid, a[index])
         found = answer(solve_on(begin, limit), x, np.where(goes_on, rtol[index], np.inf))
         useless = (found.solution.status != Status.CONVERGED) | _hopeless(part, found, rtol[index])
         error = np.where(free[index] & found.unsure, np.inf, found.solution.error)
@@ -49,7 +49,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
     missed = closed & ((found.solution.error > rtol) | (free & found.unsure))
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(cases, found, rtol)) & free & (limit == 0)
     ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x)) for i in np.flatnonzero(opened)]
-    return Solution.join(size, len(x), [(np.arange(size), _ended(found.solution, missed, lifted)), *ends])
+    ended = _ended(found.solution, missed, lifted)
+    return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 
 def _together(rungs, size, points):

@@ -7,7 +7,7 @@ centre s = 1 among them, so that p(0) is an unknown and not an interpolate.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.special import ellipkm1
@@ -56,6 +56,11 @@ class Mesh:
         return self is other or (isinstance(other, Mesh) and self.n == other.n and self.breaks == other.breaks)
 
     def __hash__(self):
+        return self._hash
+
+    @cached_property
+    def _hash(self):
+        """Tables are looked up by it."""
         return hash((self.n, self.breaks))
 
     @property

@@ -10,7 +10,7 @@ from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from ..data import derived
+from ..data.derived import QUANTITIES
 from ..scene.quantities import quantity
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
@@ -18,11 +18,6 @@ from .labels import axis_label, multiple, stated, value_text, wrapped, written
 from .registry import Columns
 from .style import style
 
-DERIVED = {
-    "An": derived.nominal_area, "p_mean": derived.mean_pressure, "spots": derived.number_of_spots,
-    "b0": derived.spot_radius, "p_peak": derived.peak_pressure, "E_eff": derived.effective_modulus,
-}  # fmt: skip
-"""What can be drawn and is not in the dataset."""
 MOST_PANELS, MOST_NAMES = 12, 12
 OUTSIDE = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
@@ -33,7 +28,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
     Parameters
     ----------
     dataset : of `study.solve`, or the results of a study
-    x, y : names of variables of the dataset, or of study.derived (An, p_mean, spots, b0, p_peak, E_eff)
+    x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
     hue : name of a dimension, or "label" of the cases
     **where : values of dimensions to be drawn alone, such as bonding="bonded"
 
@@ -86,13 +81,13 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
     """The dataset with those of the names that have to be derived. Raises StudyError for one that is not there."""
     errors = []
     for name in names:
-        if name in DERIVED and name not in dataset:
+        if name in QUANTITIES and name not in dataset:
             try:
-                dataset = dataset.assign({name: DERIVED[name](dataset)})
+                dataset = dataset.assign({name: QUANTITIES[name](dataset)})
             except (KeyError, ValueError) as error:
                 errors.append(f"{name} cannot be derived from these results: {error}")
         elif name not in dataset.variables:
-            errors.append(f'"{name}" is not in these results{suggest(name, [*dataset.variables, *DERIVED])}')
+            errors.append(f'"{name}" is not in these results{suggest(name, [*dataset.variables, *QUANTITIES])}')
     if errors:
         raise StudyError(errors)
     return dataset

@@ -1,23 +1,29 @@
 """Materials by name in a physical scene: `punch`, `layer` and `body` in place of E and ν of each."""
 
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from ..scene import materials
-from ..scene.quantities import Quantity
+from ..scene.quantities import Quantity, has_unit
 from ..spec.grid import twins
-from .names import RIGID_TEXTS, Known, Row
+from .names import RIGID_TEXTS, SCENE, Known, Row
 
 #: Body -> its modulus and Poisson ratio, and the ratio of moduli that follows from it.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 _MAY_BE_RIGID = ("punch", "body")
 
 
-def with_materials(parameters: dict, spreads: bool, errors: list[str]) -> tuple[dict, dict]:
+def of_a_scene(name: str, values: Iterable) -> bool:
+    """Whether a parameter is only in a physical scene, or one of its values has a unit or a spread."""
+    return name in SCENE or name in BODIES or any(map(has_unit, values))
+
+
+def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
     """The parameters with E and ν of the materials named, and body -> (dimension, their names as in the table).
 
-    spreads : with those of the table; messages are appended to `errors`
+    E and ν have the spreads of the table; messages are appended to `errors`.
     """
     found, names = dict(parameters), {}
     for body, follows in BODIES.items():
@@ -28,18 +34,18 @@ def with_materials(parameters: dict, spreads: bool, errors: list[str]) -> tuple[
         given = given.tolist() if isinstance(given, np.ndarray) else given
         several = isinstance(given, (list, tuple))
         try:
-            rows = [_material(body, one) for one in (given if several else [given])]
+            values = given if several else [given]
+            known = {text: _material(body, one) for text, one in {str(one): one for one in values}.items()}
         except LookupError as error:
             errors.append(f"{body}: {error.args[0]}")
             found[follows[0]] = Quantity(1.0)  # it is not missing
             continue
-        texts, *numbers = zip(*rows, strict=True)
+        texts, *numbers = zip(*(known[str(one)] for one in values), strict=True)
         for i, j in twins(texts) if several and not isinstance(given, Row) else ():
             errors.append(f"{body}[{i}] and {body}[{j}] are both {texts[i]}: values of an axis must differ")
         dim = ("case" if isinstance(given, Row) else body) if several else ""
         for name, column in zip(follows, numbers, strict=False):
-            column = [one if spreads else Quantity(one.value) for one in column]
-            found[name] = Known(column, dim) if several else column[0]
+            found[name] = Known(list(column), dim) if several else column[0]
         names[body] = dim, list(texts)
     return found, names
 

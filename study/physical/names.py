@@ -4,7 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 from ..scene.quantities import Quantity, quantity
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import SI, VOCABULARY
 
 #: What a scene has besides the parameters of the solver: SI unit and long name.
 SCENE = {
@@ -40,6 +40,11 @@ def dim_of(name: str) -> str:
 def unit_of(name: str) -> str:
     """SI unit of a parameter or result, most of them in READABLE; "1" for pure numbers and texts."""
     return SCENE[name][0] if name in SCENE else VOCABULARY[name].unit
+
+
+def powers_of(name: str) -> tuple[int, int]:
+    """(i, j) of the SI unit Pa^i m^j of a parameter."""
+    return next(key for key, unit in SI.items() if unit == SCENE[name][0]) if name in SCENE else VOCABULARY[name].powers
 
 
 def si(name: str, given: Any, called: str = "") -> Quantity:

@@ -41,12 +41,13 @@ class Problem:
         Allowed relative model error of the base "auto".
     model_check : "closed_form" (default) or "first_order"
         How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
-    micro : "smooth", "disc_cell" (default), "power_law", "square_lattice", "hex_lattice" or "normal_heights"
+    micro : "smooth", "disc_cell" (default), "power_law", "square_lattice", "hex_lattice", "normal_heights" or
+        "uniform_heights"
         No asperities, the law of Eqs (6) and (7), A = B Ra (p/E1*)^beta (E2* without a layer), asperities on a lattice,
         or of random heights; or the name of a registered law, or such a :class:`~solver.laws.Law` itself.
     B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
-    sigma, cut : needed by the micro law "normal_heights"; cut = 4
+    sigma, cut : needed by the micro law "normal_heights"; cut = 4; "uniform_heights" needs sigma
         Standard deviation of the heights, and the largest one above their mean, over sigma. Both are in `more`.
     scheme : "newton" (default) or "picard"
         Newton's method, or the paper's successive approximations, Eqs (8) and (10). These are for asperities: a smooth

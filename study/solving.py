@@ -45,7 +45,9 @@ class Parameters(TypedDict, total=False):
     Nbar: Value
     Ra: Value
     micro: (
-        Literal["disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights"]
+        Literal[
+            "disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights"
+        ]
         | str
         | Law
         | Many
@@ -101,7 +103,8 @@ def solve(
     micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), or a `solver.laws.Law` itself
     B, beta : of micro = "power_law", A = B Ra (p/E1*)^beta, so B is in Ra/E1*^beta. Without both the law is fitted to
         Nbar and Ra, as the paper's is
-    sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it
+    sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
+        "uniform_heights" has sigma alone
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative

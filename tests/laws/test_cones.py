@@ -151,7 +151,9 @@ def message(**given):
 def test_messages_are_those_of_any_parameter():
     assert message(micro=cones.CONES) == 'solve: alpha is missing: micro = "cones" needs it'
     assert message(micro=cones.CONES, alpha=2.0) == "solve: alpha = 2.0: must be in (0, 1.57)"
-    assert message(micro="conse", alpha=1.0).endswith('"square_lattice", "hex_lattice", "normal_heights", "cones"')
+    assert message(micro="conse", alpha=1.0).endswith(
+        '"square_lattice", "hex_lattice", "normal_heights", "uniform_heights", "cones"'
+    )
     unnamed = dataclasses.replace(cones.CONES, version="")
     assert "version must be a text" in message(micro=unnamed, alpha=1.0)
     assert "must have a name of its own" in message(micro=dataclasses.replace(cones.CONES, name="smooth"), alpha=1.0)

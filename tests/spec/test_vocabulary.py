@@ -111,7 +111,7 @@ WORDS = words("""
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
     "base": {"half_space", "thin_layer", "layered", "auto"},
-    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights"},
+    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
 }

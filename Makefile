@@ -27,8 +27,8 @@ RUN := $(VENV)/bin/python -m study
 # kept, whatever the environment says: tests start some hundred processes, of which each would compile them anew.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
-TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain literature validate test check \
-  kernels mutants fuzz bench lint clean
+TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain literature validate \
+  test check kernels mutants fuzz bench speed lint clean
 
 .DEFAULT_GOAL := help
 .PHONY: $(TARGETS) always
@@ -92,6 +92,9 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json
+
+speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
+	$(VENV)/bin/python tests/benchmark.py --page docs/speed.md
 
 lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .

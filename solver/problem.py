@@ -13,8 +13,8 @@ class Problem:
     """A batch of B cases; every field but `control` is an array (B,). Build it with :meth:`of`.
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
-    1 these are the units of the paper, and in these the bounds of every number are (solver/parameters.py). Behind some
-    names stands the default. What has no default must be given where a case needs it.
+    1 these are the units of the paper, in which the bounds of the numbers are given (solver/parameters.py). A number
+    behind a name below is its default. What has no default must be given where a case needs it.
 
     Attributes
     ----------

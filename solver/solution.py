@@ -7,18 +7,18 @@ import numpy as np
 
 from .status import Status
 
-#: Numbers of a converged case that are more than nought, and those that may be nought, in units R = E2* = 1.
+#: Numbers of a converged case that are positive, and those that may be 0 as well, in units R = E2* = 1.
 _POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _NOT_NEGATIVE = ("A0", "residual", "error")
 _PROFILES = ("p", "lam")
 #: Types of what is counted or names something.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
-#: Shares of an area, and by how much the rounding of a sum over the nodes may carry them above 1.
+#: Shares of an area, which are at most 1; rounding of a sum over the nodes may make them larger by this.
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 
 class Model(IntEnum):
-    """What a case was solved with; smooth models get their asperities afterwards, from the nominal pressure."""
+    """What a case was solved with. The smooth models solve a smooth punch first and then add the asperities."""
 
     NONE = 0
     HALF_SPACE = 1

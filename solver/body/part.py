@@ -10,7 +10,7 @@ from .kernel import decaying_part
 from .tables import table
 from .wave_rule import CUT, FILM, few, place_of, quadrature
 
-#: Numbers in one block of kernel values: its temporaries stay in the cache.
+#: Kernel values are computed in blocks of so many numbers: the arrays in between stay in the cache.
 _BLOCK = 16384
 
 

@@ -1,7 +1,7 @@
 """Newton's method, for each case on the mesh that meets its tolerance.
 
-A case whose estimated error does not meet it goes on to the next finer mesh from the state of the estimate, and what
-the finest mesh does not resolve, to panels of its own.
+A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state from
+which the error was estimated. What the finest mesh does not resolve is solved on panels, each case on its own.
 """
 
 from dataclasses import replace
@@ -18,8 +18,8 @@ from .equation import error_floor, evaluate
 from .panels import BUDGET, solve_on_panels
 from .start import approach, first_guess, guess_radius, nodes_wanted
 
-#: Part of rtol to which panels are made anew where they miss it: their last coefficients may be small where the error
-#: is not.
+#: Panels are halved until the last coefficients on each are small. The error may still be above rtol: the panels are
+#: then made anew with this times rtol.
 _FINER = 0.03
 
 
@@ -64,14 +64,17 @@ def _together(rungs, size, points):
 
 
 def _hopeless(cases, found, rtol):
-    """(B,) bool: the error is the least that it can be on any mesh, and more than rtol."""
+    """(B,) bool: the error is above rtol, and no mesh makes it smaller."""
     solution = found.solution
     floor = error_floor(cases.body, solution.a, solution.nodes)
     return (solution.status == Status.CONVERGED) & (floor > rtol) & (solution.error <= floor) & ~found.unsure
 
 
 def _ended(solution, missed, lifted, spent=False):
-    """The solution with its last word: `missed` and `lifted` (B,) bool; `spent`: so is the budget of the panels."""
+    """The solution with its final status.
+
+    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : whether the budget of the panels is spent
+    """
     status = np.where(missed, Status.BUDGET_SPENT if spent else Status.TOLERANCE_NOT_MET, solution.status)
     over = (status == Status.ITERATION_LIMIT) & (solution.iterations >= newton_steps(solution.nodes))
     status = np.where(over, Status.BUDGET_SPENT, status).astype(np.int8)
@@ -81,7 +84,7 @@ def _ended(solution, missed, lifted, spent=False):
 def _on_panels(case, before, rtol, x):
     """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better.
 
-    Tension and gaps there count if they are on finer panels as well: what panels do not resolve may look like them.
+    Tension and gaps count only if they are there on finer panels too: panels that are too coarse show some as well.
     """
     best, lifted, count, left = before.solution, before.lifted, before.solution.iterations, BUDGET
     resolved, missed = False, best.status == Status.CONVERGED

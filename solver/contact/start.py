@@ -8,9 +8,9 @@ from . import newton
 from .equation import State, evaluate, groups
 from .results import interpolate
 
-#: Least pressure to begin with, over the largest.
+#: The first guess of the pressure is nowhere below this part of the largest.
 _LEAST = 1e-12
-#: Newton steps on a coarse mesh before the first on the mesh of a case: batches on thin layers take 5 % less time.
+#: Newton steps on a coarse mesh before the first one on the mesh of a case: batches on thin layers take 5 % less time.
 _STEPS = 2
 
 

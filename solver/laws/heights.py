@@ -24,7 +24,7 @@ from ..parameters import Parameter
 from . import disc_cell, spread
 from .law import Curve, Law
 
-#: σ/A* below which the summits that touch at the edge are as many as without a spread, to begin with.
+#: For σ/A* below this the first guess is that of equal heights.
 _ALIKE = 0.03
 #: Most tables that are kept (11 kB each), and how many are made at a time.
 _KEPT, _AT_ONCE = 4096, 64

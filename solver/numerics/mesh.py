@@ -18,8 +18,8 @@ from .quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
 HERTZ = np.pi**2 / 16
 
 WHOLE = (0.0, 1.0)
-#: Points times nodes of a panel for which the singular rule is formed together: some MB, in which the calls of numpy
-#: no longer count.
+#: How many points, times the nodes of a panel, the singular rule is formed for at a time. The arrays are some MB: large
+#: enough that the calls of numpy take no time, small enough for any memory.
 _TOGETHER = 256
 
 
@@ -27,8 +27,8 @@ _TOGETHER = 256
 class Mesh:
     """Discretisation of the contact radius with n nodes.
 
-    Number and panels determine all the rest, so that two meshes are equal when these are: what is kept for a mesh (see
-    solver/body/tables.py) serves one that has been built anew.
+    The number of nodes and the panels determine all the rest. Two meshes that agree in these are equal, so that what is
+    kept for one (solver/body/tables.py) serves the other.
 
     Attributes
     ----------

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 from ..data.derived import QUANTITIES
 from ..scene.quantities import quantity
@@ -19,6 +20,7 @@ from .registry import Columns
 from .style import style
 
 MOST_PANELS, MOST_NAMES = 12, 12
+BAND = {"alpha": 0.25, "linewidth": 0}
 OUTSIDE = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
@@ -35,6 +37,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
     Returns
     -------
     A figure of pyplot. Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps.
+    Where the dataset has the spread of `y`, a band shows ± one standard deviation.
 
     Raises
     ------
@@ -133,7 +136,7 @@ def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
 
 
 def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
-    """The curves of one panel, solid where the case is valid, dotted where not; their numbers."""
+    """The curves of one panel, solid where the case is valid, dotted where not, in a band of ±; their numbers."""
     x, y, hue, along = names
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
@@ -143,6 +146,11 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         valid = np.ones(len(up), bool)
         if "validity" in one:
             valid = np.broadcast_to(one["validity"].values == 0, len(up))
+        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{y}_spread",) if name in one}
+        for half in spread.values():
+            axes.fill_between(
+                across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colours[i], **BAND
+            )
         axes.plot(across / sizes[0], up / sizes[1], color=colours[i], **OUTSIDE)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colours[i], linestyle="-")
         fixed = {
@@ -150,7 +158,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             for name, array in one.coords.items()
             if name in whole.dims and not array.ndim
         }
-        parts.append(fixed | {x: across, y: up, "valid": valid.astype(int)})
+        parts.append(fixed | {x: across, y: up} | spread | {"valid": valid.astype(int)})
     return parts
 
 
@@ -191,6 +199,8 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
     if "validity" in found and (found["validity"] != 0).any():
         handles.append(Line2D([], [], color="0.4", label="not valid", **OUTSIDE))
+    if f"{y}_spread" in found:
+        handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
         figure.legend(handles=handles, title=title, loc="outside right center")
 

@@ -17,8 +17,8 @@ Values = dict[str, tuple[tuple[str, ...], np.ndarray]]
 def dimensionless(given: Values) -> tuple[Values, Values]:
     """Parameters of the solver from the coordinates of results in SI units, and R and the unit of moduli.
 
-    They are computed as when the cases were solved, from the same SI numbers, so that the keys of the cases are those
-    of then.
+    They are computed as they were when the cases were solved, from the same SI numbers: the keys of the cases are the
+    same.
     """
     arrays = {name: xr.DataArray(array, dims=dims) for name, (dims, array) in given.items()}
     unit, _, _ = moduli(arrays, arrays)

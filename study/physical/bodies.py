@@ -1,23 +1,17 @@
 """Materials by name in a physical scene: `punch`, `layer` and `body` in place of E and ν of each."""
 
-from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
 
 from ..scene import materials
-from ..scene.quantities import Quantity, has_unit
+from ..scene.quantities import Quantity
 from ..spec.grid import twins
-from .names import RIGID_TEXTS, SCENE, Known, Row
+from .names import RIGID_TEXTS, Known, Row
 
 #: Body -> its modulus and Poisson ratio, and the ratio of moduli that follows from it.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 _MAY_BE_RIGID = ("punch", "body")
-
-
-def of_a_scene(name: str, values: Iterable) -> bool:
-    """Whether a parameter is only in a physical scene, or one of its values has a unit or a spread."""
-    return name in SCENE or name in BODIES or any(map(has_unit, values))
 
 
 def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:

@@ -32,8 +32,11 @@ class Known(NamedTuple):
 
 
 def dim_of(name: str) -> str:
-    """The dimension, while cases are solved, of several values of a parameter: not its name, which stands for the
-    dimensionless numbers, and these may lie along other dimensions too."""
+    """The dimension of several values of a parameter while the cases are solved.
+
+    Of a parameter with a unit it is not the name alone: that stands for the dimensionless numbers, which may lie along
+    other dimensions too.
+    """
     return name if unit_of(name) == "1" else f"{name} in SI"
 
 

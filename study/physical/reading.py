@@ -28,11 +28,6 @@ _PARTS = ("value", "spread")  # of a Quantity
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
-def is_physical(parameters: dict) -> bool:
-    """Whether parameters of `study.solve` describe a physical scene: one has a unit, or is only in such a scene."""
-    return any(name in SCENE or name in BODIES or _has_unit(given) for name, given in parameters.items())
-
-
 def _has_unit(given: Any) -> bool:
     """Whether a parameter, or one of its values, has a unit or a spread."""
     if isinstance(given, xr.DataArray):
@@ -52,7 +47,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    if not any(is_physical(given) for given in (parameters, *rows)):
+    every = [pair for table in (parameters, *rows) for pair in table.items()]
+    if not any(name in SCENE or name in BODIES or _has_unit(given) for name, given in every):
         return None
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)

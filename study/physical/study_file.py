@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.quantities import Quantity, quantity
+from ..scene.quantities import Quantity, has_unit, quantity
 from ..spec import definition
 from ..spec.definition import Definition, StudyError
 from ..spec.given import Draft
@@ -19,7 +19,7 @@ from ..spec.grid import axis_values, shown
 from ..spec.identity import digest_of_array
 from ..spec.sample import LIMITS, divisor, draw
 from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
-from .bodies import BODIES, of_a_scene
+from .bodies import BODIES
 from .names import SCENE, Known, Row, dim_of, powers_of, unit_of
 
 ANY = Parameter(interval="(-inf, inf)")
@@ -84,7 +84,7 @@ def _with_unit(tables: dict) -> str:
     for table in (tables.get("model"), tables.get("axes"), tables.get("sample"), *rows):
         for name, given in table.items() if isinstance(table, dict) else ():
             values = given.values() if isinstance(given, dict) else given if isinstance(given, list) else [given]
-            if of_a_scene(name, values if name in VOCABULARY else ()):
+            if name in SCENE or name in BODIES or (name in VOCABULARY and any(map(has_unit, values))):
                 return f"{name} = {shown(given)}"
     return ""
 

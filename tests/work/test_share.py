@@ -138,7 +138,6 @@ def test_where_there_are_no_processes(monkeypatch):
             patch.setattr(sys, name, value, raising=False)
             assert share._beside(ordinary, 2) == 0
     mine = replace(laws.LAWS["disc_cell"], name="mine_alone", version="1", curve=own_curve)
-    monkeypatch.setattr(laws, "LAWS", dict(laws.LAWS))
     rough = definition(micro=mine, base="half_space", Nbar=250000.0, Ra=0.004)
     assert share._beside(rough, 2) == 1
     monkeypatch.setattr(own_curve, "__module__", "__main__")

@@ -1,4 +1,4 @@
-"""The micro laws of spherical asperities of random heights: normal, cut at ±c σ, and uniform.
+"""The micro laws of spherical asperities of random heights: normal, cut at ±c σ, uniform, and of a histogram.
 
 The mean field is that of the disc cell, Eqs (6), (7): a spot of radius b has the others as the uniform pressure p
 outside its cell. Each summit has its own approach and its own spot, and p is the mean: ``spread.py``. A = δ is counted
@@ -28,8 +28,9 @@ from .law import Curve, Law
 _ALIKE = 0.03
 #: Most tables that are kept (11 kB each), and how many are made at a time.
 _KEPT, _AT_ONCE = 4096, 64
-#: Largest relative error of A, λ and p_max by the tables, that of λ (tests/laws/test_heights.py); A has 5e-6.
-ERROR = 2e-4
+#: Largest relative error of A, λ and p_max by the tables, that of λ (tests/laws/test_heights.py): A has 5e-6, with
+#: uniform heights 3e-5. Of a histogram of up to 32 classes, whose steps are corners of the curves; A has 1e-4 there.
+ERROR, STEPPED = 2e-4, 5e-4
 
 #: Standard deviation of the heights, in R, and the largest height above the mean over it.
 SIGMA = Parameter(interval="[0, 10]", powers=(0, 1))
@@ -39,13 +40,26 @@ UNIFORM = np.sqrt(3.0)
 
 
 class Density(NamedTuple):
-    """A symmetric density of the heights, of x, the depth below the highest summit over σ; 2 c is its width.
+    """A density of the heights, of x, the depth below the highest summit over σ, and a parameter c (B, 1).
 
-    at : (x, c) -> density; of : name of the parameter c, or a number
+    at : (x (B, m, pieces, n), c (B, 1, 1, 1)) -> density; top : c -> density at x = 0; mean : c -> mean x
+    edges : c -> (B, pieces + 1), where its smooth pieces end
+    of : name of the parameter c, or its value, or None: x is in R
     """
 
     at: Callable
-    of: str | float
+    top: Callable
+    edges: Callable
+    mean: Callable
+    of: str | float | None
+
+
+def _both_sides(c):
+    return np.concatenate([np.zeros_like(c), 2 * c], axis=1)
+
+
+def _middle(c):
+    return c
 
 
 def _normal(x, cut):
@@ -54,6 +68,26 @@ def _normal(x, cut):
 
 def _uniform(x, cut):
     return np.ones_like(x) / (2 * cut)
+
+
+def _top_of(at, c):
+    return at(np.zeros_like(c), c)
+
+
+def _steps(shares, x, c):
+    return np.array(shares)[:, None] * np.ones_like(x)
+
+
+def _first_step(shares, c):
+    return np.full_like(c, shares[0])
+
+
+def _bins(ends, c):
+    return np.tile(ends, (len(c), 1))
+
+
+def _given(value, c):
+    return np.full_like(c, value)
 
 
 _TABLES: dict[tuple, np.ndarray] = {}
@@ -68,14 +102,18 @@ def _tables(density, field, sigma, cut):
     for begin in range(0, len(missing), _AT_ONCE):
         some = missing[begin : begin + _AT_ONCE]
         s, c = np.array([key[2:] for key in some]).T[:, :, None]
-        edges = np.concatenate([np.zeros_like(c), 2 * c], axis=1)
-        made = spread.tables(edges, partial(density.at, cut=c[..., None, None]), field, s, c * s + 1 / 3)
+        at = partial(_at, density.at, c[..., None, None])
+        made = spread.tables(density.edges(c), at, field, s, density.mean(c) * s + 1 / 3)
         rows.update(zip(some, np.moveaxis(made, 1, 0), strict=True))
     if missing:
         if len(_TABLES) + len(missing) > _KEPT:
             _TABLES.clear()
         _TABLES.update((key, rows[key]) for key in missing)
     return np.array([rows[key] for key in keys]).reshape(-1, 2, spread.KNOTS), group.ravel()
+
+
+def _at(density, c, x):
+    return density(x, c)
 
 
 def _looked_up(density, field, which, y, sigma, cut):
@@ -95,11 +133,11 @@ def _curve(density, field, y, sigma, cut):
 
 
 def _guess(density, field, q, sigma, cut):
-    """A is at least that of one height, and at most c σ more."""
+    """A is at least that of one height, and at most the depth of the mean plane more."""
     one = disc_cell.spot_guess(np.maximum(q, 0.0))
     alike = disc_cell.spot_curve(np.maximum(one, 1e-300)).g
-    few = (1.25 * np.pi * sigma / density.at(np.zeros_like(cut), cut) * np.maximum(q, 0.0)) ** 0.4
-    return np.where(sigma > 0, np.sqrt(np.clip(few, alike, alike + cut * sigma)) * (1 + q), one)
+    few = (1.25 * np.pi * sigma / density.top(cut) * np.maximum(q, 0.0)) ** 0.4
+    return np.where(sigma > 0, np.sqrt(np.clip(few, alike, alike + density.mean(cut) * sigma)) * (1 + q), one)
 
 
 def _area(density, field, y, q, sigma, cut):
@@ -118,23 +156,38 @@ def _peak(density, field, y, q, sigma, cut):
 
 def _edge(density, field, sigma, cut):
     spread_out = sigma > _ALIKE
-    few = (1.25 * np.pi * sigma / density.at(np.zeros_like(cut), cut)) ** 0.4
+    few = (1.25 * np.pi * sigma / density.top(cut)) ** 0.4
     return np.where(spread_out, few, (np.pi / 2) ** (2 / 3)), np.where(spread_out, 0.4, 2 / 3)
 
 
-def _scales(density, field, E, Nbar, Ra, sigma, cut=None):
+def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
     p_star, A_star = disc_cell.scales(E, Nbar, Ra)
-    return p_star, A_star, sigma / A_star, density.of if cut is None else cut
+    return p_star, A_star, sigma / A_star, (density.of or 0.0) if cut is None else cut
 
 
 def law(name, density, field=1.0, **known):
     """:class:`~solver.laws.law.Law` of these heights; `field` 0: the asperities do not feel each other."""
     parts = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge, "guess": _guess, "scales": _scales}
     parts = {key: partial(part, density, field) for key, part in parts.items()}
-    own = {"sigma": SIGMA} | ({density.of: CUT} if isinstance(density.of, str) else {})
-    return Law(name=name, parameters=disc_cell.PARAMETERS | own, error=ERROR, rise=1.1, **parts, **known)
+    own = ({} if density.of is None else {"sigma": SIGMA}) | ({density.of: CUT} if isinstance(density.of, str) else {})
+    known = {"error": ERROR} | known
+    return Law(name=name, parameters=disc_cell.PARAMETERS | own, rise=1.1, **parts, **known)
 
 
-NORMAL = Density(_normal, "cut")
+def histogram(name, z, share, version):
+    """:class:`~solver.laws.law.Law` of summits whose heights z (n,), in R, have these shares (n,): bins of one width
+    around each z, which ascends in equal steps."""
+    step = (z[-1] - z[0]) / (len(z) - 1)
+    depth, steps = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
+    ends = step * np.arange(len(z) + 1)
+    shares, mean = tuple(steps.tolist()), float(depth @ steps * step)
+    bins = Density(
+        partial(_steps, shares), partial(_first_step, shares), partial(_bins, ends), partial(_given, mean), None
+    )
+    return law(name, bins, version=version, error=STEPPED)
+
+
+NORMAL = Density(_normal, partial(_top_of, _normal), _both_sides, _middle, "cut")
 LAW = law("normal_heights", NORMAL, version="2")
-UNIFORM_LAW = law("uniform_heights", Density(_uniform, UNIFORM))
+EVEN = Density(_uniform, partial(_top_of, _uniform), _both_sides, _middle, UNIFORM)
+UNIFORM_LAW = law("uniform_heights", EVEN)

@@ -170,7 +170,7 @@ def test_any_spread(micro):
 def test_uniform_heights_by_quadrature():
     """Without a field of the neighbours, and spots small: q = (2/5) (2/π)/(2 √3 σ) (δ^(5/2) - (δ - 2 √3 σ)^(5/2))."""
     sigma, width = 1e-4, 2e-4 * np.sqrt(3)
-    free = heights.law("free", heights.Density(heights._uniform, heights.UNIFORM), field=0.0)
+    free = heights.law("free", heights.EVEN, field=0.0)
     one = np.ones(1)
     own = free.bind(one, Nbar=one, Ra=one, sigma=sigma / np.pi * one)
     y = np.geomspace(1e-3, 0.3, 40)[None]
@@ -201,3 +201,57 @@ def test_through_a_study():
     assert study.to_physical(found, R=0.01, E2_star=2e11).sigma.attrs["units"] == "m"
     with pytest.raises(study.StudyError, match='sigma is missing: micro = "normal_heights" needs it'):
         study.solve(**given, micro="normal_heights")
+
+
+def test_a_histogram(tmp_path):
+    """One class of heights is a uniform law; a finely divided normal density is the normal law; a study takes it."""
+    given = CASE | {"P": [1e-6, 1e-5], "base": "half_space", "rtol": 1e-5}
+    width = 0.4 * A_STAR
+    two = tmp_path / "even.csv"
+    two.write_text(f"z,share\n{-width / 4},3\n{width / 4},3\n")
+    found = solve(Problem.of(**given, micro=f"table:{two}"))
+    even = solve(Problem.of(**given, micro="uniform_heights", sigma=width / (2 * np.sqrt(3))))
+    assert (found.status == 0).all() and difference(found, even).max() < 2e-5
+
+    sigma, z = 0.2 * A_STAR, np.linspace(-3, 3, 32)
+    z = (z[1:] + z[:-1]) / 2
+    fine = tmp_path / "normal.csv"
+    fine.write_text("\n".join(["z,share", *(f"{one * sigma},{np.exp(-(one**2) / 2)}" for one in z)]))
+    found = study.solve(P=[1e-5], Nbar=250_000.0, Ra=0.004, base="half_space", micro=f"table:{fine}", rtol=1e-4)
+    normal = solve(Problem.of(**given, micro="normal_heights", sigma=sigma, cut=3.0))
+    assert found.status == 0
+    for name in ("p0", "p_max", "Ar_An"):
+        assert_allclose(found[name].values, getattr(normal, name)[1:], rtol=0.01)
+
+
+@pytest.mark.parametrize(("classes", "width"), [(2, 0.01), (5, 0.3), (32, 0.01), (32, 3.0)])
+def test_the_tables_of_a_histogram(classes, width):
+    share = np.random.default_rng(1).uniform(0.2, 1, classes)
+    law = heights.histogram("table:x", np.linspace(0, width, classes), share, "1")
+    one, y = np.ones(1), np.exp(np.linspace(np.log(1e-3), np.log(500), 301))[None]
+    own = law.bind(one, Nbar=one / np.pi, Ra=one)  # A* = 1
+    bins, c = law.curve.args[0], np.zeros((1, 1))
+    q, at = spread.pressure(bins.edges(c), partial(bins.at, c=c), 1.0, y, one[None], bins.mean(c) + 1 / 3)
+    found = own.evaluate(y)
+    assert_allclose(found.q, q, rtol=1e-4, atol=0)
+    assert_allclose(own.area(y, q), at.area, rtol=heights.STEPPED, atol=0)
+    assert (found.dq > 0).all() and (found.dg > 0).all()
+    assert_allclose(
+        bins.mean(c), width + width / (classes - 1) / 2 - np.linspace(0, width, classes) @ share / share.sum()
+    )
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("z,share\n0,1\n", "has 1 rows: must have at least 2"),
+        ("z,share\n0,1\n1e-5,1\n3e-5,1\n", "column z: must ascend in equal steps"),
+        ("z,share\n0,1\n1e-5,-1\n", 'column share, row 2: "-1": must be a finite number > 0'),
+        ("z,share\n" + "\n".join(f"{i}e-7,1" for i in range(33)), "has 33 rows: must have at most 32"),
+    ],
+)
+def test_a_histogram_that_is_none(tmp_path, text, words):
+    file = tmp_path / "mine.csv"
+    file.write_text(text)
+    with pytest.raises(study.StudyError, match=words):
+        study.solve(P=1e-5, Nbar=250_000.0, Ra=0.004, base="half_space", micro=f"table:{file}")

@@ -11,15 +11,16 @@ What is left out is of the order cut⁻² of the effect. Inside the contact the 
 nothing of it remains. It is linear in c, so that it is tabulated like the rest.
 """
 
-from functools import lru_cache
-from itertools import pairwise, product
+from dataclasses import dataclass
+from functools import cached_property, lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from scipy.sparse import csc_array
 from scipy.special import erfc, spherical_jn
 
-from ..numerics.quadrature import gauss_legendre, lagrange, log_rule
+from ..numerics.pieces import pieces
+from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 
 #: Octaves of κ = k/cut above 1 and of τ below 1; the step χ falls between κ = 1/4 and 1.
 _OCTAVES = 24
@@ -29,8 +30,11 @@ _KAPPA, _TAU = 14, 20
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
-#: Columns of a block, about; more points are taken in several.
-_COLUMNS = 1536
+#: Up to this τ c is smooth, but at 0; beyond it swings as the step has it, and is cut off at REACH: with fewer points
+#: there, a film of n = 8.6e5 was not solved (tests/body/test_work.py).
+_SMOOTH = 12.0
+#: From so many cases on their matrices are products with one table.
+MANY = 8
 
 
 def step(kappa):
@@ -68,27 +72,58 @@ def transform(f, level, p):
     return (f - level * np.expm1(-p * kappa)) @ matrix.T - level / (2 * np.pi) * np.log1p((p / tau) ** 2)
 
 
-class Convolution(NamedTuple):
+class Share(NamedTuple):
+    """What some pairs of a point and a panel (r,) have of a convolution, at g points of their rules: octave (r, g) of τ
+    and Chebyshev basis (r, g, _TAU) there, and what c counts for in each column of the panel, (r, g, order)."""
+
+    row: np.ndarray
+    panel: np.ndarray
+    octave: np.ndarray
+    basis: np.ndarray
+    columns: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Convolution:
     """The convolution at m points, as a matrix, of anything that is linear in c.
 
-    `shape` is (m, n); `blocks` are points (r,) that share the octaves of τ, columns of a panel, nodes τ of these
-    octaves, and what makes the entries there of c at these nodes, (nodes, r order). What is in no block is nought.
+    `shape` is (m, p, order), of p panels; `shares` are all the :class:`Share` that are not nought.
     """
 
     shape: tuple
-    blocks: list
+    shares: list
 
     @property
     def nbytes(self):
         """Size in bytes."""
-        return sum(block.nbytes for *_, block in self.blocks)
+        table = self.__dict__.get("table", np.empty(0)).nbytes
+        return table + sum(array.nbytes for share in self.shares for array in share)
 
     def of(self, c):
         """The matrices (b, m, n) for c (b, T)."""
-        out = np.zeros((len(c), *self.shape))
-        for points, columns, nodes, block in self.blocks:
-            out[:, points, columns] = (c[:, nodes] @ block).reshape(len(c), len(points), -1)
-        return out
+        size = len(c), self.shape[0], self.shape[1] * self.shape[2]
+        if len(c) >= MANY:
+            return (c @ self.table).reshape(size)
+        out, by_octave = np.zeros((len(c), *self.shape)), c.reshape(len(c), -1, _TAU)
+        for row, panel, octave, basis, columns in self.shares:
+            for one, nodes in zip(out, by_octave, strict=True):
+                values = np.einsum("rgt,rgt->rg", nodes[octave], basis)
+                one[row, panel] += np.matmul(values[:, None], columns)[:, 0]
+        return out.reshape(size)
+
+    @cached_property
+    def table(self):
+        """The matrices of all unit vectors c, (T, m n): for many c together."""
+        m, panels, order = self.shape
+        out = np.zeros((len(waves()[1]), m, panels, order))
+        for row, panel, octave, basis, columns in self.shares:
+            pair = np.arange(len(row))[:, None] * (len(out) // _TAU)
+            place = ((pair + octave) * _TAU)[..., None] + np.arange(_TAU)
+            ends = np.arange(octave.size + 1) * _TAU
+            spread = csc_array((basis.ravel(), place.ravel(), ends), shape=(len(row) * len(out), octave.size))
+            own = spread @ columns.reshape(octave.size, order)
+            out[:, row, panel] += own.reshape(len(row), len(out), order).transpose(1, 0, 2)
+        return out.reshape(len(out), -1)
 
 
 def convolution(grid, points, cut):
@@ -97,59 +132,29 @@ def convolution(grid, points, cut):
     Panel by panel: a rule that runs across the ends of panels is good for smooth pressures only, and what it makes of
     the others leaves the discrete equation of a stiff film with pressures that are not there.
     """
-    blocks, most = [], -(-_COLUMNS // grid.order)
-    for panel, (low, high) in enumerate(pairwise(grid.breaks)):
-        gap = np.maximum(low - points, points - high)  # negative inside
-        shift = np.maximum(gap, 0.0) * np.where(points < low, 1, -1)
-        tau, near = _tau(points, points + shift, shift, cut), gap < high - low
-        octave = _octave(np.maximum(tau, 1e-99))
-        for first, rule in product(np.unique(octave[tau < REACH]), (_near_rule, _plain_rule)):
-            chosen = np.flatnonzero((tau < REACH) & (octave == first) & (near == (rule is _near_rule)))
-            for i in range(0, len(chosen), most):
-                blocks.append(_block(grid, panel, points, chosen[i : i + most], rule, cut, first))
-    return Convolution((len(points), grid.n), blocks)
-
-
-def _block(grid, panel, points, chosen, rule, cut, first):
-    """A block of the convolution: on one panel, at the points `chosen` (r,), by a rule, from the octave `first` on."""
-    own, s = slice(panel * grid.order, (panel + 1) * grid.order), points[chosen, None]
-    point, shift, weight = rule(s, *grid.breaks[panel : panel + 2], grid.order)
-    tau = _tau(s, point, shift, cut)
-    row, used = np.nonzero((weight > 0) & (tau < REACH))
-    point, tau = point[row, used], tau[row, used]
-    other = np.sqrt((1 - point) * (1 + point))
-    values = weight[row, used] * point / np.sqrt(other * np.sqrt((1 - s) * (1 + s))[row, 0])  # of ∫ · sqrt(x'/x) dx'
-    octave, interpolation = _interpolation(tau)
-    count = octave.max(initial=first) + 1 - first
-    place = ((row * count + octave - first) * _TAU)[:, None] + np.arange(_TAU)
-    ends = np.arange(len(tau) + 1) * _TAU
-    spread = csc_array((interpolation.ravel(), place.ravel(), ends), shape=(len(chosen) * count * _TAU, len(tau)))
-    block = spread @ (values[:, None] * lagrange(grid.s[own], point))
-    block = block.reshape(len(chosen), count * _TAU, -1).transpose(1, 0, 2).reshape(count * _TAU, -1)
-    return chosen, own, slice(first * _TAU, (first + count) * _TAU), block
+    low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
+    s = points[:, None]
+    nearest = np.clip(s, low, high)
+    farthest, shares = np.where(s - low > high - s, low, high), []
+    within, rough = _tau(s, nearest, nearest - s, cut) < REACH, _tau(s, farthest, farthest - s, cut) > _SMOOTH
+    for piece in pieces(points, grid.breaks, grid.order, within, rough):
+        s = points[piece.row, None]
+        point = s + piece.sign * piece.gap
+        tau = _tau(s, point, piece.gap, cut)
+        felt = np.flatnonzero((tau < REACH).any(axis=0))
+        point, tau, weight, local = (v[:, felt] for v in (point, tau, piece.weight, piece.local))
+        other = np.sqrt((1 - point) * (1 + point))
+        values = weight * point / np.sqrt(other * np.sqrt((1 - s) * (1 + s)))  # of ∫ · sqrt(x'/x) dx'
+        values, tau = np.where(tau < REACH, values, 0.0), np.where(tau < REACH, tau, 1.0)
+        octave, basis = _interpolation(tau)
+        columns = values[..., None] * lagrange(radau_nodes(grid.order), local.ravel()).reshape(*tau.shape, grid.order)
+        shares.append(Share(piece.row, piece.panel, octave, basis, columns))
+    return Convolution((len(points), len(low), grid.order), shares)
 
 
 def _tau(s, point, shift, cut):
     """τ = cut |x' - x| between s and s' = `point` = s + shift."""
     return cut * np.abs(shift) * (s + point) / (np.sqrt((1 - s) * (1 + s)) + np.sqrt((1 - point) * (1 + point)))
-
-
-def _plain_rule(s, low, high, order):
-    """Points s', shifts s' - s and weights (r, g) of ∫ · ds' over a panel farther from s (r, 1) than its length."""
-    t, weight = gauss_legendre(12 + order // 2)
-    point = np.broadcast_to(low + (high - low) * t, (len(s), len(t)))
-    return point, point - s, np.broadcast_to((high - low) * weight, point.shape)
-
-
-def _near_rule(s, low, high, order):
-    """The same over a panel that contains s, or is near: for a singularity at s, no weight on a side not there."""
-    distance, weight = log_rule(14 + order // 2, everywhere=True)
-    parts = []
-    for sign, start, stop in ((-1, np.maximum(s - high, 0.0), s - low), (1, np.maximum(low - s, 0.0), high - s)):
-        length = np.maximum(stop - start, 0.0)
-        parts.append((sign * (start + length * distance), length * weight))
-    shift, weight = (np.concatenate(part, axis=1) for part in zip(*parts, strict=True))
-    return s + shift, shift, weight
 
 
 def _chebyshev_nodes():
@@ -162,12 +167,12 @@ def _octave(tau):
 
 
 def _interpolation(tau):
-    """Octave (m,) of each τ (m,), and the Chebyshev basis there (m, _TAU)."""
+    """Octave (...) of each τ (...), and the Chebyshev basis there (..., _TAU)."""
     octave = _octave(tau)
     stop = 2.0 ** (octave - _OCTAVES)
     start = np.where(octave == 0, 0.0, stop / 2)
-    distance = ((tau - start) / (stop - start))[:, None] - _chebyshev_nodes()
-    distance[distance == 0] = 1e-300
-    weights = (-1.0) ** np.arange(_TAU) * np.sin(np.pi * (np.arange(_TAU) + 0.5) / _TAU)
-    terms = weights / distance
-    return octave, terms / terms.sum(axis=1, keepdims=True)
+    terms = ((tau - start) / (stop - start))[..., None] - _chebyshev_nodes()  # in place from here on
+    terms[terms == 0] = 1e-300
+    np.divide((-1.0) ** np.arange(_TAU) * np.sin(np.pi * (np.arange(_TAU) + 0.5) / _TAU), terms, out=terms)
+    terms /= terms.sum(axis=-1, keepdims=True)
+    return octave, terms

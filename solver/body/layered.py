@@ -72,6 +72,8 @@ class Layered(NamedTuple):
             if len(same):
                 far[part.index[same]] = False
                 parts.append(part.take(same, part.index[same]))
+        if near is not None and near.mesh == mesh and not far.any():
+            return near
         parts += parts_of(self, a, np.flatnonzero(far))
         return LayeredOperator(mesh, parts, *_matrix_and_edge(parts, mesh))
 
@@ -157,7 +159,7 @@ class LayeredOperator(NamedTuple):
         for part in self.parts:
             for tab, rows in part.tables(self.mesh):
                 index = part.index[rows]
-                J = between(self.mesh, int(part.octave[rows][0]), part.stiffness, x)
+                J = between(int(part.octave[rows][0]), part.stiffness, x)
                 out[index] = (tab.weights(part.L1[rows]) * (q[index] @ tab.phi.T)) @ J
             if part.film is not None:
                 index, near = part.index, felt(self.mesh, x)

@@ -35,7 +35,7 @@ class Part(NamedTuple):
     def tables(self, mesh):
         """Pairs of a :class:`~solver.body.tables.Table` on a mesh and its own rows (slice)."""
         for octave, rows in runs(self.octave):
-            yield table(mesh, octave, self.stiffness), rows
+            yield table(mesh, octave, self.stiffness, rows.stop - rows.start >= film.MANY), rows
 
     @property
     def share(self):

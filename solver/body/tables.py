@@ -7,9 +7,10 @@ from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.legendre import legvander
 from scipy.special import j0
 
-from ..numerics.quadrature import gauss_legendre, lagrange
+from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
 from .wave_rule import CUT, FILM, few, quadrature
 
@@ -23,14 +24,18 @@ _MOST_BYTES = 4e8
 _PHASE = 120.0
 #: The transform is kept in parts of so many nodes k.
 _ROWS = 250
+#: Degrees up to which the moments of a panel are formed at once: J0 costs the most, and meshes of all orders have its
+#: values in common.
+_DEGREES = (16, 48, 144)
 
 
 class Table(NamedTuple):
     """What makes the operator of L - 1 at the few nodes k (M,) of one octave on one mesh.
 
-    L - 1 (b, M) times `edge` (M, n) is the row of the edge, times `product` (M, n²), None if that is too large, the
-    matrix. At all nodes k (G,) of the quadrature: J = J0(k x_i) - J0(k) and φ (G, n); J_edge = J0(k) (G,); `spread`,
-    (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the quadrature, π/2 included.
+    L - 1 (b, M) times `edge` (M, n) is the row of the edge, times `product` (M, n²), None if that is too large or for
+    few cases, the matrix. At all nodes k (G,) of the quadrature: J = J0(k x_i) - J0(k) and φ (G, n); J_edge = J0(k)
+    (G,); `spread`, (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the quadrature,
+    π/2 included.
 
     `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
     """
@@ -53,9 +58,9 @@ _tables = OrderedDict()
 _tables_lock = Lock()
 
 
-def table(grid, octave, stiffness):
-    """The :class:`Table` of a mesh; the latest used, up to _MOST_BYTES, are kept."""
-    key = grid, octave, stiffness
+def table(grid, octave, stiffness, many=True):
+    """The :class:`Table` of a mesh, for many cases or few; the latest used, up to _MOST_BYTES, are kept."""
+    key = grid, octave, stiffness, many
     with _tables_lock:
         if key in _tables:
             _tables.move_to_end(key)
@@ -73,7 +78,7 @@ def _size(found):
     return sum(getattr(part, "nbytes", 0) for part in (*found[:-1], *(found.film or ())))
 
 
-def _table(grid, octave, stiffness):
+def _table(grid, octave, stiffness, many):
     k, weight = quadrature(octave, stiffness)
     J_edge, phi = j0(k), transform(grid, k)
     J = j0(k[:, None] * grid.x) - J_edge[:, None]
@@ -81,11 +86,12 @@ def _table(grid, octave, stiffness):
     if octave != FILM:
         spread = np.pi / 2 * few(octave, stiffness).spread
         edge = spread @ at_edge
-        product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
+        if many:
+            product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
     else:
         spread = np.pi / 2 * weight
         edge = spread[:, None] * at_edge
-        if phi.size * grid.n <= _KEEP:
+        if many and phi.size * grid.n <= _KEEP:
             product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
     return Table(k, J, phi, J_edge, spread, edge, product, _film_table(grid) if octave == FILM else None)
 
@@ -93,8 +99,7 @@ def _table(grid, octave, stiffness):
 @lru_cache(maxsize=4)
 def _film_table(grid):
     near = felt(grid, grid.x)
-    edge = film.convolution(grid, np.zeros(1), CUT).of(np.eye(len(film.waves()[1])))
-    return near, film.convolution(grid, grid.s[near], CUT), edge[:, 0]
+    return near, film.convolution(grid, grid.s[near], CUT), film.convolution(grid, np.zeros(1), CUT).table
 
 
 @lru_cache(maxsize=8)
@@ -113,22 +118,26 @@ def felt(grid, x):
 
 def transform(grid, k):
     """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
-    phi = np.empty((len(k), grid.n))
+    phi, order = np.empty((len(k), grid.n)), grid.order
+    count = next((most for most in _DEGREES if order <= most), order)
+    of_legendre = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
     for stop in range(len(k), 0, -_ROWS):  # from the end, which quadratures of an octave share
         part = slice(max(stop - _ROWS, 0), stop)
         for i, ends in enumerate(pairwise(grid.breaks)):
-            own = slice(i * grid.order, (i + 1) * grid.order)
-            phi[part, own] = _transform_kept(*ends, grid.s[own].tobytes(), k[part].tobytes())
+            moments = _moments(*ends, count, k[part].tobytes())
+            phi[part, i * order : (i + 1) * order] = moments[:, :order] @ of_legendre
     return phi
 
 
 @lru_cache(maxsize=1024)
-def _transform_kept(low, high, nodes_bytes, k_bytes):
-    """Part of φ on a panel, which meshes and quadratures have in common: (G', order)."""
-    nodes, k = np.frombuffer(nodes_bytes), np.frombuffer(k_bytes)
-    angle, weight = _angles(low, high, k.max(), len(nodes))
+def _moments(low, high, count, k_bytes):
+    """∫ P_m J0(k sqrt(1 - s²)) s ds over a panel, P_m its Legendre polynomials, which meshes and quadratures have in
+    common: (G', count)."""
+    k = np.frombuffer(k_bytes)
+    angle, weight = _angles(low, high, k.max(), count)
     sin, cos = np.sin(angle), np.cos(angle)
-    return j0(k[:, None] * cos) @ ((weight * sin * cos)[:, None] * lagrange(nodes, sin))
+    local = np.clip(2 * (sin - low) / (high - low) - 1, -1, 1)
+    return j0(k[:, None] * cos) @ ((weight * sin * cos)[:, None] * legvander(local, count - 1))
 
 
 def _angles(low, high, k, order):
@@ -145,14 +154,13 @@ def _angles(low, high, k, order):
     return (ends[:-1, None] + width[:, None] * t).ravel(), (width[:, None] * w).ravel()
 
 
-def between(grid, octave, stiffness, x):
+def between(octave, stiffness, x):
     """J0(k x) - J0(k), (G, m)."""
-    key = grid, octave, stiffness, x.tobytes()
     small = len(x) * len(quadrature(octave, stiffness)[0]) <= _KEEP_BETWEEN
-    return (_between_kept if small else _between_kept.__wrapped__)(*key)
+    return (_between_kept if small else _between_kept.__wrapped__)(octave, stiffness, x.tobytes())
 
 
 @lru_cache(maxsize=600)
-def _between_kept(grid, octave, stiffness, x_bytes):
-    tab = table(grid, octave, stiffness)
-    return j0(tab.k[:, None] * np.frombuffer(x_bytes)) - tab.J_edge[:, None]
+def _between_kept(octave, stiffness, x_bytes):
+    k, _ = quadrature(octave, stiffness)
+    return j0(k[:, None] * np.frombuffer(x_bytes)) - j0(k)[:, None]

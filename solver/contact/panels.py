@@ -52,49 +52,48 @@ def solve_on_panels(case, rtol, budget):
         count, found = count + found.count, found._replace(count=0 * found.count)
         if found.at.lost[0]:
             break
-        breaks = resolve(found.at, goal)
+        breaks, y = resolve(found.at, goal)
         if breaks == grid.breaks:
             continue
         grid = panel_mesh(ORDER, breaks)
         work += grid.n**2
         if work > budget:
             break
-        start = State(interpolate(found.at, grid.s), found.at.state.eta)
-        found = solve_on(evaluate(case, start, grid, found.at.operator))
+        found = solve_on(evaluate(case, State(y, found.at.state.eta), grid, found.at.operator))
     return found._replace(count=count + found.count), work
 
 
 def resolve(ev, rtol):
-    """Ends of panels (tuple) that resolve q and λ of a solution; those of its mesh where it is resolved."""
-    grid, q, law = ev.mesh, ev.curve.q, ev.cases.law
-    values = np.concatenate([q, law.area(ev.state.y, q)])
+    """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) on them; those of its mesh where it is
+    resolved."""
+    grid, law = ev.mesh, ev.cases.law
+    values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
     scale = values @ grid.w * max(_SHARE * rtol, _FLOOR)
-    inside = dict(zip(pairwise(grid.breaks), np.split(values, len(grid.breaks) - 1, axis=1), strict=True))
-    ends, room = {1.0}, _MOST - len(inside)
-    while inside:  # panel -> values of q and λ at its nodes
+    inside = dict(zip(pairwise(grid.breaks), np.split(ev.state.y, len(grid.breaks) - 1, axis=1), strict=True))
+    done, room = {}, _MOST - len(inside)
+    while inside:  # panel -> y at its nodes
         halves = []
-        for (low, high), own in inside.items():
-            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(own) * (high**2 - low**2) > scale):
+        for (low, high), y in inside.items():
+            if room > 0 and high - low > 2.0**-DEPTH and np.any(_tail(law, y) * (high**2 - low**2) > scale):
                 middle = (low + high) / 2
                 halves += [(low, middle), (middle, high)]
                 room -= 1
             else:
-                ends.add(low)
+                done[low] = y
         inside = dict(zip(halves, _between(ev, halves), strict=True)) if halves else {}
-    return tuple(sorted(ends))
+    return (*sorted(done), 1.0), np.concatenate([done[low] for low in sorted(done)], axis=1)
 
 
 def _between(ev, panels):
-    """Values (2, ORDER) of q and λ at the nodes of each of some panels, which the mesh does not have."""
-    law = ev.cases.law
+    """y (1, ORDER) at the nodes of each of some panels, which the mesh does not have."""
     y = interpolate(ev, np.concatenate([on_panels(radau_nodes(ORDER), panel) for panel in panels]))
+    return np.split(y, len(panels), axis=1)
+
+
+def _tail(law, y):
+    """Size of the last two Legendre coefficients of q and of λ of y (1, ORDER) at the nodes of a panel: (2,)."""
     q = law.evaluate(y).q
-    return np.split(np.concatenate([q, law.area(y, q)]), len(panels), axis=1)
-
-
-def _tail(values):
-    """Size of the last two Legendre coefficients of values (k, ORDER) at the nodes of a panel: (k,)."""
-    return np.abs(values @ _LAST).sum(axis=1)
+    return np.abs(np.concatenate([q, law.area(y, q)]) @ _LAST).sum(axis=1)
 
 
 _LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]

@@ -12,15 +12,13 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy.special import ellipkm1
 
-from .quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
+from .pieces import pieces
+from .quadrature import gauss_legendre, lagrange, radau_nodes
 
 #: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², which makes the first guess exact there.
 HERTZ = np.pi**2 / 16
 
 WHOLE = (0.0, 1.0)
-#: How many points, times the nodes of a panel, the singular rule is formed for at a time. The arrays are some MB: large
-#: enough that the calls of numpy take no time, small enough for any memory.
-_TOGETHER = 256
 
 
 @dataclass(frozen=True, eq=False)
@@ -156,20 +154,14 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     with dyadic panels towards it. The complementary parameter 1 - k² is formed from the distance to the singularity,
     so nothing is lost near it. Accurate to about 1e-15 of the largest entry.
     """
-    rows = np.empty((len(s_out), len(nodes)))
-    order = len(nodes) // (len(breaks) - 1)
-    for i, (low, high) in enumerate(zip(breaks[:-1], breaks[1:], strict=True)):
-        columns = slice(i * order, (i + 1) * order)
-        sign = np.where(s_out <= low, 1, np.where(s_out >= high, -1, 0))  # of s' - s, 0: the target is inside
-        far = np.maximum(low - s_out, s_out - high) >= high - low
-        for side in (-1, 1):
-            there = far & (sign == side)
-            if there.any():
-                rows[there, columns] = _far(nodes[columns], s_out[there, None], side, low, high)
-        near = np.flatnonzero(~far)
-        for part in np.array_split(near, 1 + len(near) * order // _TOGETHER):
-            rows[part, columns] = _near(nodes[columns], s_out[part, None], low, high)
-    return rows
+    panels = len(breaks) - 1
+    order = len(nodes) // panels
+    rows, own = np.zeros((len(s_out), panels, order)), nodes if panels == 1 else radau_nodes(order)
+    for piece in pieces(s_out, breaks, order):
+        values = piece.weight * _kernel(s_out[piece.row, None], piece.gap, piece.sign)
+        basis = lagrange(own, piece.local.ravel()).reshape(*values.shape, order)
+        rows[piece.row, piece.panel] += np.matmul(values[:, None], basis)[:, 0]
+    return rows.reshape(len(s_out), -1)
 
 
 def _kernel(s, gap, sign):
@@ -177,25 +169,3 @@ def _kernel(s, gap, sign):
     point = s + sign * gap
     outer2 = (1 - s) * (1 + s) if sign > 0 else ((1 - s) + gap) * (1 + point)  # the larger x²
     return point * ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0)) / np.sqrt(outer2)
-
-
-def _far(nodes, s, sign, low, high):
-    """Integral over a panel that all targets s (m, 1) are far from, on the side `sign` of them: (m, order)."""
-    t, weight = gauss_legendre(12 + len(nodes) // 2)
-    point = low + (high - low) * t
-    kernel = _kernel(s, sign * (point - s), sign)
-    return ((high - low) * weight * kernel) @ lagrange(nodes, point)
-
-
-def _near(nodes, s, low, high):
-    """Integral over a panel that contains the targets s (m, 1) or is near: (m, order)."""
-    distance, weight = log_rule(14 + len(nodes) // 2)
-    rows = np.zeros((len(s), len(nodes)))
-    for sign, start, stop in ((-1, np.maximum(s - high, 0.0), s - low), (1, np.maximum(low - s, 0.0), high - s)):
-        there = (stop > start)[:, 0]
-        begin, length = start[there], (stop - start)[there]
-        gap = begin + length * distance
-        values = length * weight * _kernel(s[there], gap, sign)
-        basis = lagrange(nodes, (s[there] + sign * gap).ravel()).reshape(*gap.shape, len(nodes))
-        rows[there] += (values[:, None] @ basis)[:, 0]
-    return rows

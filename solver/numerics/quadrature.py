@@ -13,6 +13,8 @@ from scipy.special import roots_jacobi
 #: Number of panels towards a singularity, each a quarter as long as the one before; and the power m of the last panel,
 #: on which the variable is x = t^m: the integrand is smooth in t.
 _PANELS, _POWER = 16, 8
+#: Numbers of such panels that are used.
+_FEWER = (0, 1, 2, 3, 4, 6, 8, 11, _PANELS)
 #: Points on a panel that the singularity needs; a polynomial beside it needs more.
 _LEAST = 14
 
@@ -63,23 +65,35 @@ def lagrange(nodes, points):
     return values
 
 
-@lru_cache(maxsize=16)
-def log_rule(n, everywhere=False):
+def panels_towards(gap, length):
+    """How many panels of :func:`log_rule` (...) a singularity `gap` before an interval of `length` asks for: as on the
+    others, it is at least a third of the last one away. Of a few numbers only, so that many have the same."""
+    with np.errstate(divide="ignore"):
+        wanted = np.log(length / (3 * gap)) / np.log(4.0)
+    return np.array(_FEWER)[np.minimum(np.searchsorted(_FEWER, wanted), len(_FEWER) - 1)]
+
+
+@lru_cache(maxsize=64)
+def log_rule(n, everywhere=False, panels=_PANELS):
     """Rule on [0, 1] for a logarithm or a root at 0 times a polynomial of degree 2 (n - _LEAST): distances from 0 and
     weights.
 
     Each panel is a quarter as long as the one before, and on it the polynomial, whose zeros lie densest at an end,
     changes its sign half as often. Relative error below 3^(-2 _LEAST). Where another factor of the integrand is as
-    narrow as a film, `everywhere` gives all panels `n` points.
+    narrow as a film, `everywhere` gives all panels `n` points. Fewer `panels` are for a singularity before 0, at least
+    a third of the last one, [0, 4^-panels], away.
     """
-    upper, least = 4.0 ** -np.arange(_PANELS), n if everywhere else min(n, _LEAST)
+    upper, least = 4.0 ** -np.arange(panels), n if everywhere else min(n, _LEAST)
     distance, weight = [], []
     for j, end in enumerate(upper):
         nodes, weights = gauss_legendre(least + -(-(n - least) // 2**j))
         distance.append(end / 4 + 3 / 4 * end * nodes)
         weight.append(3 / 4 * end * weights)
+    end = 4.0**-panels
+    if panels < _PANELS:
+        nodes, weights = gauss_legendre(least + -(-(n - least) // 2**panels))
+        return _frozen(np.concatenate([*distance, end * nodes])), _frozen(np.concatenate([*weight, end * weights]))
     last, last_weights = gauss_legendre(least + 8)
-    end = upper[-1] / 4
     distance.append(end * last**_POWER)
     weight.append(end * _POWER * last ** (_POWER - 1) * last_weights)
     return _frozen(np.concatenate(distance)), _frozen(np.concatenate(weight))

@@ -1,0 +1,83 @@
+"""How much is computed for a lone case that needs a mesh of its own: counted, not timed."""
+
+import numpy as np
+import pytest
+
+from solver import Problem, Status, solve
+from solver.body import film, tables
+from solver.body.layered import Layered
+from solver.body.wave_rule import CUT, FILM, quadrature
+from solver.numerics.mesh import mesh, panel_mesh
+
+#: Panels towards the edge, as a film asks for.
+PANELS = (0.0, *(2.0 ** -np.arange(12, -1, -1)).tolist())
+FILMS = Layered(*(np.array([v]) for v in (1e-4, 1e3, 0.3, 0.3, False, 0.0)))
+
+
+@pytest.fixture
+def counted(monkeypatch):
+    """Numbers of J0 and of interpolations of c so far, with no tables kept from before."""
+    found = {"j0": 0, "c": 0}
+
+    def watch(module, name, key):
+        plain = getattr(module, name)
+
+        def counting(values):
+            found[key] += np.size(values)
+            return plain(values)
+
+        monkeypatch.setattr(module, name, counting)
+
+    watch(tables, "j0", "j0")
+    watch(film, "_interpolation", "c")
+    tables._tables.clear()
+    for kept in ("_moments", "_between_kept", "film_rows", "_film_table"):
+        getattr(tables, kept).cache_clear()
+    return found
+
+
+def test_meshes_of_the_same_panels_have_their_bessel_functions_in_common(counted):
+    """The mesh of a solution and that of its error estimate, a third finer: the moments are those of one."""
+    k, _ = quadrature(FILM, 0)
+    for order in (12, 16):
+        tables.transform(panel_mesh(order, PANELS), k)
+        first = counted["j0"]
+    tables.transform(panel_mesh(12, PANELS), k)
+    assert counted["j0"] == first
+    for order in (8, 12, 32, 48):
+        tables.transform(mesh(order), k)
+    assert counted["j0"] < 2 * first + 3 * 2000 * len(k)
+
+
+def test_a_panel_that_is_near_has_as_many_points_as_its_distance_asks_for(counted):
+    """2700 points of rules were taken for each point, however far it was."""
+    grid = panel_mesh(12, PANELS)
+    points = grid.s[tables.felt(grid, grid.x)]
+    film.convolution(grid, points, CUT)
+    assert counted["c"] < 1800 * len(points)
+
+
+def test_a_lone_case_makes_no_table_for_many(counted):
+    """The product of a table is as much work as the matrices of 52 to 104 cases."""
+    for h in (1e-4, 0.3):
+        grid, layer = mesh(12), FILMS._replace(h=np.array([h]))
+        layer.at(np.ones(1), grid)
+        layer.take(np.zeros(film.MANY, dtype=int)).at(np.ones(film.MANY), grid)
+    assert sorted(found.product is None for found in tables._tables.values()) == [False, False, True, True]
+
+
+def test_the_operator_at_the_same_radius_is_made_once():
+    """Newton at a given radius changes the pressure alone."""
+    first = FILMS.at(np.ones(1), panel_mesh(12, (0.0, *PANELS[6:])))
+    again = FILMS.at(np.ones(1), first.mesh, first)
+    assert again is first
+    assert (
+        FILMS.at(np.ones(1), mesh(5), first) is not first and FILMS.at(np.full(1, 1.1), first.mesh, first) is not first
+    )
+
+
+def test_a_lone_stiff_film(counted):
+    """39 million J0 were taken on its five meshes."""
+    s = solve(Problem.of(a=1.0, R=20.0, h=1e-4, n=1e4, micro="smooth", rtol=1e-6, base="layered"))
+    assert (s.status[0], s.nodes[0]) == (Status.CONVERGED, 96)
+    assert counted["j0"] < 2.5e7

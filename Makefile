@@ -4,11 +4,13 @@
 PYTHON ?= python3
 # The studies of this repository. They may replace their own results of an older version; a study of yours may not.
 STUDIES := reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings \
+  literature literature_coatings spot_density_lattice \
   extremes extremes_layered picard_domain \
   dlc_on_steel tin_on_steel ptfe_lining polymer_film_on_glass rubber_on_metal gel_on_glass
 # What `make clean` removes of figures/ and tables/.
-DRAWN := fig?? fig??_layered validity validity_load coatings extremes picard_domain tradeoff
-WRITTEN := table1 paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error
+DRAWN := fig?? fig??_layered fig??_lattice validity validity_load coatings extremes picard_domain tradeoff literature
+WRITTEN := table1 table1_lattice paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error \
+  literature literature_coatings literature_decided
 # Kernels of OpenBLAS for `make kernels`: one that every x86-64 processor runs. On another, all that it runs:
 # make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
 KERNELS ?= Nehalem
@@ -25,8 +27,8 @@ RUN := $(VENV)/bin/python -m study
 # kept, whatever the environment says: tests start some hundred processes, of which each would compile them anew.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
-TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain test check kernels mutants \
-  fuzz bench lint clean
+TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain literature validate \
+  test check kernels mutants fuzz bench speed lint clean
 
 .DEFAULT_GOAL := help
 .PHONY: $(TARGETS) always
@@ -40,7 +42,7 @@ help: ## this list
 
 setup: $(READY) ## install the pinned packages and roughcoat into .venv
 
-figures: $(READY) ## the paper's figures, those on the exact layer, validity, coatings, captions: figures/*
+figures: $(READY) ## the paper's figures, those on the exact layer and of lattices, validity, coatings, captions: figures/*
 	$(RUN) plot --run all
 
 table1: tables/table1.txt ## Table 1 of the paper, printed and refitted: tables/table1.txt, .csv, .tex
@@ -59,6 +61,14 @@ tradeoff: figures/tradeoff.pdf $(READY) ## error against time of every way to so
 	  tee docs/tradeoff_measured.txt
 
 picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
+
+literature: figures/literature.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
+	$(RUN) table --run literature literature_coatings literature_decided
+	@cp figures/literature.png docs/
+	$(RUN).literature.page docs/literature.md
+
+validate: $(READY) ## rough spheres with every asperity resolved beside the two scales: docs/validate.md, .nc, .png
+	$(VENV)/bin/python tests/validate.py docs
 
 test: $(READY) ## all tests
 	$(PYTEST)
@@ -82,6 +92,9 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/benchmark.py bench.json
+
+speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
+	$(VENV)/bin/python tests/benchmark.py --page docs/speed.md
 
 lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .

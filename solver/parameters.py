@@ -104,4 +104,7 @@ def allowed(own, values):
     values = np.asarray(values)
     above = values >= low if with_low else values > low
     below = values <= high if with_high else values < high
-    return (above & below) | np.isin(values, own.also) if own.also else above & below
+    inside = above & below
+    for value in own.also:
+        inside = inside | (values == value)
+    return inside

@@ -13,8 +13,8 @@ class Problem:
     """A batch of B cases; every field but `control` is an array (B,). Build it with :meth:`of`.
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
-    1 these are the units of the paper, and in these the bounds of every number are (solver/parameters.py). Behind some
-    names stands the default. What has no default must be given where a case needs it.
+    1 these are the units of the paper, in which the bounds of the numbers are given (solver/parameters.py). A number
+    behind a name below is its default. What has no default must be given where a case needs it.
 
     Attributes
     ----------
@@ -41,12 +41,13 @@ class Problem:
         Allowed relative model error of the base "auto".
     model_check : "closed_form" (default) or "first_order"
         How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
-    micro : "smooth", "disc_cell" (default), "power_law", "square_lattice", "hex_lattice" or "normal_heights"
+    micro : "smooth", "disc_cell" (default), "power_law", "square_lattice", "hex_lattice", "normal_heights" or
+        "uniform_heights"
         No asperities, the law of Eqs (6) and (7), A = B Ra (p/E1*)^beta (E2* without a layer), asperities on a lattice,
         or of random heights; or the name of a registered law, or such a :class:`~solver.laws.Law` itself.
     B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
-    sigma, cut : needed by the micro law "normal_heights"; cut = 4
+    sigma, cut : needed by the micro law "normal_heights"; cut = 4; "uniform_heights" needs sigma
         Standard deviation of the heights, and the largest one above their mean, over sigma. Both are in `more`.
     scheme : "newton" (default) or "picard"
         Newton's method, or the paper's successive approximations, Eqs (8) and (10). These are for asperities: a smooth

@@ -104,17 +104,15 @@ def _layer(problem):
     return problem.h, problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded", problem.m
 
 
-def restore(solution, problem, without=()):
-    """The solution in the units of the problem: the end of every way to solve; the controlled quantity is as given.
+def restore(solution, problem):
+    """The solution in the units of the problem: the end of every way to solve.
 
     A case with a number that cannot be is not converged, nor is one with a number that its unit makes infinite.
-    `without`: names of the numbers that this way to solve does not give.
     """
-    solution = solution.refused(solution.out_of_range(without), Status.DIVERGED)
+    solution = solution.refused(solution.out_of_range(), Status.DIVERGED)
     arrays = {}
     for name, (of_R, of_E2) in _UNITS.items():
         array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
         arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)
-    solution = solution.refused(solution.not_finite(without), Status.DIVERGED)
-    return replace(solution, **{problem.control: problem.value * 1.0})
+    return solution.refused(solution.not_finite(), Status.DIVERGED)

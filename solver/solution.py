@@ -7,18 +7,18 @@ import numpy as np
 
 from .status import Status
 
-#: Numbers of a converged case that are more than nought, and those that may be nought, in units R = E2* = 1.
+#: Numbers of a converged case that are positive, and those that may be 0 as well, in units R = E2* = 1.
 _POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _NOT_NEGATIVE = ("A0", "residual", "error")
 _PROFILES = ("p", "lam")
 #: Types of what is counted or names something.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
-#: Shares of an area, and by how much the rounding of a sum over the nodes may carry them above 1.
+#: Shares of an area, which are at most 1; rounding of a sum over the nodes may make them larger by this.
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 
 class Model(IntEnum):
-    """What a case was solved with; smooth models get their asperities afterwards, from the nominal pressure."""
+    """What a case was solved with. The smooth models solve a smooth punch first and then add the asperities."""
 
     NONE = 0
     HALF_SPACE = 1
@@ -103,7 +103,9 @@ class Solution:
         def array(name):
             shape = (size, points) if name in _PROFILES else (size,)
             kind = _WHOLE.get(name, float)
-            return np.array(np.broadcast_to(values.get(name, np.nan if kind is float else 0), shape), dtype=kind)
+            found = np.empty(shape, dtype=kind)
+            found[...] = values.get(name, np.nan if kind is float else 0)
+            return found
 
         return cls(**{f.name: array(f.name) for f in fields(cls)})
 
@@ -121,18 +123,18 @@ class Solution:
         """The sub-batch at `index`."""
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
-    def not_finite(self, without=()):
+    def not_finite(self):
         """(B,) bool: the case has an end that comes with numbers, and one of these is NaN or infinite.
 
-        `without`: names of the numbers that this way to solve does not give; `model_error` may always be NaN.
+        `model_error` may always be NaN.
         """
-        names = [name for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES) if name not in without]
+        names = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)
         if all(np.isfinite(getattr(self, name).sum()) for name in names):  # as in most batches, and quick to see
             return np.zeros(len(self.a), dtype=bool)
         finite = np.all([np.isfinite(_ends(getattr(self, name))).all(axis=0) for name in names], axis=0)
         return ~finite & np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
 
-    def out_of_range(self, without=()):
+    def out_of_range(self):
         """(B,) bool: the case has converged to a number that is negative, or nought, or above 1 where it cannot be.
 
         In units R = E2* = 1, where no number is rounded to nought by its unit.
@@ -142,7 +144,7 @@ class Solution:
         if most <= 1 + _ROUNDING and all(v > 0 if name in _POSITIVE else v >= 0 for name, v in least.items()):
             return np.zeros(len(self.a), dtype=bool)
         ends = {name: _ends(getattr(self, name)) for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)}
-        wrong = [~(low > 0) for name, (low, _) in ends.items() if name in _POSITIVE and name not in without]
+        wrong = [~(low > 0) for name, (low, _) in ends.items() if name in _POSITIVE]
         wrong += [low < 0 for low, _ in ends.values()]
         wrong += [ends[name][1] > 1 + _ROUNDING for name in _SHARES]
         return np.any(wrong, axis=0) & (self.status == Status.CONVERGED)

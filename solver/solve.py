@@ -10,7 +10,7 @@ from .contact import smooth
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
-from .models.range_of_law import refuse_outside
+from .models.range_of_law import outside_law
 from .scaling import as_cases, dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from .schemes import SCHEMES
 from .solution import Solution
@@ -79,7 +79,8 @@ def _solved(given, x, invalid):
     missed = (found.status == Status.CONVERGED) & ~(found.error <= problem.rtol)
     found.status[missed] = Status.TOLERANCE_NOT_MET
     solution = _with_models(given, restore(found, problem))
-    return refuse_outside(given, solution)
+    solution = solution.refused(outside_law(given, solution), Status.OUTSIDE_LAW)
+    return replace(solution, **{given.control: given.value * 1.0})  # as it was given, of what is refused too
 
 
 def _routes(problem, solvable):
@@ -92,7 +93,9 @@ def _routes(problem, solvable):
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
     iterated = solvable & (~is_smooth | (problem.base == "layered"))
-    for law, body, scheme in product(LAWS, BODIES, SCHEMES):
+    kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
+    present = ([word for word in known if word in set(words[iterated].tolist())] for known, words in kinds)
+    for law, body, scheme in product(*present):
         chosen = iterated & (problem.micro == law) & (problem.base == body) & (problem.scheme == scheme)
         for limit in np.unique(problem.max_iterations[chosen]):
             yield from _route(chosen & (problem.max_iterations == limit), SCHEMES[scheme])
@@ -125,7 +128,8 @@ def _with_models(problem, solution):
     solved, error = np.isfinite(solution.p0), np.array(solution.model_error)
     error[solved & named & ~thin] = 0.0
     judged = np.flatnonzero(solved & thin & (problem.model_check == "closed_form"))
-    error[judged] = closed_form(problem.take(judged), solution.a[judged])
+    if len(judged):
+        error[judged] = closed_form(problem.take(judged), solution.a[judged])
     error += sum(law.error * (named & (problem.micro == name)) for name, law in LAWS.items())
     used = np.where(named, auto.model_of(problem), solution.model_used)
     return replace(solution, model_used=used, model_error=error)

@@ -1,6 +1,7 @@
 """A study file, its results and what can be done with them: `load`."""
 
 import os
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,7 +18,7 @@ from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, statuses
 from .store.tidy import clean
 from .work.cost import Estimate
-from .work.plan import Report, belongs, check_countable, look, results_path
+from .work.plan import Report, belongs, check_countable, look
 from .work.run import dry_run, partial_dataset, run
 
 LAZY = 200_000_000  # bytes of a results file that is not read at once
@@ -31,8 +32,11 @@ class Study:
     results: Path
 
     def __repr__(self) -> str:
-        path = results_path(self.definition, self.results).as_posix()
-        return f'Study("{self.definition.name}", {self.definition.cases}, {path})'
+        return f'Study("{self.definition.name}", {self.definition.cases}, {self._store.path.as_posix()})'
+
+    @property
+    def _store(self) -> Store:
+        return Store(self.definition, self.results)
 
     def run(self, **options) -> Report:
         """Compute what is missing and write the results file; options as of `study.work.plan.Order`."""
@@ -54,33 +58,36 @@ class Study:
         count as computed; so do those in blocks. Raises StudyError for a very large study that is neither new nor
         done, unless `yes`: counting takes memory.
         """
-        path = results_path(self.definition, self.results)
-        found = look(self.definition, path, ("status",))
+        with suppress(FileNotFoundError):  # somebody removed the results while they were looked at
+            return self._status(yes)
+        return self._status(yes)
+
+    def _status(self, yes: bool) -> dict:
+        store = self._store
+        found = look(store, ("status",))
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
         if state == "done":
-            counts = count_statuses(statuses(path))
+            counts = count_statuses(statuses(store.path))
         elif state not in ("new", "outdated"):
             pass
-        elif not check_countable(Store(self.definition, self.results), path, yes):
+        elif not check_countable(store, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
-            known = inventory(Store(self.definition, self.results), earlier(self.definition, found).source)
+            known = inventory(store, earlier(self.definition, found).source)
             counts = count_statuses(known.status)
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
-        return {
-            "state": state, "cases": self.definition.grid.size, "counts": counts, "path": path, "reason": found.reason
-        }  # fmt: skip
+        cases = self.definition.grid.size
+        return {"state": state, "cases": cases, "counts": counts, "path": store.path, "reason": found.reason}
 
     def verify(self) -> Condition:
         """All of the results file against its checksums, see `study.files.examine.Condition`."""
-        return look(self.definition, results_path(self.definition, self.results))
+        return look(self._store)
 
     def clean(self) -> list[str]:
         """Remove blocks that do not serve the study as it is; says which. Never touches results."""
-        found = look(self.definition, results_path(self.definition, self.results))
-        return clean(Store(self.definition, self.results), belongs(self.definition, found))
+        return clean(self._store, belongs(self.definition, look(self._store)))
 
     def open(self, partial: bool = False) -> xr.Dataset:
         """The results. Raises StudyError when there are none, none of this definition, or they are damaged.
@@ -91,8 +98,7 @@ class Study:
 
         partial : give the blocks computed so far instead, with status 127 (not run) for the rest
         """
-        path = results_path(self.definition, self.results)
-        found = look(self.definition, path, ())
+        path, found = self._store.path, look(self._store, ())
         if belongs(self.definition, found):
             return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
         if partial:

@@ -10,7 +10,7 @@ from matplotlib.figure import Figure
 
 import solver
 
-from . import evidence, figures, paper
+from . import evidence, figures, literature, paper
 from .figures.formats import as_csv, as_latex, as_text, csv_text, write_text
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
@@ -21,7 +21,7 @@ SCHEMES = {
     "fig02": "One asperity of radius Ra and its cell; the contact spot has the radius b.",
 }
 """Figures 1 and 2 of the paper, with their captions. They show no results, and are kept as drawings."""
-for _room in (figures, paper, evidence):
+for _room in (figures, paper, literature, evidence):
     for _module in iter_modules(_room.__path__, f"{_room.__name__}."):
         import_module(_module.name)  # which registers what it has
 

@@ -4,22 +4,20 @@ import numpy as np
 import xarray as xr
 
 from solver import Status
-from solver.laws import LAWS
 
-from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
+from .data.flags import broken, decode
 from .physical.bodies import BODIES
+from .physical.told import is_rigid, told
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
-from .spec.vocabulary import VOCABULARY
+from .spec.laws import smooth_laws
+from .spec.vocabulary import CONTROLS, VOCABULARY
 
 MOST_CASES = 20  # that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: In a smooth contact the real pressure is the nominal one, and the real area all of it.
 _OF_ASPERITIES = ("p_max", "Ar_An")
-INPUTS = (
-    *("R1", "R2", "R", "punch", "E_punch", "nu_punch", "layer", "E1", "nu1", "body", "E2", "nu2", "n", "m", "h"),
-    *("bonding", "micro", "Nbar", "Ra", "B", "beta", "sigma", "cut"),
-)
 MODELS = {
     "half_space": "a half-space under the asperities",
     "smooth_half_space": "a half-space, without asperities",
@@ -43,6 +41,8 @@ BROKEN = {
     "yield by 10 % or more.",
     "strain_not_small": f"The strain is not small (a > {STEEP:g} R, or the layer gives way by more than "
     f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
+    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most "
+    "materials yield before that, and pmax is larger than any real pressure.",
 }
 
 
@@ -89,42 +89,15 @@ def summary(contact: xr.Dataset) -> Summary:
 
 def _one(case: xr.Dataset, dims=()) -> str:
     """The text of one case."""
-    rough = str(case["micro"].values) != "smooth"
-    inputs = [name for name in INPUTS if name in case and name not in dims and _matters(case, name, rough)]
-    rigid = ["a rigid punch"] * _is_rigid(case, "punch") + ["a rigid base"] * _is_rigid(case, "base")
+    rough = case["micro"].values not in smooth_laws()
+    inputs = [name for name in told(case) if name not in (*dims, *CONTROLS)]
+    rigid = ["a rigid punch"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
     lines = ["Given: " + ", ".join(rigid + [_given(case, name) for name in inputs]), ""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:
         lines.append(f"  {VOCABULARY[name].long_name:{width}}  {VOCABULARY[name].symbol:6} = {_sure(case, name)}")
     return "\n".join([*lines, "", *_sentences(case)])
-
-
-def _is_rigid(case: xr.Dataset, body: str) -> bool:
-    """Whether the punch, or the base under a layer, is rigid."""
-    if body == "punch":
-        return bool(case.get("m", 0.0) == 0)
-    return bool(case.get("n", 1.0) == 0) and str(case["base"].values) != "half_space"
-
-
-def _matters(case: xr.Dataset, name: str, rough: bool) -> bool:
-    """Whether a parameter has a value that the case uses."""
-    value = case[name].values
-    of_the_rigid = {"m": "punch", "nu_punch": "punch", "punch": "punch", "nu2": "base", "body": "base"}
-    if name in of_the_rigid and _is_rigid(case, of_the_rigid[name]) or name == "n" and _is_rigid(case, "base"):
-        return False
-    if name == "R" and "R1" in case:
-        return False
-    if name in ("micro", "Nbar", "Ra"):
-        return rough
-    if name in ("B", "beta", "sigma", "cut"):
-        law = LAWS.get(str(case["micro"].values))
-        return law is not None and name in law.parameters
-    if name in ("layer", "E1", "nu1", "n", "h", "bonding") and str(case["base"].values) == "half_space":
-        return False
-    if name in ("n", "m") and "E2" in case:
-        return False
-    return value.dtype.kind != "f" or bool(np.isfinite(value))
 
 
 def _given(case: xr.Dataset, name: str) -> str:
@@ -160,8 +133,7 @@ def _sure(case: xr.Dataset, name: str) -> str:
     if not np.isfinite(spread):  # a case with an input moved by a tenth of its spread was not solved
         return f"{_text(case, name, value)} ± unknown"
     parts = [spread]
-    control = [c for c in ("P", "a", "D") if c in case.coords]
-    if name not in control:
+    if name not in CONTROLS or name not in case.coords:
         parts += [value * float(case[kind]) for kind in ("error", "model_error") if np.isfinite(case[kind])]
     return _text(case, name, value, float(np.sqrt(np.sum(np.square(parts)))))
 
@@ -169,41 +141,34 @@ def _sure(case: xr.Dataset, name: str) -> str:
 def _sentences(case: xr.Dataset) -> list[str]:
     """How it was solved, and what the numbers rest on."""
     status = case["status"]
-    word = _word(status)
+    word, used = decode(status).item(), decode(case["model_used"]).item()
     if word == "converged":
         found = [f"Solved: the numbers are within a relative {float(case['error']):.1g} of the model's solution."]
     else:
         meaning = Status(int(status)).meaning if int(status) in list(Status) else "the case has not been computed"
         found = [f"NOT SOLVED ({word}): {meaning}."]
-    model = MODELS.get(_word(case["model_used"]))
+    model = MODELS.get(used)
     if model:
         error = float(case["model_error"])
-        exact = _word(case["model_used"]) in ("half_space", "layered")  # then it is the micro law that is not
+        exact = used in ("half_space", "layered")  # then it is the micro law that is not
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.")
-    broken = doubts(case)
-    found += [f"Beware: {sentence}" for sentence in broken]
-    if not broken and word == "converged":
+    beyond = doubts(case)
+    found += [f"Beware: {sentence}" for sentence in beyond]
+    if not beyond and word == "converged":
         found.append("None of the assumptions that are checked is violated (docs/model.md, Four answers).")
     return found
-
-
-def _word(flag: xr.DataArray) -> str:
-    """The word of a flag value."""
-    words = zip(np.atleast_1d(flag.attrs["flag_values"]).tolist(), flag.attrs["flag_meanings"].split(), strict=True)
-    return dict(words).get(int(flag), str(int(flag)))
 
 
 def doubts(contact: xr.Dataset) -> list[str]:
     """Sentences about the cases of a dataset that are beyond what the model describes; none: all is well."""
     v = contact.variables  # a DataArray compares its coordinates at every step, which takes longer than a contact
-    flags, values, found = v["validity"].attrs, v["validity"].values, []
-    for mask, word in zip(np.atleast_1d(flags["flag_masks"]), flags["flag_meanings"].split(), strict=True):
-        count = int(((values & mask) != 0).sum())
-        of_all = f"{count} of {values.size} cases: " if values.size > 1 else ""
-        found += [of_all + BROKEN[word]] if count else []
-    if {"Ra", "Nbar"} <= set(contact.coords) and (v["micro"].values != "smooth").any():
+    found = []
+    for word, where in broken(v["validity"]).items():
+        of_all = f"{where.sum()} of {where.size} cases: " if where.size > 1 else ""
+        found += [of_all + BROKEN[word]] if where.any() else []
+    if {"Ra", "Nbar"} <= set(contact.coords) and (~np.isin(v["micro"].values, smooth_laws())).any():
         sharp = looks_like_iso_ra((v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values)
         found += [sharp] if sharp else []
     return found

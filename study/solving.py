@@ -12,15 +12,16 @@ import xarray as xr
 
 from solver.laws import Law
 
-from .data.dataset import parts
+from .data.dataset import Parts, parts
 from .in_words import doubts
 from .physical.reading import read as read_scene
 from .physical.scene import shown
 from .physical.study_file import complete as complete_scene
-from .spec.definition import LARGE, POINTS, complete
+from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
+from .spec.grid import shown as quoted
 from .spec.vocabulary import NUMERICS, VOCABULARY
-from .work.cases import compute, parcel
+from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
 """Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
@@ -44,7 +45,9 @@ class Parameters(TypedDict, total=False):
     Nbar: Value
     Ra: Value
     micro: (
-        Literal["disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights"]
+        Literal[
+            "disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights"
+        ]
         | str
         | Law
         | Many
@@ -78,6 +81,7 @@ def solve(
     x: int | Sequence[float] | np.ndarray = POINTS,
     profiles: bool | Sequence[str] = True,
     title: str = "",
+    workers: int | None = None,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -99,7 +103,8 @@ def solve(
     micro : law of the asperities, "table:" and the path of a CSV file (docs/model.md), or a `solver.laws.Law` itself
     B, beta : of micro = "power_law", A = B Ra (p/E1*)^beta, so B is in Ra/E1*^beta. Without both the law is fitted to
         Nbar and Ra, as the paper's is
-    sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it
+    sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
+        "uniform_heights" has sigma alone
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative
@@ -115,6 +120,7 @@ def solve(
     x : number of points r/a of the profiles, or the points, from 0 to 1
     profiles : whether the dataset holds p and lam, or a list of those that it shall hold
     title : of the dataset
+    workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
     parameters : of registered laws
 
     Returns
@@ -135,6 +141,8 @@ def solve(
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
+    if workers is not None and (type(workers) is not int or workers < 1):
+        raise StudyError([f"workers = {quoted(workers)}: must be a whole number, 1 or more"])
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
@@ -148,8 +156,8 @@ def solve(
         for name, given in parameters.items():
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
-    arrays = compute(parcel(definition, np.arange(definition.grid.size)))
-    found = settings_apart(shown(definition, parts(definition, arrays, "study.solve")))
+    arrays = solved(definition, workers)
+    found = shown(definition, settings_apart(parts(definition, arrays, "study.solve")))
     if not scene:
         return found
     beyond = doubts(found)
@@ -174,8 +182,12 @@ def signature() -> inspect.Signature:
 solve.__signature__ = signature()
 
 
-def settings_apart(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset with numerical settings that all cases share as attributes: they are no coordinates of a contact."""
-    v = dataset.variables  # a DataArray of each would take longer
-    shared = {name: v[name].values.item() for name in NUMERICS if name in v and not v[name].ndim}
-    return dataset.drop_vars(list(shared)).assign_attrs(shared)
+def settings_apart(found: Parts) -> Parts:
+    """The parts with numerical settings that all cases share as attributes: they are no coordinates of a contact.
+
+    Before there is a dataset: to take variables out of one copies all others.
+    """
+    shared = [name for name in NUMERICS if name in found.coords and not found.coords[name].ndim]
+    coords = {name: own for name, own in found.coords.items() if name not in shared}
+    attributes = {name: found.coords[name].values.item() for name in shared}
+    return Parts(found.variables, coords, found.attributes | attributes)

@@ -1,6 +1,7 @@
 """Speed of the solver: cases per second on one thread, and that over the speed of stacked 17 x 17 linear solves.
 
     python tests/benchmark.py [bench.json]
+    python tests/benchmark.py --page docs/speed.md
 
 The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case, both in
 processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, a study of a
@@ -8,12 +9,12 @@ million cases, BLAS left two threads (benchmark_threads.py has more), and at equ
 are installed (extra `peers`), other codes.
 """
 
+import argparse
 import json
 import os
 import platform
 import resource
 import sys
-import time
 from concurrent.futures import ThreadPoolExecutor
 from itertools import product
 from pathlib import Path
@@ -22,15 +23,16 @@ for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")  # before numpy is imported
 
 import numpy as np  # noqa: E402
-from benchmark_peers import peers  # noqa: E402
+from benchmark_cases import CASES, REPEATS, X, coatings, problem, processor_seconds, rated, seconds  # noqa: E402
+from benchmark_page import measured_page  # noqa: E402
+from benchmark_peers import peers, rough_peers  # noqa: E402
 from benchmark_study import beside_the_solver, whole_run  # noqa: E402
 from benchmark_threads import blas_threads  # noqa: E402
 
-from solver import NUMERICS_VERSION, Problem, Status, solve  # noqa: E402
+from solver import NUMERICS_VERSION, Status, solve  # noqa: E402
 from study.evidence.problem_sets import SETS  # noqa: E402
 from study.evidence.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
 
-CASES, REPEATS, SYSTEMS, ORDER = 16_000, 3, 20_000, 17
 SIZES = (1_000, 10_000, 100_000, 1_000_000)
 #: From this size on the time per case is called flat if it is within FLAT of its mean.
 LARGE, FLAT = 10_000, 0.15
@@ -38,100 +40,25 @@ BLOCK = 8000
 #: k, intervals, cases of the paper's way; of k = 5, 10, 20, 30, 35, 40 that with which all end at least cost.
 PAPERS = ((5, 20, 200), (5, 45, 200), (10, 80, 100), (20, 130, 50), (30, 390, 20), (30, 640, 10), (35, 1100, 5))
 PAPERS_CASES = 1000
-X = np.linspace(0.0, 1.0, 5)
-
-
-def problem(micro: str, base: str, rtol: float, size: int = CASES) -> Problem:
-    """Random ordinary cases on a layer (see `MODEL`: P 1e-7..1e-3, Ra 5e-4..1e-2, N̄Ra² 0.1..10)."""
-    random = np.random.default_rng(1)
-
-    def between(low, high):
-        return np.exp(random.uniform(np.log(low), np.log(high), size))
-
-    Ra = between(5e-4, 1e-2)
-    return Problem.of(
-        P=between(1e-7, 1e-3),
-        Ra=Ra,
-        Nbar=between(0.1, 10) / Ra**2,
-        n=random.uniform(0.05, 0.95, size),
-        h=between(1e-3, 0.1),
-        micro=micro,
-        base=base,
-        rtol=rtol,
-    )
-
-
-def coatings(size: int) -> Problem:
-    """Random coatings on the exact layer: n from 1e-3 to 1e3, both interfaces, ν up to 0.49."""
-    random = np.random.default_rng(2)
-
-    def between(low, high):
-        return np.exp(random.uniform(np.log(low), np.log(high), size))
-
-    return Problem.of(
-        P=between(1e-7, 1e-3),
-        Ra=random.choice([0.002, 0.004, 0.008], size),
-        Nbar=250_000.0,
-        n=between(1e-3, 1e3),
-        h=between(1e-3, 0.5),
-        nu1=random.uniform(0, 0.49, size),
-        nu2=random.uniform(0, 0.49, size),
-        bonding=random.choice(["frictionless", "bonded"], size),
-        rtol=1e-6,
-    )
-
-
-def processor_seconds(action) -> float:
-    """Processor time of one run."""
-    start = time.process_time()
-    action()
-    return time.process_time() - start
-
-
-def by_turns(*actions) -> np.ndarray:
-    """Shortest processor time of each action, of turns of some runs in a row, so that each finds its own cache: at
-    least REPEATS turns, and a second in all."""
-    times = np.empty((0, len(actions), 1 + REPEATS))
-    while len(times) < REPEATS or times.sum() < 1.0:
-        turn = [[processor_seconds(action) for _ in range(1 + REPEATS)] for action in actions]
-        times = np.concatenate([times, [turn]])
-    return times.min(axis=(0, 2))
-
-
-def seconds(action) -> float:
-    """Shortest time of the repeats, after one run that fills the caches."""
-    action()
-    times = []
-    for _ in range(REPEATS):
-        start = time.perf_counter()
-        action()
-        times.append(time.perf_counter() - start)
-    return min(times)
 
 
 def speed() -> list[dict]:
     """Cases per second of every kind of case at three tolerances, and well-conditioned systems of 17 unknowns solved by
     stacked numpy.linalg.solve."""
-    random = np.random.default_rng(0)
-    matrices = random.standard_normal((SYSTEMS, ORDER, ORDER)) + ORDER * np.eye(ORDER)
-    right = random.standard_normal((SYSTEMS, ORDER, 1))
 
-    def row(cases, size):
-        """One row of a problem of `size` cases, by turns with the linear systems."""
-        times = by_turns(lambda: solve(cases, X), lambda: np.linalg.solve(matrices, right))
-        rate, systems = (size, SYSTEMS) / times
+    def row(cases):
+        """One row of a problem, by turns with the linear systems."""
         solution = solve(cases, X)
-        found = {"cases_per_second": rate, "r": rate / systems, "systems_17_per_second": systems}
-        found |= {"converged": float(np.mean(solution.status == Status.CONVERGED))}
+        found = rated(cases) | {"converged": float(np.mean(solution.status == Status.CONVERGED))}
         return found | {"largest_error": float(np.nanmax(solution.error))}
 
     rows = []
     for micro, base in product(("smooth", "disc_cell"), ("thin_layer", "layered")):
         for rtol in (1e-3, 1e-6, 1e-9):
-            rows.append({"micro": micro, "base": base, "rtol": rtol} | row(problem(micro, base, rtol), CASES))
+            rows.append({"micro": micro, "base": base, "rtol": rtol} | row(problem(micro, base, rtol)))
     for size in (4000, 100):
         kind = {"micro": "disc_cell", "base": f"coatings {size}", "rtol": 1e-6}
-        rows.append(kind | row(coatings(size), size))
+        rows.append(kind | row(coatings(size)))
     return rows
 
 
@@ -216,6 +143,7 @@ def measure() -> dict:
         "whole_run": [beside_the_solver(run)],
         "papers_way": papers_way(),
         "peers": peers(seconds),
+        "rough_peers": rough_peers(),
     }
 
 
@@ -233,7 +161,7 @@ def report(result: dict) -> None:
     flat = result["flatness"]
     word = "flat" if flat["flat"] else "not flat"
     print(f"time per case from {flat['from']} cases on: {word}, within {flat['deviation']:.1%} of its mean")
-    for name in ("sizes", "threads", "blas_threads", "whole_run", "papers_way", "peers"):
+    for name in ("sizes", "threads", "blas_threads", "whole_run", "papers_way", "peers", "rough_peers"):
         print(f"\n{name}")
         for row in result[name]:
             print("  " + ", ".join(f"{key} {value:.3g}" if isinstance(value, float) else f"{key} {value}"
@@ -241,11 +169,18 @@ def report(result: dict) -> None:
 
 
 def main(arguments: list[str]) -> None:
-    """Print the tables and write all as JSON."""
+    """Print the tables and write all as JSON, or measure what docs/speed.md says and write it."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("json", nargs="?", type=Path, help="file for all figures of the full benchmark")
+    parser.add_argument("--page", type=Path, help="write docs/speed.md there in place of it, in some minutes")
+    options = parser.parse_args(arguments)
+    if options.page:
+        options.page.write_text(measured_page(), encoding="utf-8")
+        return
     result = measure()
     report(result)
-    if arguments:
-        Path(arguments[0]).write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
+    if options.json:
+        options.json.write_text(json.dumps(result, indent=1) + "\n", encoding="utf-8")
 
 
 if __name__ == "__main__":

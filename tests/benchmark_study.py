@@ -1,5 +1,5 @@
 """A study of a million thin rough cases with profiles by `python -m study run`, from file to dataset; and what the
-solver alone takes for such cases on two threads."""
+solver alone takes for such cases on two threads and on one."""
 
 import resource
 import subprocess
@@ -61,12 +61,16 @@ def beside_the_solver(row: dict) -> dict:
     drawn = np.random.default_rng(0).permutation(row["cases"])[:DRAWN]
     blocks = [parcel(DEFINITION, drawn[i : i + BLOCK]) for i in range(0, DRAWN, BLOCK)]
     problems = [Problem.of(**block.parameters) for block in blocks]
-    alone = min(_seconds(problems, DEFINITION.x) for _ in range(REPEATS)) * row["cases"] / DRAWN
-    return row | {"solver_seconds": alone, "share_of_solver_rate": alone / row["seconds"]}
+    alone, one = (
+        min(_seconds(problems, DEFINITION.x, threads) for _ in range(REPEATS)) * row["cases"] / DRAWN
+        for threads in (WORKERS, 1)
+    )
+    row |= {"solver_seconds": alone, "share_of_solver_rate": alone / row["seconds"]}
+    return row | {"solver_seconds_one_thread": one, "over_one_thread": row["seconds"] / one}
 
 
-def _seconds(problems: list[Problem], x: np.ndarray) -> float:
+def _seconds(problems: list[Problem], x: np.ndarray, threads: int) -> float:
     start = time.perf_counter()
-    with ThreadPoolExecutor(WORKERS) as pool:
+    with ThreadPoolExecutor(threads) as pool:
         list(pool.map(lambda problem: solve(problem, x), problems))
     return time.perf_counter() - start

@@ -10,7 +10,8 @@ import numpy as np
 from ..numerics.mesh import Mesh
 from .operator import fitted_nodes
 
-#: Below this rtol no case on springs begins on the coarsest mesh of six nodes: of random cases few stayed there.
+#: Below this rtol a case on springs begins on eight nodes, not on the six of the coarsest mesh: of the random cases few
+#: stayed on six.
 _FINE, _SECOND = 3e-5, 8
 
 

@@ -10,7 +10,7 @@ from .kernel import decaying_part
 from .tables import table
 from .wave_rule import CUT, FILM, few, place_of, quadrature
 
-#: Numbers in one block of kernel values: its temporaries stay in the cache.
+#: Kernel values are computed in blocks of so many numbers: the arrays in between stay in the cache.
 _BLOCK = 16384
 
 
@@ -49,7 +49,7 @@ class Part(NamedTuple):
 
 def runs(octave):
     """Pairs of an octave and the slice of its equal neighbours."""
-    ends = np.flatnonzero(np.diff(octave)) + 1
+    ends = (octave[1:] != octave[:-1]).nonzero()[0] + 1  # np.diff takes as long as what is done with a small slice
     for low, high in pairwise([0, *ends.tolist(), len(octave)]):
         yield int(octave[low]), slice(low, high)
 

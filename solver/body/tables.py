@@ -14,15 +14,15 @@ from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
 from .wave_rule import CUT, FILM, few, quadrature
 
-#: Tables of J0 φ larger than this many numbers are not kept; the product is then formed case by case.
+#: A table of J0 φ of more numbers than this is not kept; the product is then formed case by case.
 _KEEP = 4e6
-#: Of those between the nodes, of which many are kept.
+#: The same limit of tables between the nodes. It is lower, since there are many of them.
 _KEEP_BETWEEN = 4e4
-#: Bytes of tables kept.
+#: All tables that are kept take at most so many bytes.
 _MOST_BYTES = 4e8
-#: Radians of J0 in a piece of its transform.
+#: The transform of J0 is formed in pieces, along each of which the argument of J0 grows by at most so many radians.
 _PHASE = 120.0
-#: Nodes k of a part of the transform that is kept.
+#: The transform is kept in parts of so many nodes k.
 _ROWS = 250
 #: Degrees up to which the moments of a panel are formed at once: J0 costs the most, and meshes of all orders have its
 #: values in common.

@@ -15,19 +15,20 @@ import numpy as np
 from ..numerics.quadrature import gauss_legendre
 from .kernel import decaying_part
 
-#: Octaves of h/a with tables of their own; below is the octave FILM, above nothing of the half-space is left.
+#: First and last octave of h/a with tables of their own. All h/a below are the octave FILM; above, the half-space under
+#: the layer is not felt any more.
 OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
-#: Widest panel in k: wider ones would need Gauss rules that are slow to make.
+#: Width in k of the widest panel: a wider one would need a Gauss rule that is slow to make.
 _WIDEST = 200.0
 #: Largest n of each class of stiffness, and how many dyadic panels towards k = 0 its quadrature has. A stiff layer is a
 #: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: beyond the first class the first panel
 #: ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: Number of few nodes of each class: at most so many are needed in any octave.
+#: How many nodes determine L - 1 of each class of stiffness: the most that were needed in any octave.
 _FEW = (52, 90, 104, 104)
-#: Number of random layers from whose L - 1 and u dL/du the few nodes are found; and at most what is left out of these
-#: functions, over the largest of them: rounding.
+#: The few nodes are found from so many random layers, their L - 1 and u dL/du. What the nodes leave out of these
+#: functions is at most this part of the largest of them, which is rounding.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 
 
@@ -35,7 +36,8 @@ _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: fewest of _LEAST below and above u = 1/2, _LESS fewer a digit by which e^-2u has decayed there. With it the operator
 #: is right to rounding, to 1e-11 below h/a = 1/64 (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
-#: Where the integral over u may end, at most and at octave 0: L - 1 ~ u² e^(-2u), J0 φ ~ 1/k² for k > 1.
+#: Where the integral over u ends: at most, and at octave 0. Beyond, L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too
+#: small to count.
 _END, _END_MIDDLE = 17.0, 15.0
 
 
@@ -51,7 +53,8 @@ CUT = _end(FILM) * 2.0**-FILM
 def place_of(layer, a):
     """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each."""
     eta = layer.h / a
-    octave = np.clip(np.floor(np.nan_to_num(np.log2(eta))), FILM, OCTAVES[1]).astype(int)
+    octave = np.floor(np.log2(eta))
+    octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)  # of a film, that of its quadrature's end
     return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
 

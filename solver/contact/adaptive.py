@@ -1,7 +1,7 @@
 """Newton's method, for each case on the mesh that meets its tolerance.
 
-A case whose estimated error does not meet it goes on to the next finer mesh from the state of the estimate, and what
-the finest mesh does not resolve, to panels of its own.
+A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state from
+which the error was estimated. What the finest mesh does not resolve is solved on panels, each case on its own.
 """
 
 from dataclasses import replace
@@ -18,8 +18,8 @@ from .equation import error_floor, evaluate
 from .panels import BUDGET, solve_on_panels
 from .start import approach, first_guess, guess_radius, nodes_wanted
 
-#: Part of rtol to which panels are made anew where they miss it: their last coefficients may be small where the error
-#: is not.
+#: Panels are halved until the last coefficients on each are small. The error may still be above rtol: the panels are
+#: then made anew with this times rtol.
 _FINER = 0.03
 
 
@@ -34,9 +34,9 @@ def solve_newton(cases, rtol, nodes, limit, x):
     def on_mesh(index, n, start):
         part, grid, goes_on = cases.take(index), mesh(n), free[index] & (n < LADDER[-1])
         if start is not None or limit or n < 8:
-            begin = evaluate(part, first_guess(part, grid) if start is None else start, grid)
+            begin = evaluate(part, first_guess(part, grid, a[index]) if start is None else start, grid)
         else:
-            begin = approach(part, grid)
+            begin = approach(part, grid, a[index])
         found = answer(solve_on(begin, limit), x, np.where(goes_on, rtol[index], np.inf))
         useless = (found.solution.status != Status.CONVERGED) | _hopeless(part, found, rtol[index])
         error = np.where(free[index] & found.unsure, np.inf, found.solution.error)
@@ -49,7 +49,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
     missed = closed & ((found.solution.error > rtol) | (free & found.unsure))
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(cases, found, rtol)) & free & (limit == 0)
     ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x)) for i in np.flatnonzero(opened)]
-    return Solution.join(size, len(x), [(np.arange(size), _ended(found.solution, missed, lifted)), *ends])
+    ended = _ended(found.solution, missed, lifted)
+    return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 
 def _together(rungs, size, points):
@@ -63,14 +64,17 @@ def _together(rungs, size, points):
 
 
 def _hopeless(cases, found, rtol):
-    """(B,) bool: the error is the least that it can be on any mesh, and more than rtol."""
+    """(B,) bool: the error is above rtol, and no mesh makes it smaller."""
     solution = found.solution
     floor = error_floor(cases.body, solution.a, solution.nodes)
     return (solution.status == Status.CONVERGED) & (floor > rtol) & (solution.error <= floor) & ~found.unsure
 
 
 def _ended(solution, missed, lifted, spent=False):
-    """The solution with its last word: `missed` and `lifted` (B,) bool; `spent`: so is the budget of the panels."""
+    """The solution with its final status.
+
+    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : whether the budget of the panels is spent
+    """
     status = np.where(missed, Status.BUDGET_SPENT if spent else Status.TOLERANCE_NOT_MET, solution.status)
     over = (status == Status.ITERATION_LIMIT) & (solution.iterations >= newton_steps(solution.nodes))
     status = np.where(over, Status.BUDGET_SPENT, status).astype(np.int8)
@@ -80,7 +84,7 @@ def _ended(solution, missed, lifted, spent=False):
 def _on_panels(case, before, rtol, x):
     """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better.
 
-    Tension and gaps there count if they are on finer panels as well: what panels do not resolve may look like them.
+    Tension and gaps count only if they are there on finer panels too: panels that are too coarse show some as well.
     """
     best, lifted, count, left = before.solution, before.lifted, before.solution.iterations, BUDGET
     resolved, missed = False, best.status == Status.CONVERGED

@@ -11,15 +11,18 @@ from .equation import State, error_floor
 from .error import area_error, estimate, refine
 from .results import profiles, quantities
 
-#: Error of p(0) below which its sign is sure, and height of a gap over a²/2 that is none of rounding.
-_SURE, _GAP = 0.1, 1e-9
-#: Share of tension in the load that is none of rounding.
-_TENSION = 1e-9
+#: Where the error of a case is below this, p(0) < 0 is no error of the mesh.
+_SURE = 0.1
+#: A gap higher than this times a²/2, and tension of more than this part of the load, are no rounding.
+_GAP, _TENSION = 1e-9, 1e-9
 
 
 class Answer(NamedTuple):
-    """The solution of B cases; the share (B,) of tension in the load, and whether there is a gap (B,): the punch lifts
-    off, or the mesh does not resolve the pressure; and the state on the next finer mesh."""
+    """The solution of B cases, and what tells whether the punch lifts off.
+
+    tension : (B,) tensile part of the load over the load; gap : (B,) bool, whether there is a gap inside the contact.
+    Either may also mean that the mesh does not resolve the pressure. finer : the state on the next finer mesh.
+    """
 
     solution: Solution
     tension: np.ndarray
@@ -33,21 +36,21 @@ class Answer(NamedTuple):
 
     @property
     def lifted(self):
-        """(B,) bool: the tension, or that in the centre, is more than an error."""
+        """(B,) bool: there is tension, somewhere or in the centre, and it is larger than its error."""
         error = self.solution.error
         return (self.tension > np.fmax(10 * error, _TENSION)) | ((self.solution.p0 < 0) & (error < _SURE))
 
     @property
     def unsure(self):
-        """(B,) bool: there is tension that may be an error, or none: a finer mesh will tell."""
+        """(B,) bool: there is tension, and it may be no more than its error: a finer mesh will tell."""
         return (self.tension > _TENSION) & (self.tension <= 10 * self.solution.error)
 
 
 def answer(iterated, x, enough=np.inf):
     """:class:`Answer` of an iteration, with profiles at the radii x (m,).
 
-    A case that has closed and whose error exceeds `enough` (B,), and the least that it can be, is not done: it goes on
-    to a finer mesh, and gets no profiles. One without finite numbers is ``Status.DIVERGED`` and NaN.
+    A case goes on to a finer mesh, and gets no profiles, where it has closed and its error exceeds both `enough` (B,)
+    and the least error that is possible. A case without finite numbers is ``Status.DIVERGED`` and NaN.
     """
     ev, closed, count = iterated
     own, refined = quantities(ev), refine(ev)
@@ -55,7 +58,7 @@ def answer(iterated, x, enough=np.inf):
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     enough = np.where(closed, enough, np.inf)
     slope, last = refined.dP_dD, np.flatnonzero(enough == np.inf)
-    if len(last):  # at the solution itself, which may be worse than the estimate by a margin
+    if len(last):  # of cases that stay on this mesh dP/dD is that of this mesh, as their other numbers are
         at = ev.take(last)
         slope[last] = newton.stiffness(at, newton.tangent(at), own.P[last], own.D[last])
     floor = error_floor(ev.cases.body, own.a, ev.mesh.n)

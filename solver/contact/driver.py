@@ -10,8 +10,9 @@ from . import newton
 from .equation import evaluate
 from .start import guess_radius, smooth_start
 
-#: Most Newton steps on a mesh of up to _NODES nodes, and the fewest; the finer the mesh, the longer a step takes. Of
-#: random cases within the bounds of the parameters, those that searched for their radius took 230 at most.
+#: A case may take _STEPS Newton steps on a mesh of up to _NODES nodes, and fewer on finer ones, where a step takes
+#: longer, but at least _FEWEST. Random cases within the bounds of the parameters took at most 230, where they searched
+#: for their radius.
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 
 

@@ -17,9 +17,9 @@ import numpy as np
 from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
 
-#: Pressure, over the largest, that counts as none.
+#: A pressure below this part of the largest counts as none.
 _NOTHING = 1e-16
-#: Residual at which an iteration has closed, but for the error of the operator: this part of it is enough.
+#: An iteration has closed when its residual is below the first number, or below this part of the error of the operator.
 _CLOSED, _OF_OPERATOR = 1e-13, 1e-2
 #: Rounding of the residual of a soft layer, times the softness of the layer. Its half-space and its layer terms are
 #: large and nearly cancel. Under three BLAS kernels, on 12 to 64 nodes, at most 18 eps were seen.

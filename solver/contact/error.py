@@ -1,5 +1,7 @@
-"""The error of a solution on a mesh: its distance to one Newton step on the next finer mesh, which from so close is
-nearly as good as the solution there."""
+"""The error of a solution on a mesh: its distance to the solution on the next finer mesh.
+
+One Newton step on the finer mesh stands for the solution there: it begins so close that it nearly arrives.
+"""
 
 from dataclasses import replace
 from typing import NamedTuple
@@ -11,12 +13,15 @@ from . import newton
 from .equation import State, error_floor, evaluate, groups
 from .results import difference, interpolate, quantities
 
-#: Areas of the ring outside the first node, times λ there, that the error of Ar/An may come to (3 were seen).
+#: No mesh sees how λ rises between the edge and the node next to it. That ring has a real area of about λ at the node
+#: times the area of the ring. The error of Ar/An was seen to reach 3 times this area; it is taken to be 8 times.
 _UNSEEN = 8.0
+#: λ at the node next to the edge above which this error is counted.
 _RISEN = 0.05
-#: By how much more the error may exceed the estimate (7 times was seen) where the layer at the edge is not resolved.
+#: Near the edge asperities yield more than the body, in a ring that the meshes may not resolve. The estimate is then
+#: multiplied by this; the error was seen to be up to 7 times the estimate without it.
 _BLIND = 3.0
-#: λ in the centre from which on it may rise sharply inside the contact.
+#: Where λ in the centre is above this, λ may rise sharply inside the contact, and Ar/An is compared with another rule.
 _SATURATED = 0.5
 
 
@@ -48,18 +53,19 @@ def nearby(ev, state, curve=None):
 
 
 def estimate(ev, found, refined):
-    """Estimated relative error (B,) of a solution and its quantities `found`, but for :func:`area_error`."""
+    """Estimated relative error (B,) of a solution with the quantities `found`. :func:`area_error` is not in it."""
     share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.mesh.s[0] ** 2
-    # no mesh sees the layer at the edge in which asperities yield more than the body
+    # a small share of the asperities at the first node: the ring in which they yield more than the body is not seen
     margin = np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
     error = margin * difference(found, refined.found)
     return np.maximum(error, error_floor(ev.cases.body, found.a, ev.mesh.n))
 
 
 def area_error(ev, Ar_An, rows):
-    """Relative error (b,) of Ar/An (B,) that both meshes may miss, of the cases `rows` (b,).
+    """Relative error (b,) of Ar/An (B,) that both meshes may have alike, of the cases `rows` (b,).
 
-    Near the edge, if λ has risen before the first node; and where asperities saturate, against a rule with other nodes.
+    Near the edge it is an upper bound, where λ has risen before the first node. Where the asperities saturate in the
+    centre, it is the difference to a quadrature with other nodes.
     """
     law, mesh = ev.cases.law, ev.mesh
     if not law.rough:

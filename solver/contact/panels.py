@@ -26,11 +26,11 @@ _MOST = 32
 _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 #: A panel is resolved when what its last coefficients add to the load and the real area is below this times rtol.
 _SHARE = 0.3
-#: ... or, for the smallest rtol, below this: the operator has an error too.
+#: A panel is also resolved when they add less than this: for the smallest rtol the error of the operator is larger.
 _FLOOR = 1e-12
-#: Sum of (nodes)² over the meshes of panels of a case: entries of operators that are made for it alone. It limits the
-#: work that one case may take, counted in what is done and not in seconds: it is the same on every machine. Nearly all
-#: cases need a hundredth of it.
+#: Most work for one case: the sum of (nodes)² over its meshes of panels, the number of entries of the operators made
+#: for this case alone. It is not counted in seconds, so that it is the same on every machine. Nearly all cases need a
+#: hundredth of it.
 BUDGET = 1_500_000
 
 

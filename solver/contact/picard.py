@@ -18,9 +18,9 @@ from .driver import Iterated, iterate
 from .equation import Cases, State, control_residual, evaluate, groups
 from .start import guess_radius
 
-#: Successive approximations at one radius.
+#: Most successive approximations at one radius.
 LIMIT = 1000
-#: Most of a case at all radii but the last: a dozen radii to the limit of one.
+#: Most successive approximations of one case, at all radii but the last: a dozen radii, each to its limit.
 APPROXIMATIONS = 12_000
 #: The load has settled when one more approximation changes it by less than this.
 _SETTLED = 1e-2
@@ -29,8 +29,11 @@ _TINY = np.finfo(float).tiny
 
 @dataclass(frozen=True, eq=False)
 class Approximation:
-    """Of B cases at given radii: q (B, n) after `done` approximations; the last |p̂ - p| over the largest pressure, the
-    change of the load, and |p̂ - p| half-way to the limit, (B,) each."""
+    """B cases at given radii, after `done` approximations: the pressure q (B, n), and by how much it still changes.
+
+    Of the changes, (B,) each, one is the last |p̂ - p| over the largest pressure, one that of the load, and one is
+    |p̂ - p| when half of all approximations had been made.
+    """
 
     cases: Cases
     operator: Operator

@@ -18,20 +18,22 @@ from ..numerics.mesh import mesh
 from ..solution import Solution
 from ..status import Status
 
-#: What the sums S (3, B) stand for; powers of a; what is left of S without pressure.
+#: Quantity -> its value from the radius a and the sums S (3, B), of which each quantity has one row.
 _OF_SUMS = {
     "P": lambda a, S: np.pi**2 / 4 * a * a * a * S[0],
     "D": lambda a, S: a * a / 2 * S[1],
     "p0": lambda a, S: np.pi / 8 * a * S[2],
 }
 _ROWS = {name: row for row, name in enumerate(_OF_SUMS)}
+#: The power of a in each quantity; and the part of each sum without pressure, 1 in D = a²/2 (1 + ...).
 _POWERS, _BARE = np.array([[3.0], [2.0], [1.0]]), np.array([[0.0], [1.0], [0.0]])
-#: With Hertz's radius and that on the layer alone, (a_H^m + a_L^m)^(1/m) is within 0.0022 of the radius under a load.
+#: First guess of the radius under a load: (a_H^m + a_L^m)^(1/m), of Hertz's radius a_H and the radius a_L on springs
+#: alone. With this m it is right to 0.0022.
 _BLEND = 3.21
-#: Newton steps for ln a leave an error below 0.04 times their square, so that one below _LAST is the last: the second
-#: under a load, the third at a depth.
+#: Most Newton steps for ln a, and the step after which none is needed: a step leaves an error below 0.04 times its
+#: square. Under a load the second step is the last, at a depth the third.
 _STEPS, _LAST = 30, 2e-7
-#: Factor of what no mesh sees, by the control.
+#: Control -> the factor with which :func:`_unseen` is an upper bound (tests/contact/test_accuracy.py).
 _ENCLOSING = {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
@@ -117,9 +119,10 @@ def _distance(control, t, S, slopes, finer):
 
 
 def _unseen(control, t, s1):
-    """Error (B,) where the springs yield more than the half-space in a layer at the edge that neither mesh sees, s ~ t.
+    """Upper bound (B,) of the error that neither of two meshes sees, at the edge.
 
-    On every mesh it is t times one function of t/s1², s1 the first node, which this encloses (test_accuracy.py).
+    In a ring s ~ t at the edge the springs yield more than the half-space. If the ring is narrower than the first node
+    s1, the error is t times one function of t/s1², the same on every mesh; the bound lies above that function.
     """
     blind = _ENCLOSING[control] * t * np.log1p(s1**2 / (2 * t))
     return np.where((t > 0) & (t < 16 * s1**2), blind, 0.0)

@@ -8,9 +8,9 @@ from . import newton
 from .equation import State, evaluate, groups
 from .results import interpolate
 
-#: Least pressure to begin with, over the largest.
+#: The first guess of the pressure is nowhere below this part of the largest.
 _LEAST = 1e-12
-#: Newton steps on a coarse mesh before the first on the mesh of a case: batches on thin layers take 5 % less time.
+#: Newton steps on a coarse mesh before the first one on the mesh of a case: batches on thin layers take 5 % less time.
 _STEPS = 2
 
 
@@ -48,9 +48,9 @@ def guess_pressure(cases, a, s):
     return 1 / (base + 1 / cases.law.sparse(s**2 / Z))
 
 
-def first_guess(cases, grid):
-    """:class:`State` on a mesh from :func:`guess_radius` and :func:`guess_pressure`."""
-    a = guess_radius(cases)
+def first_guess(cases, grid, a=None):
+    """:class:`State` on a mesh from :func:`guess_pressure` at the radii a (B,), or else at :func:`guess_radius`."""
+    a = guess_radius(cases) if a is None else a
     return State(cases.law.guess(guess_pressure(cases, a, grid.s)), np.log(a))
 
 
@@ -65,10 +65,10 @@ def smooth_start(cases, grid):
     return State(cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(s2 / Z))), eta)
 
 
-def approach(cases, grid):
-    """The equation on a mesh after a few steps on a coarse one from the closed forms."""
+def approach(cases, grid, a):
+    """The equation on a mesh after a few steps on a coarse one from the closed forms; a (B,): :func:`guess_radius`."""
     coarse = mesh(5 if grid.n <= 12 else 8)
-    ev = evaluate(cases, first_guess(cases, coarse), coarse)
+    ev = evaluate(cases, first_guess(cases, coarse, a), coarse)
     for _ in range(_STEPS):
         ev = newton.step(ev)
     return evaluate(cases, State(interpolate(ev, grid.s, 1e-2), ev.state.eta), grid, ev.operator)

@@ -102,6 +102,6 @@ def identity(name):
     return f"{name} {law.version}" if law and law.version else name
 
 
-BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW)
+BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW)
 #: Name -> Law.
 LAWS = _declare({law.name: law for law in BUILT_IN})

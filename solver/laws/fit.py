@@ -53,12 +53,17 @@ def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", 
     >>> print(f"{B:.4f} {beta:.4f}")
     0.0919 0.4908
     """
-    from scipy.optimize import brentq  # its import takes 0.3 s, which only a fit is to wait for
-
     _check(Nbar_Ra2, p_min, p_max, step, mesh, check)
     p = pressures(p_min, p_max, step, mesh)
-    A = displacement(p, 1.0, Nbar_Ra2, 1.0)
-    scale = np.sqrt(p_min * p_max)  # powers of p/scale, so that B and β are not nearly dependent
+    B, beta = least_squares(p, displacement(p, 1.0, Nbar_Ra2, 1.0))
+    return Fit(B, beta, power_law_error(B, beta, Nbar_Ra2, check))
+
+
+def least_squares(p, A):
+    """B and β of the A = B p^β that leaves the least of A (n,) at p (n,), which ascends."""
+    from scipy.optimize import brentq  # its import takes 0.3 s, which only a fit is to wait for
+
+    scale = np.sqrt(p[0] * p[-1])  # powers of p/scale, so that B and β are not nearly dependent
     logarithm = np.log(p / scale)
 
     def best(beta):
@@ -74,7 +79,7 @@ def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", 
 
     beta = brentq(slope, -1.0, 1.5, xtol=1e-15)  # A grows, by no more than p^(2/3)
     B = best(beta)[1] / scale**beta
-    return Fit(float(B), float(beta), power_law_error(B, beta, Nbar_Ra2, check))
+    return float(B), float(beta)
 
 
 def power_law_error(B, beta, Nbar_Ra2, check=(0.0025, 0.025)):

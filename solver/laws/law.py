@@ -18,10 +18,10 @@ import numpy as np
 
 from ..parameters import Parameter
 
-#: Most Newton steps of an inverse, and the longest step of ln y. Ten steps do for the laws here.
+#: Most Newton steps of an inverse, of which the laws here need ten, and the longest step of ln y.
 _STEPS, _LONGEST = 100, 5.0
-#: The change of ln y after which the next step would be below rounding, and the one below which steps that do not halve
-#: any more are rounding: where a law saturates, it leaves so much of y undetermined (tests/laws/test_micro.py).
+#: After a step of ln y below the first number the next one would be below rounding. Steps below the second number that
+#: no longer halve are rounding as well: where a law saturates, y is not determined better (tests/laws/test_micro.py).
 _LAST, _ROUNDING = 1e-9, 1e-3
 
 

@@ -7,6 +7,9 @@ pressure over E. E is E1* (E2* without a layer), of base and punch together. The
 that the first two rows have: that is where every contact has its edge, so begin the table at a thousandth of p(0), or
 below. A contact whose p(0) is below the first row, or with pressures above the last one, is not solved:
 ``Status.OUTSIDE_LAW``.
+
+With the columns z and share it is a histogram of the heights of the summits, in R, in equal steps, and the law is that
+of ``heights.py``; it then has the parameters Nbar and Ra.
 """
 
 import csv
@@ -16,10 +19,13 @@ from pathlib import Path
 
 import numpy as np
 
+from . import heights
 from .tabulated import Table, fitted, law_of, t_of
 
 PREFIX = "table:"
 COLUMNS = ("p", "A", "lam", "p_max")
+#: Columns of a histogram, and most of its rows: each costs 0.1 s.
+HEIGHTS, _MOST = ("z", "share"), 32
 #: Fewest rows; highest degree of the polynomials; distance from the rows that needs no higher one, and the largest: a
 #: curve farther away is none through these rows.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
@@ -48,21 +54,34 @@ def read(name):
 @lru_cache(maxsize=16)
 def _of_text(name, text):
     """The law of a table: a study asks several times for it, and the fits take 30 ms."""
-    columns = _columns(text)
+    if "share" in text.partition("\n")[0]:
+        return _histogram(name, **_columns(text, HEIGHTS, 2))
+    columns = _columns(text, COLUMNS, _FEWEST)
     _check(**columns)
     return of_columns(name, **columns)
 
 
-def _columns(text):
+def _histogram(name, z, share):
+    """The law of a histogram that has been read, and is checked here."""
+    steps = np.diff(z)
+    if len(z) > _MOST:
+        raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")
+    if not (steps > 0).all() or np.ptp(steps) > 1e-6 * steps.mean():
+        raise ValueError("column z: must ascend in equal steps")
+    digest = hashlib.sha256(np.stack([z, share]).astype("<f8").tobytes()).hexdigest()[:16]
+    return heights.histogram(name, z, share, digest)
+
+
+def _columns(text, names, fewest):
     """Name -> numbers (n,) of the columns of a table."""
     rows = [row for row in csv.reader(text.splitlines()) if row and not row[0].startswith("#")]
     heading = [word.strip() for word in rows[0]] if rows else []
-    missing = [name for name in COLUMNS if heading.count(name) != 1]
+    missing = [name for name in names if heading.count(name) != 1]
     if missing:
-        raise ValueError(f"column {missing[0]}: the heading must have it once, with {', '.join(COLUMNS)}")
-    if len(rows) <= _FEWEST:
-        raise ValueError(f"has {len(rows) - 1} rows: must have at least {_FEWEST}")
-    return {name: np.array([_number(name, i, row, heading) for i, row in enumerate(rows[1:], 1)]) for name in COLUMNS}
+        raise ValueError(f"column {missing[0]}: the heading must have it once, with {', '.join(names)}")
+    if len(rows) <= fewest:
+        raise ValueError(f"has {len(rows) - 1} rows: must have at least {fewest}")
+    return {name: np.array([_number(name, i, row, heading) for i, row in enumerate(rows[1:], 1)]) for name in names}
 
 
 def _number(name, i, row, heading):
@@ -74,7 +93,7 @@ def _number(name, i, row, heading):
         number = float(cell)
     except ValueError:
         number = np.nan
-    if not 0 < number < np.inf:
+    if not (0 < number < np.inf or name == "z" and np.isfinite(number)):
         raise ValueError(f'column {name}, row {i}: "{cell}": must be a finite number > 0')
     return number
 

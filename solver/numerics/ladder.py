@@ -6,11 +6,11 @@ import numpy as np
 from .mesh import mesh, panel_mesh
 
 LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
-#: First mesh for rtol at least this, where nothing else is known.
+#: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known.
 _START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
-#: The estimate is the distance to the next finer mesh times this: the finer one has an error too.
+#: The estimated error is the distance to the next finer mesh times this, since the finer mesh has an error too.
 MARGIN = 2.0
-#: Unknowns solved together: enough that the cost of calls does not count, few enough that they stay in the cache.
+#: Unknowns that are solved together: so many that the calls take no time, so few that they stay in the cache.
 STACK = 40_000
 
 

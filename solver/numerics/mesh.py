@@ -7,7 +7,7 @@ centre s = 1 among them, so that p(0) is an unknown and not an interpolate.
 """
 
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 from scipy.special import ellipkm1
@@ -25,8 +25,8 @@ WHOLE = (0.0, 1.0)
 class Mesh:
     """Discretisation of the contact radius with n nodes.
 
-    Number and panels determine all the rest, so that two meshes are equal when these are: what is kept for a mesh (see
-    solver/body/tables.py) serves one that has been built anew.
+    The number of nodes and the panels determine all the rest. Two meshes that agree in these are equal, so that what is
+    kept for one (solver/body/tables.py) serves the other.
 
     Attributes
     ----------
@@ -54,6 +54,11 @@ class Mesh:
         return self is other or (isinstance(other, Mesh) and self.n == other.n and self.breaks == other.breaks)
 
     def __hash__(self):
+        return self._hash
+
+    @cached_property
+    def _hash(self):
+        """Tables are looked up by it."""
         return hash((self.n, self.breaks))
 
     @property

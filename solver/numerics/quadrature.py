@@ -10,11 +10,12 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import roots_jacobi
 
-#: Panels towards a singularity, each a quarter as long; in the last one the variable is a power, which removes it.
+#: Number of panels towards a singularity, each a quarter as long as the one before; and the power m of the last panel,
+#: on which the variable is x = t^m: the integrand is smooth in t.
 _PANELS, _POWER = 16, 8
 #: Numbers of such panels that are used.
 _FEWER = (0, 1, 2, 3, 4, 6, 8, 11, _PANELS)
-#: Points on a panel for the singularity alone.
+#: Points on a panel that the singularity needs; a polynomial beside it needs more.
 _LEAST = 14
 
 

@@ -50,19 +50,14 @@ def add_curves(sub: argparse.ArgumentParser) -> None:
 
 
 def assignment(text: str) -> tuple[str, float | str]:
-    """NAME=VALUE, the value as a number if it is one."""
+    """NAME and VALUE of NAME=VALUE, the value as a number if it is one."""
     name, _, value = (part.strip() for part in text.partition("="))
     if not name or not value:
         raise argparse.ArgumentTypeError(f'"{on_one_line(text, 60)}": must be NAME=VALUE')
-    return name, number_or_text(value)
-
-
-def number_or_text(value: str) -> float | str:
-    """A text that is a number as such."""
     try:
-        return float(value)
+        return name, float(value)
     except ValueError:
-        return value
+        return name, value
 
 
 def packaged() -> Path:

@@ -3,15 +3,17 @@
 import json
 import math
 import warnings
+from argparse import ArgumentTypeError
 
 import xarray as xr
 
 from ..data.flags import decode
-from ..in_words import INPUTS, SHOWN, summary
+from ..in_words import SHOWN, summary
+from ..physical.told import in_order
 from ..solving import solve
 from ..spec.definition import StudyError
-from ..terminal import answer, on_one_line
-from .arguments import number_or_text
+from ..terminal import answer
+from .arguments import assignment
 
 
 def items(options) -> list[list[str]]:
@@ -33,12 +35,13 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
     """Parameters of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
     found, errors = {}, []
     for text in given:
-        name, equals, value = (part.strip() for part in text.partition("="))
-        if not equals or not name or not value:
-            errors.append(f'"{on_one_line(text, 60)}": must be NAME=VALUE, such as R="5 mm"')
+        try:
+            name, value = assignment(text)
+        except ArgumentTypeError as error:
+            errors.append(f'{error}, such as R="5 mm"')
             continue
         errors += [f"{name} is given twice"] * (name in found)
-        found[name] = number_or_text(value)
+        found[name] = value
     if errors:
         raise StudyError(errors)
     return found
@@ -46,7 +49,7 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
 
 def as_numbers(found: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
-    shown = {name: described(found, name) for name in (*INPUTS, *SHOWN) if name in found}
+    shown = {name: described(found, name) for name in dict.fromkeys((*in_order(), *SHOWN)) if name in found}
     shown |= {name: number(found[name]) for name in ("error", "model_error")}
     shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(found["validity"]).item().split()

@@ -30,7 +30,7 @@ def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
 
 
 class Parts(NamedTuple):
-    """What a dataset is made of: to make one takes as long as a contact, so that it is done once."""
+    """What a dataset is made of. To make the dataset takes as long as to solve a contact, so it is made last, once."""
 
     variables: dict[str, xr.Variable]
     coords: dict[str, xr.Variable]

@@ -4,7 +4,8 @@ Every function takes an opened dimensionless dataset and returns a DataArray who
 vocabulary.
 """
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import wraps
 
 import numpy as np
 import xarray as xr
@@ -12,7 +13,7 @@ import xarray as xr
 from solver.body.springs import layer_modulus
 from solver.laws import LAWS
 
-from ..spec.vocabulary import attributes
+from ..spec.vocabulary import VOCABULARY, attributes
 
 FEW_SPOTS = 100.0
 """The model spreads the asperities evenly: with fewer spots than this in the nominal area, N̄πa², they are not many."""
@@ -29,6 +30,11 @@ r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
 COMPRESSED = 0.1
 """Largest compressive strain of the layer; linear elasticity errs by about as much as the strain. It is D/h where the
 layer gives way, and where the body below does, no more than p(0)/E1*."""
+STEEP_SPOT = 0.5
+"""Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
+and p_max = 0.32 E1* is above the hardness of any metal."""
+QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
+"""Name -> function of a dataset, of all that a decorated formula gives: it can be drawn like a result."""
 ASSUMPTIONS = {
     1: "layer_not_thin",
     2: "few_spots",
@@ -36,6 +42,7 @@ ASSUMPTIONS = {
     8: "n_not_below_one",
     16: "spots_merging",
     32: "strain_not_small",
+    64: "asperity_strain_not_small",
 }
 
 
@@ -44,8 +51,8 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
     1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
     8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING, but on a lattice; 32
-    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED. A case without numbers (see `status`) only gets the masks that
-    need none. int32 over the dimensions of `status`.
+    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra. A case without numbers (see `status`)
+    only gets the masks that need none. int32 over the dimensions of `status`.
     """
     found = validity_of(dataset.variables)
     flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
@@ -70,6 +77,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _smeared(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
+        64: rough & (_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
     masks = {"flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32), "flag_meanings": " ".join(ASSUMPTIONS.values())}
@@ -78,13 +86,28 @@ def validity_of(variables: Mapping) -> xr.Variable:
 
 def _along(dims: tuple, variable: xr.Variable):
     """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
-    own = variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
     return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
 
 
+def quantity(name: str) -> Callable:
+    """Make a formula the function that gives the quantity of this name of the vocabulary, and QUANTITIES know it."""
+
+    def register(formula: Callable) -> Callable:
+        @wraps(formula)
+        def computed(dataset: xr.Dataset) -> xr.DataArray:
+            return named(formula(dataset), name)
+
+        QUANTITIES[name] = computed
+        return computed
+
+    return register
+
+
+@quantity("An")
 def nominal_area(dataset: xr.Dataset) -> xr.DataArray:
     """Nominal contact area An = πa², in R²."""
-    return named(np.pi * dataset["a"] ** 2, "An")
+    return np.pi * dataset["a"] ** 2
 
 
 def nominal_area_ratio(dataset: xr.Dataset, a0) -> xr.DataArray:
@@ -92,21 +115,25 @@ def nominal_area_ratio(dataset: xr.Dataset, a0) -> xr.DataArray:
     return named((dataset["a"] / a0) ** 2, "An_ratio")
 
 
+@quantity("p_mean")
 def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Mean nominal pressure P/An, in E2*."""
-    return named(dataset["P"] / (np.pi * dataset["a"] ** 2), "p_mean")
+    return dataset["P"] / (np.pi * dataset["a"] ** 2)
 
 
+@quantity("spots")
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return named(_spots(dataset).where(_rough(dataset["micro"])), "spots")
+    return _spots(dataset).where(_rough(dataset["micro"]))
 
 
+@quantity("b0")
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return named(_spot_radius(dataset).where(_rough(dataset["micro"])), "b0")
+    return _spot_radius(dataset).where(_rough(dataset["micro"]))
 
 
+@quantity("p_peak")
 def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
@@ -120,7 +147,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         given = [_given(dataset, name) for name in law.parameters]
         spots = xr.apply_ufunc(_largest(law), dataset["p"], E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
-    return named(found.max("x"), "p_peak")
+    return found.max("x")
 
 
 def _largest(law):
@@ -128,13 +155,14 @@ def _largest(law):
     return lambda p, E, *given: law.at(p, E, **dict(zip(law.parameters, given, strict=True))).p_max
 
 
+@quantity("E_eff")
 def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
     """Effective reduced modulus E_eff = (dP/dD)/(2a), in E2*.
 
     A smooth punch on a half-space has E_eff = E*. On a layer E_eff is that of a flat punch of radius a, whatever the
     shape of the smooth punch, since dP/dD at p(a) = 0 does not change with a; roughness lowers it.
     """
-    return named(dataset["dP_dD"] / (2 * dataset["a"]), "E_eff")
+    return dataset["dP_dD"] / (2 * dataset["a"])
 
 
 def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
@@ -143,7 +171,7 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
     NaN where the thin-layer equation does not apply.
     """
     error = dataset[name].sel(base="thin_layer", drop=True) / dataset[name].sel(base="layered", drop=True) - 1
-    error.attrs = {"long_name": f"{attributes(name)['long_name']}: thin layer over exact layer, less 1", "units": "1"}
+    error.attrs = {"long_name": f"{VOCABULARY[name].long_name}: thin layer over exact layer, less 1"}
     return error
 
 

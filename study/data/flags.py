@@ -43,5 +43,12 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     return xr.DataArray(named, flags.coords, flags.dims, flags.name)
 
 
+def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
+    """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
+    told = validity.attrs
+    masks = zip(np.atleast_1d(told["flag_masks"]).tolist(), told["flag_meanings"].split(), strict=True)
+    return {name: (validity.values & mask) != 0 for mask, name in masks}
+
+
 def _values(flags: xr.DataArray) -> list[int]:
     return np.unique(flags.values).astype(int).tolist()

@@ -12,7 +12,7 @@ DONE = "physical_scale"
 
 def reduced_modulus(E, nu):
     """E* = E/(1 - ν²), in the unit of E."""
-    return E / (1 - nu**2)
+    return E / (1 - nu * nu)  # a product is the same for one number and for an array of them, a power is not
 
 
 def factor(name: str, R: float, E2_star: float) -> float:
@@ -36,6 +36,13 @@ def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
     return value
 
 
+def physical_attributes(name: str, given: dict) -> dict:
+    """The attributes of a dimensionless variable when its numbers are in SI units."""
+    entry = VOCABULARY[name]
+    kept = {key: text for key, text in given.items() if key != "scale"}
+    return kept | {"long_name": entry.long_name, "units": entry.unit}
+
+
 def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     """The dataset in SI units, each named by the attribute `units`; `study.readable` gives µm, mN, MPa.
 
@@ -54,8 +61,7 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     changed = {}
     for name, array in dataset.variables.items():
         if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
-            attributes = {key: text for key, text in array.attrs.items() if key != "scale"}
-            attributes["units"] = VOCABULARY[name].unit
+            attributes = physical_attributes(name, array.attrs)
             fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
             changed[name] = array.dims, array.data * factor(name, R, E2_star), attributes, fill
     physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})

@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP
+from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
+from ..data.flags import broken
 
 ASSUMPTION_TEXT = {
     "layer_not_thin": f"layer not thin, error > {NOT_THIN * 100:g} %",
@@ -13,10 +14,11 @@ ASSUMPTION_TEXT = {
     "n_not_below_one": r"layer not soft, $n \geq 1$",
     "spots_merging": rf"spots merge, $\lambda(0) > {MERGING:g}$",
     "strain_not_small": rf"$a > {STEEP:g}\,R$ or strain $> {COMPRESSED:g}$",
+    "asperity_strain_not_small": rf"spots steep, $b > {STEEP_SPOT:g}\,R_a$",
 }
 OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
 """What a note adds, where there is room for it: which quantities the criterion is about."""
-GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9")
+GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78")
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
@@ -54,9 +56,9 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
     everywhere = {}
-    for (meaning, broken), grey in zip(violations(validity).items(), GREYS, strict=True):
-        curves = [name for name, where in broken.items() if where.any()]
-        where = np.any([broken[name] for name in curves], axis=0) if curves else np.zeros(1, bool)
+    for (meaning, of_curves), grey in zip(violations(validity).items(), GREYS, strict=False):
+        curves = [name for name, where in of_curves.items() if where.any()]
+        where = np.any([of_curves[name] for name in curves], axis=0) if curves else np.zeros(1, bool)
         if where.all():
             everywhere[meaning] = curves
         elif curves:
@@ -69,22 +71,22 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
 
 def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
     """Above the axes: which curves break which assumptions; of each the flags of one case."""
-    found = {meaning: [name for name, where in broken.items() if where.any()]
-             for meaning, broken in violations(validity).items()}  # fmt: skip
+    found = {meaning: [name for name, where in of_curves.items() if where.any()]
+             for meaning, of_curves in violations(validity).items()}  # fmt: skip
     note(axes, {meaning: curves for meaning, curves in found.items() if curves})
 
 
 def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndarray]]:
     """Assumption -> curve -> where it is broken; of all assumptions, in the order of their masks."""
-    told = next(iter(validity.values())).attrs
-    masks = zip(np.atleast_1d(told["flag_masks"]), told["flag_meanings"].split(), strict=True)
-    return {meaning: {name: (flags.values & mask) != 0 for name, flags in validity.items()} for mask, meaning in masks}
+    found = {name: broken(flags) for name, flags in validity.items()}
+    meanings = next(iter(found.values()))
+    return {meaning: {name: where[meaning] for name, where in found.items()} for meaning in meanings}
 
 
-def note(axes, broken: dict[str, list[str]]) -> None:
+def note(axes, everywhere: dict[str, list[str]]) -> None:
     """A line for each assumption that is broken wherever its curves are drawn."""
     lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH.get(meaning, '')}"
-             for meaning, curves in broken.items()]  # fmt: skip
+             for meaning, curves in everywhere.items()]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 
 

@@ -6,31 +6,41 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
+from ..physical.names import SCENE
+from ..physical.told import in_order, told
 from ..scene import quantities
 from ..scene.quantities import READABLE, readable
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import VOCABULARY, over_scale
 
-SYMBOLS = {
-    "P": "P", "a": "a", "D": "D", "h": "h", "n": "n", "m": "m", "nu1": r"\nu_1", "nu2": r"\nu_2", "Nbar": r"\bar N",
-    "Ra": "R_a", "B": "B", "beta": r"\beta", "sigma": r"\sigma", "k": "k",
-    "p0": "p(0)", "p_max": r"p_{\max}", "Ar_An": "A_r/A_n",
-    "A0": "A[p(0)]", "dP_dD": "dP/dD", "lam0": r"\lambda(0)", "p": "p", "lam": r"\lambda", "An": "A_n",
-    "An_ratio": r"A_n/(\pi a_0^2)", "p_mean": "P/A_n", "spots": r"\bar N A_n", "b0": "b(0)",
-    "p_peak": r"p_{\mathrm{peak}}", "E_eff": r"E_{\mathrm{eff}}", "x": "r/a", "R": "R", "E1": "E_1", "E2": "E_2",
-    "E_punch": r"E_{\mathrm{punch}}", "nu_punch": r"\nu_{\mathrm{punch}}",
-}  # fmt: skip
-"""Names -> symbols in mathtext; what has none is called by its name."""
-OF_LAYERS, OF_ASPERITIES, OF_POWER_LAW = ("h", "n", "bonding"), ("Nbar", "Ra"), ("B", "beta")
-STATED = ("R", "E_punch", "nu_punch", "E1", "nu1", "E2", "nu2", "P", "a", "D", "h", "n", "m", "bonding", "Nbar", "Ra",
-          "B", "beta", "sigma", "cut")  # fmt: skip
-"""Parameters that a figure states, in this order, where it has one value of them."""
+TIMES = r"\,"
+"""Between the factors of a product, in mathtext."""
+GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "π": r"\pi ", "σ": r"\sigma ", "²": "^2"}
 UNITS = {"B": r"R_a/E_1^{*\beta}"}
 """Units of what has no scale in E2* and R."""
 
 
 def symbol(name: str) -> str:
     """The symbol of a name: "$p_{\\max}$", or the name in words."""
-    return f"${SYMBOLS[name]}$" if name in SYMBOLS else name.replace("_", " ")
+    found = plain_symbol(name)
+    return f"${mathtext(found)}$" if found else name.replace("_", " ")
+
+
+def plain_symbol(name: str) -> str:
+    """The symbol of a name as the vocabulary has it, and those of a physical scene; "" if it has none."""
+    return VOCABULARY[name].symbol if name in VOCABULARY else name.replace("nu_", "ν_") if name in SCENE else ""
+
+
+def mathtext(plain: str) -> str:
+    """A symbol for matplotlib: "pmax" has an index, p_max, as E1 and Ra have; "N̄" a bar."""
+
+    def with_index(found: re.Match) -> str:
+        letter, index = found.groups()
+        word = r"\max" if index == "max" else rf"\mathrm{{{index}}}"
+        return f"{letter}_{index}" if len(index) == 1 else f"{letter}_{{{word}}}"
+
+    indexed = re.sub(r"([^\W\d_])_?([a-z]+|\d)", with_index, plain)
+    barred = re.sub("(.)\u0304", r"\\bar \1", indexed)
+    return re.sub(r" (?![A-Za-z])", "", "".join(GREEK.get(letter, letter) for letter in barred))
 
 
 def multiple(array: xr.DataArray) -> tuple[str, float]:
@@ -46,21 +56,9 @@ def axis_label(name: str, array: xr.DataArray) -> str:
     unit, _ = multiple(array)
     if unit:
         return f"{symbol(name)}, {unit}"
-    if not array.attrs.get("scale") or name not in SYMBOLS:
+    if not array.attrs.get("scale") or not plain_symbol(name):
         return symbol(name)
-    return f"${over_scale(SYMBOLS[name], VOCABULARY[name].powers)}$"
-
-
-def over_scale(text: str, powers: tuple[int, int]) -> str:
-    """A symbol over its scale E2*^i R^j, in mathtext."""
-    over, times = [], []
-    for word, power in zip(("E_2^*", "R"), powers, strict=True):
-        if power:
-            (over if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
-    text = rf"({text})" if "/" in text and over else text
-    text = "\\,".join([text, *times])
-    below = "\\,".join(over)
-    return text + (f"/({below})" if len(over) > 1 else f"/{below}" if over else "")
+    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, ('E_2^*', 'R'), TIMES)}$"
 
 
 def value_text(name: str, array: xr.DataArray, value) -> str:
@@ -82,21 +80,14 @@ def written(value: float) -> str:
 
 
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
-    """The parameters that have one value in all the datasets, each as `value_text`; those that no case uses are left
-    out, and so are axes, which the figure shows."""
-    datasets = list(datasets)
-    words = {name: _values(datasets, name) for name in ("base", "micro", "bonding")}
-    unused = set() if words["bonding"] == {"bonded"} or len(words["bonding"]) > 1 else {"nu1", "nu2"}
-    unused |= set(OF_LAYERS) if words["base"] == {"half_space"} else set()
-    unused |= set() if words["micro"] - {"smooth"} else set(OF_ASPERITIES)
-    unused |= set() if "power_law" in words["micro"] else set(OF_POWER_LAW)
-    unused |= {"n", "m"} if _values(datasets, "E2") else set()  # which follow from the moduli
-    found = []
-    for name in STATED:
+    """The inputs that have one value in all the datasets, each as `value_text`; those that no case uses are left out,
+    and so are axes, which the figure shows, and names."""
+    datasets, found = list(datasets), []
+    of_some = {name for dataset in datasets for name in told(dataset)}
+    for name in in_order():
         values = _values(datasets, name)
-        if len(values) != 1 or name in unused or (name == "m" and values == {0.0}):
+        if name not in of_some or len(values) != 1 or isinstance(value := values.pop(), str) and name != "bonding":
             continue
-        (value,) = values
         array = next(dataset[name] for dataset in datasets if name in dataset)
         found.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
     return found

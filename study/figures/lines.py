@@ -9,8 +9,9 @@ import xarray as xr
 from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
-from ..data import derived
+from ..data.derived import QUANTITIES
 from ..scene.quantities import quantity
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
@@ -18,12 +19,8 @@ from .labels import axis_label, multiple, stated, value_text, wrapped, written
 from .registry import Columns
 from .style import style
 
-DERIVED = {
-    "An": derived.nominal_area, "p_mean": derived.mean_pressure, "spots": derived.number_of_spots,
-    "b0": derived.spot_radius, "p_peak": derived.peak_pressure, "E_eff": derived.effective_modulus,
-}  # fmt: skip
-"""What can be drawn and is not in the dataset."""
 MOST_PANELS, MOST_NAMES = 12, 12
+BAND = {"alpha": 0.25, "linewidth": 0}
 OUTSIDE = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
@@ -33,13 +30,14 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
     Parameters
     ----------
     dataset : of `study.solve`, or the results of a study
-    x, y : names of variables of the dataset, or of study.derived (An, p_mean, spots, b0, p_peak, E_eff)
+    x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
     hue : name of a dimension, or "label" of the cases
     **where : values of dimensions to be drawn alone, such as bonding="bonded"
 
     Returns
     -------
     A figure of pyplot. Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps.
+    Where the dataset has the spread of `y`, a band shows ± one standard deviation.
 
     Raises
     ------
@@ -86,13 +84,13 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
     """The dataset with those of the names that have to be derived. Raises StudyError for one that is not there."""
     errors = []
     for name in names:
-        if name in DERIVED and name not in dataset:
+        if name in QUANTITIES and name not in dataset:
             try:
-                dataset = dataset.assign({name: DERIVED[name](dataset)})
+                dataset = dataset.assign({name: QUANTITIES[name](dataset)})
             except (KeyError, ValueError) as error:
                 errors.append(f"{name} cannot be derived from these results: {error}")
         elif name not in dataset.variables:
-            errors.append(f'"{name}" is not in these results{suggest(name, [*dataset.variables, *DERIVED])}')
+            errors.append(f'"{name}" is not in these results{suggest(name, [*dataset.variables, *QUANTITIES])}')
     if errors:
         raise StudyError(errors)
     return dataset
@@ -138,7 +136,7 @@ def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
 
 
 def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
-    """The curves of one panel, solid where the case is valid, dotted where not; their numbers."""
+    """The curves of one panel, solid where the case is valid, dotted where not, in a band of ±; their numbers."""
     x, y, hue, along = names
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
@@ -148,6 +146,11 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         valid = np.ones(len(up), bool)
         if "validity" in one:
             valid = np.broadcast_to(one["validity"].values == 0, len(up))
+        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{y}_spread",) if name in one}
+        for half in spread.values():
+            axes.fill_between(
+                across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colours[i], **BAND
+            )
         axes.plot(across / sizes[0], up / sizes[1], color=colours[i], **OUTSIDE)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colours[i], linestyle="-")
         fixed = {
@@ -155,7 +158,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             for name, array in one.coords.items()
             if name in whole.dims and not array.ndim
         }
-        parts.append(fixed | {x: across, y: up, "valid": valid.astype(int)})
+        parts.append(fixed | {x: across, y: up} | spread | {"valid": valid.astype(int)})
     return parts
 
 
@@ -196,6 +199,8 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
     if "validity" in found and (found["validity"] != 0).any():
         handles.append(Line2D([], [], color="0.4", label="not valid", **OUTSIDE))
+    if f"{y}_spread" in found:
+        handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
         figure.legend(handles=handles, title=title, loc="outside right center")
 

@@ -1,7 +1,7 @@
 """The register of figures and tables: each is one decorated function of the opened datasets of the studies it names.
 
-`study.catalogue` imports every file of the rooms figures, paper and evidence, so that a function placed in one of them
-is known to `python -m study plot` and `table`, and to `make`, without another line anywhere.
+`study.catalogue` imports every file of the rooms figures, paper, literature and evidence, so that a function placed in
+one of them is known to `python -m study plot` and `table`, and to `make`, without another line anywhere.
 """
 
 import re

@@ -29,10 +29,10 @@ class Unusable(StudyError, OSError):
 
 
 class Access:
-    """The lock, for what is done with the file `path`. A thread that holds it may take it again.
+    """The lock, taken for some work on the file `path`. A thread that holds it may take it again.
 
-    Errors of the library leave it as `Unusable`, or as OSError when the file is being written. xarray takes it as the
-    lock of a dataset, which may go to another process.
+    As a context manager it turns errors of netCDF into `Unusable`, or into OSError when the file is written. It has the
+    methods of a lock because xarray takes it for one, and may send it to another process with a dataset.
     """
 
     _mine = threading.RLock()  # xarray's lock blocks a thread that holds it; always taken in this order

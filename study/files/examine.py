@@ -21,7 +21,7 @@ from .seal import LARGE, is_whole
 
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
 BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError, MemoryError)
-"""What reading a file raises that is not laid out as ours are."""
+"""Exceptions that come up when a file is read that is not laid out as our results are."""
 WHOSE = ("study_digest", "numerics_version", ATTRIBUTE)
 """Attributes of which every results file has the first two."""
 SHOWN = 3  # damaged things that a message names
@@ -35,8 +35,8 @@ class Condition:
 
     kind : "sound"; "unverified", without checksums (an earlier version wrote it), nothing wrong to be seen; "damaged";
         "foreign", none of ours; "unreadable"; "missing"
-    reason : what is wrong, follows the path in a message; digest, numerics : as the file says; sizes : of the
-        dimensions of the cases, in order; damage : names of the lines that do not fit, see `checksums`;
+    reason : what is wrong; it follows the path in a message. digest, numerics : as the file says. sizes : of the
+        dimensions of the cases, in order. damage : names of the lines that do not fit, see `checksums`
     intact : (N,) whether the numbers of each case can be trusted, None if not all of the file was looked at
     """
 
@@ -125,7 +125,8 @@ def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
     whole, over = _split(file, lines)
     dims = file.variables
     sizes = {dim: file.sizes[dim] for dim in dims["status"]} if over else {}
-    strange = [] if lines else [name for name in over if not _in_place(dims[name], tuple(sizes))]
+    places = tuple(sizes), (*sizes, "x")
+    strange = [] if lines else [name for name in over if dims[name] not in places]
     if strange:
         reason = f"another program has changed it: its dimensions are {dims[strange[0]]} in {strange[0]}"
         return Condition(file.path, "foreign", reason)
@@ -161,11 +162,6 @@ def coordinates_of(file: File) -> set[str]:
     """Names of the dimensions and coordinates of the cases."""
     named = str(file.attribute("coordinates", "status")) if "coordinates" in file.attributes("status") else ""
     return {*file.variables["status"], *named.split()}
-
-
-def _in_place(dims: tuple[str, ...], cases: tuple[str, ...]) -> bool:
-    """Whether a variable lies along the dimensions of the cases, and perhaps x."""
-    return dims in (cases, (*cases, "x"))
 
 
 def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[Rows, dict]:

@@ -1,7 +1,7 @@
 """A checksum of a whole results file, which stands behind what HDF5 reads of it.
 
-HDF5 trusts what a file says of itself, and a flipped bit there may end the interpreter. So a file without a whole seal
-is first examined in another process (`examine`). What that survives is read in this one too, its intact cases only.
+HDF5 trusts what a file says of itself, and a flipped bit there may end the interpreter. So a file whose seal is broken
+or missing is first examined in another process (`examine`). If that process survives, this one reads the intact cases.
 """
 
 import os

@@ -18,9 +18,10 @@ from solver.laws import LAWS
 from solver.threads import one_blas_thread
 
 LIMIT, LIMIT_RELAXED = 200, 40
-"""Approximations at one radius, and per 1 + k, by which relaxation slows them: where they take more they cycle."""
+"""Most approximations at one radius: LIMIT, or LIMIT_RELAXED (1 + k) if that is more, since relaxation slows them by
+1 + k. What takes more ends in a cycle."""
 ROWS = 64
-"""Rows of the operator that are formed together: on 1100 intervals all at once would take 0.5 GB."""
+"""The operator is formed in so many rows at a time: all at once would take 0.5 GB on 1100 intervals."""
 
 
 UniformMesh = namedtuple("UniformMesh", "x w K")

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..data.units import without_unit
 from ..spec.definition import Definition
-from ..spec.grid import Grid
+from ..spec.grid import MOVED, Grid
 from ..spec.vocabulary import VOCABULARY
 from .names import SCENE
 from .scales import moduli
@@ -17,8 +17,8 @@ Values = dict[str, tuple[tuple[str, ...], np.ndarray]]
 def dimensionless(given: Values) -> tuple[Values, Values]:
     """Parameters of the solver from the coordinates of results in SI units, and R and the unit of moduli.
 
-    They are computed as when the cases were solved, from the same SI numbers, so that the keys of the cases are those
-    of then.
+    They are computed as they were when the cases were solved, from the same SI numbers: the keys of the cases are the
+    same.
     """
     arrays = {name: xr.DataArray(array, dims=dims) for name, (dims, array) in given.items()}
     unit, _, _ = moduli(arrays, arrays)
@@ -40,10 +40,14 @@ def units_of(definition: Definition) -> Grid | None:
 
 
 def in_results(definition: Definition, grid: Grid) -> Grid:
-    """A grid of a study over the dimensions that its results have."""
+    """A grid of a study over the dimensions that its results have, of the cases whose inputs are as they were given."""
 
     def over(table: Values) -> Values:
-        return {name: (tuple(definition.named(dict.fromkeys(dims))), array) for name, (dims, array) in table.items()}
+        as_given = {
+            name: (dims, array.take(0, dims.index(MOVED)) if MOVED in dims else array)
+            for name, (dims, array) in table.items()
+        }
+        return {name: (tuple(definition.named(dict.fromkeys(dims))), array) for name, (dims, array) in as_given.items()}
 
     return Grid(definition.named(grid.sizes), over(grid.values), over(grid.labels))
 

@@ -14,10 +14,10 @@ BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "b
 _MAY_BE_RIGID = ("punch", "body")
 
 
-def with_materials(parameters: dict, spreads: bool, errors: list[str]) -> tuple[dict, dict]:
+def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
     """The parameters with E and ν of the materials named, and body -> (dimension, their names as in the table).
 
-    spreads : with those of the table; messages are appended to `errors`
+    E and ν have the spreads of the table; messages are appended to `errors`.
     """
     found, names = dict(parameters), {}
     for body, follows in BODIES.items():
@@ -28,18 +28,18 @@ def with_materials(parameters: dict, spreads: bool, errors: list[str]) -> tuple[
         given = given.tolist() if isinstance(given, np.ndarray) else given
         several = isinstance(given, (list, tuple))
         try:
-            rows = [_material(body, one) for one in (given if several else [given])]
+            values = given if several else [given]
+            known = {text: _material(body, one) for text, one in {str(one): one for one in values}.items()}
         except LookupError as error:
             errors.append(f"{body}: {error.args[0]}")
             found[follows[0]] = Quantity(1.0)  # it is not missing
             continue
-        texts, *numbers = zip(*rows, strict=True)
+        texts, *numbers = zip(*(known[str(one)] for one in values), strict=True)
         for i, j in twins(texts) if several and not isinstance(given, Row) else ():
             errors.append(f"{body}[{i}] and {body}[{j}] are both {texts[i]}: values of an axis must differ")
         dim = ("case" if isinstance(given, Row) else body) if several else ""
         for name, column in zip(follows, numbers, strict=False):
-            column = [one if spreads else Quantity(one.value) for one in column]
-            found[name] = Known(column, dim) if several else column[0]
+            found[name] = Known(list(column), dim) if several else column[0]
         names[body] = dim, list(texts)
     return found, names
 

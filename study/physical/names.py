@@ -4,7 +4,7 @@ import math
 from typing import Any, NamedTuple
 
 from ..scene.quantities import Quantity, quantity
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import SI, VOCABULARY
 
 #: What a scene has besides the parameters of the solver: SI unit and long name.
 SCENE = {
@@ -32,14 +32,22 @@ class Known(NamedTuple):
 
 
 def dim_of(name: str) -> str:
-    """The dimension, while cases are solved, of several values of a parameter: not its name, which stands for the
-    dimensionless numbers, and these may lie along other dimensions too."""
+    """The dimension of several values of a parameter while the cases are solved.
+
+    Of a parameter with a unit it is not the name alone: that stands for the dimensionless numbers, which may lie along
+    other dimensions too.
+    """
     return name if unit_of(name) == "1" else f"{name} in SI"
 
 
 def unit_of(name: str) -> str:
     """SI unit of a parameter or result, most of them in READABLE; "1" for pure numbers and texts."""
     return SCENE[name][0] if name in SCENE else VOCABULARY[name].unit
+
+
+def powers_of(name: str) -> tuple[int, int]:
+    """(i, j) of the SI unit Pa^i m^j of a parameter."""
+    return next(key for key, unit in SI.items() if unit == SCENE[name][0]) if name in SCENE else VOCABULARY[name].powers
 
 
 def si(name: str, given: Any, called: str = "") -> Quantity:

@@ -11,14 +11,14 @@ import xarray as xr
 
 from ..scene.quantities import READABLE, Quantity, has_unit, quantity
 from ..spec.definition import StudyError
-from ..spec.grid import shown, twins
+from ..spec.grid import MOVED, shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 from ..terminal import on_one_line
 from .bodies import BODIES, with_materials
 from .names import SCENE, Known, Row, dim_of, si, unit_of
 from .scales import make_dimensionless, over_dimensions
-from .scene import MOVED, STEP, Scene
+from .scene import STEP, Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
@@ -28,15 +28,12 @@ _PARTS = ("value", "spread")  # of a Quantity
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
-def is_physical(parameters: dict) -> bool:
-    """Whether parameters of `study.solve` describe a physical scene: one has a unit, or is only in such a scene."""
-    return any(name in SCENE or name in BODIES or _has_unit(given) for name, given in parameters.items())
-
-
 def _has_unit(given: Any) -> bool:
     """Whether a parameter, or one of its values, has a unit or a spread."""
     if isinstance(given, xr.DataArray):
         return given.attrs.get("units", "1") != "1"
+    if isinstance(given, Known):
+        return True
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
@@ -44,17 +41,18 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     """The scene of physical parameters of `study.solve`; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
-    spreads : whether materials given by name have those of the table
+    spreads : whether inputs with spreads are moved, for those of the results
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    if not any(is_physical(given) for given in (parameters, *rows)):
+    every = [pair for table in (parameters, *rows) for pair in table.items()]
+    if not any(name in SCENE or name in BODIES or _has_unit(given) for name, given in every):
         return None
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)
-    parameters, scene.names = with_materials(parameters, spreads, errors)
+    parameters, scene.names = with_materials(parameters, errors)
     for name, given in parameters.items():
         if name == "label" and isinstance(given, Row):
             scene.labels = list(map(str, given))
@@ -71,6 +69,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     errors += [] if errors else _impossible(scene)
     if errors:
         raise StudyError(errors)
+    scene.spreads = scene.spreads if spreads else {}
     _move(scene)
     make_dimensionless(scene)
     return scene

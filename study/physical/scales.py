@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.units import without_unit
+from ..data.units import reduced_modulus, without_unit
 from ..spec.vocabulary import VOCABULARY
 from .names import SCENE
 from .scene import Scene
@@ -46,9 +46,7 @@ def _where(condition: Any, yes: Any, no: Any) -> Any:
 
 
 def _reduced(given: dict, name: str, nu: str) -> Any:
-    """E/(1 - nu²); by a product, which is the same for a number alone and for one of an array, as powers are not."""
-    ratio = given.get(nu, 0.3)
-    return given[name] / (1 - ratio * ratio)
+    return reduced_modulus(given[name], given.get(nu, 0.3))
 
 
 def over_dimensions(given: Any, name: str) -> Any:

@@ -7,16 +7,15 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import Parts
-from ..data.units import DONE, with_unit
+from ..data.units import DONE, physical_attributes, with_unit
 from ..spec.definition import Definition
+from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY
 from .index import searchable
 from .names import SCENE, unit_of
 
 #: Part of a spread by which an input is moved for its derivative: small against what is not linear, large against rtol.
 STEP = 0.1
-#: The dimension along which inputs are moved, while the cases are solved.
-MOVED = "moved input"
 #: Results that have no spread of their own.
 _ABOUT = ("error", "model_error", "residual")
 
@@ -95,9 +94,9 @@ class Scene:
         """SI values of an input, with the unit of the parameter `name`."""
         variable = _variable(value)
         variable = variable.isel({MOVED: 0}) if MOVED in variable.dims else variable
-        long_name = long_name or (SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name)
-        attributes = {"long_name": long_name, "units": unit_of(name)}
-        return self._renamed(xr.Variable(variable.dims, variable.data, attributes))
+        words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
+        told = {"long_name": long_name or words} | _units(unit_of(name))
+        return self._renamed(xr.Variable(variable.dims, variable.data, told))
 
     def _renamed(self, variable: xr.Variable) -> xr.Variable:
         """The variable over the dimensions that the results have."""
@@ -116,6 +115,11 @@ def _variable(value: Any) -> xr.Variable:
     return value.variable if isinstance(value, xr.DataArray) else xr.Variable((), value)
 
 
+def _units(unit: str) -> dict[str, str]:
+    """The attribute `units`; a pure number has none."""
+    return {} if unit == "1" else {"units": unit}
+
+
 def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
     powers = VOCABULARY[name].powers
@@ -125,7 +129,7 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
         found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
     if found.dtype != variable.dtype:
         found = found.astype(variable.dtype)
-    found.attrs = {key: text for key, text in variable.attrs.items() if key != "scale"} | {"units": unit_of(name)}
+    found.attrs = physical_attributes(name, variable.attrs)
     found.encoding = variable.encoding
     return found
 
@@ -136,6 +140,6 @@ def _spread(name: str, variable: xr.Variable) -> dict[str, xr.Variable]:
         return {}
     up, down = (variable.isel({MOVED: slice(first, None, 2)}) for first in (1, 2))
     spread = np.sqrt((((up - down) / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
-    spread.attrs = {"long_name": f"standard deviation of {name}, from the spreads of the inputs"}
-    spread.attrs["units"] = variable.attrs.get("units", "1")
+    long_name = f"standard deviation of {name}, from the spreads of the inputs"
+    spread.attrs = {"long_name": long_name} | _units(unit_of(name))
     return {f"{name}_spread": spread}

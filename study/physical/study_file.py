@@ -1,4 +1,8 @@
-"""Study files, with units or without: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`."""
+"""Study files, with units or without: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`.
+
+Inputs may have spreads ("200 ± 10 GPa", materials by name). Each case is then solved with every such input moved up and
+down as well, along the dimension MOVED, and the results have `NAME_spread` in its place, as those of `study.solve` do.
+"""
 
 import hashlib
 import json
@@ -7,16 +11,20 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.quantities import Quantity, has_unit
+from ..scene.quantities import Quantity, has_unit, quantity
 from ..spec import definition
 from ..spec.definition import Definition, StudyError
 from ..spec.given import Draft
 from ..spec.grid import axis_values, shown
 from ..spec.identity import digest_of_array
-from ..spec.vocabulary import NUMERICS, VOCABULARY
+from ..spec.sample import LIMITS, divisor, draw
+from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
 from .bodies import BODIES
-from .names import SCENE, Known, dim_of, si, unit_of
+from .names import SCENE, Known, Row, dim_of, powers_of, unit_of
 
+ANY = Parameter(interval="(-inf, inf)")
+"""What is allowed in a [sample] of numbers in SI: what is drawn is checked as any number with a unit is."""
+CHOICE = 'say dtype = "float64", or spreads = false'
 NOTE = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
 
 
@@ -37,11 +45,14 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     parameters = _parameters(draft, given)
     if draft.errors:
         raise definition.refusal(where, draft.errors)
+    spreads, dtype = (given["output"].get(key, default) for key, default in (("spreads", True), ("dtype", "")))
     try:
-        scene = read_scene(parameters, tables.get("cases"), spreads=False)
-        if scene.spreads:
+        if not isinstance(spreads, bool):
+            raise StudyError([f"[output] spreads = {shown(spreads)}: must be true or false"])
+        scene = read_scene(parameters, tables.get("cases"), spreads)
+        if scene.spreads and dtype == "float32":
             several = " and ".join(scene.spreads)
-            raise StudyError([f"{several}: a study file takes no spreads (±); study.solve propagates them"])
+            raise StudyError([f'[output] dtype = "float32" has too few digits for the spreads of {several}: {CHOICE}'])
     except StudyError as error:
         hint = f" ({with_unit} makes this a study with units)"
         raise definition.refusal(where, [f"{m}{hint * ('has no unit' in m)}" for m in error.messages]) from None
@@ -50,7 +61,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
 
 
 def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options) -> Definition:
-    """The definition of a scene, with a dimension for each of the `axes`, in their order.
+    """The definition of a scene, with a dimension for each of the `axes`, in their order; MOVED follows them.
 
     about, options : the other arguments of `study.spec.definition.complete`
     """
@@ -70,7 +81,7 @@ def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options)
 def _with_unit(tables: dict) -> str:
     """The first parameter of a study file that only one with units has, as `NAME = VALUE`; "" if there is none."""
     rows = tables["cases"] if isinstance(tables.get("cases"), list) else []
-    for table in (tables.get("model"), tables.get("axes"), *rows):
+    for table in (tables.get("model"), tables.get("axes"), tables.get("sample"), *rows):
         for name, given in table.items() if isinstance(table, dict) else ():
             values = given.values() if isinstance(given, dict) else given if isinstance(given, list) else [given]
             if name in SCENE or name in BODIES or (name in VOCABULARY and any(map(has_unit, values))):
@@ -79,10 +90,12 @@ def _with_unit(tables: dict) -> str:
 
 
 def _parameters(draft: Draft, given: dict) -> dict:
-    """The parameters of [model] and [axes], with ranges as lists of SI values; messages go to the draft."""
+    """The parameters of [model], [axes] and [sample], with ranges as lists of SI values; messages go to the draft."""
     errors, model, axes = draft.errors, given["model"], given["axes"]
-    if "sample" in given:
-        errors.append("[sample] draws dimensionless numbers: a study with units takes [axes] or [[cases]]")
+    sample = _sampled(given["sample"], errors) if "sample" in given else {}
+    if sample and "cases" in given:
+        errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
+    errors += [f"{name} is given twice: in [sample] and elsewhere" for name in sample if name in model or name in axes]
     rows = given.get("cases", [{}])
     if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
         errors.append("cases must be [[cases]] tables, at least one")
@@ -93,21 +106,56 @@ def _parameters(draft: Draft, given: dict) -> dict:
             errors.append(f"{name} is given twice: in [model] and in [axes]")
         elif isinstance(value, (list, dict)):
             errors.append(f"[model] {name} has several values: these belong in [axes]")
-    return {name: _axis(name, raw, errors) for name, raw in axes.items()} | model
+    return sample | {name: _axis(name, raw, errors) for name, raw in axes.items()} | model
 
 
 def _axis(name: str, raw: Any, errors: list[str]) -> list | Known:
     """The values of an axis; of a range with units evenly spaced in SI."""
     if not isinstance(raw, dict) or not (name in SCENE or name in VOCABULARY) or unit_of(name) == "1":
         return axis_values(raw, name, errors)
-    ends = {}
-    for end in ("start", "stop"):
-        try:
-            ends[end] = si(name, raw[end], f"{name}: {end}").value if end in raw else None
-        except ValueError as error:
-            errors.append(str(error))
-            return Known([], dim_of(name))
-    return Known([Quantity(value) for value in axis_values(raw | ends, name, errors)], dim_of(name))
+    in_si = _in_si(raw, name, unit_of(name), errors)
+    values = axis_values(in_si, name, errors) if in_si else []
+    return Known([Quantity(value) for value in values], dim_of(name))
+
+
+def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
+    """A range whose ends are numbers in the SI `unit`; a message and {} for ends that are none."""
+    try:
+        ends = {end: quantity(f"{key}: {end}", raw[end], unit).value for end in ("start", "stop") if end in raw}
+    except ValueError as error:
+        errors.append(str(error))
+        return {}
+    return raw | ends
+
+
+def _sampled(table: Any, errors: list[str]) -> dict[str, Row | Known]:
+    """What [sample] draws, over the dimension `case`: numbers in SI from ranges, and what stands in a list."""
+    drawn = table if isinstance(table, dict) else {}
+    before, known, in_si = len(errors), {}, dict(drawn)
+    for name, raw in drawn.items():
+        if name in BODIES:
+            known[name] = Parameter(choices=("a material",))
+        elif name in SCENE or name in VOCABULARY:
+            known[name] = VOCABULARY[name].own if unit_of(name) == "1" and name in VOCABULARY else ANY
+            if isinstance(raw, dict):
+                in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
+        elif name not in LIMITS:
+            errors.append(f"[sample] {shown(name)} is not a parameter")
+    if len(errors) > before:
+        return {}
+    return {
+        name: Known(list(map(Quantity, values)), "case") if isinstance(drawn[name], dict) else Row(values)
+        for name, values in draw(in_si if drawn else table, known, errors).items()
+    }
+
+
+def _unit_of_range(name: str, raw: dict) -> str:
+    """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
+    i, j = powers_of(name)
+    other, power = divisor(raw)
+    if other in SCENE or other in VOCABULARY:
+        i, j = (own + power * more for own, more in zip((i, j), powers_of(other), strict=True))
+    return si_unit((i, j))
 
 
 def _digest(made: Definition) -> str:

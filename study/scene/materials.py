@@ -17,6 +17,7 @@ from importlib import resources
 from pathlib import Path
 
 from ..terminal import on_one_line
+from .quantities import multiple
 
 SOFTEST, STIFFEST = 1e3, 2e12
 """Pa: between them is every E of the table, 8.6 kPa to 1143 GPa, with a margin; an E in GPa, at most 1143, is below."""
@@ -219,7 +220,7 @@ def _numbers(entry: Material) -> tuple[str, str, str, str]:
 
 def _in_multiples(value: float, spread: float) -> str:
     """A modulus in kPa, MPa or GPa."""
-    unit, size = next((u, s) for u, s in (("GPa", 1e9), ("MPa", 1e6), ("kPa", 1e3)) if value >= s or s == 1e3)
+    unit, size = multiple(value, "Pa")
     return f"{_with_spread(value / size, spread / size)} {unit}"
 
 

@@ -30,6 +30,8 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 #: A number and a unit, which is a product of powers: what it is in SI is the number times a size that is kept.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
+#: A power without ^, as in "mm2" and "mm-2". The letters follow no digit, or the e of "1e2" would be a unit.
+_POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
 @lru_cache(maxsize=4096)  # to read a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """A text without spread in the SI unit, rounded once: "3 um" is the number 3e-6."""
-    said, text = on_one_line(text, LONGEST), text.replace("⁻²", "^-2").replace("²", "^2")
+    said, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
     plain = _PLAIN.fullmatch(text)
     size = _size(plain[2], unit) if plain else None
     if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):

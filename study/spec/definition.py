@@ -12,7 +12,7 @@ import numpy as np
 from ..terminal import on_one_line
 from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
-from .grid import Grid, shown
+from .grid import MOVED, Grid, shown
 from .identity import digest_of
 from .toml_text import text_in
 from .vocabulary import NUMERICS, finite, names, suggest
@@ -22,7 +22,7 @@ LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a
 MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
-KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype"), "model": None, "axes": None}
+KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
 """Of the tables of a study file; None: names of parameters."""
 PER_CASE = 16  # numbers per case besides the profiles, roughly
 SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
@@ -67,9 +67,10 @@ class Definition:
 
     @property
     def cases(self) -> str:
-        """Number of cases and axes in words: "12 cases (h 2 x P 6)"."""
-        dims = " x ".join(f"{name} {size}" for name, size in self.grid.sizes.items()) or "one case"
-        return f"{self.grid.size} cases ({dims})"
+        """Number of cases and axes in words: "12 cases (h 2 x P 6)", "60 cases (h 2 x P 6, each 5 times for ±)"."""
+        dims = " x ".join(f"{name} {size}" for name, size in self.named(self.grid.sizes).items()) or "one case"
+        moved = f", each {self.grid.sizes[MOVED]} times for ±" if MOVED in self.grid.sizes else ""
+        return f"{self.grid.size} cases ({dims}{moved})"
 
     @property
     def numbers(self) -> int:
@@ -77,9 +78,9 @@ class Definition:
         return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
 
     def named(self, of_dims: dict) -> dict:
-        """A dictionary of the dimensions of the grid, under the names that these have in the results."""
+        """A dictionary of the dimensions of the grid, of those that the results have, under their names there."""
         names = self.scene.dims if self.scene else {}
-        return {names.get(dim, dim): value for dim, value in of_dims.items()}
+        return {names.get(dim, dim): value for dim, value in of_dims.items() if dim != MOVED}
 
 
 def read(path) -> Definition:

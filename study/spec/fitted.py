@@ -32,7 +32,8 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
         few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(known)}"
         return {}, [f"B and beta are missing: {few}"]
     laws = {value: fit_power_law(value)[:2] for value in known.tolist()}
-    dims = tuple(dim for dim, size in zip(grid.sizes, both.shape, strict=True) if dim in _dims(grid))
+    of_both = {dim for name in ("Nbar", "Ra") for dim in grid.values[name][0]}
+    dims = tuple(dim for dim in grid.sizes if dim in of_both)
     found, errors = {}, []
     for i, name in enumerate(("B", "beta")):
         numbers = [
@@ -46,7 +47,3 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
                 f"{name} fitted to Nbar Ra^2 = {wrong[0]:g} is {laws[wrong[0]][i]:g}: must be in {own.interval}"
             )
     return found, errors
-
-
-def _dims(grid: Grid) -> set[str]:
-    return {dim for name in ("Nbar", "Ra") for dim in grid.values[name][0]}

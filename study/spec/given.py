@@ -95,7 +95,8 @@ class Draft:
         if "case" in self.sizes:
             self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
             return
-        for name, values in draw(known if given else table, self.errors).items():
+        own = {name: VOCABULARY[name].own for name in known if name not in LIMITS}
+        for name, values in draw(known if given else table, own, self.errors).items():
             self.number_cases(len(values))
             self.values[name] = ("case",), self._checked(name, values)
 

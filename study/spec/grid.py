@@ -12,6 +12,8 @@ from .vocabulary import VOCABULARY, Parameter, all_numbers_allowed, check, finit
 
 LONGEST_AXIS = 1_000_000
 SHOWN = 3  # messages of one kind for one parameter; the rest is counted
+MOVED = "moved input"
+"""The dimension along which inputs with spreads are moved, while cases are solved. Of a study file it is the last."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -56,6 +56,9 @@ def digest_of(definition) -> str:
 
 def _digest_of_values(grid: Grid, name: str) -> tuple:
     """Shape of a parameter, digests of the values that count for some case and of their places; () if none does."""
+    dims, array = grid.values.get(name, ((), None))
+    if not dims and (array is None or array == VOCABULARY[name].own.default):  # as most are
+        return ()
     values = along(grid, name)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
     mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)

@@ -5,13 +5,13 @@ import re
 import numpy as np
 
 from .grid import LONGEST_AXIS, check_range, shown
-from .vocabulary import VOCABULARY, check
+from .vocabulary import Parameter, check
 
 KEYS = ("start", "stop", "spacing", "over")
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 
 
-def draw(table, errors: list[str]) -> dict[str, list]:
+def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, list]:
     """Columns of a random sample: parameter -> list of `size` values, in the order of the table.
 
     Parameters
@@ -20,6 +20,7 @@ def draw(table, errors: list[str]) -> dict[str, list]:
         range {start, stop, spacing = "linear" | "log"}, drawn uniformly in the parameter or in its logarithm. A range
         with over = "Ra^2" is that of the product with Ra^2: what is drawn is divided by that power of another
         parameter of the sample.
+    known : what is allowed of each parameter in the table
     errors : messages are appended here; {} is returned then
 
     Notes
@@ -39,7 +40,7 @@ def draw(table, errors: list[str]) -> dict[str, list]:
     if not drawn:
         errors.append("[sample] has no parameter: must draw at least one")
     for name in drawn:
-        _check(name, drawn, errors)
+        _check(name, drawn, known[name], errors)
     if len(errors) > before:
         return {}
     columns = {}
@@ -64,7 +65,7 @@ def _column(given, u: np.ndarray, columns: dict[str, list]) -> list:
     values = _rounded(start ** (1 - u) * stop**u if log else start * (1 - u) + stop * u)
     values = np.clip(values, start, stop)
     if "over" in given:
-        other, power = _power(given["over"])
+        other, power = divisor(given)
         with np.errstate(all="ignore"):  # what is not finite then is refused like any such value
             values = _rounded(values / np.array(columns[other]) ** power)
     return values.tolist()
@@ -74,15 +75,16 @@ def _rounded(values: np.ndarray) -> np.ndarray:
     return np.array([float(f"{value:.5e}") for value in values])
 
 
-def _power(over) -> tuple[str, int]:
-    """("Ra", 2) of "Ra^2" or ("Ra", 1) of "Ra"; ("", 0) of anything else."""
+def divisor(given: dict) -> tuple[str, int]:
+    """What a range is divided by: ("Ra", 2) of over = "Ra^2", ("Ra", 1) of "Ra"; ("", 0) of all else, and of none."""
+    over = given.get("over")
     found = re.fullmatch(r"(\w+?)(?:\^([1-9]))?", over) if isinstance(over, str) else None
     return (found[1], int(found[2] or 1)) if found else ("", 0)
 
 
-def _check(name: str, drawn: dict, errors: list[str]) -> None:
+def _check(name: str, drawn: dict, own: Parameter, errors: list[str]) -> None:
     """Messages for one parameter of the table."""
-    key, given, own = f"[sample] {name}", drawn[name], VOCABULARY[name].own
+    key, given = f"[sample] {name}", drawn[name]
     if isinstance(given, list) and given:
         return  # its values are checked like any
     if not isinstance(given, dict) or own.choices or own.whole:
@@ -95,7 +97,7 @@ def _check(name: str, drawn: dict, errors: list[str]) -> None:
         errors.append(f"{key}: stop = {shown(given['stop'])}: must be > start")
     if "over" in given:
         plain = [n for n, other in drawn.items() if isinstance(other, dict) and "over" not in other]
-        if _power(given["over"])[0] not in plain:
+        if divisor(given)[0] not in plain:
             allowed = " or ".join(plain) or "none here"
             errors.append(f"{key}: over = {shown(given['over'])}: must be a power of a range of [sample]: {allowed}")
     elif len(errors) == before:

@@ -20,6 +20,11 @@ SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (
 """SI units by their powers of E2* and R; those of others are written in Pa and m."""
 
 
+def si_unit(powers: tuple[int, int]) -> str:
+    """The SI unit of E2*^i R^j, (i, j) = `powers`."""
+    return SI.get(powers, "Pa^{} m^{}".format(*powers))
+
+
 @dataclass(frozen=True)
 class Entry:
     """One name.
@@ -45,13 +50,29 @@ class Entry:
     @property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
-        return SI.get(self.powers, "Pa^{} m^{}".format(*self.powers))
+        return si_unit(self.powers)
+
+    @property
+    def ratio(self) -> str:
+        """What stands on an axis: "h/R", "P/(E2* R^2)"; empty without a symbol."""
+        return over_scale(self.symbol, self.powers) if self.symbol else ""
 
     @property
     def scale(self) -> str:
         """The scale in words, such as "E2* R^2"; empty for a pure number."""
         parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]
         return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
+
+
+def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = ("E2*", "R"), gap: str = " ") -> str:
+    """A symbol over its scale E2*^i R^j, (i, j) = `powers`: "(dP/dD)/(E2* R)", "N̄ R^2"; `gap` is between factors."""
+    over, times = [], []
+    for word, power in zip(scales, powers, strict=True):
+        if power:
+            (over if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
+    text = gap.join([f"({symbol})" if "/" in symbol and over else symbol, *times])
+    below = gap.join(over)
+    return text + (f"/({below})" if len(over) > 1 else f"/{below}" if over else "")
 
 
 LISTED = 40  # names in a message
@@ -104,7 +125,8 @@ _ENTRIES = (
     Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0)),
     Entry("spots", "N̄ An", "number of contact spots", "derived"),
     Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), equation="(7)"),
-    Entry("p_peak", "", "largest real pressure in the contact, wherever it is", "derived", (1, 0), equation="(13)"),
+    Entry("p_peak", "ppeak", "largest real pressure in the contact, wherever it is", "derived", (1, 0),
+          equation="(13)"),
     Entry("E_eff", "Eeff", "effective reduced modulus (dP/dD)/(2a)", "derived", (1, 0)),
     Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
     Entry("case", "", "number of the case", "coordinate"),
@@ -132,16 +154,25 @@ def having(name: str, values) -> np.ndarray:
     return among(VOCABULARY[name].own.needed_by, values)
 
 
+def matters(name: str, values) -> bool:
+    """Whether the answer of some case may depend on a parameter; `values` as above, of many cases."""
+    own = VOCABULARY[name].own
+    return all(np.any(among(condition, values)) for condition in (own.needed_by, own.used_by))
+
+
 def attributes(name: str, rigid: bool = False) -> dict:
-    """CF attributes of a dimensionless variable: long_name, units, and where they apply symbol, scale, equation.
+    """CF attributes of a dimensionless variable: long_name, and where they apply symbol, scale, equation.
+
+    The long_name ends with what stands on the axis of a plot, "thickness of the layer, h/R". There are no units: CF
+    wants none of a pure number, and xarray would write "[1]" behind every label.
 
     rigid : of layers on a rigid base, where E1* is the unit of moduli
     """
     entry = VOCABULARY[name]
-    scale = entry.scale.replace("E2*", "E1*") if rigid else entry.scale
-    found = {"long_name": entry.long_name, "symbol": entry.symbol, "scale": scale, "equation": entry.equation}
-    if not entry.own.choices and entry.role != "flag" and name != "label":
-        found["units"] = "1"
+    words = ", ".join(filter(None, (entry.long_name, entry.ratio)))
+    found = {"long_name": words, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    if rigid:
+        found = {key: text.replace("E2*", "E1*") for key, text in found.items()}
     return {key: text for key, text in found.items() if text}
 
 

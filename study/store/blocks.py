@@ -82,7 +82,7 @@ class Inventory:
 
     keys : (B, 2); sources : where cases are; source, row : (B,) int32, number of the source (-1: missing) and row in
         it; status : (B,) int8, NOT_RUN for a missing case; blocks : every block -> how many cases, -1: it is not whole;
-        inside : those of which the results of this study will hold everything
+        inside : the blocks that the results of this study replace: these will hold all of their numbers
     """
 
     keys: np.ndarray

@@ -2,7 +2,6 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
-from pathlib import Path
 
 from solver import NUMERICS_VERSION
 
@@ -14,16 +13,16 @@ from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, set_aside
 from ..files.seal import seal
 from ..physical.scene import shown
-from ..spec.grid import box, cut_out, windows
+from ..spec.grid import MOVED, Grid, box, cut_out, windows
 from .blocks import Inventory, Store, gather
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
 
 
-def writing(store: Store, known: Inventory, path: Path, command: str, aside: bool = False) -> Iterator[None]:
+def writing(store: Store, known: Inventory, command: str, aside: bool = False) -> Iterator[None]:
     """Write the results file from the blocks, in steps, while other threads compute: each `next` is one step.
 
-    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is at `path`.
+    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is in its place.
     aside : keep what is there, as `set_aside` does
 
     Raises
@@ -31,20 +30,23 @@ def writing(store: Store, known: Inventory, path: Path, command: str, aside: boo
     Damaged : a block has been spoiled since the inventory was made
     OSError : the file cannot be written
     """
-    with replacing(path, store.folder) as temporary:
-        with File(temporary, "w", path) as file:
+    with replacing(store.path, store.folder) as temporary:
+        with File(temporary, "w", store.path) as file:
             yield from _steps(file, store, known, command)
         seal(temporary)
         if aside:
-            set_aside(path)
+            set_aside(store.path)
 
 
 def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator[None]:
     definition, start = store.definition, 0
-    rows = Rows(definition.grid.size)
-    most = AT_ONCE * definition.grid.size // (8 * definition.numbers)
-    chunk = definition.named(dict(zip(definition.grid.sizes, box(definition.grid.shape, CHUNK), strict=True)))
-    for window in windows(definition.grid, most, CHUNK):
+    sizes = {dim: size for dim, size in definition.grid.sizes.items() if dim != MOVED}
+    in_file = Grid(sizes, {})
+    rows = Rows(in_file.size)
+    most = AT_ONCE * in_file.size // (8 * definition.numbers)
+    chunk = definition.named(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
+    for window in windows(in_file, most, CHUNK):
+        window |= {MOVED: slice(None)} if MOVED in definition.grid.sizes else {}
         grid = cut_out(definition.grid, window)
         while (known.source[start : start + grid.size] < 0).any():
             yield
@@ -56,7 +58,7 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
             create(file, part, whole, chunk)
         for name, array in part.data_vars.items():
             file.write(name, array.values, place)
-            rows.add(name, array.values.reshape(grid.size, -1))
+            rows.add(name, array.values.reshape(-1, *array.shape[len(sizes) :]))
             yield
         start += grid.size
     add_checksums(file, rows, {"=cases": identity(NUMERICS_VERSION, definition.x, known.keys)})

@@ -57,7 +57,7 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
 
 
 def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The columns that are stored: vocabulary name -> (B,), and the wanted profiles (B, m)."""
+    """The columns that are stored, by their names in the vocabulary: (B,), and (B, m) of the wanted profiles."""
     special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
     kept = (*CONTROLS, *names("result"), *INTEGERS)
     found = {name: special[name] if name in special else getattr(solution, name) for name in kept}

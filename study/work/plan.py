@@ -69,7 +69,7 @@ class Order:
     @property
     def path(self) -> Path:
         """Of the results file."""
-        return results_path(self.definition, self.results)
+        return self.store.path
 
     @property
     def store(self) -> Store:
@@ -91,9 +91,9 @@ class Order:
         return replace(Report(self.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what)
 
 
-def look(definition: Definition, path: Path, columns: tuple[str, ...] | None = None) -> Condition:
+def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:
     """`examine` the results file of a study, the order of its dimensions included."""
-    found = examine(path, columns)
+    definition, found = store.definition, examine(store.path, columns)
     sizes = list(definition.named(definition.grid.sizes).items())
     if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
         reason = (
@@ -106,10 +106,6 @@ def look(definition: Definition, path: Path, columns: tuple[str, ...] | None = N
 def belongs(definition: Definition, found: Condition) -> bool:
     """Whether an undamaged results file is that of this very study."""
     return found.good and found.digest == definition.digest
-
-
-def results_path(definition: Definition, results) -> Path:
-    return Path(results) / f"{definition.name}.nc"
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:
@@ -137,10 +133,10 @@ def check_writable(path: Path) -> None:
         raise StudyError([wrong]) from None
 
 
-def check_countable(store: Store, path: Path, yes: bool) -> bool:
+def check_countable(store: Store, yes: bool) -> bool:
     """Whether there may be cases on disk. Raises StudyError when looking for them would take very much memory."""
     definition = store.definition
-    if not path.exists() and not any(store.folder.glob("*.block")):
+    if not store.path.exists() and not any(store.folder.glob("*.block")):
         return False
     if definition.numbers > LARGE and not yes:
         needed = f"{PER_CASE * definition.grid.size / 1e9:.2g} GB of memory"

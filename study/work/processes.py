@@ -16,7 +16,7 @@ import threading
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
-from queue import SimpleQueue
+from queue import Empty, SimpleQueue
 
 from ..files.apart import python
 from .cases import Failure
@@ -25,6 +25,8 @@ from .cases import Failure
 #: block that is itself too large for the machine must not kill processes for ever.
 ATTEMPTS = 3
 KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps for want of memory"
+#: Seconds after which a process ends that nobody gives a task, with its memory: it is started again when there is one.
+IDLE = 60
 SERVE = "from study.work.processes import serve; serve()"
 
 
@@ -75,7 +77,7 @@ class Processes:
 def serve() -> None:
     """What a worker process does: read pairs (function, its arguments) from stdin, write the results to stdout.
 
-    It ends when stdin is closed, which the system does however the process that runs the study ends.
+    It ends when stdin is closed, which the system does however the process that runs the study ends, or without tasks.
     """
     tasks, answers = SimpleQueue(), os.fdopen(os.dup(sys.stdout.fileno()), "wb")
     os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints is no answer
@@ -89,7 +91,10 @@ def serve() -> None:
 
     threading.Thread(target=receive, daemon=True).start()
     while True:
-        task = tasks.get()
+        try:
+            task = tasks.get(timeout=IDLE)
+        except Empty:
+            os._exit(0)
         try:
             function, given = pickle.loads(task)
             found = function(*given)

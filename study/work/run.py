@@ -40,7 +40,7 @@ def run(definition: Definition, results="results", **options) -> Report:
         the next run.
     """
     order = Order(definition, Path(results), **options)
-    found, seen = look(definition, order.path), stamp(order.path)
+    found, seen = look(order.store), stamp(order.path)
     if order.done(found):
         if order.store.folder.exists():  # a run was killed between its last two steps, or other blocks lie there
             return _last(order, order.report())
@@ -50,11 +50,11 @@ def run(definition: Definition, results="results", **options) -> Report:
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
             if stamp(order.path) != seen:  # by the run that this one has waited for
-                found = look(definition, order.path)
+                found = look(order.store)
             report = _computed(order, found)
         return _last(order, report) if order.shared else report
     except FileNotFoundError:
-        if order.done(look(definition, order.path)):  # by another run, which has removed the blocks: without locks
+        if order.done(look(order.store)):  # by another run, which has removed the blocks: without locks
             return order.report()
         raise
 
@@ -80,7 +80,7 @@ def _last(order: Order, report: Report) -> Report:
     with held(order.store.lock, wait=False) as alone:
         if not alone:
             return report
-        found = look(order.definition, order.path)
+        found = look(order.store)
         if order.done(found):
             return replace(report, complete=True, kept=tidy(order.store))
         known = prepared(replace(order, retry=()), found)
@@ -90,7 +90,7 @@ def _last(order: Order, report: Report) -> Report:
 
 
 def _writing(order: Order, known: Inventory, found: Condition) -> Iterator[None]:
-    return writing(order.store, known, order.path, order.command, aside=found.kind == "damaged")
+    return writing(order.store, known, order.command, aside=found.kind == "damaged")
 
 
 def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> str:
@@ -154,10 +154,10 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
     StudyError : the study is very large and there are results or blocks to look through, and no `yes`
     """
     order = Order(definition, Path(results))
-    found = look(definition, order.path)
+    found = look(order.store)
     if order.done(found):
         return estimate(definition, workers, definition.grid.size)
-    if not check_countable(order.store, order.path, yes):
+    if not check_countable(order.store, yes):
         return estimate(definition, workers)
     known = inventory(order.store, earlier(definition, found).source)
     return estimate(definition, workers, definition.grid.size - len(known.missing))

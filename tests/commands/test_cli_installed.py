@@ -49,7 +49,7 @@ def test_a_shell_completes_names(monkeypatch):
     assert proposed("run", "go") == ["good"] and proposed("run", "stu") == ["studies/good.toml"]
     assert proposed("status", "main") == ["main_case"]
     assert {"fig01", "fig03", "fig03_layered"} <= set(proposed("plot", "fig0"))
-    assert proposed("table", "table") == ["table1"]
+    assert proposed("table", "table") == ["table1", "table1_lattice"]
     assert proposed("point", "E") == ["E1=", "E2=", "E_punch="] and proposed("point", "pu") == ["punch="]
     asked = []
     fake = SimpleNamespace(autocomplete=lambda commands: asked.append(commands.prog))

@@ -14,6 +14,7 @@ from solver_cases import ALL_KINDS, KINDS, ROUGH_KINDS, difference
 
 from solver import Problem, Status, solve
 from study.spec.sample import draw
+from study.spec.vocabulary import VOCABULARY
 
 RTOL = 1e-6
 #: Cases of the sample, and the share of those with a solution that must converge.
@@ -35,8 +36,8 @@ def sample(base, size=None, seed=11, **start):
     study = ROOT / "studies" / ("extremes_layered.toml" if base == "layered" else "extremes.toml")
     table = tomllib.loads(study.read_text(encoding="utf-8"))["sample"]
     ranges = {name: table[name] | {"start": value} for name, value in start.items()}
-    errors = []
-    columns = draw(table | {"size": size or SIZE[base], "seed": seed} | ranges, errors)
+    errors, known = [], {name: VOCABULARY[name].own for name in table if name in VOCABULARY}
+    columns = draw(table | {"size": size or SIZE[base], "seed": seed} | ranges, known, errors)
     assert not errors
     return {name: np.array(values) for name, values in columns.items()}
 

@@ -8,7 +8,7 @@ from solver_cases import LOAD, MAIN
 from solver import Problem, Status, solve
 
 #: All laws and controls on the half-space and the thin layer; the exact layer takes seconds a case.
-QUICK = [number for number in range(36) if number % 4 < 2]
+QUICK = [number for number in range(48) if number % 4 < 2]
 
 
 def test_a_fixed_sample_has_nothing_silently_wrong():
@@ -56,7 +56,7 @@ def test_another_contact_is_seen(good):
 def test_a_slow_case_and_a_violation_make_it_fail(monkeypatch, capsys):
     monkeypatch.setattr(fuzz_solver, "SLOWEST", -1.0)
     monkeypatch.setattr(fuzz_solver, "fuzz", lambda groups, *rest, fuzz=fuzz_solver.fuzz: fuzz([0], *rest))
-    assert fuzz_solver.main(["--cases", "36"]) == 1
+    assert fuzz_solver.main(["--cases", "48"]) == 1
     assert capsys.readouterr().out.endswith("1 violations\n")
     monkeypatch.setattr(fuzz_solver, "SLOWEST", 10.0)
-    assert fuzz_solver.main(["--cases", "36"]) == 0
+    assert fuzz_solver.main(["--cases", "48"]) == 0

@@ -50,6 +50,10 @@ EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
         ({"n": 1.0}, 8),
         ({"n": 1.0, "base": "auto"}, 0),
         ({"n": 1.0, "model_error": 0.3, "Nbar": 1.0, "lam0": 0.5, "a": 0.3}, 1 | 2 | 4 | 8 | 16 | 32),
+        ({"lam0": 0.2, "Ra": 2.01 * np.sqrt(0.2 / np.pi / 1e6)}, 0),
+        ({"lam0": 0.2, "Ra": 1.99 * np.sqrt(0.2 / np.pi / 1e6)}, 64),
+        ({"lam0": 0.2, "Ra": None}, 0),
+        ({"lam0": 0.2, "Ra": 1e-9, "micro": "smooth"}, 0),
         ({"lam0": 0.401}, 16),
         ({"lam0": 0.399}, 0),
         ({"lam0": 1.0, "micro": "smooth"}, 0),
@@ -129,7 +133,7 @@ def test_error_of_the_thin_layer():
     both = xr.Dataset({"D": ("base", [1.03e-3, 1e-3])}, {"base": ["thin_layer", "layered"]})
     found = derived.from_layered(both, "D")
     assert found.item() == pytest.approx(0.03, rel=1e-12)  # 1e-14 of a difference from 1
-    assert found.attrs == {"long_name": "indentation depth: thin layer over exact layer, less 1", "units": "1"}
+    assert found.attrs == {"long_name": "indentation depth: thin layer over exact layer, less 1"}
 
 
 @pytest.mark.parametrize("at", [{}, {"P": 0}], ids=["an axis", "one load"])

@@ -83,6 +83,7 @@ def test_a_table_is_one_function(results, tmp_path):
 def test_an_output_quantity_is_one_row_and_its_formula(results, monkeypatch):
     (row,) = eval(ROW, vars(vocabulary))
     monkeypatch.setitem(vocabulary.VOCABULARY, row.name, row)
+    monkeypatch.setitem(derived.QUANTITIES, row.name, None)  # and not there any more after the test
     found = vars(derived) | {}
     exec(FORMULA, found)
     main = open_results(results / "main_case.nc")
@@ -90,8 +91,12 @@ def test_an_output_quantity_is_one_row_and_its_formula(results, monkeypatch):
     expected = (main["P"] / (main["Nbar"] * np.pi * main["a"] ** 2)).where(main["micro"] != "smooth")
     np.testing.assert_allclose(made["P_spot"], expected, rtol=1e-14)  # the same arithmetic
     assert made["P_spot"].attrs == {
-        "long_name": "mean load of a contact spot", "symbol": "P/(N̄ An)", "scale": "E2* R^2", "units": "1"
+        "long_name": "mean load of a contact spot, (P/(N̄ An))/(E2* R^2)", "symbol": "P/(N̄ An)", "scale": "E2* R^2"
     }  # fmt: skip
+    pyplot = pytest.importorskip("matplotlib.pyplot")
+    axes = study.plot(open_results(results / "load_sweep.nc"), "P", "P_spot", hue="case").axes[0]
+    assert axes.get_ylabel() == r"$(P/(\bar N A_n))/(E_2^*\,R^2)$"
+    pyplot.close("all")
     physical = study.to_physical(made, R=0.01, E2_star=2e11)
     assert physical["P_spot"].units == "N"
     np.testing.assert_allclose(physical["P_spot"], expected * 2e7, rtol=1e-12)  # two products

@@ -81,6 +81,19 @@ def test_physical_results_have_units_that_are_read_easily(physical):
     assert shown(physical, "P", "a", h="2 um")[1]["a"].tolist() == physical.a.sel(h=2e-6).values.tolist()
 
 
+def test_a_band_shows_the_spread_of_what_is_drawn():
+    ball = {"R": "5 mm", "E2": "210 ± 20 GPa", "base": "half_space", "micro": "smooth"}
+    found = study.solve(**ball, P=["1 N", "10 N"], x=2)
+    figure, columns = shown(found, "P", "a")
+    (band,) = figure.axes[0].collections
+    edges = band.get_paths()[0].vertices[:, 1]
+    np.testing.assert_allclose(edges.min(), 1e6 * (found.a - found.a_spread).min(), rtol=1e-12)
+    np.testing.assert_allclose(edges.max(), 1e6 * (found.a + found.a_spread).max(), rtol=1e-12)
+    np.testing.assert_array_equal(columns["a_spread"], found.a_spread)
+    assert list(legend(figure.legends[0])) == ["± one standard\ndeviation"]
+    assert not shown(found, "P", "iterations")[0].axes[0].collections, "which has no spread"
+
+
 def test_labels_of_cases_and_gaps_of_failed_ones():
     rows = [{"label": "thin", "h": 0.01}, {"label": "incompressible", "h": 0.01, "nu1": 0.5, "bonding": "bonded"}]
     found = study.solve(cases=rows, P=[1e-6, 1e-5], n=0.5, base="thin_layer", micro="smooth", x=2)

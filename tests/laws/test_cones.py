@@ -17,6 +17,8 @@ from scipy.special import ellipe, ellipk
 import study
 from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS, Parameter
+from study.figures.labels import stated
+from study.physical.told import told
 from study.spec.definition import from_tables
 from study.store.keys import case_keys
 from study.work.cases import parcel
@@ -49,6 +51,15 @@ def test_a_grid_of_cones_is_one_of_power_laws(base):
         assert_allclose(found.p_max, np.broadcast_to(p_star, found.p_max.shape), rtol=1e-14, atol=0)
         assert_allclose(study.derived.peak_pressure(found), found.p_max, rtol=1e-14, atol=0)
         assert_allclose(study.derived.spot_radius(found), np.sqrt(found.lam0 / (np.pi * CASE["Nbar"])), rtol=1e-14)
+
+
+def test_its_parameter_is_told_in_words_and_in_figures():
+    found = study.solve(**CASE, P=1e-5, micro=cones.CONES, alpha=1.3, x=2)
+    text = str(study.summary(found))
+    assert "cones, Nbar = 2.5e+05 R^-2, alpha = 1.3\n" in text and "nu1" not in text, "without friction ν is not used"
+    assert stated([found])[-1] == "$\\alpha$ = 1.3"
+    spheres = study.solve(**CASE, P=1e-5, Ra=0.004, x=2)
+    assert "alpha" not in told(spheres.assign_coords(alpha=1.3)), "which another law has"
 
 
 def test_against_rings_of_constant_pressure():
@@ -140,7 +151,9 @@ def message(**given):
 def test_messages_are_those_of_any_parameter():
     assert message(micro=cones.CONES) == 'solve: alpha is missing: micro = "cones" needs it'
     assert message(micro=cones.CONES, alpha=2.0) == "solve: alpha = 2.0: must be in (0, 1.57)"
-    assert message(micro="conse", alpha=1.0).endswith('"square_lattice", "hex_lattice", "normal_heights", "cones"')
+    assert message(micro="conse", alpha=1.0).endswith(
+        '"square_lattice", "hex_lattice", "normal_heights", "uniform_heights", "cones"'
+    )
     unnamed = dataclasses.replace(cones.CONES, version="")
     assert "version must be a text" in message(micro=unnamed, alpha=1.0)
     assert "must have a name of its own" in message(micro=dataclasses.replace(cones.CONES, name="smooth"), alpha=1.0)

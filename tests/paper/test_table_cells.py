@@ -22,6 +22,11 @@ HEADS = {
         ("beta", r"$\beta$", ".4f"),
         ("error", "error", ".1%"),
     ],
+    "table1_lattice": [
+        *(("Ra/R", r"$R_a/R$", "g"), ("N R^2", r"$\bar N R^2$", "d"), ("N Ra^2", r"$\bar N R_a^2$", "g")),
+        *((f"{name} off", f"{name} off", ".1%") for name in ("paper's fit", "disc cell")),
+        *(("B", r"$B E_1^{*\beta}/R$", ".3e"), ("beta", r"$\beta$", ".4f"), ("error", "error", ".1%")),
+    ],
     "paper_numbers": [
         ("quantity", "quantity", "s"),
         ("paper", "paper", ".4g"),
@@ -87,6 +92,21 @@ HEADS = {
         ("iterates", "iterates", ".5g"),
         ("iterates off", "iterates off", "+.2%"),
     ],
+    "literature": [
+        *((text, text, "s") for text in ("formula", "interface")),
+        *(("nu", r"$\nu$", "s"), ("constants read in", "constants read in", "s")),
+        *(("1%", r"1\%", "s"), ("5%", r"5\%", "s")),
+        *((f"a/h = {x}", f"$a/h = {x}$", "+.2%") for x in ("0.1", "0.5", "1", "2", "4")),
+    ],
+    "literature_coatings": [
+        *((text, text, "s") for text in ("formula", "constants read in")),
+        *(("a/h up to", "$a/h$ up to", "g"), ("1%", r"1\%", "s"), ("5%", r"5\%", "s")),
+        *((f"n = {n}", f"$n = {n}$", ".2%") for n in ("0.01", "0.1", "0.5", "2", "10", "100")),
+    ],
+    "literature_decided": [
+        *((text, text, "s") for text in ("quantity", "by")),
+        *(("says", "says", ".4g"), ("exact", "exact", ".5g"), ("off by", "off by", "+.1%")),
+    ],
 }
 
 
@@ -107,8 +127,11 @@ def rows_of(path) -> list[list[str]]:
 
 
 def test_every_table_is_checked():
-    """tests/evidence/test_tradeoff_shown.py has the numbers of two."""
-    assert {*EXPECTED, "tradeoff_cheapest", "tradeoff_factors"} == set(HEADS) == set(TABLES)
+    """tests/evidence/test_tradeoff_shown.py has the numbers of two, tests/literature/test_literature.py of three,
+    tests/paper/test_lattice_laws.py of one."""
+    elsewhere = {"tradeoff_cheapest", "tradeoff_factors", "literature", "literature_coatings", "literature_decided"}
+    elsewhere |= {"table1_lattice"}
+    assert set(EXPECTED) | elsewhere == set(HEADS) == set(TABLES)
 
 
 @pytest.mark.parametrize("name", EXPECTED)

@@ -22,7 +22,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),
-        *("solving", "figures", "api", "paper", "evidence"),
+        *("solving", "figures", "api", "paper", "literature", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }
@@ -171,7 +171,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     from study.spec.vocabulary import PARAMETERS
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

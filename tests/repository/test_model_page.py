@@ -62,7 +62,16 @@ def test_the_masks_and_thresholds_are_those_of_the_code():
     assert table == set(derived.ASSUMPTIONS.items())
     text = "\n".join(row[2] for row in rows("mask"))
     thresholds = re.findall(r"[<>] ([\d.]+)", text)
-    constants = ("NOT_THIN", "FEW_SPOTS", "SPOT_OVER_LAYER", "MERGING", "STEEP", "COMPRESSED", "COMPRESSED")
+    constants = (
+        "NOT_THIN",
+        "FEW_SPOTS",
+        "SPOT_OVER_LAYER",
+        "MERGING",
+        "STEEP",
+        "COMPRESSED",
+        "COMPRESSED",
+        "STEEP_SPOT",
+    )
     assert [float(value) for value in thresholds] == [getattr(derived, name) for name in constants]
 
 

@@ -44,9 +44,9 @@ def test_several_materials_are_one_axis():
     assert cases.layer.values.tolist() == ["PTFE", "PEEK"] and cases.label.values.tolist() == ["soft", "hard"]
 
 
-def test_study_files_take_the_values_without_the_spreads(tmp_path):
+def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
     text = "".join(f"{name} = {value!r}\n" for name, value in COATED.items() if name != "layer")
-    text = f'[model]\n{text}[axes]\nlayer = ["PTFE", "PEEK"]\nP = ["1 N", "10 N"]\n'
+    text = f'[model]\n{text}[axes]\nlayer = ["PTFE", "PEEK"]\nP = ["1 N", "10 N"]\n[output]\nspreads = false\n'
     made = study.Study(from_tables(tomllib.loads(text), "lining", text, "lining.toml"), tmp_path)
     assert made.run(workers=1).computed == 4
     found = made.open().sel(layer="PTFE", P="10 N")
@@ -54,6 +54,12 @@ def test_study_files_take_the_values_without_the_spreads(tmp_path):
     np.testing.assert_allclose(found.a, study.solve(**COATED, P="10 N", x=2).a, rtol=1e-12)
     edited = text.replace('"PEEK"]', '"PEEK", "PMMA"]')
     assert study.Study(from_tables(tomllib.loads(edited), "lining", edited, "x"), tmp_path).run(workers=1).computed == 2
+    edited = text.replace("spreads = false", "spreads = true")
+    made = study.Study(from_tables(tomllib.loads(edited), "spread", edited, "x"), tmp_path)
+    assert made.run(workers=1).computed == 4 * 13  # punch, layer and body have E and ν, each moved up and down
+    found = made.open().sel(layer="PTFE", P="10 N")
+    alone = study.solve(**COATED, P="10 N", x=2)
+    np.testing.assert_allclose([found.a, found.a_spread], [alone.a, alone.a_spread], rtol=1e-9)
 
 
 @pytest.mark.parametrize(

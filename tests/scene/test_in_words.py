@@ -76,12 +76,19 @@ def test_every_flag_and_model_has_its_words():
 
 def test_the_micro_law_and_its_own_error():
     found = study.solve(
-        P=1e-5, h=0.02, n=0.5, Nbar=250_000, Ra=0.004, micro=["square_lattice", "normal_heights"], sigma=1e-6
+        P=1e-5,
+        h=0.02,
+        n=0.5,
+        Nbar=250_000,
+        Ra=0.004,
+        sigma=1e-6,
+        micro=["square_lattice", "normal_heights", "disc_cell"],
     )
-    lattice, heights = (study.summary(found.isel(micro=i)) for i in (0, 1))
+    lattice, heights, disc = (study.summary(found.isel(micro=i)) for i in (0, 1, 2))
     assert "frictionless, square lattice, Nbar" in lattice and "sigma" not in lattice
     assert "the micro law itself errs by about 0.02 %" in lattice and "exact layered contact" not in lattice
-    assert "sigma = 1e-06 R, cut = 4" in heights and "itself errs" not in heights
+    assert "sigma = 1e-06 R, cut = 4" in heights and "the micro law itself errs by about 0.02 %" in heights
+    assert "itself errs" not in disc
 
 
 def test_a_parameter_that_no_case_has_is_no_coordinate():

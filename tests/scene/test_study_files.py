@@ -30,6 +30,9 @@ x = 3
 """
 
 
+DRAWN = "[sample]\nsize = 3\nseed = 1\n"
+
+
 def of(text: str, folder, name: str = "dlc") -> study.Study:
     return study.Study(from_tables(tomllib.loads(text), name, text, f"{name}.toml"), folder)
 
@@ -138,12 +141,19 @@ def test_float32_and_partial_results(tmp_path, monkeypatch):
         ('stop = "100 N"', 'stop = "100 MPa"', 'P: stop = "100 MPa" is a pressure'),
         ('start = "1 N", ', "", "P: start = nothing: must be a finite number"),
         ('start = "1 N"', 'start = "-1 N"', "P: start = -1.0: must be a finite number, > 0 for spacing log"),
-        ('"200 GPa"', '"200 ± 10 GPa"', "E1: a study file takes no spreads"),
+        ("x = 3", "x = 3\nspreads = 1", r"\[output\] spreads = 1: must be true or false"),
         ('"5 mm"', '["5 mm"]', r"\[model\] R has several values: these belong in \[axes\]"),
         ("[axes]", '[axes]\nR = ["5 mm"]', r"R is given twice: in \[model\] and in \[axes\]"),
         ("[axes]", "rtol = 1e-6\n[axes]", r"\[model\] rtol belongs in \[numerics\]"),
         ("[axes]", 'hh = "1 um"\n[axes]', '"hh" is not a parameter; did you mean "h"'),
-        ("[output]", "[sample]\nnu2 = [0.1, 0.2]\n[output]", r"\[sample\] draws dimensionless numbers"),
+        ("[output]", "[sample]\nnu2 = [0.1, 0.2]\n[output]", r"\[sample\] size = nothing: must be a whole number"),
+        ("[output]", f"{DRAWN}nu1 = [0.1]\n[output]", r"nu1 is given twice: in \[sample\] and elsewhere"),
+        ("[output]", f"{DRAWN}Ra = {{start = 1, stop = 2}}\n[output]", r"\[sample\] Ra: start = 1 has no unit"),
+        ("[output]", f'{DRAWN}Nbar = {{start = "1 m", stop = 2, over = "h"}}\n[output]', "Nbar: start .* is a length"),
+        ("[output]", f"{DRAWN}nu2 = {{start = 0, stop = 2}}\n[output]", r"nu2: stop = 2.*: must be in \(-1, 0.5\]"),
+        ("[output]", f"{DRAWN}body = {{start = 0, stop = 2}}\n[output]", r"body = .*: must be a list to choose from"),
+        ("[output]", f"{DRAWN}nu9 = [0.1]\n[output]", r'\[sample\] "nu9" is not a parameter'),
+        ("[output]", f"{DRAWN}nu2 = [0.1]\n[[cases]]\n[output]", "both make the dimension case"),
         ('"2 um"', '"2e-9 um"', r"(?s)h\[0\]|h = 4e-13.*dimensionless here"),
         ('"20 um"]', '"2000 nm"]', r"h\[0\] and h\[1\] are both 2e-06 m: values of an axis must differ"),
         ('"5 mm"', f"0x{'f' * 4000}", "R = a number of more than 4300 digits has no unit"),

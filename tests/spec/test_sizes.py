@@ -32,10 +32,10 @@ def test_numbers_of_a_study():
 def test_a_call_that_is_absurdly_large_is_refused_before_it_computes(monkeypatch):
     """More than 4 GB: half a billion numbers."""
 
-    def parcel(*_):
+    def solved(*_):
         raise AssertionError("computed")
 
-    monkeypatch.setattr(solving, "parcel", parcel)
+    monkeypatch.setattr(solving, "solved", solved)
     loads, ratios = np.linspace(1e-6, 1e-4, 10_000), np.linspace(0.0, 0.4, 1_000)
     with pytest.raises(
         study.StudyError,

@@ -2,7 +2,9 @@
 paper, limits and choices from the model."""
 
 import pytest
+from xarray.plot.utils import label_from_attrs
 
+import study
 from study.spec.vocabulary import PARAMETERS, VOCABULARY, attributes, check, names
 
 # Dimension in powers of kg, m, s and the printed unit of every quantity that has one.
@@ -102,29 +104,46 @@ WORDS = words("""
     p_mean  : P/An     : E2*     :          : mean nominal pressure
     spots   : N̄ An     :         :          : number of contact spots
     b0      : b(0)     : R       : (7)      : radius of the central contact spot
-    p_peak  :          : E2*     : (13)     : largest real pressure in the contact, wherever it is
+    p_peak  : ppeak    : E2*     : (13)     : largest real pressure in the contact, wherever it is
     E_eff   : Eeff     : E2*     :          : effective reduced modulus (dP/dD)/(2a)
     x       : r/a      :         :          : radius over the radius of the nominal contact area
 """)
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
     "base": {"half_space", "thin_layer", "layered", "auto"},
-    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights"},
+    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
 }
-WORDS_OR_FLAGS = {*CHOICES, "label", "status", "model_used", "validity"}
+AXES = {
+    "P": "P/(E2* R^2)", "a": "a/R", "D": "D/R", "h": "h/R", "n": "n", "m": "m", "nu1": "ν1", "nu2": "ν2",
+    "Nbar": "N̄ R^2", "Ra": "Ra/R", "B": "B", "beta": "β", "sigma": "σ/R", "cut": "c", "k": "k", "p0": "p(0)/E2*",
+    "p_max": "pmax/E2*", "Ar_An": "Ar/An", "A0": "A[p(0)]/R", "dP_dD": "(dP/dD)/(E2* R)", "lam0": "λ(0)",
+    "p": "p(r)/E2*", "lam": "λ(r)", "An": "An/R^2", "An_ratio": "An/(π a0²)", "p_mean": "(P/An)/E2*",
+    "spots": "N̄ An", "b0": "b(0)/R", "p_peak": "ppeak/E2*", "E_eff": "Eeff/E2*", "x": "r/a",
+}  # fmt: skip
 
 
 @pytest.mark.parametrize("name", WORDS)
 def test_words_and_equations_are_those_of_the_paper(name):
     expected = {key: text for key, text in WORDS[name].items() if text}
-    assert attributes(name) == expected | ({} if name in WORDS_OR_FLAGS else {"units": "1"})
+    if name in AXES:
+        expected["long_name"] += f", {AXES[name]}"
+    assert attributes(name) == expected
 
 
-def test_only_names_of_words_and_flags_have_no_unit():
-    assert {name for name in VOCABULARY if "units" not in attributes(name)} == WORDS_OR_FLAGS
-    assert all(attributes(name)["long_name"] for name in VOCABULARY)
+def test_labels_of_xarray_are_fit_for_a_plot():
+    """No "[1]" behind them: pure numbers have no units, in files and in physical results either."""
+    assert all(attributes(name)["long_name"] and "units" not in attributes(name) for name in VOCABULARY)
+    found = study.solve(P=[1e-5, 2e-5], h=0.02, n=0.5, micro="smooth", x=3)
+    physical = study.to_physical(found, R=0.01, E2_star=2e11)
+    assert label_from_attrs(found.a) == "radius of the nominal contact\narea, a/R"
+    assert label_from_attrs(found.P) == "load, P/(E2* R^2)" and label_from_attrs(physical.P) == "load [N]"
+    assert (
+        label_from_attrs(physical.lam0) == label_from_attrs(found.lam0) == "relative contact area in the\ncentre, λ(0)"
+    )
+    rigid = study.solve(P=1e-5, h=0.02, n=0, micro="smooth", x=3)
+    assert label_from_attrs(rigid.p0) == "nominal pressure in the\ncentre, p(0)/E1*" and rigid.p0.scale == "E1*"
 
 
 def test_parameters_are_in_their_order():

@@ -33,6 +33,17 @@ def test_results_of_another_definition_are_kept(file):
     assert other.open().sizes["P"] == 24
 
 
+def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
+    load(file).run()
+
+    def removed(path):
+        path.unlink(missing_ok=True)
+        raise FileNotFoundError(path)
+
+    monkeypatch.setattr(study.api, "statuses", removed)
+    assert load(file).status()["state"] == "new"
+
+
 @pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
 def test_a_file_that_is_no_result_is_kept(file, content):

@@ -1,0 +1,114 @@
+"""The formulas of the literature beside the exact layer: errors, safe ranges, and what decides where they differ."""
+
+import numpy as np
+import xarray as xr
+
+from ..data.derived import effective_modulus
+from . import formulas
+from .formulas import Formula
+
+LEVELS = (0.01, 0.05)
+"""Errors whose ranges are told."""
+SERIES_UP_TO = 0.15
+"""a/h below which the series of F/F_H is fitted: with degree 6 the first two coefficients agree with those known in
+closed form to 1e-4 (tests/literature/test_literature.py)."""
+
+
+def of_material(rigid: xr.Dataset, bonded: bool, nu: float) -> xr.Dataset:
+    """The contacts of one layer on a rigid base, over a/h that rises. Without friction no Poisson ratio matters."""
+    found = (rigid["bonding"] == ("bonded" if bonded else "frictionless")).values
+    if bonded:
+        found &= np.isclose(rigid["nu1"].values, nu)
+    (case,) = np.flatnonzero(found)
+    return rigid.isel(case=case).sortby("h", ascending=False)
+
+
+def over_hertz(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """a/h, χ = sqrt(R D)/h and F/F_H of contacts on a rigid base, R = E1* = 1."""
+    h, D = contact["h"].values, contact["D"].values
+    return float(contact["a"]) / h, np.sqrt(D) / h, contact["P"].values / (4 / 3 * D**1.5)
+
+
+def load_error(formula: Formula, rigid: xr.Dataset, nu: float) -> tuple[np.ndarray, np.ndarray]:
+    """a/h, and the relative error of a formula's load at the exact depth."""
+    x, chi, exact = over_hertz(of_material(rigid, formula.bonded, nu))
+    return x, formula.of(chi, nu) / exact - 1
+
+
+def stiffness(coated: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """a/h (m,), n (k,) and E_eff/E2* (k, m) of coated half-spaces."""
+    coated = coated.sortby("h", ascending=False)
+    x = float(coated["a"]) / coated["h"].values
+    return x, coated["n"].values, effective_modulus(coated).transpose("n", "h").values
+
+
+def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
+    """Name of a formula -> its relative error (n, a/h); the last has an α of its own for each n, the best."""
+    x, n, exact = stiffness(coated)
+    nu = float(coated["nu1"])
+    found = {name: of(x, n[:, None], nu) / exact - 1 for name, (of, _) in formulas.STIFFNESSES.items()}
+    return found | {"Doerner and Nix 1986, King 1987": best_alpha(x, n, exact, nu)[1]}
+
+
+def best_alpha(x, n, exact, nu) -> tuple[np.ndarray, np.ndarray]:
+    """For each n the α of Doerner and Nix whose largest error is smallest, (k,), and its errors (k, m)."""
+    tried = np.geomspace(0.1, 10, 201)
+    errors = formulas.doerner_nix(x, n[:, None], nu, tried[:, None, None]) / exact - 1
+    best = np.abs(errors).max(axis=2).argmin(axis=0)
+    return tried[best], errors[best, np.arange(len(n))]
+
+
+def safe_range(x: np.ndarray, error: np.ndarray, level: float, *, last: bool = False) -> tuple[float, float]:
+    """Smallest and largest x of the stretch where |error| <= level that begins at the first x, or ends at the last.
+
+    The error is linear in ln x between the points. NaN where there is no such stretch.
+    """
+    if last:
+        start, stop = safe_range(1 / x[::-1], error[::-1], level)
+        return 1 / stop, 1 / start
+    if abs(error[0]) > level:
+        return np.nan, np.nan
+    beyond = np.abs(error) > level
+    if not beyond.any():
+        return x[0], x[-1]
+    i = int(np.argmax(beyond))
+    share = (np.copysign(level, error[i]) - error[i - 1]) / (error[i] - error[i - 1])
+    return x[0], float(np.exp(np.interp(share, (0, 1), np.log(x[i - 1 : i + 1]))))
+
+
+def range_of(x: np.ndarray, error: np.ndarray, level: float, thin: bool) -> str:
+    """`safe_range` in words."""
+    start, stop = safe_range(x, error, level, last=thin)
+    if np.isnan(start):
+        return "nowhere"
+    if (start, stop) == (x[0], x[-1]):
+        return "everywhere"
+    return f"from {start:.3g}" if thin else f"up to {stop:.3g}"
+
+
+def around_one(n: np.ndarray, largest: np.ndarray, level: float) -> str:
+    """The n around 1 up to which, both ways, the largest error (n,) stays within the level."""
+    above, below = n > 1, n < 1
+    ends = []
+    for side, order in ((below, -1), (above, 1)):
+        y, error = np.abs(np.log(n[side][::order])), largest[side][::order]
+        ends.append(np.exp(order * safe_range(y, error, level)[1]))
+    return "nowhere" if np.isnan(ends).any() else f"{ends[0]:.2g} to {ends[1]:.2g}"
+
+
+def coefficients(rigid: xr.Dataset, bonded: bool, nu: float) -> np.ndarray:
+    """c1, c2, c3 of F/F_H = 1 + c1 χ + c2 χ² + c3 χ³ + ..., by least squares of the exact contacts at small a/h."""
+    x, chi, exact = over_hertz(of_material(rigid, bonded, nu))
+    small = x <= SERIES_UP_TO
+    degree = min(6, np.count_nonzero(small) - 1)
+    found = np.polynomial.Polynomial.fit(chi[small], (exact[small] - 1) / chi[small], degree).convert().coef
+    return np.append(found, np.full(3, np.nan))[:3]
+
+
+def kappa(rigid: xr.Dataset, nu: float) -> np.ndarray:
+    """E_eff/E1* of bonded layers at the a/h of the tables of κ: a cubic spline of logarithms."""
+    from scipy.interpolate import CubicSpline
+
+    contact = of_material(rigid, True, nu)
+    x = over_hertz(contact)[0]
+    return np.exp(CubicSpline(np.log(x), np.log(effective_modulus(contact).values))(np.log(formulas.KAPPA_AT)))

@@ -1,0 +1,205 @@
+"""The formulas of the literature as a figure and as tables."""
+
+import numpy as np
+import xarray as xr
+from matplotlib.ticker import FuncFormatter
+
+from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from . import formulas
+from .compared import (
+    LEVELS,
+    around_one,
+    coefficients,
+    kappa,
+    load_error,
+    range_of,
+    stiffness,
+    stiffness_errors,
+)
+
+SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)
+"""a/h whose errors the table tells."""
+SHOWN_N = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)
+THIN_TO = (2.0, 20.0)
+"""Largest a/h over which the formulas of the stiffness are judged."""
+INTERFACES = ((True, 0.5, r"rigid base, bonded, $\nu = 1/2$"), (False, 0.3, "rigid base, frictionless"))
+STYLES = {
+    "Hertz": ("0.45", "-"),
+    "Hayes": ("#e08214", "-"),
+    "Dimitriadis, nu = 1/2": ("#2166ac", "-"),
+    "Dimitriadis, general": ("#67a9cf", (0, (4, 1.5))),
+    "Garcia": ("#762a83", "-"),
+    "Hermanowicz": ("#1b7837", "-"),
+    "Johnson": ("#b2182b", (0, (1, 1.2))),
+    "Gao": ("#8c510a", "-"),
+    "Hay": ("#1b7837", "-"),
+    "Perriot": ("#2166ac", "-"),
+    "Bec": ("#e08214", "-"),
+    "Doerner": ("0.45", (0, (4, 1.5))),
+}
+"""First word of a name, and what follows its comma if there are two, -> colour, dashes."""
+
+
+def look(name: str) -> dict:
+    """Of the line of a formula."""
+    first = name.split()[0].strip(",")
+    key = first if first in STYLES else f"{first}, {name.partition(', ')[2]}"
+    colour, dashes = STYLES[key]
+    return {"color": colour, "linestyle": dashes, "linewidth": 1.1}
+
+
+@figure(
+    "literature",
+    "literature",
+    "literature_coatings",
+    size=(TWO_COLUMNS, 3.7),
+    panels=(1, 3),
+    caption="""Error of published formulas for a smooth punch against the exact layer. Left and middle: of the load at
+    one depth on a rigid base, over a/h. Right: of the stiffness on a bonded coating, ν = 0.3, the largest over a/h from
+    0.01 to 20, over n. Grey: within 1 % and 5 %.""",
+)
+def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
+    """Size of the error of each formula: of the load over a/h, of the stiffness over n."""
+    parts = []
+    for panel, (axes, (bonded, nu, title)) in enumerate(zip(panels, INTERFACES, strict=False)):
+        for formula in formulas.LOADS:
+            if formula.bonded == bonded and (nu in formula.nu or formula.nu == (nu,) or is_short(formula, bonded)):
+                x, error = load_error(formula, rigid, nu)
+                words = formula.name.replace("general", f"for nu = {nu:g}")
+                axes.plot(x, np.abs(error), label=greek(words), **look(formula.name))
+                parts.append((panel, x, error))
+        axes.set(xlabel="$a/h$", xlim=(0.01, 20), title=title)
+    axes = panels[2]
+    _, n, _ = stiffness(coated)
+    for name, error in stiffness_errors(coated).items():
+        if not name.endswith("0.626"):
+            largest = np.abs(error).max(axis=1)
+            axes.plot(n, largest, label=greek(name), **look(name))
+            parts.append((2, n, largest))
+    axes.set(xlabel="$n = E_1^*/E_2^*$", xlim=(0.01, 100), title=r"coating, bonded, $\nu = 0.3$")
+    axes.figure.suptitle("smooth punch, against the exact layer", fontsize=7)
+    for axes, words in zip(panels, ("error of the load", "error of the load", "largest error, stiffness"), strict=True):
+        frame(axes, words)
+    return columns(parts)
+
+
+def is_short(formula: formulas.Formula, bonded: bool) -> bool:
+    """The short form of Dimitriadis for a loose layer, which is drawn though it is made for ν = 1/2."""
+    return not bonded and formula.name.endswith("nu = 1/2")
+
+
+def frame(axes, words: str) -> None:
+    """Logarithmic axes in percent, the bands of LEVELS, the legend below."""
+    axes.set(xscale="log", yscale="log", ylim=(1e-4, 10))
+    axes.set_ylabel(words, fontsize=8, labelpad=1)
+    axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
+    for level, grey in zip(LEVELS, ("0.86", "0.94"), strict=True):
+        axes.axhspan(1e-4, level, color=grey, linewidth=0, zorder=-2 if grey == "0.94" else -1)
+    axes.title.set_fontsize(8)
+    axes.tick_params(labelsize=7)
+    axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.2), fontsize=6, handlelength=2.2, frameon=False)
+
+
+def greek(name: str) -> str:
+    """A name as a figure has it."""
+    return name.replace("nu =", r"$\nu$ =")
+
+
+def columns(parts: list[tuple]) -> Columns:
+    """Number of the panel and of the curve, abscissa (a/h or n), error."""
+    sizes = [len(x) for _, x, _ in parts]
+    return {
+        "panel": np.repeat([panel for panel, *_ in parts], sizes),
+        "curve": np.repeat(np.arange(len(parts)), sizes),
+        "a/h or n": np.concatenate([x for _, x, _ in parts]),
+        "error": np.concatenate([error for *_, error in parts]),
+    }
+
+
+@table(
+    "literature",
+    "literature",
+    caption="""Formulas of the load on a smooth sphere on a layer on a rigid base: the a/h (0.01 to 20) up to which, or
+    from which on, they err by less than 1% and 5% at one depth, and their errors.""",
+    columns="\n".join(
+        ["formula", "interface", "nu | s | $\\nu$", "constants read in", "1% | s | 1\\%", "5% | s | 5\\%"]
+        + [f"a/h = {x:g} | +.2% | $a/h = {x:g}$" for x in SHOWN_AT]
+    ),
+)
+def loads(rigid: xr.Dataset) -> list[tuple]:
+    """Formula, interface, ν, source of the constants, the ranges of LEVELS, errors at SHOWN_AT."""
+    rows = []
+    for formula in formulas.LOADS:
+        for nu in formula.nu:
+            x, error = load_error(formula, rigid, nu)
+            ranges = [range_of(x, error, level, formula.thin) for level in LEVELS]
+            shown = np.interp(np.log(SHOWN_AT), np.log(x), error)
+            any_nu = not formula.bonded and len(formula.nu) == 1 and not is_short(formula, False)
+            interface = "bonded" if formula.bonded else "frictionless"
+            case = (formula.name, interface, "any" if any_nu else f"{nu:g}", formula.read)
+            rows.append((*case, *ranges, *shown))
+    return rows
+
+
+@table(
+    "literature_coatings",
+    "literature_coatings",
+    caption="""Formulas of the stiffness of a smooth contact over 2a on a bonded coating, nu = 0.3: largest error over
+    a/h from 0.01 to 2 and to 20, and the n around 1 for which it stays below 1% and 5%.""",
+    columns="\n".join(
+        ["formula", "constants read in", "a/h up to | g | $a/h$ up to", "1% | s | 1\\%", "5% | s | 5\\%"]
+        + [f"n = {n:g} | .2% | $n = {n:g}$" for n in SHOWN_N]
+    ),
+)
+def stiffnesses(coated: xr.Dataset) -> list[tuple]:
+    """Formula, source of its constants, a/h, the ranges of LEVELS, largest errors at SHOWN_N."""
+    x, n, _ = stiffness(coated)
+    places = [int(np.argmin(np.abs(np.log(n / wanted)))) for wanted in SHOWN_N]
+    rows = []
+    for name, error in stiffness_errors(coated).items():
+        read = (
+            formulas.STIFFNESSES[name][1] if name in formulas.STIFFNESSES else "alpha, the best for each n, found here"
+        )
+        for most in THIN_TO:
+            largest = np.abs(error[:, x <= most * (1 + 1e-9)]).max(axis=1)
+            ranges = [around_one(n, largest, level) for level in LEVELS]
+            rows.append((name, read, most, *ranges, *largest[places]))
+    return rows
+
+
+@table(
+    "literature_decided",
+    "literature",
+    "literature_coatings",
+    caption="""Where the literature differs, on a rigid base. c1, c2, c3: coefficients of the load over that of Hertz in
+    powers of sqrt(R D)/h. kappa: stiffness of a flat punch over 2 E1* a.""",
+    columns="""
+    quantity
+    by
+    says | .4g
+    exact | .5g
+    off by | +.1%""",
+)
+def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
+    """Quantity, who says it, what, the exact value, the relative difference."""
+    bonded, loose = coefficients(rigid, True, 0.5), coefficients(rigid, False, 0.3)
+    one = int(np.argmin(np.abs(formulas.KAPPA_AT - 1)))
+    rows = [
+        ("c1, bonded, nu = 1/2", "Dimitriadis, Garcia", 1.133, bonded[0]),
+        ("c2, bonded, nu = 1/2", "Dimitriadis", 1.283, bonded[1]),
+        ("c2, bonded, nu = 1/2", "Garcia", 1.497, bonded[1]),
+        ("c3, bonded, nu = 1/2", "Dimitriadis", 0.769, bonded[2]),
+        ("c3, bonded, nu = 1/2", "Garcia", 1.469, bonded[2]),
+    ]
+    for nu in (0.0, 0.3, 0.5):
+        said = 2 * 0.347 * (3 - 2 * nu) / (1 - nu) / np.pi
+        rows.append(("c1, frictionless, any nu", f"Dimitriadis with nu = {nu:g}", said, loose[0]))
+    for script, said in formulas.KAPPA.items():
+        for nu, values in said.items():
+            rows.append((f"kappa at a/h = 1, nu = {nu:g}", script, values[one], kappa(rigid, nu)[one]))
+    x, n, exact = stiffness(coated)
+    near = int(np.argmin(np.abs(n - 1)))
+    share, middle = formulas.gao_weight(x, float(coated["nu1"])), int(np.argmin(np.abs(np.log(x))))
+    slope = (exact[near] - 1) / (n[near] - 1)
+    rows.append(("slope of the stiffness at n = 1, a/h near 1", "Gao", share[middle], slope[middle]))
+    return [(*row, row[2] / row[3] - 1) for row in rows]

@@ -1,0 +1,128 @@
+"""Table 1 and Figures 9 and 10 of the paper with the law of a square lattice, which smears no neighbours, beside the
+paper's."""
+
+import numpy as np
+import xarray as xr
+
+from solver.laws import LAWS
+from solver.laws.fit import least_squares
+
+from ..figures.annotate import name_curve, note_violations
+from ..figures.registry import TWO_COLUMNS, Columns, figure, pick, table
+from . import numbers
+from .curves import PAPER, pressure_axes, profile
+from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, printed
+
+INTERVAL = np.isclose(PRESSURES, np.clip(PRESSURES, *numbers.ERROR_INTERVAL), rtol=1e-9)
+"""Those over which the paper states the errors of its fits."""
+DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
+
+
+def on_lattice(Ra: float, Nbar: float) -> np.ndarray:
+    """A/R at PRESSURES of asperities on a square lattice."""
+    return LAWS["square_lattice"].at(PRESSURES, 1.0, Nbar=Nbar, Ra=Ra).A
+
+
+def off(A: np.ndarray, true: np.ndarray) -> float:
+    """Largest relative error over the paper's interval."""
+    return float(np.abs(A / true - 1)[INTERVAL].max())
+
+
+@table(
+    "table1_lattice",
+    caption="""Table 1 against asperities on a square lattice, 0.0025 to 0.025 E1*: largest error of the power law with
+    the paper's constants, and of the disc cell that it is fitted to; the power law fitted to the lattice, and its
+    error. B is in R/E1*^beta.""",
+    columns=r"""
+    Ra/R | g | $R_a/R$
+    N R^2 | d | $\bar N R^2$
+    N Ra^2 | g | $\bar N R_a^2$
+    paper's fit off | .1% | paper's fit off
+    disc cell off | .1% | disc cell off
+    B | .3e | $B E_1^{*\beta}/R$
+    beta | .4f | $\beta$
+    error | .1%""",
+)
+def table1_lattice() -> list[tuple]:
+    """What the paper's constants and its disc cell miss of a lattice, and constants fitted to that."""
+    rows = []
+    for Ra, Nbar, *_ in numbers.TABLE1:
+        true = on_lattice(Ra, Nbar)
+        B, beta = least_squares(PRESSURES, true)
+        errors = [off(A, true) for A in (printed(Ra, Nbar), exact(Ra, Nbar))]
+        rows.append((Ra, Nbar, Nbar * Ra**2, *errors, B, beta, off(B * PRESSURES**beta, true)))
+    return rows
+
+
+@figure(
+    "fig09_lattice",
+    size=(TWO_COLUMNS, 2.9),
+    panels=(1, 2),
+    caption="""Additional displacement against pressure: asperities on a square lattice, the disc cell of the paper
+    (dashed), and the power law with the constants of its Table 1 (dotted). (a) Three densities of asperities, (b) three
+    radii.""",
+)
+def laws(panels) -> Columns:
+    """Figure 9 with the lattice in place of the paper's fits."""
+    p, columns = PRESSURES, {"p/E1*": PRESSURES}
+    for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
+        for i, (Ra, Nbar) in enumerate(roughnesses):
+            A = {"lattice": on_lattice(Ra, Nbar), "disc": exact(Ra, Nbar), "paper": printed(Ra, Nbar)}
+            lines = axes.plot(p, A["lattice"] * 1e4, "-", color=f"C{i}")
+            lines += axes.plot(p, A["disc"] * 1e4, **EXACT_LAW)
+            lines += axes.plot(p, A["paper"] * 1e4, color=f"C{i}", linestyle=PAPER["linestyle"], linewidth=1.3)
+            name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
+            name_curve(axes, lines, name, 0.72 * p[-1], side="below", align="left")
+            columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": values for kind, values in A.items()}
+        axes.plot([], [], "-", color="0.5", label="square lattice")
+        axes.plot([], [], label="disc cell, Eqs (6), (7)", **EXACT_LAW)
+        axes.plot([], [], color="0.5", linestyle=PAPER["linestyle"], label="with the paper's $B$, $\\beta$")
+        given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
+        axes.legend(title=f"({panel}) {given}", loc="upper left")
+        limits = {"xlim": (0, p[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}
+        axes.set(xlabel="$p/E_1^*$", ylabel=r"$A[p]\ /\ (10^{-4} R)$", **limits)
+    return columns
+
+
+@figure(
+    "fig10_lattice",
+    "spot_density_lattice",
+    "spot_density",
+    size=(TWO_COLUMNS, 3.0),
+    panels=(1, 2),
+    caption="""Left: nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted:
+    with the power law of Table 1 on the same layer. Right: how far that (dotted) and the disc cell (dashed) are from
+    the lattice, over its p(0). a0: radius of the paper's contact 1.""",
+)
+def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
+    """Figure 10 with the lattice, over the paper's a0, and the differences."""
+    axes, beside = panels
+    columns, validity = {}, {}
+    a0 = float(pick(paper, Nbar=250_000, base="thin_layer")["a"])
+    for i, side in enumerate(("above", "below", "below")):
+        name, here = str(i + 1), found.isel(Nbar=i)
+        true, disc = (here.sel(micro=micro) for micro in ("square_lattice", "disc_cell"))
+        fitted = pick(paper, Nbar=float(true["Nbar"]), base="layered")
+        cases = {name: true, f"{name}, power law": fitted}
+        columns |= profile(axes, cases, a0, rf"{name}: $\bar N R^2 = {int(true['Nbar'])}$", side)
+        for kind, other, style in (("power law", fitted, PAPER), ("disc cell", disc, DISC)):
+            r, difference = away(other, true, a0)
+            beside.plot(r, 100 * difference, color=f"C{i}", **style)
+            columns |= {f"r/a0 ({name}, {kind} off)": r, f"off/p(0) ({name}, {kind})": difference}
+        validity[name] = true["validity"]
+    axes.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
+    pressure_axes(axes, exact=False)
+    note_violations(axes, validity)
+    beside.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
+    beside.plot([], [], color="0.3", label="disc cell", **DISC)
+    beside.axhline(0, color="0.6", linewidth=0.6, zorder=0)
+    beside.set(xlabel="$r/a_0$", ylabel=r"difference from the lattice / $p(0)$ (%)", xlim=axes.get_xlim())
+    beside.legend(loc="best", fontsize=8)
+    return columns
+
+
+def away(other: xr.Dataset, true: xr.Dataset, a0: float) -> tuple[np.ndarray, np.ndarray]:
+    """r/a0 as far as either contact goes, and there the difference of their pressures over the true p(0)."""
+    r = np.linspace(0, max(float(case["a"]) for case in (other, true)), true.sizes["x"])
+    p = [np.interp(r, case["x"] * case["a"], case["p"], right=0.0) for case in (other, true)]
+    return r / a0, (p[0] - p[1]) / float(true["p0"])

@@ -1,0 +1,52 @@
+"""Which inputs of contacts a text or a figure tells, and in which order."""
+
+import numpy as np
+import xarray as xr
+
+from ..spec.laws import smooth_laws
+from ..spec.vocabulary import CONTROLS, VOCABULARY, matters, names
+from .bodies import BODIES
+
+_OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
+
+
+def in_order() -> list[str]:
+    """All inputs: radii, what the bodies are made of, the control, the layer, the asperities."""
+    between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
+    of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
+    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, "micro", *of_laws]
+
+
+def told(contacts: xr.Dataset) -> list[str]:
+    """Those of the inputs in a dataset that some contact uses: no ν of a rigid body, no n where E1 and E2 say it.
+
+    Measurements such as those of the trade-off are a dataset without contacts, and have none.
+    """
+    if "base" not in contacts.coords:
+        return []
+
+    def values(name: str) -> np.ndarray:
+        return contacts[name].values
+
+    hidden = {"R"} if "R1" in contacts else set()
+    hidden |= {"n", "m"} if "E2" in contacts else set()
+    hidden |= {"m", "punch", "E_punch", "nu_punch"} if is_rigid(contacts, "punch") else set()
+    hidden |= {"n", "body", "E2", "nu2"} if is_rigid(contacts, "base") else set()
+    hidden |= {"layer", "E1", "nu1"} if (values("base") == "half_space").all() else set()
+    hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
+    with_modulus = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
+    return [
+        name
+        for name in in_order()
+        if name in contacts.variables
+        and name not in hidden
+        and (name not in VOCABULARY or name in with_modulus or matters(name, values))
+    ]
+
+
+def is_rigid(contacts: xr.Dataset, body: str) -> bool:
+    """Whether the punch of all contacts, or the base under their layers, is rigid."""
+    if body == "punch":
+        return bool((contacts.get("m", xr.DataArray(0.0)) == 0).all())
+    has_n = "n" in contacts and bool((contacts["base"] != "half_space").all())
+    return has_n and bool((contacts["n"] == 0).all())

@@ -1,0 +1,94 @@
+"""A load axis as a path: what better first guesses could save, and how good those from other loads are.
+
+The cases of a parameter study begin at their own solution but for a relative error of `SIZES`: what this saves is the
+most that any prediction of such an error can. Beside it stands the error of a cubic in ln P through every fourth load,
+by which three quarters of the cases could be predicted in one batch, and that of a parabola through the three loads
+before, which leaves batches of as many cases as there are paths.
+"""
+
+from contextlib import contextmanager
+
+import numpy as np
+from benchmark_cases import by_turns
+from benchmark_work import load_axis
+
+from solver import solve
+from solver.contact import adaptive
+from solver.contact.equation import State, evaluate
+from solver.contact.start import approach, guess_radius
+from solver.numerics.mesh import mesh
+from solver.scaling import as_cases, dimensionless
+
+SIZES = (1e-3, 1e-4, 1e-6)
+LOADS = (20, 40, 100)
+NODES = 16  # of the mesh on which solutions are compared
+
+
+def saved() -> list[dict]:
+    """Processor time of a study of 8,000 cases whose first guesses have an error, over that of the solver as it is."""
+    rows = []
+    for base in ("thin_layer", "layered"):
+        cases, known = load_axis(base), {}
+        with started(known):
+            solve(cases)
+
+        def guessed(size):
+            with started(known, size):  # noqa: B023
+                solve(cases)  # noqa: B023
+
+        times = by_turns(lambda: solve(cases), *(lambda size=size: guessed(size) for size in SIZES))  # noqa: B023
+        shares = {f"from {size:.0e}": used / times[0] for size, used in zip(SIZES, times[1:], strict=True)}
+        rows.append({"base": base} | shares)
+    return rows
+
+
+@contextmanager
+def started(known: dict, size: float | None = None):
+    """Where the first mesh of a stack begins: as ever, which fills `known` with solutions, or `size` beside these."""
+    real, solve_on = adaptive.approach, adaptive.solve_on
+    random = np.random.default_rng(0)
+
+    def key(cases, grid):
+        return grid.n, len(cases.value), float(cases.value.sum())
+
+    def begun(cases, grid, a):
+        state = known.get(key(cases, grid))
+        if size is None or state is None:
+            return real(cases, grid, a)
+        y = state.y * (1 + size * random.standard_normal((len(state.y), 1)))
+        return evaluate(cases, State(y, state.eta + size * random.standard_normal(len(state.eta))), grid)
+
+    def solved(begin, limit):
+        found = solve_on(begin, limit)
+        if size is None:
+            known.setdefault(key(begin.cases, begin.mesh), found.at.state)
+        return found
+
+    adaptive.approach, adaptive.solve_on = begun, solved
+    try:
+        yield
+    finally:
+        adaptive.approach, adaptive.solve_on = real, solve_on
+
+
+def predicted() -> list[dict]:
+    """Median over cases of the largest relative error of the unknowns at the nodes, by the number of loads."""
+    rows = []
+    for base in ("thin_layer", "layered"):
+        for loads in LOADS:
+            problem = dimensionless(load_axis(base, loads))
+            cases, grid = as_cases(problem), mesh(NODES)
+            found = adaptive.solve_on(approach(cases, grid, guess_radius(cases)), 0).at.state.y
+            y, x = np.log(found).reshape(-1, loads, NODES), np.log(cases.value[:loads])
+            cubic = [_missed(y, x, [k, k + 4, k + 8, k + 12], k + 6) for k in range(0, loads - 12, 4)]
+            parabola = [_missed(y, x, [k, k + 1, k + 2], k + 3) for k in range(loads - 3)]
+            row = {"base": base, "loads": loads, "between every fourth": np.median(cubic)}
+            rows.append(row | {"after the last three": np.median(parabola)})
+    return rows
+
+
+def _missed(y: np.ndarray, x: np.ndarray, points: list[int], wanted: int) -> np.ndarray:
+    """Largest error over the nodes of y (b, loads, n) at the load `wanted` by a polynomial through others: (b,)."""
+    at = x[points]
+    weights = [np.prod([(x[wanted] - b) / (a - b) for b in at if b != a]) for a in at]
+    return np.abs(np.tensordot(y[:, points], weights, (1, 0)) - y[:, wanted]).max(axis=-1)

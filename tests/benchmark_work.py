@@ -1,0 +1,132 @@
+"""What people run: four workloads side by side, the latency of small batches, the second core, the floor of flops.
+
+Times are processor times, the shortest of several by turns with stacked `numpy.linalg.solve` of 17 unknowns, if nothing
+else is said.
+"""
+
+import time
+from contextlib import contextmanager
+
+import numpy as np
+import xarray as xr
+from benchmark_cases import X, by_turns, coatings, problem, rated, systems
+
+import study
+from solver import Problem, solve
+from solver.body import layered
+from solver.contact import newton, start
+
+ROUGH = {"Nbar": 250_000.0, "Ra": 0.004}
+SINGLE = 1000  # single systems, in the time of which latencies are counted
+#: Of the second core: 60,000 layered cases.
+GRID = {
+    "P": np.geomspace(1e-6, 1e-4, 30),
+    "h": np.geomspace(5e-3, 0.1, 20),
+    "n": np.linspace(0.1, 0.9, 10),
+    "Ra": np.linspace(2e-3, 4e-3, 10),
+    "Nbar": 250_000.0,
+}
+
+
+def load_axis(base: str, loads: int = 20, size: int = 8000) -> Problem:
+    """A parameter study: so many loads over four decades, of layers of 5 stiffnesses and ever more thicknesses."""
+    axes = np.geomspace(5e-3, 0.1, size // loads // 5), np.linspace(0.1, 0.9, 5), np.geomspace(1e-7, 1e-3, loads)
+    h, n, P = (v.ravel() for v in np.meshgrid(*axes, indexing="ij"))
+    return Problem.of(P=P, h=h, n=n, base=base, **ROUGH)
+
+
+WORKLOADS = {
+    "ordinary thin, 16,000": lambda: problem("disc_cell", "thin_layer", 1e-6),
+    "ordinary layered, 16,000": lambda: problem("disc_cell", "layered", 1e-6),
+    "random coatings, 4,000": lambda: coatings(4000),
+    "random coatings, 100": lambda: coatings(100),
+    "load axis thin, 8,000": lambda: load_axis("thin_layer"),
+    "load axis layered, 8,000": lambda: load_axis("layered"),
+}
+
+
+def workloads() -> list[dict]:
+    """A row for each: cases per second, r, and the time over that of its flops at the rate of a matrix product."""
+    rows, per_flop = [], 1 / flops_per_second()
+    for name, make in WORKLOADS.items():
+        cases = make()
+        found = rated(cases)
+        with counted() as flops:
+            solve(cases, X)
+        floor = sum(flops) * per_flop / len(cases)
+        row = {"workload": name, "cases_per_second": found["cases_per_second"], "r": found["r"]}
+        rows.append(row | {"kiloflops_per_case": sum(flops) / len(cases) / 1e3,
+                           "measured_over_floor": 1 / found["cases_per_second"] / floor})  # fmt: skip
+    return rows
+
+
+def flops_per_second() -> float:
+    """Of one thread in the product of two matrices of 512 rows."""
+    matrix = np.random.default_rng(0).standard_normal((512, 512))
+    return 2 * 512**3 / by_turns(lambda: matrix @ matrix)[0]
+
+
+@contextmanager
+def counted():
+    """A list of the flops, while it is open, of forming layered matrices from the few nodes and of eliminating all."""
+    flops, form, eliminate = [], layered._matrix_and_edge, newton.solve_stack
+
+    def forming(parts, mesh):
+        flops.extend(2 * part.L1.size * mesh.n**2 for part in parts)
+        return form(parts, mesh)
+
+    def eliminating(K, diagonal, rhs):
+        size, n, columns = rhs.shape
+        flops.append(size * (2 / 3 * n**3 + 2 * n**2 * columns))
+        return eliminate(K, diagonal, rhs)
+
+    layered._matrix_and_edge, newton.solve_stack, start.solve_stack = forming, eliminating, eliminating
+    try:
+        yield flops
+    finally:
+        layered._matrix_and_edge, newton.solve_stack, start.solve_stack = form, eliminate, eliminate
+
+
+def latency() -> list[dict]:
+    """Milliseconds of a call with 1, 10 and 100 cases, and that over SINGLE single solutions of 17 unknowns."""
+    (matrix,), (right,) = systems(1)
+    ordinary = problem("disc_cell", "layered", 1e-6, 100)
+    rows = []
+    for name, whole in {"ordinary layered": ordinary, "random coatings": coatings(100)}.items():
+        for size in (1, 10, 100):
+            part = whole.take(np.arange(size))
+            grid = labelled(part)
+
+            def single():
+                for _ in range(SINGLE):
+                    np.linalg.solve(matrix, right)
+
+            times = by_turns(single, lambda: solve(part), lambda: study.solve(**grid))  # noqa: B023
+            row = {"cases": f"{size} {name}", "single_systems_ms": 1e3 * times[0]}
+            row |= {"solver_ms": 1e3 * times[1], "study_ms": 1e3 * times[2]}
+            rows.append(row | {"solver_over_systems": times[1] / times[0], "study_over_systems": times[2] / times[0]})
+    return rows
+
+
+def labelled(part: Problem) -> dict:
+    """The cases as `study.solve` takes them."""
+    names = ("h", "n", "nu1", "nu2", "bonding", "Ra", "Nbar")
+    return {"P": xr.DataArray(part.value, dims="case")} | {
+        name: xr.DataArray(getattr(part, name), dims="case") for name in names
+    }
+
+
+def second_core() -> list[dict]:
+    """Wall and processor seconds of the calling process for the grid: alone, with the processes that it has to start,
+    and with those that wait from the call before. Wall over processor time of the first says how idle it is."""
+    study.solve(P=1e-5, h=0.02, n=0.5, **ROUGH)
+    rows, reference = [], None
+    for name, workers in {"one": 1, "two, started": 2, "two, waiting": 2, "one again": 1, "two again": 2}.items():
+        wall, processor = time.perf_counter(), time.process_time()
+        found = study.solve(**GRID, workers=workers)
+        row = {"workers": name, "wall_seconds": time.perf_counter() - wall}
+        row |= {"callers_processor_seconds": time.process_time() - processor}
+        reference = reference or (row["wall_seconds"], found)
+        same = all(found[v].values.tobytes() == reference[1][v].values.tobytes() for v in found.variables)
+        rows.append(row | {"gain": reference[0] / row["wall_seconds"], "same_bits": same})
+    return rows

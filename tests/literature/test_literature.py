@@ -1,0 +1,138 @@
+"""The formulas of the literature: values that are known, limits, ranges, and the page that shows them."""
+
+import re
+
+import numpy as np
+import pages
+import pytest
+import xarray as xr
+from numpy.testing import assert_allclose
+from scipy.integrate import quad
+
+import study
+from solver import Problem, solve
+from solver.body.kernel import layered_kernel
+from study import open_results
+from study.figures.registry import TABLES
+from study.literature import compared, formulas
+from study.literature.page import page
+from study.literature.shown import SHOWN_AT
+
+A = 0.01
+NU = (0.0, 0.3, 0.45, 0.5)
+
+
+def rigid(x) -> xr.Dataset:
+    """As the dataset of studies/literature.toml, at the a/h of x."""
+    h, materials = A / np.asarray(x), [("frictionless", 0.3), *(("bonded", nu) for nu in NU)]
+    given = {"a": A, "h": h, "n": 0, "base": "layered", "micro": "smooth", "rtol": 1e-9}
+    found = [solve(Problem.of(**given, bonding=bonding, nu1=nu)) for bonding, nu in materials]
+    values = {name: (("case", "h"), [getattr(one, name) for one in found]) for name in ("P", "D", "dP_dD")}
+    bondings, ratios = zip(*materials, strict=True)
+    return xr.Dataset(values, {"a": A, "h": h, "bonding": ("case", list(bondings)), "nu1": ("case", list(ratios))})
+
+
+@pytest.fixture(scope="module")
+def contacts():
+    return rigid(SHOWN_AT)
+
+
+def formula(name: str, bonded: bool):
+    (found,) = [one for one in formulas.LOADS if one.name.startswith(name) and one.bonded == bonded]
+    return found
+
+
+def test_an_incompressible_bonded_layer(contacts):
+    """Of another solver: F/F_H, and how far three formulas are from it."""
+    x, _, exact = compared.over_hertz(compared.of_material(contacts, True, 0.5))
+    assert_allclose(x, SHOWN_AT, rtol=1e-12)
+    assert_allclose(exact, (1.12354, 1.85712, 3.37110, 8.46801, 29.0573), rtol=5e-6)
+    off = {name: compared.load_error(formula(name, True), contacts, 0.5)[1]
+           for name in ("Hermanowicz", "Dimitriadis et al. 2002, nu", "Garcia")}  # fmt: skip
+    assert np.abs(off["Hermanowicz"]).max() < 8.05e-4
+    assert_allclose(off["Dimitriadis et al. 2002, nu"], (-0.002, -0.055, -0.135, -0.165, -0.084), atol=6e-4)
+    assert_allclose(off["Garcia"][:2], (6e-4, 3e-3), atol=1e-4)
+    assert_allclose(off["Garcia"][2:], (0.049, 0.34, 1.15), atol=5e-3)
+
+
+def test_hermanowicz_without_friction(contacts):
+    assert np.abs(compared.load_error(formula("Hermanowicz", False), contacts, 0.3)[1]).max() < 8.05e-4
+
+
+@pytest.mark.parametrize(("bonded", "nu"), [(True, 0.5), (True, 0.3), (False, 0.3)])
+def test_the_series_of_the_load(bonded, nu):
+    """c1 = (2/π) ∫ (1 - L) du by quadrature of the kernel, and c2 = (7/6) c1²."""
+    found = compared.coefficients(rigid(np.geomspace(0.01, 0.15, 30)), bonded, nu)
+    c1 = 2 / np.pi * quad(lambda u: 1 - float(layered_kernel(np.array([u]), 0.0, nu, nu, bonded).L[0]), 0, 30)[0]
+    assert_allclose(found[:2], (c1, 7 / 6 * c1**2), rtol=1e-4)
+
+
+def test_one_quotation_of_hayes_is_right():
+    rigid_base = rigid(np.geomspace(0.1, 4, 40))
+    for script, tables in formulas.KAPPA.items():
+        for nu, said in tables.items():
+            off = np.abs(np.array(said) / compared.kappa(rigid_base, nu) - 1).max()
+            assert (off > 0.15) if (nu == 0.5 and "Ebrahimi" in script) else (off < 0.01)
+
+
+@pytest.mark.parametrize("n", [0.1, 0.9, 10.0])
+@pytest.mark.parametrize("name", formulas.STIFFNESSES)
+def test_stiffnesses_tend_to_the_layer_and_to_the_base(name, n):
+    of, _ = formulas.STIFFNESSES[name]
+    assert_allclose(of(1e-5, n, 0.3), n, rtol=2e-4)
+    assert_allclose(of(1e6, n, 0.3), 1, rtol=1e-4)
+    assert_allclose(of(np.array([0.1, 1.0, 10.0]), 1 + 1e-9, 0.3), 1, rtol=0 if "Hay" not in name else 0.2, atol=1e-8)
+
+
+def test_gao_is_exact_to_first_order():
+    x, n = np.array([0.1, 0.5, 1.0, 3.0]), 1.001
+    given = {"a": A, "h": A / x, "n": n, "bonding": "bonded", "base": "layered", "micro": "smooth", "x": 2}
+    for nu in (0.0, 0.3, 0.45):
+        found = study.solve(**given, nu1=nu, nu2=nu, rtol=1e-9)
+        slope = (study.derived.effective_modulus(found).values - 1) / (n - 1)
+        assert_allclose(slope, formulas.gao_weight(x, nu), atol=4e-4)
+
+
+def test_the_safe_range():
+    x = np.array([1.0, 10.0, 100.0])
+    assert compared.safe_range(x, np.array([0.0, 0.02, 0.04]), 0.01) == (1.0, pytest.approx(10**0.5))
+    assert compared.safe_range(x, np.array([0.0, -0.02, 0.0]), 0.01)[1] == pytest.approx(10**0.5)
+    assert compared.safe_range(x, np.array([0.04, 0.02, 0.0]), 0.01, last=True) == (pytest.approx(10**1.5), 100.0)
+    assert compared.safe_range(x, np.zeros(3), 0.01) == (1.0, 100.0)
+    assert np.isnan(compared.safe_range(x, np.ones(3), 0.01)).all()
+    assert compared.range_of(x, np.ones(3), 0.01, thin=False) == "nowhere"
+    assert compared.range_of(x, np.array([0.04, 0.02, 0.0]), 0.01, thin=True) == "from 31.6"
+    n = np.array([0.01, 0.1, 0.999, 1.001, 10.0, 100.0])
+    assert compared.around_one(n, np.array([1, 0.005, 0, 0, 0.005, 1]), 0.01) == "0.099 to 10"
+
+
+def cells(text: str) -> list[list[str]]:
+    """The rows of the tables of a page, without heads."""
+    return [line.strip("| ").split(" | ") for line in text.splitlines() if re.match(r"\| [^-f]", line)]
+
+
+def test_the_page_is_that_of_the_program(results):
+    """Its words, and the names in its tables; the numbers are of larger studies."""
+    written, found = pages.read("docs/literature.md"), page(results)
+
+    def words(text):
+        return [line for line in text.splitlines() if not line.startswith("|")]
+
+    assert words(written) == words(found)
+    assert [row[0] for row in cells(written)] == [row[0] for row in cells(found)]
+
+
+def test_the_numbers_on_the_page_are_those_of_the_solver(contacts):
+    """Of the first table: linear in ln(a/h) between the points of the study, 1e-4 of F/F_H or better."""
+    rows = [row for row in cells(pages.read("docs/literature.md")) if row[1:2] and row[1] in ("bonded", "frictionless")]
+    expected = [(one, nu) for one in formulas.LOADS for nu in one.nu]
+    for row, (one, nu) in zip(rows, expected, strict=True):
+        assert row[0] == one.name
+        shown = np.array([float(cell.rstrip("%")) / 100 for cell in row[6:11]])
+        assert_allclose(shown, compared.load_error(one, contacts, nu)[1], rtol=2e-3, atol=3e-4)
+
+
+def test_what_is_decided_is_drawn_from_the_results(results):
+    rigid_base, coated = (open_results(results / f"{name}.nc") for name in ("literature", "literature_coatings"))
+    for row in TABLES["literature_decided"].rows(rigid_base, coated):
+        assert row[4] == row[2] / row[3] - 1 or np.isnan(row[4])

@@ -1,0 +1,126 @@
+"""Study files whose inputs have spreads, and random samples with units: the results are those of `study.solve`."""
+
+import tomllib
+
+import numpy as np
+import pytest
+
+import study
+from study.physical.study_file import from_tables
+from study.store import writer
+
+pytest.importorskip("pint")
+BALL = {"R": "5.0 ± 0.1 mm", "punch": "steel 52100", "E2": "210 +- 10 GPa", "nu1": 0.3, "micro": "smooth"}
+AXES = {"E1": ["1 ± 0.1 GPa", "4 GPa"], "h": ["100 ± 5 um", "200 um"], "P": ["1 N", "10 N"]}
+TEXT = "".join(
+    [f"[{section}]\n" + "".join(f"{name} = {given!r}\n" for name, given in table.items())
+     for section, table in (("model", BALL), ("axes", AXES), ("output", {"x": 3}))]
+)  # fmt: skip
+MOVES = 1 + 2 * 6  # R, E and ν of the punch, E1, E2 and h, each up and down
+KNOWN = 8 + 2 * 4 + 2 * 4  # cases with nothing moved: as given, and where E1 or h has no spread
+
+
+def of(text: str, folder) -> study.Study:
+    return study.Study(from_tables(tomllib.loads(text), "film", text, "film.toml"), folder)
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("spreads")
+    assert of(TEXT, folder).run(workers=1).computed == 8 * MOVES
+    return folder
+
+
+def same_as(found, alone):
+    for name, array in alone.data_vars.items():
+        if array.dtype.kind == "f" and name not in ("error", "model_error", "residual"):
+            small = 1e-9 * float(abs(alone[name.removesuffix("_spread")]).max())  # a difference of numbers of this size
+            np.testing.assert_allclose(found[name], array, rtol=1e-7, atol=small, err_msg=name)
+
+
+def test_the_file_has_what_solve_gives(results):
+    found, alone = of(TEXT, results).open(), study.solve(**BALL, **AXES, x=3)
+    assert found.sizes == {"E1": 2, "h": 2, "P": 2, "x": 3} and found.a_spread.attrs["units"] == "m"
+    assert set(alone.variables) <= set(found.variables) >= {"a_spread", "p_spread", "E1_spread"}
+    same_as(found, alone)
+    case = found.sel(E1="1 GPa", h="100 um", P="10 N")
+    given, text = f"{1e6 * float(case.a_spread):.1f} µm", str(study.summary(case))
+    assert "E1 = 1.00 ± 0.10 GPa" in text and f"± {given}" in text
+    assert study.readable(found).h_spread.attrs["units"] == "µm"
+
+
+def test_what_is_known_of_an_edited_study(results, tmp_path):
+    """Of a results file the cases as they were given are used again, and those with an input moved are computed."""
+    (tmp_path / "film.nc").write_bytes((results / "film.nc").read_bytes())
+    assert of(TEXT, tmp_path).status()["state"] == "done" and of(TEXT, tmp_path).verify().good
+    edited = TEXT.replace("'10 N']", "'10 N', '20 N']")
+    assert of(edited, tmp_path).status()["counts"] == {0: KNOWN, 127: 12 * MOVES - KNOWN}
+    assert of(edited, tmp_path).run(workers=1).computed == 12 * MOVES - KNOWN
+    same_as(of(edited, tmp_path).open().sel(P=["1 N", "10 N"]), of(TEXT, results).open())
+    with pytest.raises(study.StudyError, match="12 of its 12 cases are not in this one"):
+        of(edited.replace("'200 um'", "'300 um'").replace("100 ± 5", "101 ± 5"), tmp_path).run(workers=1)
+    assert of(edited.replace("± 0.1 mm", "± 0.2 mm"), tmp_path).status()["state"] == "outdated"
+    plain = edited + "spreads = false\n"
+    assert of(plain, tmp_path).run(workers=1).computed == 0 and "a_spread" not in of(plain, tmp_path).open()
+
+
+def test_a_damaged_coordinate_costs_no_case_that_was_given(results, tmp_path):
+    content, found = bytearray((results / "film.nc").read_bytes()), of(TEXT, results).open()
+    place = content.find(found.h.values.astype("<f8").tobytes())
+    content[place] ^= 1
+    (tmp_path / "film.nc").write_bytes(content)
+    assert of(TEXT, tmp_path).run(workers=1).computed == 8 * MOVES - KNOWN
+    same_as(of(TEXT, tmp_path).open(), found)
+
+
+def test_windows_hold_all_that_a_spread_is_made_of(results, tmp_path, monkeypatch):
+    monkeypatch.setattr(writer, "CHUNK", 2)
+    monkeypatch.setattr(writer, "AT_ONCE", 1)
+    assert np.isnan(of(TEXT, tmp_path).open(partial=True).a_spread).all()
+    of(TEXT.replace("[output]", "[numerics]\nblock = 10\n[output]"), tmp_path).run(workers=1)
+    same_as(of(TEXT, tmp_path).open(), of(TEXT, results).open())
+
+
+def test_half_the_digits_are_too_few_for_differences(tmp_path):
+    with pytest.raises(
+        study.StudyError, match='dtype = "float32" has too few digits for the spreads of E1 and h and R'
+    ):
+        of(TEXT + "dtype = 'float32'\n", tmp_path)
+    assert of(TEXT + "dtype = 'float32'\nspreads = false\n", tmp_path).definition.grid.size == 8
+
+
+SAMPLE = """
+[model]
+R = "5 mm"
+E2 = "210 ± 10 GPa"
+[axes]
+bonding = ["frictionless", "bonded"]
+[sample]
+size = 12
+seed = 3
+layer = ["PTFE", "PEEK"]
+h = { start = "10 um", stop = "1 mm", spacing = "log" }
+Ra = { start = "1 um", stop = "10 um", spacing = "log" }
+Nbar = { start = 0.1, stop = 1, over = "Ra^2" }
+P = ["1.0 ± 0.1 N", "10 N"]
+[output]
+profiles = false
+"""
+
+
+def test_a_sample_with_units_and_spreads(tmp_path):
+    made = of(SAMPLE, tmp_path)
+    assert made.run(workers=1).complete
+    found = made.open()
+    assert found.a.sizes == {"case": 12, "bonding": 2} and set(found.layer.values.tolist()) == {"PTFE", "PEEK"}
+    assert found.h.attrs["units"] == "m" and found.h.min() >= 1e-5 and found.h.max() <= 1e-3
+    fraction = found.Nbar * found.Ra**2
+    assert fraction.min() >= 0.1 - 1e-5 and fraction.max() <= 1 + 1e-5
+    assert len(np.unique(found.h)) == 12 and set(found.P.values.tolist()) == {1.0, 10.0}
+    case = found.isel(case=int(np.argmin(found.P.values)), bonding=1)
+    one = {name: f"{float(case[name])!r} {unit}" for name, unit in (("h", "m"), ("Ra", "m"), ("Nbar", "1/m^2"))}
+    given = {"R": "5 mm", "E2": "210 ± 10 GPa", "layer": str(case.layer.values), "P": "1.0 ± 0.1 N", **one}
+    alone = study.solve(**given, bonding="bonded", x=2, profiles=False)
+    same_as(case, alone)
+    plain = of(SAMPLE.replace('"10 um"', '"0.01 mm"'), tmp_path).definition
+    assert plain.digest == made.definition.digest

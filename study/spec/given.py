@@ -136,7 +136,8 @@ class Draft:
     def _has_its_law(self, name: str) -> bool:
         """Whether some case has a law that a parameter belongs to, or it belongs to none."""
         condition, laws = VOCABULARY[name].own.needed_by
-        return condition != "micro" or bool(np.isin(self.values["micro"][1], laws).any())
+        _, given = self.values.get("micro", ((), ""))  # none, if what is given was refused
+        return condition != "micro" or bool(np.isin(given, laws).any())
 
     def _grid(self) -> Grid:
         return Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)

@@ -14,7 +14,7 @@ def test_mutated_study_files(tmp_path, monkeypatch):
     for name, value in (("FEW", 12), ("ESTIMATED", 4), ("RUN", 4)):
         monkeypatch.setattr(fuzz_studies, name, value)
     done = Counter()
-    assert faults(80, 4, tmp_path, done) == []
+    assert faults(80, 7, tmp_path, done) == []
     assert sum(done[f"check {code}"] for code in (0, 2)) == 80
     assert done["check 0"] > 10 and done["run --dry-run 0"] and done["run 0"], f"enough of them are studies: {done}"
 

@@ -46,6 +46,12 @@ def test_points_increase_from_0_to_1(x):
     ]
 
 
+def test_a_micro_law_in_the_wrong_place():
+    assert messages(model=SMOOTH | {"P": 1, "micro": ["smooth", "disc_cell"]}) == [
+        "[model] micro has several values: these belong in [axes]"
+    ]
+
+
 def test_numerics_reach_the_grid():
     given = {"scheme": "picard", "k": 2.0, "rtol": 1e-4, "accuracy": 0.1, "model_check": "first_order", "nodes": 16,
              "max_iterations": 7}  # fmt: skip

@@ -196,10 +196,10 @@ def errors(solution: Solution, reference: Solution) -> np.ndarray:
 def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, command: str) -> xr.Dataset:
     """The dataset, with the provenance of every other one."""
     variables = {
-        name: (("set", "way", "step"), array, {"long_name": WORDS[name], "units": "s" if name == "time" else "1"})
+        name: (("set", "way", "step"), array, {"long_name": WORDS[name]} | ({"units": "s"} if name == "time" else {}))
         for name, array in found.items()
     }
-    variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured", "units": "1"}
+    variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured"}
     variables["varied"] = "way", [way.varied for way in ways.values()]
     title, text = "Work and precision of every way to solve the model", plan(ways, size)
     whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))

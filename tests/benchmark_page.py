@@ -54,7 +54,7 @@ of 1e-3, 1e-4 or 1e-6 *at no cost*. The second has the errors of guesses from ot
 through every fourth load three quarters of the cases could be guessed in one batch: with five loads a decade to 1e-3 or
 little better, with more to 1e-4 and below. The parabola through the three loads before guesses nearly all, but in
 batches of as many cases as there are paths, where a case takes several times as long. What is left is three quarters
-of what the first table saves, before anything is paid for the guesses: about a fifth on layers and a tenth on thin
+of what the first table saves, before anything is paid for the guesses: at most a fifth on layers and a tenth on thin
 ones; and the numbers of a case would depend on its company, if only to rtol. So every case begins alone.
 
 {saved}

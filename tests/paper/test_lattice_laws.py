@@ -9,6 +9,7 @@ from solver import laws
 from solver.laws.disc_cell import displacement
 from study import open_results
 from study.catalogue import TABLES
+from study.paper import lattice_laws
 
 P = 1e-4 * np.arange(1, 251)
 PRINTED = {4.0: (0.1, 0.50), 1.0: (0.3, 0.53), 0.25: (1.0, 0.57)}  # in Ra
@@ -74,3 +75,8 @@ def test_figure_10_shows_the_lattice_and_what_the_paper_is_off(drawing, results)
             np.testing.assert_allclose(columns[f"off/p(0) ({i + 1}, {kind})"], line.y / 100, atol=1e-15)
     assert list(legend(left.get_legend()))[-1] == "power law (the paper)"
     assert list(legend(right.get_legend())) == ["power law (the paper)", "disc cell"]
+
+
+def test_what_is_too_small_is_off_as_well():
+    true = lattice_laws.on_lattice(0.004, 62500)
+    assert lattice_laws.off(0.9 * true, true) == pytest.approx(0.1)

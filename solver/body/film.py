@@ -30,8 +30,8 @@ _KAPPA, _TAU = 14, 20
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
-#: Up to this τ c is smooth, but at 0; beyond it swings as the step has it, and is cut off at REACH: with fewer points
-#: there, a film of n = 8.6e5 was not solved (tests/body/test_work.py).
+#: Up to this τ c is smooth, but at 0; beyond it swings as the step has it, and is cut off at REACH: there fewer points
+#: than inside a panel are too few (tests/body/test_work.py).
 _SMOOTH = 12.0
 #: From so many cases on their matrices are products with one table.
 MANY = 8

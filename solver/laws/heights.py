@@ -8,9 +8,8 @@ Few summits touch at the edge: p ~ A^(5/2) there, until A is about σ/c. The nor
 moves it: the radius a grows with c, and so does D, by c σ, while the pressures, and the load at a given distance of the
 mean plane, tend to a limit.
 
-q is the root of an equation at each y. A law is therefore tabulated, once for each σ/A* and c, when it is first used.
-That takes 15 ms; cases with one spread are then solved ten times as fast as with the equation, 3,500 in a second on a
-half-space, while a batch of which each has another spread waits for its tables.
+q is the root of an equation at each y. A law is therefore tabulated, once for each σ/A* and c, when it is first used:
+cases with one spread are solved faster, a batch of which each has another spread waits for its tables.
 """
 
 from collections.abc import Callable

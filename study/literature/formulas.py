@@ -33,6 +33,12 @@ NIMS = "NIMS, github.com/DavidMercier, doc/models.rst"
 DERIVED = "derived here from L at small u"
 
 
+DIMITRIADIS, GARCIA = (1.133, 1.283, 0.769, 0.0975), (1.133, 1.497, 1.469, 0.755)
+"""c1 to c4 of a bonded layer of ν = 1/2."""
+ALPHA_LOOSE = -0.347
+"""The first factor of α0 of Dimitriadis et al. for a loose layer."""
+
+
 def series(*coefficients: float) -> Callable:
     """1 + c1 χ + c2 χ² + ..."""
     return lambda chi, nu: np.polynomial.polynomial.polyval(chi, (1.0, *coefficients))
@@ -44,7 +50,7 @@ def dimitriadis(chi, nu, bonded: bool):
         alpha = -(1.2876 - 1.4678 * nu + 1.3442 * nu**2) / (1 - nu)
         beta = (0.6387 - 1.0277 * nu + 1.5164 * nu**2) / (1 - nu)
     else:
-        alpha, beta = -0.347 * (3 - 2 * nu) / (1 - nu), 0.056 * (5 - 2 * nu) / (1 - nu)
+        alpha, beta = ALPHA_LOOSE * (3 - 2 * nu) / (1 - nu), 0.056 * (5 - 2 * nu) / (1 - nu)
     s, third = 2 * alpha / np.pi, 8 / np.pi**3
     cubic = third * (alpha**3 + 4 * np.pi**2 / 15 * beta)
     quartic = third * s * (alpha**3 + 3 * np.pi**2 / 5 * beta)
@@ -101,11 +107,11 @@ LOADS = (
     Formula("Hertz 1882", series(), True, (0.0, 0.3, 0.45, 0.5), "closed"),
     Formula("Hertz 1882", series(), False, (0.3,), "closed"),
     Formula("Hayes et al. 1972", hayes, True, (0.3, 0.45, 0.5), BIOMOMENTUM),
-    Formula("Dimitriadis et al. 2002, nu = 1/2", series(1.133, 1.283, 0.769, 0.0975), True, (0.5,), PYFMRHEO),
+    Formula("Dimitriadis et al. 2002, nu = 1/2", series(*DIMITRIADIS), True, (0.5,), PYFMRHEO),
     Formula("Dimitriadis et al. 2002, nu = 1/2", series(0.884, 0.781, 0.386, 0.0048), False, (0.5,), PYFMRHEO),
     Formula("Dimitriadis et al. 2002, general", bound(dimitriadis, True), True, (0.0, 0.3, 0.45, 0.5), ATOMICJ),
     Formula("Dimitriadis et al. 2002, general", bound(dimitriadis, False), False, (0.0, 0.3, 0.5), ATOMICJ),
-    Formula("Garcia and Garcia 2018", series(1.133, 1.497, 1.469, 0.755), True, (0.5,), PYFMRHEO),
+    Formula("Garcia and Garcia 2018", series(*GARCIA), True, (0.5,), PYFMRHEO),
     Formula("Hermanowicz 2021", bound(hermanowicz, True), True, (0.5,), ATOMICJ + ", his program"),
     Formula("Hermanowicz 2021", bound(hermanowicz, False), False, (0.3,), ATOMICJ + ", his program"),
     Formula("Johnson 1985, springs", bound(springs, True), True, (0.0, 0.3, 0.45), DERIVED, thin=True),

@@ -184,15 +184,13 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     """Quantity, who says it, what, the exact value, the relative difference."""
     bonded, loose = coefficients(rigid, True, 0.5), coefficients(rigid, False, 0.3)
     one = int(np.argmin(np.abs(formulas.KAPPA_AT - 1)))
-    rows = [
-        ("c1, bonded, nu = 1/2", "Dimitriadis, Garcia", 1.133, bonded[0]),
-        ("c2, bonded, nu = 1/2", "Dimitriadis", 1.283, bonded[1]),
-        ("c2, bonded, nu = 1/2", "Garcia", 1.497, bonded[1]),
-        ("c3, bonded, nu = 1/2", "Dimitriadis", 0.769, bonded[2]),
-        ("c3, bonded, nu = 1/2", "Garcia", 1.469, bonded[2]),
-    ]
+    first, second = formulas.DIMITRIADIS, formulas.GARCIA
+    rows = [("c1, bonded, nu = 1/2", "Dimitriadis, Garcia", first[0], bonded[0])]
+    for k in (1, 2):
+        rows.append((f"c{k + 1}, bonded, nu = 1/2", "Dimitriadis", first[k], bonded[k]))
+        rows.append((f"c{k + 1}, bonded, nu = 1/2", "Garcia", second[k], bonded[k]))
     for nu in (0.0, 0.3, 0.5):
-        said = 2 * 0.347 * (3 - 2 * nu) / (1 - nu) / np.pi
+        said = -2 * formulas.ALPHA_LOOSE * (3 - 2 * nu) / (1 - nu) / np.pi
         rows.append(("c1, frictionless, any nu", f"Dimitriadis with nu = {nu:g}", said, loose[0]))
     for script, said in formulas.KAPPA.items():
         for nu, values in said.items():

@@ -14,7 +14,7 @@ import threading
 import time
 from collections import deque
 from collections.abc import Callable
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -131,7 +131,8 @@ def _together(definition: Definition, blocks: list[np.ndarray], most: int) -> di
             feeders = _kept.feed(feeder, min(most, int(left / START)))
         while ended := _next(done):
             _place(columns, definition, *ended[0])
-    wait(feeders)
+    for one in feeders:
+        one.result()  # what a feeder fails of is raised here: its cases would be missing
     while ended := _next(done):
         _place(columns, definition, *ended[0])
     return columns

@@ -59,7 +59,7 @@ def test_a_panel_that_is_near_has_as_many_points_as_its_distance_asks_for(counte
 
 
 def test_fewer_points_are_as_good_as_all(monkeypatch):
-    """Of a stiff film, with those that a point inside the panel would take: a film of n = 8.6e5 was lost by 1e-6."""
+    """Of a stiff film, with those that a point inside the panel would take."""
     grid = panel_mesh(12, PANELS)
     points, c = grid.s[tables.felt(grid, grid.x)], FILMS.at(np.ones(1), mesh(5)).parts[0].film
     found = film.convolution(grid, points, CUT).of(c)[0]

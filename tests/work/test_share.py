@@ -4,7 +4,7 @@ import multiprocessing
 import subprocess
 import sys
 import threading
-from concurrent.futures import Future
+from concurrent.futures import Future, ThreadPoolExecutor, wait
 from dataclasses import replace
 
 import numpy as np
@@ -98,6 +98,33 @@ def test_what_no_process_can_compute_is_computed_here(threads, call):
     threads.call = call
     assert_same_bits(share.solved(definition(**SMOOTH), 2), share.solved(definition(**SMOOTH), 1))
     assert threads.asked == [1]
+
+
+def test_a_feeder_that_fails_leaves_no_gaps(monkeypatch):
+    """Its block would be what the memory held before."""
+    here, apart = share.parcel, ThreadPoolExecutor(1)
+    monkeypatch.setattr(share, "BLOCK", 10)
+    monkeypatch.setattr(share, "START", 1e-9)
+
+    def parcel(*given):
+        if threading.current_thread() is threading.main_thread():
+            return here(*given)
+        raise MemoryError("no room for a block")
+
+    class Pool(Threads):
+        def feed(self, feeder, count):
+            if not count or self.asked:
+                return []
+            self.asked.append(count)
+            found = apart.submit(feeder, self.call)
+            wait([found])
+            return [found]
+
+    monkeypatch.setattr(share, "_kept", kept := Pool(None))
+    monkeypatch.setattr(share, "parcel", parcel)
+    with pytest.raises(MemoryError, match="no room"):
+        share.solved(definition(**SMOOTH), 2)
+    assert kept.ended
 
 
 def test_no_more_processes_than_have_work_for_their_start(threads, monkeypatch):

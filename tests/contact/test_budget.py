@@ -9,8 +9,9 @@ from numpy.testing import assert_allclose
 from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
+from solver.body.half_space import half_space
 from solver.body.layered import Layered
-from solver.contact import adaptive, driver, picard
+from solver.contact import adaptive, driver, panels, picard
 from solver.contact.driver import newton_steps
 from study.spec.definition import from_tables
 
@@ -77,6 +78,57 @@ def test_panels(monkeypatch):
     assert free.status.tolist() == [Status.CONVERGED] * 2
     assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
     assert s.error[0] > 1e-9 and np.isfinite(s.p).all() and s.a[1] == free.a[1]
+
+
+#: On 48 nodes its error is half of that on 32, and 800 times rtol.
+STUCK = {"a": 0.34, "h": 1.577e-6, "n": 1.3324e-4, "Nbar": 136520.0, "Ra": 1.62486e-4, "base": "thin_layer"}
+
+
+@pytest.fixture
+def meshes(monkeypatch):
+    """Nodes and panels of each mesh on which Newton's method was run."""
+    found, plain = [], adaptive.solve_on
+
+    def watched(start, *arguments):
+        found.append((start.mesh.n, len(start.mesh.breaks) - 1))
+        return plain(start, *arguments)
+
+    for module in (adaptive, panels):
+        monkeypatch.setattr(module, "solve_on", watched)
+    return found
+
+
+def test_a_case_that_finer_meshes_do_not_help_goes_to_panels(meshes):
+    """In company as alone: with the main case, which needs none."""
+    s = solve(Problem.of(**STUCK), X)
+    assert max(n for n, panels in meshes if panels == 1) == 48
+    assert (s.status[0], s.nodes[0] > 96) == (Status.CONVERGED, True)
+    both = {name: np.array([value, MAIN.get(name, value)]) for name, value in STUCK.items() if name != "base"}
+    assert solve(Problem.of(**both, base="thin_layer"), X).D[0] == s.D[0]
+
+
+def test_the_steps_of_all_meshes_are_of_the_budget(monkeypatch, meshes):
+    """A case that has spent it on its first mesh ends there, with last numbers; one that converges there is right."""
+    monkeypatch.setattr(adaptive, "BUDGET", 1)
+    s = solve(Problem.of(**CORNER, base="thin_layer", rtol=[1e-9, 1e-2]), X)
+    assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
+    assert len(meshes) == len(set(s.nodes.tolist())) and np.isfinite(s.p).all() and s.error[0] > 1e-9
+
+
+def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):
+    """The first goal is made too easy on purpose: no mesh is made twice."""
+    monkeypatch.setattr(panels, "_SHARE", 300.0)
+    s = solve(Problem.of(**CORNER, base="thin_layer", rtol=[1e-9, 1e-6]), X)
+    made = [grid for grid in meshes if grid[1] > 1]
+    assert s.status[0] == Status.CONVERGED and made == sorted(set(made))
+
+
+def test_work_is_more_where_more_is_computed():
+    a = np.ones(1)
+    film, thick = (Layered(*(np.array([v]) for v in (h, 1e3, 0.3, 0.3, False, 0.0))).work(a, 96) for h in (1e-6, 0.1))
+    springs = half_space(*(np.array([v]) for v in (0.0, 1.0, 0.3, 0.3, False, 0.0))).work(a, 96)
+    for of_film, of_layer, of_springs in zip(film, thick, springs, strict=True):
+        assert of_film[0] > of_layer[0] > of_springs[0] > 0
 
 
 def test_a_tolerance_that_no_mesh_meets_takes_no_panels():

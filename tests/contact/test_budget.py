@@ -69,17 +69,6 @@ def test_a_search_for_the_radius_ends(monkeypatch):
     assert 10 <= sum(steps) < many / 2
 
 
-def test_panels(monkeypatch):
-    """The corner ends on its first panels, with last numbers; the main case beside it needs none."""
-    case = Problem.of(**CORNER, base="thin_layer", rtol=1e-9)
-    free = solve(case, X)
-    monkeypatch.setattr(adaptive, "BUDGET", 1)
-    s = solve(case, X)
-    assert free.status.tolist() == [Status.CONVERGED] * 2
-    assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
-    assert s.error[0] > 1e-9 and np.isfinite(s.p).all() and s.a[1] == free.a[1]
-
-
 #: On 48 nodes its error is half of that on 32, and 800 times rtol.
 STUCK = {"a": 0.34, "h": 1.577e-6, "n": 1.3324e-4, "Nbar": 136520.0, "Ra": 1.62486e-4, "base": "thin_layer"}
 
@@ -96,6 +85,19 @@ def meshes(monkeypatch):
     for module in (adaptive, panels):
         monkeypatch.setattr(module, "solve_on", watched)
     return found
+
+
+def test_panels(monkeypatch, meshes):
+    """The corner ends on its first panels, with last numbers; the main case beside it needs none."""
+    case = Problem.of(**CORNER, base="thin_layer", rtol=1e-9)
+    free, all_panels = solve(case, X), {panels for _, panels in meshes}
+    meshes.clear()
+    monkeypatch.setattr(adaptive, "BUDGET", 8000)
+    s = solve(case, X)
+    assert free.status.tolist() == [Status.CONVERGED] * 2 and len(all_panels) > 2
+    assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
+    assert {panels for _, panels in meshes} == {1, 5}
+    assert s.error[0] > 1e-9 and np.isfinite(s.p).all() and s.a[1] == free.a[1]
 
 
 def test_a_case_that_finer_meshes_do_not_help_goes_to_panels(meshes):
@@ -116,11 +118,20 @@ def test_the_steps_of_all_meshes_are_of_the_budget(monkeypatch, meshes):
 
 
 def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):
-    """The first goal is made too easy on purpose: no mesh is made twice."""
-    monkeypatch.setattr(panels, "_SHARE", 300.0)
+    """The error of the first is raised on purpose: no mesh is made twice."""
+    plain, judged = adaptive.answer, []
+
+    def raised(iterated, *arguments, **options):
+        found = plain(iterated, *arguments, **options)
+        if len(iterated.at.mesh.breaks) > 2:
+            judged.append(iterated.at.mesh.n)
+            found.solution.error[:] = 1e-8 if len(judged) == 1 else found.solution.error
+        return found
+
+    monkeypatch.setattr(adaptive, "answer", raised)
     s = solve(Problem.of(**CORNER, base="thin_layer", rtol=[1e-9, 1e-6]), X)
     made = [grid for grid in meshes if grid[1] > 1]
-    assert s.status[0] == Status.CONVERGED and made == sorted(set(made))
+    assert s.status[0] == Status.CONVERGED and len(judged) == 2 and made == sorted(set(made))
 
 
 def test_work_is_more_where_more_is_computed():

@@ -52,11 +52,11 @@ def solve_newton(cases, rtol, nodes, limit, x):
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
     found = _together(rungs, size, len(x))
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
-    missed = closed & ((found.solution.error > rtol) | (free & found.unsure))
+    missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(cases, found, rtol)) & free & (limit == 0)
-    opened = np.flatnonzero(opened & (work <= BUDGET))
+    opened = np.flatnonzero(opened & ~spent)
     ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in opened]
-    ended = _ended(found.solution, missed, lifted, work > BUDGET)
+    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)  # no panels say that it lifts off
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 

@@ -117,6 +117,14 @@ def test_the_steps_of_all_meshes_are_of_the_budget(monkeypatch, meshes):
     assert len(meshes) == len(set(s.nodes.tolist())) and np.isfinite(s.p).all() and s.error[0] > 1e-9
 
 
+def test_a_case_without_budget_is_not_said_to_lift_off(monkeypatch):
+    """That takes panels: meshes that are too coarse show tension that is not there."""
+    plate = Problem.of(a=0.04, h=0.012, n=1e5, micro="smooth", base="layered")
+    assert solve(plate, X).status[0] == Status.LIFT_OFF
+    monkeypatch.setattr(adaptive, "BUDGET", 1)
+    assert solve(plate, X).status[0] == Status.BUDGET_SPENT
+
+
 def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):
     """The error of the first is raised on purpose: no mesh is made twice."""
     plain, judged = adaptive.answer, []

@@ -73,8 +73,8 @@ validate: $(READY) ## rough spheres with every asperity resolved beside the two 
 test: $(READY) ## all tests
 	$(PYTEST)
 
-# Of each room what is quick, against references where there are any: no test that starts processes, or that takes the
-# shrunken results of all studies, which are twenty seconds of computing.
+# Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
+# the shrunken results of all studies, which are twenty seconds of computing.
 CHECKED := numerics/test_linalg.py numerics/test_operator.py laws/test_micro.py laws/test_fit.py body/test_kernel.py \
   contact/test_golden_numbers.py contact/test_numbers.py models/test_closed_forms.py scene/test_quantities.py \
   spec/test_given.py spec/test_definition.py spec/test_bad_files.py data files/test_atomic.py store/test_blocks.py \

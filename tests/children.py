@@ -17,8 +17,8 @@ PROCESSES.set_forkserver_preload(["study.api", "distributed"])
 PATIENCE = 300  # seconds for what takes one or two: a busy machine makes a test slow, not red
 SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 
-# Nothing waits for the disk, here and in the processes below: on a busy machine a run of 60 blocks waited for twice as
-# long as it computed, and no test cuts the power. What is flushed and when is what tests/files/test_atomic.py asks.
+# Nothing waits for the disk, here and in the processes below: a run of 60 blocks flushes 124 times, and waited for that
+# as long as it computed on a busy machine. No test cuts the power; tests/files/test_atomic.py asks what is flushed.
 os.fsync = lambda file: None
 
 

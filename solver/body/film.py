@@ -19,8 +19,8 @@ import numpy as np
 from scipy.sparse import csc_array
 from scipy.special import erfc, spherical_jn
 
-from ..numerics.pieces import pieces
-from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
+from ..numerics.pieces import against, pieces
+from ..numerics.quadrature import gauss_legendre, radau_nodes
 
 #: Octaves of κ = k/cut above 1 and of τ below 1; the step χ falls between κ = 1/4 and 1.
 _OCTAVES = 24
@@ -74,12 +74,14 @@ def transform(f, level, p):
 
 class Share(NamedTuple):
     """What some pairs of a point and a panel (r,) have of a convolution, at g points of their rules: octave (r, g) of τ
-    and Chebyshev basis (r, g, _TAU) there, and what c counts for in each column of the panel, (r, g, order)."""
+    and Chebyshev basis (r, g, _TAU) there, what c counts for (r, g), and in each column of the panel, (r or 1, g,
+    order)."""
 
     row: np.ndarray
     panel: np.ndarray
     octave: np.ndarray
     basis: np.ndarray
+    weight: np.ndarray
     columns: np.ndarray
 
 
@@ -105,10 +107,10 @@ class Convolution:
         if len(c) >= MANY:
             return (c @ self.table).reshape(size)
         out, by_octave = np.zeros((len(c), *self.shape)), c.reshape(len(c), -1, _TAU)
-        for row, panel, octave, basis, columns in self.shares:
+        for row, panel, octave, basis, weight, columns in self.shares:
             for one, nodes in zip(out, by_octave, strict=True):
-                values = np.einsum("rgt,rgt->rg", nodes[octave], basis)
-                one[row, panel] += np.matmul(values[:, None], columns)[:, 0]
+                values = weight * np.einsum("rgt,rgt->rg", nodes[octave], basis)
+                one[row, panel] += against(values, columns)
         return out.reshape(size)
 
     @cached_property
@@ -116,12 +118,12 @@ class Convolution:
         """The matrices of all unit vectors c, (T, m n): for many c together."""
         m, panels, order = self.shape
         out = np.zeros((len(waves()[1]), m, panels, order))
-        for row, panel, octave, basis, columns in self.shares:
+        for row, panel, octave, basis, weight, columns in self.shares:
             pair = np.arange(len(row))[:, None] * (len(out) // _TAU)
             place = ((pair + octave) * _TAU)[..., None] + np.arange(_TAU)
             ends = np.arange(octave.size + 1) * _TAU
             spread = csc_array((basis.ravel(), place.ravel(), ends), shape=(len(row) * len(out), octave.size))
-            own = spread @ columns.reshape(octave.size, order)
+            own = spread @ (weight[..., None] * columns).reshape(octave.size, order)
             out[:, row, panel] += own.reshape(len(row), len(out), order).transpose(1, 0, 2)
         return out.reshape(len(out), -1)
 
@@ -142,13 +144,13 @@ def convolution(grid, points, cut):
         point = s + piece.sign * piece.gap
         tau = _tau(s, point, piece.gap, cut)
         felt = np.flatnonzero((tau < REACH).any(axis=0))
-        point, tau, weight, local = (v[:, felt] for v in (point, tau, piece.weight, piece.local))
+        point, tau, weight = (v[:, felt] for v in (point, tau, piece.weight))
         other = np.sqrt((1 - point) * (1 + point))
         values = weight * point / np.sqrt(other * np.sqrt((1 - s) * (1 + s)))  # of ∫ · sqrt(x'/x) dx'
         values, tau = np.where(tau < REACH, values, 0.0), np.where(tau < REACH, tau, 1.0)
         octave, basis = _interpolation(tau)
-        columns = values[..., None] * lagrange(radau_nodes(grid.order), local.ravel()).reshape(*tau.shape, grid.order)
-        shares.append(Share(piece.row, piece.panel, octave, basis, columns))
+        columns = piece._replace(local=piece.local[:, felt]).basis(radau_nodes(grid.order))
+        shares.append(Share(piece.row, piece.panel, octave, basis, values, columns))
     return Convolution((len(points), len(low), grid.order), shares)
 
 

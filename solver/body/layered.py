@@ -24,6 +24,10 @@ from .wave_rule import CUT, FILM, place_of
 
 #: Layers thinner than this times the radius are nearly thin layers.
 _THIN = 0.02
+#: Work of a lone case, of films and of thicker layers: for an entry of the matrix on a mesh of its own, for a Newton
+#: step on any mesh, and for an entry of the matrix in that step. A film of 360 nodes took 1.3 s to set up and 0.12 s a
+#: step, one of 6 nodes 10 ms a step; springs took 2 µs an entry.
+_MESH, _STEP, _ENTRY = (5.0, 2.0), (4000.0, 600.0), (0.5, 0.1)
 
 
 class Layered(NamedTuple):
@@ -87,6 +91,12 @@ class Layered(NamedTuple):
         octave, _ = place_of(self, a)
         local = np.abs(L - below) / np.maximum(L, below)
         return 1e-14 * nodes / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
+
+    def work(self, a, nodes):
+        """Work (B,) of an operator on a mesh of its own, and of a step."""
+        film = place_of(self, a)[0] == FILM
+        mesh, least, entry = (np.where(film, *two) for two in (_MESH, _STEP, _ENTRY))
+        return mesh * nodes**2, least + entry * nodes**2
 
     def order(self, a):
         """Permutation (B,) that puts cases with one table together: fewer, larger matrix products."""

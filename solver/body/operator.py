@@ -71,6 +71,10 @@ class Body(Protocol):
     def error(self, a, nodes):
         """Relative error (B,) of the operator itself on `nodes` nodes, that no mesh takes away."""
 
+    def work(self, a, nodes):
+        """What is computed for a case alone at the radius a, in entries of a half-space's matrix made anew: (B,) for
+        the operator on a mesh of `nodes` nodes that is made for it, and (B,) for one Newton step on it."""
+
     def order(self, a):
         """Permutation (B,) in which cases that share work stand together; None: the order does not matter."""
 

@@ -8,18 +8,18 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..numerics.ladder import LADDER, climb, first_rung
+from ..numerics.ladder import LADDER, climb, finer_mesh, first_rung
 from ..numerics.mesh import mesh
 from ..solution import Solution
 from ..status import Status
-from .answer import Answer, answer
-from .driver import newton_steps, solve_on
+from .answer import Answer, answer, hopeless, stuck
+from .driver import BUDGET, newton_steps, solve_on
 from .equation import error_floor, evaluate
-from .panels import BUDGET, solve_on_panels
+from .panels import solve_on_panels
 from .start import approach, first_guess, guess_radius, nodes_wanted
 
-#: Panels are halved until the last coefficients on each are small. The error may still be above rtol: the panels are
-#: then made anew with this times rtol.
+#: Panels are halved until the last coefficients on each are small. The error may still be above rtol: then more are
+#: halved, with this times rtol.
 _FINER = 0.03
 
 
@@ -30,72 +30,86 @@ def solve_newton(cases, rtol, nodes, limit, x):
     the profiles.
     """
     size, free = len(rtol), nodes == 0
+    work, before = np.zeros(size), np.full(size, np.inf)
 
     def on_mesh(index, n, start):
-        part, grid, goes_on = cases.take(index), mesh(n), free[index] & (n < LADDER[-1])
+        part, grid = cases.take(index), mesh(n)
         if start is not None or limit or n < 8:
             begin = evaluate(part, first_guess(part, grid, a[index]) if start is None else start, grid)
         else:
             begin = approach(part, grid, a[index])
-        found = answer(solve_on(begin, limit), x, np.where(goes_on, rtol[index], np.inf))
+        iterated = solve_on(begin, limit)
+        work[index] += iterated.count * part.body.work(a[index], n)[1]
+        goes_on = free[index] & (n < LADDER[-1]) & (work[index] <= BUDGET)
+        found = answer(iterated, x, np.where(goes_on, rtol[index], np.inf), before[index])
         useless = (found.solution.status != Status.CONVERGED) | _hopeless(part, found, rtol[index])
+        useless |= stuck(found.solution.error, found.slow, n, rtol[index]) | (work[index] > BUDGET)
         error = np.where(free[index] & found.unsure, np.inf, found.solution.error)
+        before[index] = error
         return np.where(useless, np.nan, error), found.finer, found._replace(finer=None)
 
     a = guess_radius(cases)
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
     found = _together(rungs, size, len(x))
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
-    missed = closed & ((found.solution.error > rtol) | (free & found.unsure))
+    missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(cases, found, rtol)) & free & (limit == 0)
-    ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x)) for i in np.flatnonzero(opened)]
-    ended = _ended(found.solution, missed, lifted)
+    opened = np.flatnonzero(opened & ~spent)
+    ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in opened]
+    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)  # no panels say that it lifts off
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 
 def _together(rungs, size, points):
     """The last :class:`.answer.Answer` of each case from those on all meshes, (index, answer); their steps add up."""
-    count, tension, gap = np.zeros(size, int), np.zeros(size), np.zeros(size, bool)
+    count, tension = np.zeros(size, int), np.zeros(size)
+    gap, slow = np.zeros((2, size), bool)
     for index, found in rungs:
         count[index] += found.solution.iterations
-        tension[index], gap[index] = found.tension, found.gap
+        tension[index], gap[index], slow[index] = found.tension, found.gap, found.slow
     solution = Solution.join(size, points, [(index, found.solution) for index, found in rungs])
-    return Answer(replace(solution, iterations=count.astype(np.int32)), tension, gap, None)
+    return Answer(replace(solution, iterations=count.astype(np.int32)), tension, gap, slow, None)
 
 
 def _hopeless(cases, found, rtol):
     """(B,) bool: the error is above rtol, and no mesh makes it smaller."""
     solution = found.solution
     floor = error_floor(cases.body, solution.a, solution.nodes)
-    return (solution.status == Status.CONVERGED) & (floor > rtol) & (solution.error <= floor) & ~found.unsure
+    return (solution.status == Status.CONVERGED) & hopeless(solution.error, found.slow, floor, rtol) & ~found.unsure
 
 
-def _ended(solution, missed, lifted, spent=False):
+def _ended(solution, missed, lifted, spent):
     """The solution with its final status.
 
-    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : whether the budget of the panels is spent
+    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : (B,) bool, the budget is
     """
-    status = np.where(missed, Status.BUDGET_SPENT if spent else Status.TOLERANCE_NOT_MET, solution.status)
-    over = (status == Status.ITERATION_LIMIT) & (solution.iterations >= newton_steps(solution.nodes))
+    status = np.where(missed, np.where(spent, Status.BUDGET_SPENT, Status.TOLERANCE_NOT_MET), solution.status)
+    over = (status == Status.ITERATION_LIMIT) & (spent | (solution.iterations >= newton_steps(solution.nodes)))
     status = np.where(over, Status.BUDGET_SPENT, status).astype(np.int8)
     return replace(solution, status=status).refused(lifted, Status.LIFT_OFF)
 
 
-def _on_panels(case, before, rtol, x):
-    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better.
+def _on_panels(case, before, rtol, x, left):
+    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better; left:
+    of its budget.
 
     Tension and gaps count only if they are there on finer panels too: panels that are too coarse show some as well.
     """
-    best, lifted, count, left = before.solution, before.lifted, before.solution.iterations, BUDGET
-    resolved, missed = False, best.status == Status.CONVERGED
+    best, lifted, count, at = before.solution, before.lifted, before.solution.iterations, None
+    resolved, missed, spent = False, best.status == Status.CONVERGED, False
     for goal in (rtol, _FINER * rtol):
         if left <= 0:
+            spent = True
             break
-        iterated, work = solve_on_panels(case, goal, left)
-        left, count = left - work, count + iterated.count
+        iterated, work = solve_on_panels(case, goal, left, at)
+        left, count, spent = left - work, count + iterated.count, work > left
         if not iterated.closed[0]:
             continue
-        found = answer(iterated, x)
+        if at is not None and iterated.at.mesh == at.mesh:
+            break  # no finer panels than those before
+        at = iterated.at
+        found = answer(iterated, x, before=0.0)  # on finer panels it will hardly fall
+        left -= case.body.work(found.solution.a, finer_mesh(at.mesh).n)[0][0]
         lifted = (found.gap | found.lifted) & (not resolved)
         if lifted[0]:
             continue
@@ -104,6 +118,8 @@ def _on_panels(case, before, rtol, x):
             best = found.solution
         missed = (best.status == Status.CONVERGED) & (best.error > rtol)
         if best.status[0] == Status.CONVERGED and (not missed[0] or _hopeless(case, found, rtol)[0]):
+            spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))
-    return _ended(best, missed, lifted | before._replace(solution=best, tension=np.zeros(1)).lifted, left <= 0)
+    lifted |= before._replace(solution=best, tension=np.zeros(1)).lifted
+    return _ended(best, missed, lifted, spent)

@@ -7,13 +7,16 @@ import numpy as np
 
 from ..numerics.bracket import false_position
 from . import newton
-from .equation import evaluate
 from .start import guess_radius, smooth_start
 
 #: A case may take _STEPS Newton steps on a mesh of up to _NODES nodes, and fewer on finer ones, where a step takes
 #: longer, but at least _FEWEST. Random cases within the bounds of the parameters took at most 230, where they searched
 #: for their radius.
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
+#: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
+#: that are made for it alone. It is not counted in seconds, so that it is the same on every machine; on a slow one a
+#: unit took 1.3 to 2.9 µs of lone cases of all bases (`python tests/fuzz_solver.py` has the longest).
+BUDGET = 2_500_000
 
 
 class Iterated(NamedTuple):
@@ -36,15 +39,16 @@ def iterate(cases, start, step, limit):
         places)`` the batch of sub-batches at their places.
     step : callable
         ``step(now) -> next``.
-    limit : int
+    limit : int, or (B,) int
         Most steps.
     """
     size = len(cases.value)
+    limit = np.broadcast_to(limit, size)
     closed, count, active = np.zeros(size, bool), np.zeros(size, int), np.arange(size)
     now, parts, places = start, [], []
-    for done in range(limit + 1):
+    for done in range(limit.max(initial=0) + 1):
         count[active], closed[active] = done, now.closed
-        leaves = closed[active] | now.lost | (done == limit)
+        leaves = closed[active] | now.lost | (done >= limit[active])
         if leaves.any():
             parts.append(now if leaves.all() else now.take(np.flatnonzero(leaves)))
             places.append(active[leaves])
@@ -62,13 +66,18 @@ def newton_steps(nodes):
     return np.maximum(_FEWEST, (_STEPS * share).astype(int))
 
 
+def steps_within(cases, a, nodes):
+    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes, within the budget of a case."""
+    return np.minimum(newton_steps(nodes), BUDGET // cases.body.work(a, nodes)[1]).astype(int)
+
+
 def solve_on(start, limit=0):
     """:class:`Iterated` of Newton's method from the equation at its `start`, by the radius where that fails.
 
     limit : most steps; 0: those of the method.
     """
     cases, grid = start.cases, start.mesh
-    found = _newton(start, min(limit, newton_steps(grid.n)) or newton.LIMIT)
+    found = _newton(start, np.minimum(limit or newton.LIMIT, steps_within(cases, np.exp(start.state.eta), grid.n)))
     failed = np.flatnonzero(~found.closed)
     if limit or not len(failed):
         return found
@@ -90,20 +99,21 @@ def _by_radius(cases, grid):
 
     The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
     """
-    spent = np.zeros(len(cases.value), int)
+    spent, radius = np.zeros(len(cases.value), int), guess_radius(cases)
+    most = steps_within(cases, radius, grid.n)
 
     def at_radius(eta, index):
         fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
-        found = _newton(evaluate(fixed, smooth_start(fixed, grid), grid))
+        found = _newton(smooth_start(fixed, grid))
         spent[index] += found.count
         return found
 
     def control_at(eta, index):
         found = at_radius(eta, index)
-        known = found.closed & (spent[index] < newton_steps(grid.n))  # else its budget is spent
+        known = found.closed & (spent[index] < most[index])  # else its budget is spent
         return np.where(known, replace(found.at, cases=cases.take(index)).G, np.nan)
 
-    eta = np.log(guess_radius(cases))
+    eta = np.log(radius)
     if cases.control != "a":
         eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
     found = at_radius(eta, np.arange(len(eta)))

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..numerics.mesh import on_panels, panel_mesh
 from ..numerics.quadrature import radau_nodes
-from .driver import solve_on
+from .driver import Iterated, solve_on
 from .equation import State, evaluate
 from .results import interpolate
 from .start import first_guess, guess_radius
@@ -28,39 +28,46 @@ _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
 _SHARE = 0.3
 #: A panel is also resolved when they add less than this: for the smallest rtol the error of the operator is larger.
 _FLOOR = 1e-12
-#: Most work for one case: the sum of (nodes)² over its meshes of panels, the number of entries of the operators made
-#: for this case alone. It is not counted in seconds, so that it is the same on every machine. Nearly all cases need a
-#: hundredth of it.
-BUDGET = 1_500_000
 
 
-def solve_on_panels(case, rtol, budget):
+def solve_on_panels(case, rtol, budget, at=None):
     """Solve one case (a batch of one) on panels that resolve it, or as far as the budget goes.
+
+    at : :class:`.equation.Evaluation` at a solution on panels, to go on from; None: begin anew.
 
     Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before all was resolved.
     """
-    grid, start, count, work = panel_mesh(ORDER, START), None, 0, 0
-    alike = case.body.alike(guess_radius(case))
-    if alike is not None:  # nearly the same solution, far cheaper
-        found, work = solve_on_panels(case._replace(body=alike), rtol, budget)
-        count = found.count
-        if found.closed[0]:
-            grid, start = found.at.mesh, found.at.state
-    found = solve_on(evaluate(case, start or first_guess(case, grid), grid))
-    least = max(rtol, case.body.error(guess_radius(case), ORDER)[0])  # panels do not take the operator's own error away
+    found, work = _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0)
+    radius, count = guess_radius(case), 0
+    least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
     for goal in np.maximum(least, _GOALS):
         count, found = count + found.count, found._replace(count=0 * found.count)
         if found.at.lost[0]:
             break
         breaks, y = resolve(found.at, goal)
-        if breaks == grid.breaks:
+        if breaks == found.at.mesh.breaks:
             continue
         grid = panel_mesh(ORDER, breaks)
-        work += grid.n**2
+        work += case.body.work(radius, grid.n)[0][0]
         if work > budget:
             break
         found = solve_on(evaluate(case, State(y, found.at.state.eta), grid, found.at.operator))
+        work += found.count[0] * case.body.work(radius, grid.n)[1][0]
     return found._replace(count=count + found.count), work
+
+
+def _first(case, rtol, budget):
+    """:class:`.driver.Iterated` of one case on its first panels, and the work: those of a body that is nearly the same
+    and far cheaper, where there is one."""
+    alike, start, grid, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
+    if alike is not None:
+        found, work = solve_on_panels(case._replace(body=alike), rtol, budget)
+        count = found.count
+        if found.closed[0]:
+            grid, start = found.at.mesh, found.at.state
+    found = solve_on(evaluate(case, start or first_guess(case, grid), grid))
+    operator, step = case.body.work(guess_radius(case), grid.n)
+    return found._replace(count=count + found.count), work + operator[0] + found.count[0] * step[0]
 
 
 def resolve(ev, rtol):

@@ -55,14 +55,15 @@ def first_guess(cases, grid, a=None):
 
 
 def smooth_start(cases, grid):
-    """State at given radii (control "a") from the smooth contact there and the asperities alone, added as
+    """The equation at given radii (control "a") at the smooth contact there and the asperities alone, added as
     compliances."""
     eta, s2 = np.log(cases.value), grid.s**2
     X, Y, Z = groups(cases, eta)
-    K = cases.body.at(np.exp(eta), grid).K
-    smooth = solve_stack(K, Y / X * np.ones(grid.n), (s2 / X)[..., None])[..., 0]
+    operator = cases.body.at(np.exp(eta), grid)
+    smooth = solve_stack(operator.K, Y / X * np.ones(grid.n), (s2 / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
-    return State(cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(s2 / Z))), eta)
+    y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(s2 / Z)))
+    return evaluate(cases, State(y, eta), grid, operator)
 
 
 def approach(cases, grid, a):

@@ -12,7 +12,7 @@ from functools import cached_property, lru_cache
 import numpy as np
 from scipy.special import ellipkm1
 
-from .pieces import pieces
+from .pieces import against, pieces
 from .quadrature import gauss_legendre, lagrange, radau_nodes
 
 #: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², which makes the first guess exact there.
@@ -159,8 +159,7 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     rows, own = np.zeros((len(s_out), panels, order)), nodes if panels == 1 else radau_nodes(order)
     for piece in pieces(s_out, breaks, order):
         values = piece.weight * _kernel(s_out[piece.row, None], piece.gap, piece.sign)
-        basis = lagrange(own, piece.local.ravel()).reshape(*values.shape, order)
-        rows[piece.row, piece.panel] += np.matmul(values[:, None], basis)[:, 0]
+        rows[piece.row, piece.panel] += against(values, piece.basis(own))
     return rows.reshape(len(s_out), -1)
 
 

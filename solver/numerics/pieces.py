@@ -5,7 +5,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from .quadrature import gauss_legendre, log_rule, panels_towards
+from .quadrature import gauss_legendre, lagrange, log_rule, panels_towards
 
 #: Numbers of a piece, points times nodes of a panel: some MB, in which the calls of numpy no longer count.
 _TOGETHER = 131_072
@@ -15,8 +15,8 @@ class Piece(NamedTuple):
     """Points of rules of one shape, over r pairs of a target and a panel.
 
     `row`, `panel` (r,): the pairs, each once; `sign`: +1 where s' > s, -1 where s' < s; `gap` and `weight` (r, g):
-    |s' - s| to full relative precision, and the weights of ∫ · ds'; `local` (r, g): where the points are on their
-    panel, from 0 to 1.
+    |s' - s| to full relative precision, and the weights of ∫ · ds'; `local`: where the points are on their panel, from
+    0 to 1, (r, g), or (1, g) of targets outside their panels, which have all the same.
     """
 
     row: np.ndarray
@@ -25,6 +25,15 @@ class Piece(NamedTuple):
     gap: np.ndarray
     weight: np.ndarray
     local: np.ndarray
+
+    def basis(self, nodes):
+        """The Lagrange polynomials of a panel's `nodes` (n,) at the points: (r or 1, g, n)."""
+        return lagrange(nodes, self.local.ravel()).reshape(*self.local.shape, len(nodes))
+
+
+def against(values, basis):
+    """Sums (r, n) over the points of `values` (r, g) times a `basis` (r or 1, g, n)."""
+    return values @ basis[0] if len(basis) == 1 else np.matmul(values[:, None], basis)[:, 0]
 
 
 def pieces(s, breaks, order, near=None, rough=None):
@@ -46,18 +55,23 @@ def pieces(s, breaks, order, near=None, rough=None):
             there &= near
         is_far = ahead >= length
         level = np.where(is_far, -1, panels_towards(start if rough is None else np.where(rough, 0.0, start), length))
-        for one in np.unique(level[there]).tolist():
-            row, panel = np.nonzero(there & (level == one))
+        kinds = 2 * level + (ahead < 0)
+        for kind in np.unique(kinds[there]).tolist():
+            one, (row, panel) = kind // 2, np.nonzero(there & (kinds == kind))
             rule = gauss_legendre(12 + order // 2) if one < 0 else log_rule(14 + order // 2, rough is not None, one)
             many = max(1, _TOGETHER // (len(rule[0]) * order))
             for at in range(0, len(row), many):
-                yield _piece(s, low, length, sign, start, far_end, row[at : at + many], panel[at : at + many], *rule)
+                pairs = row[at : at + many], panel[at : at + many]
+                yield _piece(s, low, length, sign, start, far_end, kind % 2, *pairs, *rule)
 
 
-def _piece(s, low, length, sign, start, far_end, row, panel, distance, weight):
-    """The :class:`Piece` of the pairs `row`, `panel` for a rule on [0, 1]."""
+def _piece(s, low, length, sign, start, far_end, inside, row, panel, distance, weight):
+    """The :class:`Piece` of the pairs `row`, `panel`, the targets inside their panels or not, for a rule on [0, 1]."""
     begin, whole = start[row, panel, None], length[panel, None]
     reach = far_end[row, panel, None] - begin
     gap = begin + reach * distance
-    local = ((s[row] - low[panel])[:, None] + sign * gap) / whole
+    if inside:
+        local = ((s[row] - low[panel])[:, None] + sign * gap) / whole
+    else:
+        local = (distance if sign > 0 else 1 - distance)[None]
     return Piece(row, panel, sign, gap, reach * weight, local)

@@ -5,10 +5,12 @@ import pytest
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
-from solver.body import film, tables
+from solver.body import film, layered, tables
 from solver.body.layered import Layered
 from solver.body.wave_rule import CUT, FILM, quadrature
+from solver.contact.start import smooth_start
 from solver.numerics.mesh import mesh, panel_mesh
+from solver.scaling import as_cases
 
 #: Panels towards the edge, as a film asks for.
 PANELS = (0.0, *(2.0 ** -np.arange(12, -1, -1)).tolist())
@@ -84,6 +86,15 @@ def test_the_operator_at_the_same_radius_is_made_once():
     assert (
         FILMS.at(np.ones(1), mesh(5), first) is not first and FILMS.at(np.full(1, 1.1), first.mesh, first) is not first
     )
+
+
+def test_a_search_for_the_radius_makes_one_operator_a_radius(monkeypatch):
+    """Each began with that of the smooth contact, and threw it away."""
+    made, plain = [], layered._matrix_and_edge
+    monkeypatch.setattr(layered, "_matrix_and_edge", lambda *arguments: made.append(1) or plain(*arguments))
+    case = Problem.of(a=0.04, h=1e-5, n=1e3, Nbar=250000.0, Ra=0.004)
+    ev = smooth_start(as_cases(case), mesh(12))
+    assert len(made) == 1 and ev.operator.mesh == mesh(12)
 
 
 def test_a_lone_stiff_film(counted):

@@ -9,8 +9,9 @@ from numpy.testing import assert_allclose
 from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
+from solver.body.half_space import half_space
 from solver.body.layered import Layered
-from solver.contact import adaptive, driver, picard
+from solver.contact import adaptive, driver, panels, picard
 from solver.contact.driver import newton_steps
 from study.spec.definition import from_tables
 
@@ -68,15 +69,85 @@ def test_a_search_for_the_radius_ends(monkeypatch):
     assert 10 <= sum(steps) < many / 2
 
 
-def test_panels(monkeypatch):
+#: On 48 nodes its error is half of that on 32, and 800 times rtol.
+STUCK = {"a": 0.34, "h": 1.577e-6, "n": 1.3324e-4, "Nbar": 136520.0, "Ra": 1.62486e-4, "base": "thin_layer"}
+
+
+@pytest.fixture
+def meshes(monkeypatch):
+    """Nodes and panels of each mesh on which Newton's method was run."""
+    found, plain = [], adaptive.solve_on
+
+    def watched(start, *arguments):
+        found.append((start.mesh.n, len(start.mesh.breaks) - 1))
+        return plain(start, *arguments)
+
+    for module in (adaptive, panels):
+        monkeypatch.setattr(module, "solve_on", watched)
+    return found
+
+
+def test_panels(monkeypatch, meshes):
     """The corner ends on its first panels, with last numbers; the main case beside it needs none."""
     case = Problem.of(**CORNER, base="thin_layer", rtol=1e-9)
-    free = solve(case, X)
-    monkeypatch.setattr(adaptive, "BUDGET", 1)
+    free, all_panels = solve(case, X), {panels for _, panels in meshes}
+    meshes.clear()
+    monkeypatch.setattr(adaptive, "BUDGET", 8000)
     s = solve(case, X)
-    assert free.status.tolist() == [Status.CONVERGED] * 2
+    assert free.status.tolist() == [Status.CONVERGED] * 2 and len(all_panels) > 2
     assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
+    assert {panels for _, panels in meshes} == {1, 5}
     assert s.error[0] > 1e-9 and np.isfinite(s.p).all() and s.a[1] == free.a[1]
+
+
+def test_a_case_that_finer_meshes_do_not_help_goes_to_panels(meshes):
+    """In company as alone: with the main case, which needs none."""
+    s = solve(Problem.of(**STUCK), X)
+    assert max(n for n, panels in meshes if panels == 1) == 48
+    assert (s.status[0], s.nodes[0] > 96) == (Status.CONVERGED, True)
+    both = {name: np.array([value, MAIN.get(name, value)]) for name, value in STUCK.items() if name != "base"}
+    assert solve(Problem.of(**both, base="thin_layer"), X).D[0] == s.D[0]
+
+
+def test_the_steps_of_all_meshes_are_of_the_budget(monkeypatch, meshes):
+    """A case that has spent it on its first mesh ends there, with last numbers; one that converges there is right."""
+    monkeypatch.setattr(adaptive, "BUDGET", 1)
+    s = solve(Problem.of(**CORNER, base="thin_layer", rtol=[1e-9, 1e-2]), X)
+    assert s.status.tolist() == [Status.BUDGET_SPENT, Status.CONVERGED]
+    assert len(meshes) == len(set(s.nodes.tolist())) and np.isfinite(s.p).all() and s.error[0] > 1e-9
+
+
+def test_a_case_without_budget_is_not_said_to_lift_off(monkeypatch):
+    """That takes panels: meshes that are too coarse show tension that is not there."""
+    plate = Problem.of(a=0.04, h=0.012, n=1e5, micro="smooth", base="layered")
+    assert solve(plate, X).status[0] == Status.LIFT_OFF
+    monkeypatch.setattr(adaptive, "BUDGET", 1)
+    assert solve(plate, X).status[0] == Status.BUDGET_SPENT
+
+
+def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):
+    """The error of the first is raised on purpose: no mesh is made twice."""
+    plain, judged = adaptive.answer, []
+
+    def raised(iterated, *arguments, **options):
+        found = plain(iterated, *arguments, **options)
+        if len(iterated.at.mesh.breaks) > 2:
+            judged.append(iterated.at.mesh.n)
+            found.solution.error[:] = 1e-8 if len(judged) == 1 else found.solution.error
+        return found
+
+    monkeypatch.setattr(adaptive, "answer", raised)
+    s = solve(Problem.of(**CORNER, base="thin_layer", rtol=[1e-9, 1e-6]), X)
+    made = [grid for grid in meshes if grid[1] > 1]
+    assert s.status[0] == Status.CONVERGED and len(judged) == 2 and made == sorted(set(made))
+
+
+def test_work_is_more_where_more_is_computed():
+    a = np.ones(1)
+    film, thick = (Layered(*(np.array([v]) for v in (h, 1e3, 0.3, 0.3, False, 0.0))).work(a, 96) for h in (1e-6, 0.1))
+    springs = half_space(*(np.array([v]) for v in (0.0, 1.0, 0.3, 0.3, False, 0.0))).work(a, 96)
+    for of_film, of_layer, of_springs in zip(film, thick, springs, strict=True):
+        assert of_film[0] > of_layer[0] > of_springs[0] > 0
 
 
 def test_a_tolerance_that_no_mesh_meets_takes_no_panels():

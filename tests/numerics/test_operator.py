@@ -7,6 +7,7 @@ from scipy.special import beta, ellipe, factorial, hyp2f1
 
 from solver import Problem
 from solver.numerics.mesh import HERTZ, half_space_rows, mesh
+from solver.numerics.pieces import pieces
 from solver.numerics.quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
 from solver.scaling import as_cases, dimensionless
 
@@ -29,6 +30,16 @@ def test_polynomial_pressures_are_exact(n):
     for m in {0, 1, 2, 3, n // 2, n - 1}:
         expected = displacement_of_power(m, S)
         assert_allclose(rows @ radau_nodes(n) ** m, expected, rtol=0, atol=1e-14, err_msg=f"s^{m}")
+
+
+def test_points_of_a_narrow_panel_far_away_are_where_the_rule_has_them():
+    """As differences of places they were wrong by the rounding of s over the length of the panel."""
+    breaks = (0.0, 2.0**-30, 0.3, 1.0)
+    for piece in pieces(np.array([0.7]), breaks, 12):
+        narrow = piece._replace(local=piece.local[piece.panel == 0]) if len(piece.local) > 1 else piece
+        if 0 in piece.panel:
+            t, _ = gauss_legendre(18)
+            assert_allclose(np.sort(narrow.local[0]), t, rtol=0, atol=1e-14)
 
 
 def test_uniform_pressure():

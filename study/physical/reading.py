@@ -14,8 +14,8 @@ from ..spec.definition import StudyError
 from ..spec.grid import MOVED, shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from ..terminal import on_one_line
 from .bodies import BODIES, with_materials
+from .bounds import beyond_bounds, value_text
 from .names import SCENE, Known, Row, dim_of, si, unit_of
 from .scales import make_dimensionless, over_dimensions
 from .scene import STEP, Scene
@@ -23,7 +23,6 @@ from .scene import STEP, Scene
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
-LONGEST_SHOWN = 60  # characters of a value in a message
 _PARTS = ("value", "spread")  # of a Quantity
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
@@ -72,6 +71,9 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     scene.spreads = scene.spreads if spreads else {}
     _move(scene)
     make_dimensionless(scene)
+    errors = beyond_bounds(scene, parameters)
+    if errors:
+        raise StudyError(errors)
     return scene
 
 
@@ -101,15 +103,15 @@ def _add(scene: Scene, name: str, given: Any) -> None:
         else:
             value, spread = found.value, found.spread
     if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
-        raise ValueError(f"{name} = {_text(given)}: must not be 0")
+        raise ValueError(f"{name} = {value_text(given)}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
     if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
-        raise ValueError(f"{name} = {_text(given)}: {limits}")
+        raise ValueError(f"{name} = {value_text(given)}: {limits}")
     if np.any(np.asarray(spread) > 0):
         reach = STEP * np.asarray(spread)
         if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
             text = f"with its spread it {limits}; at the limit itself give no spread"
-            raise ValueError(f"{name} = {_text(given)}: {text}")
+            raise ValueError(f"{name} = {value_text(given)}: {text}")
         scene.spreads[name] = spread
     scene.given[name] = value
 
@@ -139,10 +141,6 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
-
-
-def _text(given: Any) -> str:
-    return on_one_line(str(given), LONGEST_SHOWN)
 
 
 def _missing(parameters: dict) -> list[str]:

@@ -25,7 +25,6 @@ from .names import SCENE, Known, Row, dim_of, powers_of, unit_of
 ANY = Parameter(interval="(-inf, inf)")
 """What is allowed in a [sample] of numbers in SI: what is drawn is checked as any number with a unit is."""
 CHOICE = 'say dtype = "float64", or spreads = false'
-NOTE = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
 
 
 def read(path) -> Definition:
@@ -72,10 +71,7 @@ def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options)
         draft.sizes[dim] = size
     for name, value in scene.parameters.items():
         draft.of_any_form(name, value)
-    try:
-        return replace(definition.complete(draft, *about, **options), scene=scene)
-    except StudyError as error:
-        raise StudyError([*error.messages, NOTE]) from None
+    return replace(definition.complete(draft, *about, **options), scene=scene)
 
 
 def _with_unit(tables: dict) -> str:
@@ -119,13 +115,15 @@ def _axis(name: str, raw: Any, errors: list[str]) -> list | Known:
 
 
 def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
-    """A range whose ends are numbers in the SI `unit`; a message and {} for ends that are none."""
+    """A range with its ends as numbers in the SI `unit`; messages and {} for ends that it cannot have."""
     try:
         ends = {end: quantity(f"{key}: {end}", raw[end], unit).value for end in ("start", "stop") if end in raw}
     except ValueError as error:
         errors.append(str(error))
         return {}
-    return raw | ends
+    wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
+    errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
+    return {} if wrong else raw | ends
 
 
 def _sampled(table: Any, errors: list[str]) -> dict[str, Row | Known]:

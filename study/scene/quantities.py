@@ -50,6 +50,14 @@ def has_unit(given: Any) -> bool:
     return hasattr(given, "magnitude") and hasattr(given, "to")
 
 
+def unit_in(given: Any) -> str:
+    """The unit of a text or of a quantity of pint, as it is written there; "" where it is no plain product of units."""
+    if not isinstance(given, str):
+        return str(getattr(given, "units", ""))
+    plain = [_PLAIN.fullmatch(part) for part in _SPREAD.split(given.strip())]
+    return next((found[2] for found in plain if found), "")
+
+
 def quantity(name: str, given: Any, unit: str) -> Quantity:
     """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number.
 

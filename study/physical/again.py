@@ -47,9 +47,11 @@ def in_results(definition: Definition, grid: Grid) -> Grid:
             name: (dims, array.take(0, dims.index(MOVED)) if MOVED in dims else array)
             for name, (dims, array) in table.items()
         }
-        return {name: (tuple(definition.named(dict.fromkeys(dims))), array) for name, (dims, array) in as_given.items()}
+        return {
+            name: (tuple(definition.in_results(dict.fromkeys(dims))), array) for name, (dims, array) in as_given.items()
+        }
 
-    return Grid(definition.named(grid.sizes), over(grid.values), over(grid.labels))
+    return Grid(definition.in_results(grid.sizes), over(grid.values), over(grid.labels))
 
 
 def in_units(name: str, array: np.ndarray, units: dict[str, np.ndarray]) -> np.ndarray:

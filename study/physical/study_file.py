@@ -39,7 +39,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
         return definition.from_tables(tables, name, text, where)
     from .reading import read as read_scene  # takes xarray with it, which a study without units need not wait for
 
-    draft, given = definition.begun(tables, where)
+    draft, given = definition.new_draft(tables, where)
     definition.add_numerics(draft, given)
     parameters = _parameters(draft, given)
     if draft.errors:

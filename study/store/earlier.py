@@ -17,7 +17,7 @@ from ..files.netcdf import File
 from ..physical.again import dimensionless, in_results, in_units, units_of
 from ..physical.names import SCENE
 from ..spec.definition import Definition, StudyError
-from ..spec.grid import Grid, columns_at
+from ..spec.grid import Grid, columns
 from ..spec.vocabulary import NOT_RUN, PARAMETERS
 from .block_file import Damaged
 from .blocks import Store, facts, usable
@@ -42,7 +42,7 @@ class ResultsSource:
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
         """Columns of the cases at `rows`, read by the windows in which the file was examined: what can be read and what
         cannot is told apart by these."""
-        given = columns_at(self.grid, rows)
+        given = columns(self.grid, rows)
         found = {name: given[name] for name in self.names if name in self.grid.values}
         over = [name for name in self.names if name not in found]
         with File(self.path) as file:
@@ -57,7 +57,7 @@ class ResultsSource:
         if stamp(self.path) != self.seen:
             raise Damaged(f"{self.path}: has been replaced while its cases were read; the same command goes on")
         if self.units:
-            units = columns_at(self.units, rows)
+            units = columns(self.units, rows)
             found |= {name: in_units(name, found[name], units) for name in over}
         return found
 

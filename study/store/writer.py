@@ -44,7 +44,7 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
     in_file = Grid(sizes, {})
     rows = Rows(in_file.size)
     most = AT_ONCE * in_file.size // (8 * definition.numbers)
-    chunk = definition.named(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
+    chunk = definition.in_results(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
     for window in windows(in_file, most, CHUNK):
         window |= {MOVED: slice(None)} if MOVED in definition.grid.sizes else {}
         grid = cut_out(definition.grid, window)
@@ -52,7 +52,7 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
             yield
         arrays = gather(store, known, start, start + grid.size)
         here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))
-        part, place = shown(here, parts(here, arrays, command)), definition.named(window)
+        part, place = shown(here, parts(here, arrays, command)), definition.in_results(window)
         if not start:
             whole = shown(definition, assembled(definition, {}, "x", definition.x, command))
             create(file, part, whole, chunk)

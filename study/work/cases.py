@@ -12,7 +12,7 @@ from solver import NUMERICS_VERSION, Problem, Solution, laws, solve
 from solver.laws import Law
 
 from ..spec.definition import Definition
-from ..spec.grid import columns_at
+from ..spec.grid import columns
 from ..spec.vocabulary import CONTROLS, INTEGERS, names
 
 
@@ -43,7 +43,7 @@ class Failure:
 
 def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     """The cases at `index` (n,), n > 0."""
-    found = columns_at(definition.grid, index)
+    found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
     own = tuple(laws.LAWS[name] for name in set(found["micro"].tolist()) if laws.LAWS[name].version)
     return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION, own)

@@ -94,7 +94,7 @@ class Order:
 def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:
     """`examine` the results file of a study, the order of its dimensions included."""
     definition, found = store.definition, examine(store.path, columns)
-    sizes = list(definition.named(definition.grid.sizes).items())
+    sizes = list(definition.in_results(definition.grid.sizes).items())
     if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
         reason = (
             f"another program has changed it: its dimensions are {list(found.sizes)}, not {[dim for dim, _ in sizes]}"

@@ -81,8 +81,8 @@ def test_a_grid_cut_out_is_the_cases_there(low, length):
     window = {dim: slice(low % size, min(low % size + length, size)) for dim, size in grid.sizes.items()}
     from study.spec.grid import columns
 
-    part, whole = cut_out(grid, window), columns(grid, 0, grid.size)
-    for name, column in columns(part, 0, part.size).items():
+    part, whole = cut_out(grid, window), columns(grid, np.arange(grid.size))
+    for name, column in columns(part, np.arange(part.size)).items():
         expected = whole[name].reshape(grid.shape)[tuple(window.values())].ravel()
         np.testing.assert_array_equal(column, expected)
 

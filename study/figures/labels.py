@@ -6,8 +6,8 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
+from ..physical.inputs import all_inputs, used_inputs
 from ..physical.names import SCENE
-from ..physical.told import in_order, told
 from ..scene import quantities
 from ..scene.quantities import READABLE, readable
 from ..spec.vocabulary import VOCABULARY, over_scale
@@ -83,8 +83,8 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     """The inputs that have one value in all the datasets, each as `value_text`; those that no case uses are left out,
     and so are axes, which the figure shows, and names."""
     datasets, found = list(datasets), []
-    of_some = {name for dataset in datasets for name in told(dataset)}
-    for name in in_order():
+    of_some = {name for dataset in datasets for name in used_inputs(dataset)}
+    for name in all_inputs():
         values = _values(datasets, name)
         if name not in of_some or len(values) != 1 or isinstance(value := values.pop(), str) and name != "bonding":
             continue

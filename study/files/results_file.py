@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
-from ..data.dataset import plainly_written
+from ..data.dataset import without_fill_values
 from ..physical.index import searchable
 from .atomic import replacing, target
 from .checksums import ATTRIBUTE, NOT_SUMMED, Rows, head, text
@@ -130,4 +130,4 @@ def open_lazily(path) -> xr.Dataset:
 def _shown(dataset: xr.Dataset) -> xr.Dataset:
     """Without the checksums: they are those of the file, not of what somebody makes of the dataset and writes."""
     dataset.attrs.pop(ATTRIBUTE, None)
-    return searchable(plainly_written(dataset))
+    return searchable(without_fill_values(dataset))

@@ -13,7 +13,7 @@ from ..scene.quantities import multiple, quantity, unit_in
 from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY, allowed
 from ..terminal import on_one_line
-from .names import SCENE, Known, unit_of
+from .names import SCENE, QuantityList, unit_of
 from .scene import Scene
 
 LONGEST_SHOWN = 60  # characters of a value in a message
@@ -84,7 +84,7 @@ def _written(given: Any, index: list[int], value: float, unit: str) -> tuple[Any
         word = given.attrs["units"]
         text = f"{given.values[tuple(index)]} {word}"
     else:
-        text = None if isinstance(given, Known) else given[index[0]] if index else given
+        text = None if isinstance(given, QuantityList) else given[index[0]] if index else given
         word = unit_in(text)
     word = word or multiple(abs(value), unit)[0]
     size = quantity("", f"1 {word}", unit).value

@@ -9,12 +9,12 @@ from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
-from ..data.units import DONE
+from ..data.units import PHYSICAL_SCALE
 from ..files.access import Unusable
 from ..files.checksums import ATTRIBUTE, identity, parsed
 from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
 from ..files.netcdf import File
-from ..physical.again import dimensionless, in_results, in_units, units_of
+from ..physical.from_si import grid_of_results, parameters_from_si, result_from_si, scales_of
 from ..physical.names import SCENE
 from ..spec.definition import Definition, StudyError
 from ..spec.grid import Grid, columns
@@ -58,7 +58,7 @@ class ResultsSource:
             raise Damaged(f"{self.path}: has been replaced while its cases were read; the same command goes on")
         if self.units:
             units = columns(self.units, rows)
-            found |= {name: in_units(name, found[name], units) for name in over}
+            found |= {name: result_from_si(name, found[name], units) for name in over}
         return found
 
 
@@ -116,9 +116,9 @@ def _told(definition: Definition, found: Condition, file: File) -> tuple | None:
         return grid, file.read("x"), found.numerics, units
     lines = parsed(str(file.attribute(ATTRIBUTE))) if ATTRIBUTE in file.attributes() else {}
     grid, x = definition.grid, definition.x
-    same = list(in_results(definition, grid).sizes.items()) == list(found.sizes.items())
+    same = list(grid_of_results(definition, grid).sizes.items()) == list(found.sizes.items())
     if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
-        return in_results(definition, grid), x, NUMERICS_VERSION, units_of(definition)
+        return grid_of_results(definition, grid), x, NUMERICS_VERSION, scales_of(definition)
     return None
 
 
@@ -135,9 +135,9 @@ def _grid_in(file: File) -> tuple[Grid, Grid | None]:
         old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
         values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
     sizes = {dim: file.sizes[dim] for dim in dims["status"]}
-    if DONE not in file.attributes():
+    if PHYSICAL_SCALE not in file.attributes():
         return Grid(sizes, values), None
-    values, units = dimensionless(values)
+    values, units = parameters_from_si(values)
     return Grid(sizes, values), Grid(sizes, units)
 
 

@@ -5,14 +5,14 @@ from dataclasses import replace
 
 from solver import NUMERICS_VERSION
 
-from ..data.dataset import assembled, parts
+from ..data.dataset import labelled, parts
 from ..files.atomic import replacing
 from ..files.checksums import Rows, identity
 from ..files.examine import CHUNK
 from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, set_aside
 from ..files.seal import seal
-from ..physical.scene import shown
+from ..physical.scene import dataset_of
 from ..spec.grid import MOVED, Grid, box, cut_out, windows
 from .blocks import Inventory, Store, gather
 
@@ -52,9 +52,9 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
             yield
         arrays = gather(store, known, start, start + grid.size)
         here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))
-        part, place = shown(here, parts(here, arrays, command)), definition.in_results(window)
+        part, place = dataset_of(here, parts(here, arrays, command)), definition.in_results(window)
         if not start:
-            whole = shown(definition, assembled(definition, {}, "x", definition.x, command))
+            whole = dataset_of(definition, labelled(definition, {}, command))
             create(file, part, whole, chunk)
         for name, array in part.data_vars.items():
             file.write(name, array.values, place)

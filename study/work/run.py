@@ -12,7 +12,7 @@ import xarray as xr
 from ..data.dataset import NO_SOLUTION, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
-from ..physical.scene import shown
+from ..physical.scene import dataset_of
 from ..spec.definition import Definition
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.earlier import check_replaceable, earlier
@@ -167,4 +167,4 @@ def partial_dataset(definition: Definition, results) -> xr.Dataset:
     """The grid with the blocks computed so far; the rest is NaN with status 127, not run."""
     store = Store(definition, Path(results))
     arrays = gather(store, inventory(store), 0, definition.grid.size)
-    return shown(definition, parts(definition, arrays, "partial results"))
+    return dataset_of(definition, parts(definition, arrays, "partial results"))

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from same import assert_same
 
 import study
-from study.data.dataset import labelled
+from study.data.dataset import parts
 from study.files.results_file import open_lazily, write
 from study.spec.definition import from_tables
 from study.spec.grid import Grid, box, cut_out, windows
@@ -68,7 +68,7 @@ def test_written_by_windows_as_written_whole(tmp_path, monkeypatch, size, output
     definition = from_tables(tables(**output), "windows", "text", "windows.toml")
     opened = study.Study(definition, tmp_path)
     opened.run()
-    whole = labelled(definition, compute(parcel(definition, np.arange(24))), "command")
+    whole = parts(definition, compute(parcel(definition, np.arange(24))), "command").dataset()
     write(whole, tmp_path / "whole.nc")
     expected, found = study.open_results(tmp_path / "whole.nc"), opened.open()
     assert_same(found, expected)

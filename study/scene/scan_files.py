@@ -7,7 +7,7 @@ import numpy as np
 from .scan import FEWEST, Scan, height_map, metres, profile
 
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
-#: Separator and decimal mark of a text file, in the order in which they are tried on its first line of numbers.
+#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken.
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
 
 

@@ -1,4 +1,4 @@
-"""One contact in the terminal, in words."""
+"""The command `point`: one contact in the terminal, in words or as JSON."""
 
 import json
 import math

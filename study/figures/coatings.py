@@ -11,10 +11,9 @@ from .registry import TWO_COLUMNS, Columns, figure
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
 }  # fmt: skip
-"""By n, from soft (blue) to hard (red)."""
-PALE = 0.4
-"""Of stretches outside validity."""
-RANGE = (0.05, 20.0)
+"""Colour by n, from soft (blue) to hard (red)."""
+PALE = 0.4  # opacity of curves outside validity
+RANGE = (0.05, 20.0)  # of a/h
 
 
 @figure(

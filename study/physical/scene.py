@@ -131,7 +131,7 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
         found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
     else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
         found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
-    if found.dtype != variable.dtype:
+    if found.dtype != variable.dtype:  # astype takes time even where it changes nothing
         found = found.astype(variable.dtype)
     found.attrs = physical_attributes(name, variable.attrs)
     found.encoding = variable.encoding

@@ -94,11 +94,13 @@ def main(arguments=None) -> int:
         kept = KEPT if options.command in ("run", "retry") else ""
         code = perform(options, kept)
         ending.state.code = code
-    except SystemExit as ended:  # of the parser
+    except SystemExit as ended:  # raised by the parser
         ending.state.code = ended.code
         raise
     except (KeyboardInterrupt, Exception) as error:
-        if not (ending.state.interrupted or isinstance(error, KeyboardInterrupt)):  # libraries turn it into others
+        if not (
+            ending.state.interrupted or isinstance(error, KeyboardInterrupt)
+        ):  # libraries turn that into other errors
             raise
         say(f"\ninterrupted{kept}", sys.stderr)
         code = INTERRUPTED
@@ -132,7 +134,7 @@ def _attempt(act, options, item, kept: str) -> int:
         return act(options, item)
     except StudyError as error:
         text, code = str(error), error.code
-    except OSError as error:  # a full disk, say, or a scheduler that is gone
+    except OSError as error:  # the disk is full, say, or the scheduler is gone
         text, code = f"{item}: {error}{kept}", 1
     if ending.state.interrupted:  # a library has turned the interrupt into this error
         raise KeyboardInterrupt

@@ -14,7 +14,7 @@ from .scene.roughness import looks_like_iso_ra
 from .spec.laws import smooth_laws
 from .spec.vocabulary import CONTROLS, VOCABULARY
 
-MOST_CASES = 20  # that a summary writes out
+MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")

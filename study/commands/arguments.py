@@ -10,7 +10,7 @@ from ..work.scheduler import address_error
 
 STUDIES = Path("studies")
 PACKAGE = Path(__file__).resolve().parents[1]
-MOST_DIGITS = 9  # of a whole number; Python raises another error from 4301 on
+MOST_DIGITS = 9  # of a whole number: Python refuses to read 4301
 
 
 class Parser(argparse.ArgumentParser):

@@ -9,8 +9,7 @@ from solver import Model, Status
 
 from ..spec.definition import Definition
 from ..spec.fitted import COMMENT
-from ..spec.given import is_rigid
-from ..spec.grid import unflatten
+from ..spec.grid import on_rigid_base, unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
 from .derived import validity_of
@@ -53,7 +52,7 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
 def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
     """`parts` of any of the arrays, even none, without `validity` and the names of flags."""
     grid = definition.grid
-    rigid = bool(is_rigid(grid).any())  # then all layers are on a rigid base
+    rigid = bool(on_rigid_base(grid).any())  # if one layer is on a rigid base, all are
     known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate"))}
     for name in ("B", "beta") if grid.fitted else ():
         known[name]["comment"] = COMMENT

@@ -145,7 +145,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     profile p; NaN for a law that is not registered.
     """
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
-    E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch together
+    E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
         given = [_given(dataset, name) for name in law.parameters]

@@ -12,7 +12,7 @@ PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical unit
 
 def reduced_modulus(E, nu):
     """E* = E/(1 - ν²), in the unit of E."""
-    return E / (1 - nu * nu)  # a product is the same for one number and for an array of them, a power is not
+    return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
 
 
 def factor(name: str, R: float, E2_star: float) -> float:

@@ -14,7 +14,7 @@ DENSITIES = (0.25, 1.0, 4.0)
 
 def paper_cases(base: str, size: int, seed: int) -> dict:
     """The paper's contacts on one base: its five roughnesses as power laws, under the loads of its figures."""
-    del seed  # nothing is drawn
+    del seed  # nothing here is random
     loads = np.geomspace(1e-6, 5e-5, max(size // len(numbers.TABLE1), 1))
     row, load = (v.ravel() for v in np.indices((len(numbers.TABLE1), len(loads))))
     Ra, Nbar, B, beta = np.array(numbers.TABLE1).T[:, row]

@@ -34,7 +34,7 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
     dashed.
     """
     peak = peak_pressure(found)
-    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # equal ν: no layer at all
+    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # with equal ν this layer is as if it were not there
     quantities = {
         "E_eff/E1*": effective_modulus(found) / found["n"],
         "p_peak/p_peak uncoated": peak / bare,

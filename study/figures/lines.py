@@ -121,7 +121,7 @@ def number(name: str, value: float | str, unit: str) -> float:
         return value
     try:
         return quantity(name, value, unit).value
-    except (KeyError, ValueError) as error:  # of a unit that READABLE does not have, or of the value
+    except (KeyError, ValueError) as error:  # the unit is not in READABLE, or the value is wrong
         raise StudyError([str(error)]) from None
 
 

@@ -99,10 +99,10 @@ def examined_in_child(path: Path, columns: tuple[str, ...] | None, _) -> Conditi
     statement = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
     statement += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
     command, environment = python_command(statement)
-    told = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
+    options = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
     patience = PATIENCE + path.stat().st_size / SLOWEST
     try:
-        child = subprocess.run(command, **told, timeout=patience)
+        child = subprocess.run(command, **options, timeout=patience)
         return pickle.loads(child.stdout)
     except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
         return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
@@ -178,7 +178,9 @@ def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[CaseDiges
                 piece = file.read(name, window).reshape(stop - start, -1)
             except (Unusable, *BROKEN):
                 lost.setdefault(name, []).append((start, stop))
-                piece = np.frombuffer(os.urandom(stop - start), np.uint8)  # fits no checksum
+                piece = np.frombuffer(
+                    os.urandom(stop - start), np.uint8
+                )  # random numbers in place of the lost ones: their checksum is wrong
             rows.add(name, piece)
     return rows, lost
 

@@ -55,7 +55,7 @@ def rows(targets: np.ndarray, intervals: int) -> np.ndarray:
     ):
         t, c = target[chosen], cell[chosen]
         kernel = weight * elliptic(t[:, None], c[:, None] + place) / intervals
-        found[t - targets[0], c] += kernel @ (1 - place)  # no cell is there twice
+        found[t - targets[0], c] += kernel @ (1 - place)  # += counts each pair (t, c) once, and none occurs twice
         found[t - targets[0], c + 1] += kernel @ place
     return found
 
@@ -181,7 +181,7 @@ class Contact:
         P = 2 * np.pi * a**2 * (p @ mesh.w)  # (5)
         if self.given == "P":
             settled &= np.abs(np.log(P / self.value)) < 10 * self.tolerance
-            P = self.value  # exactly as given
+            P = self.value  # without the error of the search
         status = np.where(settled, Status.CONVERGED, Status.ITERATION_LIMIT)
         status = np.where(np.isfinite(p).all(axis=1), status, Status.DIVERGED)
         q = p / law.p_star[:, None]

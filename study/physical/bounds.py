@@ -1,4 +1,4 @@
-"""What is beyond the bounds of the solver, told as it was given: "P = -10 N: must be in [5.769e-18, 5.769e+09] N"."""
+"""Messages for inputs with units that are beyond the bounds of the solver, as they were given: "P = -10 N: ..."."""
 
 from typing import Any
 

@@ -99,8 +99,8 @@ class Scene:
         variable = _variable(value)
         variable = variable.isel({MOVED: 0}) if MOVED in variable.dims else variable
         words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
-        told = {"long_name": long_name or words} | _units(unit_of(name))
-        return self._renamed(xr.Variable(variable.dims, variable.data, told))
+        attributes = {"long_name": long_name or words} | _units(unit_of(name))
+        return self._renamed(xr.Variable(variable.dims, variable.data, attributes))
 
     def _renamed(self, variable: xr.Variable) -> xr.Variable:
         """The variable over the dimensions that the results have."""

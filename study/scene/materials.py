@@ -186,7 +186,7 @@ def _is_allowed(key: str, value, modulus=None) -> bool:
     if key in NUMBERS:
         if not _is_number(value):
             return False
-        if key == "E_spread":  # is not compared with an E that is wrong itself
+        if key == "E_spread":  # where E is wrong itself, its spread is not compared with it
             return value >= 0 and (
                 value == 0 or not _is_allowed("E", modulus) or LEAST_SPREAD * modulus <= value < modulus
             )

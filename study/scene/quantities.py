@@ -86,7 +86,7 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
         raise ValueError(f"{name} = {_shown(given)}: {wanted}")
     try:
         return Quantity(float(given.to(_pint_name(unit)).magnitude))
-    except Exception as error:  # of whatever registry the quantity is
+    except Exception as error:  # its class depends on the registry of the quantity
         raise ValueError(f"{name} = {given}: {wanted}") from error
 
 
@@ -108,7 +108,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     return Quantity(_si(name, head, unit, wanted), abs(_si(name, spread[0], unit, wanted)))
 
 
-@lru_cache(maxsize=4096)  # to read a text takes half a millisecond
+@lru_cache(maxsize=4096)  # reading a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
     """The SI value of a text without a spread. It is rounded once, so "3 um" is exactly the float 3e-6."""
     said, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
@@ -119,7 +119,7 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     registry = _registry()
     try:
         found = registry.Quantity(text)
-    except Exception as error:  # pint raises of many kinds
+    except Exception as error:  # pint raises many kinds of errors
         raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')

@@ -17,14 +17,14 @@ from .identity import digest_of
 from .toml_text import text_in
 from .vocabulary import NUMERICS, finite, names, suggest
 
-POINTS = 33  # of a profile, if a study does not say
-LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
-MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
+POINTS = 33  # of a profile, when a study does not say it
+LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
+MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
 KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
 """Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
-PER_CASE = 16  # numbers per case besides the profiles, roughly
+PER_CASE = 16  # about how many numbers a case has besides the profiles
 SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
 
 
@@ -111,7 +111,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     for key, value in given["model"].items():
         draft.scalar(key, value, "[model]")
     add_numerics(draft, given)
-    if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
+    if "cases" in tables:  # before the axes, as `case` is the first dimension wherever [[cases]] stand in the file
         draft.cases(tables["cases"])
     if "sample" in tables:
         draft.sample(tables["sample"])

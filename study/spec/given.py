@@ -7,13 +7,13 @@ from functools import partial
 import numpy as np
 
 from .fitted import fitted, wants_a_fit
-from .grid import LONGEST_AXIS, Grid, along, as_array, axis_values, shown, twins
+from .grid import LONGEST_AXIS, Grid, along, as_array, axis_values, on_rigid_base, shown, twins
 from .laws import is_parameter, law_names, smooth_laws, update_vocabulary
 from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, cases_with, suggest
 
-MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
-MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
+MOST_MESSAGES = 30  # that are shown for a study at a time
+MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
 
 
 @dataclass
@@ -235,14 +235,9 @@ def missing_parameters(grid: Grid) -> list[str]:
     return messages
 
 
-def is_rigid(grid: Grid) -> np.ndarray:
-    """Where the ratio n says that the base is rigid, along the dimensions of the grid."""
-    return along(grid, "n") == 0
-
-
 def mixed_units(grid: Grid) -> list[str]:
     """A message if layers on a rigid base, whose numbers are in E1*, are among others, whose numbers are in E2*."""
-    if not is_rigid(grid).any():
+    if not on_rigid_base(grid).any():
         return []
     n, layered = np.broadcast_arrays(along(grid, "n"), cases_with("n", partial(along, grid)))
     if not (n[layered] > 0).any():

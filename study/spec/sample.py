@@ -86,7 +86,7 @@ def _check(name: str, drawn: dict, own: Parameter, errors: list[str]) -> None:
     """Append messages for the list or range of one parameter."""
     key, given = f"[sample] {name}", drawn[name]
     if isinstance(given, list) and given:
-        return  # its values are checked like any
+        return  # its values are checked later, as those of any parameter
     if not isinstance(given, dict) or own.choices or own.whole:
         form = "" if own.choices or own.whole else f"{{{', '.join(KEYS)}}} or "
         errors.append(f"{key} = {shown(given)}: must be {form}a list to choose from")

@@ -68,7 +68,7 @@ class Store:
 
     @property
     def path(self) -> Path:
-        """Of the results file."""
+        """Path of the results file."""
         return self.results / f"{self.definition.name}.nc"
 
     @property

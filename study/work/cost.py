@@ -14,7 +14,7 @@ from .cases import compute, parcel
 from .progress import duration
 from .workers import AHEAD, available_workers, processes_for
 
-SAMPLE = 256  # cases
+SAMPLE = 256  # cases whose time is measured
 PROCESS, WORKER = 250_000_000, 110_000_000  # bytes of Python and its packages, and of those in a worker process
 PER_CASE = 100  # bytes for the key of a case, and to find it
 WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, over the size of its result

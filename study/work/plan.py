@@ -71,7 +71,7 @@ class Order:
 
     @property
     def path(self) -> Path:
-        """Of the results file."""
+        """Path of the results file."""
         return self.store.path
 
     @property
@@ -127,7 +127,7 @@ def check_writable(path: Path) -> None:
         str(path.absolute()).encode()
         make_folder(folder)
         folder = target(path).parent
-        with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
+        with tempfile.TemporaryFile(dir=folder):  # a file without a name: nothing is left if the program is killed
             pass
     except OSError as error:
         raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None

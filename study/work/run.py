@@ -49,7 +49,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     check_size(order)
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-            if stamp(order.path) != seen:  # by the run that this one has waited for
+            if stamp(order.path) != seen:  # the run for which this one has waited has written it
                 found = look(order.store)
             report = _compute(order, found)
         return _finish_if_last(order, report) if order.shared else report

@@ -11,7 +11,7 @@ from .cases import Failure
 from .processes import Processes
 from .scheduler import connected
 
-CONNECT = 10  # seconds
+CONNECT = 10  # seconds that a scheduler has to answer
 AHEAD = 4  # blocks submitted for each worker, which goes on with them while this thread writes
 MANY = 8  # blocks from which on it pays to start processes, which do not share a lock of Python as threads do
 

@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from ..data.units import PHYSICAL_SCALE
 from ..scene.quantities import READABLE, multiple
+from .units import PHYSICAL_SCALE
 
 
 def readable(dataset: xr.Dataset) -> xr.Dataset:

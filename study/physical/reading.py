@@ -23,7 +23,6 @@ from .scene import STEP, Scene
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
-_PARTS = ("value", "spread")  # fields of a Quantity
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
@@ -96,8 +95,8 @@ def _add(scene: Scene, name: str, given: Any) -> None:
         found = given if isinstance(given, (QuantityList, Quantity)) else _quantities(name, given)
         if isinstance(found, QuantityList):
             scene.dims |= {found.dim: name} if found.dim == dim_of(name) else {}
-            columns = ([getattr(one, part) for one in found.quantities] for part in _PARTS)
-            value, spread = (xr.DataArray(column, dims=found.dim) for column in columns)
+            value = xr.DataArray([one.value for one in found.quantities], dims=found.dim)
+            spread = xr.DataArray([one.spread for one in found.quantities], dims=found.dim)
             if found.dim == dim_of(name):
                 _check_distinct(name, value.values.tolist())
         else:

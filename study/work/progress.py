@@ -32,38 +32,35 @@ class Progress:
         self.done += cases
         self.computed += cases
         self.failed += failed
-        now = time.monotonic()
-        self._show(self._line, now)
+        self._show(self._line)
 
     def close(self) -> None:
         """End the rewritten line."""
         self._show(self._end)
 
-    def _show(self, what: Callable, *given) -> None:
+    def _show(self, what: Callable[[], None]) -> None:
         """Write to the stream, if there is one. When that fails, go on without it: a run must not end because of it."""
         try:
             if self.stream is not None:
-                what(*given)
+                what()
         except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
             self.stream = None
 
-    def _line(self, now: float) -> None:
-        if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
+    def _line(self) -> None:
+        now, terminal = time.monotonic(), self.stream.isatty()
+        if now - self.written >= (BLINK if terminal else EVERY) or self.done >= self.total:
             self.written = now
-            self._write(now)
+            counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
+            if terminal:  # the line is rewritten; it leaves the last column free, where a terminal may wrap
+                self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")
+            else:
+                self.stream.write(f"{describe(*counts)}\n")
+            self.stream.flush()
 
     def _end(self) -> None:
         if self.stream.isatty() and self.computed:
             self.stream.write("\n")
             self.stream.flush()
-
-    def _write(self, now: float) -> None:
-        counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
-        if self.stream.isatty():
-            self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")  # the last one may wrap
-        else:
-            self.stream.write(f"{describe(*counts)}\n")
-        self.stream.flush()
 
 
 def columns(terminal: TextIO) -> int:

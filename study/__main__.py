@@ -98,9 +98,8 @@ def main(arguments=None) -> int:
         ending.state.code = ended.code
         raise
     except (KeyboardInterrupt, Exception) as error:
-        if not (
-            ending.state.interrupted or isinstance(error, KeyboardInterrupt)
-        ):  # libraries turn that into other errors
+        # a library may have turned the interrupt into another error
+        if not (ending.state.interrupted or isinstance(error, KeyboardInterrupt)):
             raise
         say(f"\ninterrupted{kept}", sys.stderr)
         code = INTERRUPTED

@@ -57,9 +57,8 @@ def command_line() -> str:
     program = Path(sys.argv[0])
     first = "python -m study" if program.name == "__main__.py" and program.parent.name == "study" else program.name
     text = f"{first} {shlex.join(sys.argv[1:])}".strip()
-    return text.encode(
-        "utf-8", "backslashreplace"
-    ).decode()  # a path may have bytes that are not UTF-8, an attribute may not
+    # a path may have bytes that are not UTF-8, an attribute may not
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def git_commit() -> str:

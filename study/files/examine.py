@@ -178,9 +178,8 @@ def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[CaseDiges
                 piece = file.read(name, window).reshape(stop - start, -1)
             except (Unusable, *BROKEN):
                 lost.setdefault(name, []).append((start, stop))
-                piece = np.frombuffer(
-                    os.urandom(stop - start), np.uint8
-                )  # random numbers in place of the lost ones: their checksum is wrong
+                # random numbers in place of the lost ones: their checksum is wrong
+                piece = np.frombuffer(os.urandom(stop - start), np.uint8)
             rows.add(name, piece)
     return rows, lost
 

@@ -37,9 +37,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     sign = _sign_of_units(tables)
     if not sign:
         return definition.from_tables(tables, name, text, where)
-    from .reading import (
-        read as read_scene,
-    )  # here, as it imports xarray, which takes time and is not needed without units
+    from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
 
     draft, given = definition.new_draft(tables, where)
     definition.add_numerics(draft, given)

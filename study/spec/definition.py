@@ -143,7 +143,7 @@ def add_numerics(draft: Draft, given: dict) -> None:
 
 
 def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
-    """The definition of a draft that has all its parameters, with its digest; Raises StudyError with every message.
+    """The definition of a draft that has all its parameters, with its digest. Raises StudyError with every message.
 
     tables : title and the sections [numerics] and [output] are read here
     most : how many numbers the results may hold

@@ -164,9 +164,8 @@ def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: boo
     damaged = file.kind == "damaged"
     if file.kind in ("foreign", "unreadable"):
         raise Unusable(file.path, file.kind, f"{file.reason}; move it away, or use --results DIR")
-    nothing = (
-        file.kind == "missing" or damaged and not (file.digest or found.cases)
-    )  # cut off: nothing in it can be read
+    # a file that is cut off: nothing in it can be read
+    nothing = file.kind == "missing" or damaged and not (file.digest or found.cases)
     if force or nothing or file.digest == digest:
         return
     if damaged and not found.identified:

@@ -24,9 +24,7 @@ def connected(address: str, seconds: float):
     ------
     StudyError : nothing answers there in so many seconds, or what answers is no scheduler
     """
-    from ..spec.definition import (
-        StudyError,  # here, as it imports numpy: a message about an address shall not wait for it
-    )
+    from ..spec.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
 
     reason = address_error(address)
     if reason:

@@ -47,20 +47,23 @@ class Progress:
             self.stream = None
 
     def _line(self) -> None:
-        now, terminal = time.monotonic(), self.stream.isatty()
-        if now - self.written >= (BLINK if terminal else EVERY) or self.done >= self.total:
+        now = time.monotonic()
+        if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
             self.written = now
-            counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
-            if terminal:  # the line is rewritten; it leaves the last column free, where a terminal may wrap
-                self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")
-            else:
-                self.stream.write(f"{describe(*counts)}\n")
-            self.stream.flush()
+            self._write(now)
 
     def _end(self) -> None:
         if self.stream.isatty() and self.computed:
             self.stream.write("\n")
             self.stream.flush()
+
+    def _write(self, now: float) -> None:
+        counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
+        if self.stream.isatty():  # a line that fills the last column may wrap
+            self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")
+        else:
+            self.stream.write(f"{describe(*counts)}\n")
+        self.stream.flush()
 
 
 def columns(terminal: TextIO) -> int:

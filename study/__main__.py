@@ -2,9 +2,9 @@
 
 point | list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
-Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. They say what
-became of the work, whoever hears of it: nothing stops because a terminal is gone, or a reader has left. Only where
-the answer is all there is (list, check, status, --dry-run) a full disk under it is 1.
+Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
+when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
+that do nothing but answer (list, check, status, --dry-run).
 """
 
 import argparse
@@ -19,10 +19,10 @@ from pathlib import Path
 from .commands import ending
 from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
-from .terminal import empty_buffers, open_the_closed, say
+from .terminal import empty_buffers, open_closed_streams, say
 
-# The solver computes on one BLAS thread. A BLAS library that is told so before numpy is imported does not start the
-# others at all, of which each worker process would have one for each processor.
+# The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
+# without it each worker process would have a thread for each processor.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
@@ -93,12 +93,13 @@ def main(arguments=None) -> int:
         logging.basicConfig(level=level, format="%(levelname)s %(name)s: %(message)s")
         kept = KEPT if options.command in ("run", "retry") else ""
         code = perform(options, kept)
-        ending.now.code = code
-    except SystemExit as ended:  # of the parser
-        ending.now.code = ended.code
+        ending.state.code = code
+    except SystemExit as ended:  # raised by the parser
+        ending.state.code = ended.code
         raise
     except (KeyboardInterrupt, Exception) as error:
-        if not (ending.now.came or isinstance(error, KeyboardInterrupt)):  # libraries make other errors of an interrupt
+        # a library may have turned the interrupt into another error
+        if not (ending.state.interrupted or isinstance(error, KeyboardInterrupt)):
             raise
         say(f"\ninterrupted{kept}", sys.stderr)
         code = INTERRUPTED
@@ -108,7 +109,7 @@ def main(arguments=None) -> int:
 
 
 def complete(commands: argparse.ArgumentParser) -> None:
-    """Answer a shell that completes a command line, if argcomplete is installed (an extra), and end."""
+    """If a shell asks for completions: answer it with argcomplete (an extra), if that is installed, and end."""
     if "_ARGCOMPLETE" in os.environ:
         with suppress(ImportError):
             import argcomplete
@@ -117,11 +118,11 @@ def complete(commands: argparse.ArgumentParser) -> None:
 
 
 def perform(options, kept: str) -> int:
-    """Largest exit code of a command on its items; what is wrong with one does not keep the others from their turn."""
+    """Run a command on each of its items, whatever is wrong with the others. Returns the largest exit code."""
     module, name = options.action
     commands = import_module(f".commands.{module}", __package__)
     items = commands.items(options) if hasattr(commands, "items") else options.items
-    ending.now.working = True  # all imports have been made
+    ending.state.working = True  # before, during imports, a signal ends the process at once
     return max((_attempt(getattr(commands, name), options, item, kept) for item in items), default=0)
 
 
@@ -132,9 +133,9 @@ def _attempt(act, options, item, kept: str) -> int:
         return act(options, item)
     except StudyError as error:
         text, code = str(error), error.code
-    except OSError as error:  # a full disk, say, or a scheduler that is gone
+    except OSError as error:  # the disk is full, say, or the scheduler is gone
         text, code = f"{item}: {error}{kept}", 1
-    if ending.now.came:  # and has been taken for something else on its way here
+    if ending.state.interrupted:  # a library has turned the interrupt into this error
         raise KeyboardInterrupt
     say(text, sys.stderr)
     return code
@@ -148,12 +149,12 @@ def own_modules_first() -> None:
 
 
 def command() -> None:
-    """What a process of the command line does: `main`, and its exit code as the last thing that is decided."""
-    open_the_closed()
-    ending.start()
+    """Run `main` as the process of a command line, which ends with its exit code."""
+    open_closed_streams()
+    ending.listen()
     code = main()
     if code == INTERRUPTED:
-        os._exit(code)  # does not wait for the blocks in work
+        os._exit(code)  # without waiting for the threads that compute blocks
     sys.exit(code)
 
 

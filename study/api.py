@@ -1,4 +1,4 @@
-"""A study file, its results and what can be done with them: `load`."""
+"""`load` a study file; the `Study` runs, opens and examines its results."""
 
 import os
 from contextlib import suppress
@@ -21,7 +21,7 @@ from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look
 from .work.run import dry_run, partial_dataset, run
 
-LAZY = 200_000_000  # bytes of a results file that is not read at once
+LAZY = 200_000_000  # bytes; a larger results file is opened lazily
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,13 +52,13 @@ class Study:
     def status(self, yes: bool = False) -> dict:
         """State, cases, status -> number of cases, path of the results, what is wrong with them.
 
-        The state is "done", "outdated", "partial" or "new", or of a results file that cannot be used "damaged",
-        "foreign" (none of ours) or "unreadable"; then `reason` says what is wrong. Attributes, coordinates and statuses
-        are verified, the other numbers are by `verify`. Cases of an outdated results file that a run would use again
-        count as computed; so do those in blocks. Raises StudyError for a very large study that is neither new nor
-        done, unless `yes`: counting takes memory.
+        The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
+        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. Attributes, coordinates
+        and statuses are compared with their checksums here; `verify` compares all numbers. Cases count as computed if
+        they are in blocks, or in an outdated results file that a run would use. Raises StudyError for a very large
+        study that is neither new nor done, unless `yes`: counting takes memory.
         """
-        with suppress(FileNotFoundError):  # somebody removed the results while they were looked at
+        with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look again
             return self._status(yes)
         return self._status(yes)
 

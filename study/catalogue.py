@@ -23,21 +23,21 @@ SCHEMES = {
 """Figures 1 and 2 of the paper, with their captions. They show no results, and are kept as drawings."""
 for _room in (figures, paper, literature, evidence):
     for _module in iter_modules(_room.__path__, f"{_room.__name__}."):
-        import_module(_module.name)  # which registers what it has
+        import_module(_module.name)  # its decorators register figures and tables
 
 
 FIGURE, SCHEME, TABLE = ("csv", "pdf", "png"), ("svg", "pdf", "png"), ("txt", "csv", "tex")
-"""Kinds of files that are written."""
+"""Endings of the files of a figure, a scheme and a table."""
 CAPTIONS = "captions"
-"""What stands for the file of all captions among the figures."""
+"""Name among the figures of the file that holds all captions."""
 LETTERS = 21
-"""Of the line that states parameters, on an inch."""
+"""Letters on an inch of the line above a figure that states its parameters."""
 LONG = ("extremes", "extremes_layered", "picard_domain", "tradeoff")
 """Studies that take minutes to compute: `make figures` goes without them."""
 
 
 def usual(known: dict) -> list[str]:
-    """Names of the FIGURES, with the schemes, or of the TABLES, that no long study is needed for."""
+    """What "all" stands for: the FIGURES with the schemes, or the TABLES, that need none of the LONG studies."""
     names = [name for name, entry in known.items() if not set(entry.studies) & set(LONG)]
     return [*sorted([*names, *SCHEMES]), CAPTIONS] if known is FIGURES else sorted(names)
 
@@ -50,7 +50,7 @@ def needed(name: str, known: dict) -> tuple[str, ...]:
 def outdated(name: str, known: dict, results, folder) -> bool:
     """Whether a file of a figure or table is missing, or older than its results or than a file of the program."""
     if name == CAPTIONS and known is FIGURES:
-        return True  # of whatever figures there are
+        return True  # it depends on all results, so it is written each time
     kinds = TABLE if known is TABLES else SCHEME if name in SCHEMES else FIGURE
     written = [Path(folder) / f"{name}.{kind}" for kind in kinds]
     inputs = [Path(results) / f"{study}.nc" for study in needed(name, known)]

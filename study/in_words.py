@@ -8,15 +8,15 @@ from solver import Status
 from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
 from .data.flags import broken, decode
 from .physical.bodies import BODIES
-from .physical.told import is_rigid, told
+from .physical.inputs import is_rigid, used_inputs
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
 from .spec.laws import smooth_laws
 from .spec.vocabulary import CONTROLS, VOCABULARY
 
-MOST_CASES = 20  # that a summary writes out
+MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
-#: In a smooth contact the real pressure is the nominal one, and the real area all of it.
+#: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 MODELS = {
     "half_space": "a half-space under the asperities",
@@ -47,7 +47,7 @@ BROKEN = {
 
 
 class Summary(str):
-    """A text that shows itself as it is, in a notebook as in a terminal."""
+    """A text whose repr is the text itself, so that a notebook shows its lines."""
 
     def __repr__(self) -> str:
         return str(self)
@@ -75,28 +75,28 @@ def summary(contact: xr.Dataset) -> Summary:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
     dims = list(contact["status"].dims)
     if not dims:
-        return Summary(_one(contact))
+        return Summary(_summary_of_case(contact))
     cases = contact.stack({"one": dims}, create_index=False)
     texts = []
     for i in range(min(cases.sizes["one"], MOST_CASES)):
         case = cases.isel(one=i)
         where = str(case["label"].values) if "label" in case else ", ".join(_given(case, dim) for dim in dims)
-        texts.append(f"--- {where}\n{_one(case, dims)}")
+        texts.append(f"--- {where}\n{_summary_of_case(case, dims)}")
     if cases.sizes["one"] > MOST_CASES:
         texts.append(f"--- and {cases.sizes['one'] - MOST_CASES} more cases: choose some with sel() or isel()")
     return Summary("\n\n".join(texts))
 
 
-def _one(case: xr.Dataset, dims=()) -> str:
-    """The text of one case."""
+def _summary_of_case(case: xr.Dataset, dims=()) -> str:
+    """The text of one case; inputs along `dims` are not repeated."""
     rough = case["micro"].values not in smooth_laws()
-    inputs = [name for name in told(case) if name not in (*dims, *CONTROLS)]
+    inputs = [name for name in used_inputs(case) if name not in (*dims, *CONTROLS)]
     rigid = ["a rigid punch"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
     lines = ["Given: " + ", ".join(rigid + [_given(case, name) for name in inputs]), ""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:
-        lines.append(f"  {VOCABULARY[name].long_name:{width}}  {VOCABULARY[name].symbol:6} = {_sure(case, name)}")
+        lines.append(f"  {VOCABULARY[name].long_name:{width}}  {VOCABULARY[name].symbol:6} = {_result(case, name)}")
     return "\n".join([*lines, "", *_sentences(case)])
 
 
@@ -125,12 +125,12 @@ def _spread(case: xr.Dataset, name: str) -> float:
     return float(case[f"{name}_spread"]) if f"{name}_spread" in case else 0.0
 
 
-def _sure(case: xr.Dataset, name: str) -> str:
-    """A result with unit and ±."""
+def _result(case: xr.Dataset, name: str) -> str:
+    """A result with its unit and ±."""
     value, spread = float(case[name]), _spread(case, name)
     if not np.isfinite(value):
         return "unknown"
-    if not np.isfinite(spread):  # a case with an input moved by a tenth of its spread was not solved
+    if not np.isfinite(spread):  # the case was not solved with one of its inputs moved
         return f"{_text(case, name, value)} ± unknown"
     parts = [spread]
     if name not in CONTROLS or name not in case.coords:
@@ -139,7 +139,7 @@ def _sure(case: xr.Dataset, name: str) -> str:
 
 
 def _sentences(case: xr.Dataset) -> list[str]:
-    """How it was solved, and what the numbers rest on."""
+    """How well the case is solved, by which model, and which assumptions it violates."""
     status = case["status"]
     word, used = decode(status).item(), decode(case["model_used"]).item()
     if word == "converged":
@@ -150,7 +150,7 @@ def _sentences(case: xr.Dataset) -> list[str]:
     model = MODELS.get(used)
     if model:
         error = float(case["model_error"])
-        exact = used in ("half_space", "layered")  # then it is the micro law that is not
+        exact = used in ("half_space", "layered")  # then `model_error` is that of the micro law
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
         found.append(f"Model: {model}{errs}.")
@@ -162,8 +162,8 @@ def _sentences(case: xr.Dataset) -> list[str]:
 
 
 def doubts(contact: xr.Dataset) -> list[str]:
-    """Sentences about the cases of a dataset that are beyond what the model describes; none: all is well."""
-    v = contact.variables  # a DataArray compares its coordinates at every step, which takes longer than a contact
+    """A sentence for each assumption of the model that some cases violate, and for an Ra that looks like a height."""
+    v = contact.variables  # arithmetic of DataArrays takes longer than solving a contact
     found = []
     for word, where in broken(v["validity"]).items():
         of_all = f"{where.sum()} of {where.size} cases: " if where.size > 1 else ""

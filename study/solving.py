@@ -15,22 +15,22 @@ from solver.laws import Law
 from .data.dataset import Parts, parts
 from .in_words import doubts
 from .physical.reading import read as read_scene
-from .physical.scene import shown
+from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
 from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
-from .spec.grid import shown as quoted
+from .spec.grid import shown
 from .spec.vocabulary import NUMERICS, VOCABULARY
 from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
 """Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
 Value = float | str | Many | Any
-"""A number, a text with a unit ("5 mm", "200 ± 10 GPa"), a quantity of pint, or many of them."""
+"""A number, a text with a unit ("5 mm", "200 ± 10 GPa"), a quantity of pint, or several of these."""
 
 
 class Parameters(TypedDict, total=False):
-    """What `solve` takes, for editors; parameters of registered laws beside these."""
+    """The parameters of `solve`, for editors. Registered laws have others besides."""
 
     P: Value
     a: Value
@@ -142,7 +142,7 @@ def solve(
     0.02466
     """
     if workers is not None and (type(workers) is not int or workers < 1):
-        raise StudyError([f"workers = {quoted(workers)}: must be a whole number, 1 or more"])
+        raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
@@ -157,7 +157,7 @@ def solve(
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
     arrays = solved(definition, workers)
-    found = shown(definition, settings_apart(parts(definition, arrays, "study.solve")))
+    found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
     if not scene:
         return found
     beyond = doubts(found)
@@ -167,9 +167,9 @@ def solve(
 
 
 def signature() -> inspect.Signature:
-    """That of `solve` with every name, its choices and its default, for `help` and notebooks.
+    """The signature of `solve` with each parameter, its choices and its default, for `help` and notebooks.
 
-    `solve` itself takes them as they come, because their order is that of the dimensions.
+    In the code `solve` takes **parameters, which keep the order of the call: it is that of the dimensions.
     """
     kept, named = inspect.signature(solve).parameters.values(), []
     for name, hint in Parameters.__annotations__.items():
@@ -183,9 +183,9 @@ solve.__signature__ = signature()
 
 
 def settings_apart(found: Parts) -> Parts:
-    """The parts with numerical settings that all cases share as attributes: they are no coordinates of a contact.
+    """The parts with numerical settings that all cases share as attributes, not as coordinates.
 
-    Before there is a dataset: to take variables out of one copies all others.
+    It is done before the dataset is made, since dropping variables of a dataset copies all others.
     """
     shared = [name for name in NUMERICS if name in found.coords and not found.coords[name].ndim]
     coords = {name: own for name, own in found.coords.items() if name not in shared}

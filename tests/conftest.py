@@ -20,7 +20,7 @@ from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws
-from study.spec.laws import learn
+from study.spec.laws import update_vocabulary
 from study.store.lock import held
 
 collect_ignore = ["hold.py"]  # importing it changes `study`: it is for processes of their own
@@ -47,7 +47,7 @@ def laws_as_they_were() -> Iterator[None]:
     for name in set(laws.LAWS) - {law.name for law in laws.BUILT_IN}:
         del laws.LAWS[name]
         laws._declare(laws.LAWS)
-        learn()
+        update_vocabulary()
 
 
 @pytest.fixture

@@ -152,7 +152,7 @@ def apart(flip, example: Example, chance: random.Random, seen: Counter, said: Pa
     if not child:
         counts, fault = Counter(), ""
         if chance.random() > THE_SLOW_WAY:  # this process may end as well as another
-            looked_at.examined_apart = lambda path, columns, _: looked_at.examined(path, columns)
+            looked_at.examined_in_child = lambda path, columns, _: looked_at.examined(path, columns)
         try:
             flip(example, chance, counts)
         except Exception:

@@ -1,4 +1,4 @@
-"""What the commands answer, as text."""
+"""The answers of the commands as text."""
 
 from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition

@@ -1,4 +1,4 @@
-"""What the words of a command line stand for: study files, numbers, parts."""
+"""The parser of the command line, and what its words stand for: study files, numbers, parts."""
 
 import argparse
 import os
@@ -10,11 +10,11 @@ from ..work.scheduler import address_error
 
 STUDIES = Path("studies")
 PACKAGE = Path(__file__).resolve().parents[1]
-MOST_DIGITS = 9  # Python itself refuses to read 4301
+MOST_DIGITS = 9  # of a whole number: Python refuses to read 4301
 
 
 class Parser(argparse.ArgumentParser):
-    """Nothing is the matter when nobody reads its help."""
+    """A parser whose help may be cut off: `roughcoat --help | head` is no error."""
 
     def _print_message(self, message, file=None) -> None:
         say(message.removesuffix("\n"), file or sys.stderr)
@@ -41,7 +41,7 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
 
 
 def add_curves(sub: argparse.ArgumentParser) -> None:
-    """Options of `plot` that draw the results of any study, or any file of results, instead of a known figure."""
+    """Options of `plot` to draw curves of the results of a study, or of a results file, instead of a known figure."""
     group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
     group.add_argument("--x", metavar="QUANTITY", help="abscissa, such as P, or a")
     group.add_argument("--y", metavar="QUANTITY", help="ordinate, such as p_max; also An, spots, p_peak, E_eff ...")
@@ -67,7 +67,7 @@ def packaged() -> Path:
 
 
 def study_file(text: str) -> Path:
-    """The study file at a path, or of a study by its name: in studies/, or of those that come with roughcoat.
+    """The study file at a path, or of the study of a name, in studies/ or among those that come with roughcoat.
 
     Raises StudyError when there is none.
     """
@@ -87,7 +87,7 @@ def study_file(text: str) -> Path:
 
 
 def proposed(command: str, prefix: str, **_) -> list[str]:
-    """What a shell may complete a word of a command to: names of studies, figures, tables, or of parameters."""
+    """Completions of a word of a command: names of studies, figures, tables or parameters that begin with `prefix`."""
     if command == "point":
         from ..physical.bodies import BODIES
         from ..physical.names import SCENE
@@ -111,7 +111,7 @@ def known_studies() -> list[str]:
 
 
 def folder(text: str) -> str:
-    """A folder, with ~ as the shell has it (which leaves that of --results=~/there alone)."""
+    """A folder. A leading ~ is expanded, since the shell does not do it in --results=~/there."""
     path = os.path.expanduser(text)
     if not path or path.startswith("~"):
         raise argparse.ArgumentTypeError(f'"{text}": must be a folder; ./{text} is one that is called so')

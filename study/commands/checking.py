@@ -1,4 +1,4 @@
-"""The command that reads study files only; it answers at once, for it imports neither xarray nor netCDF4."""
+"""The command `check`. It answers at once, for it imports neither xarray nor netCDF4."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ def check(_, file: str) -> int:
 
 
 def law_lines(definition: Definition) -> list[str]:
-    """What is fitted, and that it is."""
+    """A line about the power law of a study, if that is fitted; otherwise none."""
     if not definition.grid.fitted:
         return []
     ends = [np.unique(definition.grid.values[name][1])[[0, -1]] for name in ("B", "beta")]

@@ -1,4 +1,4 @@
-"""The commands that compute studies and look at results. Each does it for one file and returns an exit code."""
+"""The commands that compute studies and look at results. Each takes one file and returns an exit code."""
 
 import sys
 from pathlib import Path
@@ -12,7 +12,7 @@ from .arguments import STUDIES, packaged, study_file
 
 
 def items(options) -> list:
-    """What the command is for: the files that were given, or those of a folder."""
+    """The files for which the command is called: those that were given, or of `list` those in a folder."""
     if options.command != "list":
         return options.items
     folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()

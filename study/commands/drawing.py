@@ -1,4 +1,4 @@
-"""The commands that draw and tabulate results. Each does it for one name and returns an exit code."""
+"""The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
 from pathlib import Path
 
@@ -18,7 +18,7 @@ from .computing import completed
 
 
 def items(options) -> list[str]:
-    """Names of figures or tables, or of studies; "all" stands for those that no long study is needed for."""
+    """The names of figures, tables or studies that were given; "all" stands for those that need no long study."""
     known = catalogue.FIGURES if options.command == "plot" else catalogue.TABLES
     return catalogue.usual(known) if options.items == ["all"] else options.items
 
@@ -70,8 +70,8 @@ def _write(options, name: str, known: dict, make) -> int:
 
 
 def _ready(options, study: str) -> int:
-    """Compute what is missing of a study of this repository, once; its results of an older version may be replaced."""
-    codes = vars(options).setdefault("codes", {})
+    """Compute what is missing of a study, if this command has not done so yet. Older results may be replaced."""
+    codes = vars(options).setdefault("codes", {})  # study -> exit code, of this command
     if study not in codes and study == "tradeoff":
         codes[study] = _measured(options, force=False)
     elif study not in codes:

@@ -1,7 +1,7 @@
 """How a command ends when a signal comes, at whatever moment.
 
-While it starts: at once. While it works: in good order, by KeyboardInterrupt, and at once by a second signal. When it
-is done: at once, with the exit code of what it has done. A signal that the parent process ignores is ignored.
+While it starts, it ends at once. While it works, KeyboardInterrupt ends it in good order, and a second signal at once.
+When it is done, it ends at once with the exit code of its work. A signal that the parent process ignores is ignored.
 """
 
 import atexit
@@ -15,48 +15,48 @@ INTERRUPTED = 130  # exit code
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class Moment:
-    """working : the command has begun; came : a signal has; code : the exit code, once it is known."""
+class State:
+    """working : the command has begun; interrupted : a signal has come; code : the exit code, once it is known."""
 
     def __init__(self):
-        self.working, self.came, self.code = False, False, None
+        self.working, self.interrupted, self.code = False, False, None
 
 
-now = Moment()
+state = State()
 
 
-def start() -> None:
-    """Begin the process of a command: listen to signals, and let its code be the last thing that is decided."""
-    atexit.register(_last)  # first to be registered, last to be called
-    sys.unraisablehook = _lost
+def listen() -> None:
+    """Handle signals, and make `state.code` the exit code of this process."""
+    atexit.register(_exit_with_code)  # the first that is registered is called last
+    sys.unraisablehook = _unraisable
     for number in SIGNALS:
         if signal.getsignal(number) is not signal.SIG_IGN:
-            signal.signal(number, _first)
+            signal.signal(number, _first_signal)
 
 
-def _first(*_) -> None:
+def _first_signal(*_) -> None:
     for number in SIGNALS:
-        if signal.getsignal(number) is _first:
-            signal.signal(number, _second)
-    now.came = True
-    if now.code is None and now.working:
+        if signal.getsignal(number) is _first_signal:
+            signal.signal(number, _end_at_once)
+    state.interrupted = True
+    if state.code is None and state.working:
         raise KeyboardInterrupt
-    _second()
+    _end_at_once()
 
 
-def _second(*_) -> None:
-    """End at once: the blocks in work are lost, and no more."""
-    os._exit(INTERRUPTED if now.code is None else now.code)
+def _end_at_once(*_) -> None:
+    """End the process; only the blocks in work are lost."""
+    os._exit(INTERRUPTED if state.code is None else state.code)
 
 
-def _lost(unraisable) -> None:
-    """An exception where none can be raised, such as in the destructor of an object."""
+def _unraisable(unraisable) -> None:
+    """What Python calls with an exception that it cannot raise, such as one in the destructor of an object."""
     if unraisable.exc_type is KeyboardInterrupt:
-        _second()
+        _end_at_once()
     sys.__unraisablehook__(unraisable)
 
 
-def _last() -> None:
-    """Python, as it ends, gives signals back their default action, which would be another exit code."""
+def _exit_with_code() -> None:
+    """End the process here: later Python gives signals their default action, which has another exit code."""
     empty_buffers()
-    os._exit(1 if now.code is None else now.code)
+    os._exit(1 if state.code is None else state.code)

@@ -1,4 +1,4 @@
-"""One contact in the terminal, in words."""
+"""The command `point`: one contact in the terminal, in words or as JSON."""
 
 import json
 import math
@@ -9,7 +9,7 @@ import xarray as xr
 
 from ..data.flags import decode
 from ..in_words import SHOWN, summary
-from ..physical.told import in_order
+from ..physical.inputs import all_inputs
 from ..solving import solve
 from ..spec.definition import StudyError
 from ..terminal import answer
@@ -49,7 +49,7 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
 
 def as_numbers(found: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
-    shown = {name: described(found, name) for name in dict.fromkeys((*in_order(), *SHOWN)) if name in found}
+    shown = {name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN)) if name in found}
     shown |= {name: number(found[name]) for name in ("error", "model_error")}
     shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(found["validity"]).item().split()

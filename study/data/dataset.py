@@ -9,15 +9,14 @@ from solver import Model, Status
 
 from ..spec.definition import Definition
 from ..spec.fitted import COMMENT
-from ..spec.given import is_rigid
-from ..spec.grid import unflatten
+from ..spec.grid import on_rigid_base, unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
 from .derived import validity_of
 from .provenance import provenance
 
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
-"""Statuses of cases whose equations have no solution that the model means: no failure of the solver."""
+"""Statuses of cases whose equations have no solution in the model. The solver has not failed there."""
 
 
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
@@ -30,7 +29,7 @@ def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
 
 
 class Parts(NamedTuple):
-    """What a dataset is made of. To make the dataset takes as long as to solve a contact, so it is made last, once."""
+    """What a dataset is made of. The dataset is made once, last: that takes as long as solving a contact."""
 
     variables: dict[str, xr.Variable]
     coords: dict[str, xr.Variable]
@@ -38,30 +37,22 @@ class Parts(NamedTuple):
 
     def dataset(self) -> xr.Dataset:
         """The dataset of these parts."""
-        return plainly_written(xr.Dataset(*self))
-
-
-def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> xr.Dataset:
-    """Dataset of the whole grid from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
-    return parts(definition, arrays, command).dataset()
+        return without_fill_values(xr.Dataset(*self))
 
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
-    """The :class:`Parts` of the dataset of the whole grid from flat arrays (B, ...)."""
-    found = assembled(definition, arrays, "x", definition.x, command)
+    """The parts of the dataset of a grid, from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
+    found = labelled(definition, arrays, command)
     found.variables["status"].attrs |= status_attributes()
     found.variables["model_used"].attrs |= model_attributes()
     found.variables["validity"] = validity_of(found.variables | found.coords)
     return found
 
 
-def assembled(
-    definition: Definition, arrays: dict[str, np.ndarray], last: str, points: np.ndarray, command: str
-) -> Parts:
-    """:class:`Parts` of flat arrays: (B,) over the grid, (B, m) over the grid and the dimension `last` with its m
-    points."""
+def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
+    """`parts` of any of the arrays, even none, without `validity` and the names of flags."""
     grid = definition.grid
-    rigid = bool(is_rigid(grid).any())  # then all layers are on a rigid base
+    rigid = bool(on_rigid_base(grid).any())  # if one layer is on a rigid base, all are
     known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate"))}
     for name in ("B", "beta") if grid.fitted else ():
         known[name]["comment"] = COMMENT
@@ -69,10 +60,10 @@ def assembled(
         name: xr.Variable(dims, array, known.get(name, {}))
         for name, (dims, array) in (grid.values | grid.labels).items()
     }
-    coordinates[last] = xr.Variable((last,), points, attributes(last))
+    coordinates["x"] = xr.Variable(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)
     variables = {
-        name: xr.Variable(dims + (last,) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
+        name: xr.Variable(dims + ("x",) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
         for name, flat in arrays.items()
         if name not in grid.values
     }
@@ -81,15 +72,15 @@ def assembled(
     return Parts(variables, coordinates, about)
 
 
-def plainly_written(dataset: xr.Dataset) -> xr.Dataset:
-    """The same dataset, marked so that a user's `to_netcdf` gives coordinates no _FillValue, which CF forbids there."""
+def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
+    """The same dataset. A user's `to_netcdf` then writes no _FillValue for coordinates, which CF forbids."""
     for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
 
 
 def status_words() -> dict[int, str]:
-    """What the values of `status` are called: the solver's statuses and 127, not run."""
+    """Value of `status` -> its name: the solver's statuses, and 127, not run."""
     return {int(status): status.name.lower() for status in Status} | {NOT_RUN: "not_run"}
 
 

@@ -34,7 +34,7 @@ STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
-"""Name -> function of a dataset, of all that a decorated formula gives: it can be drawn like a result."""
+"""Name -> function of a dataset, of each formula with the decorator `quantity`. They can be drawn like results."""
 ASSUMPTIONS = {
     1: "layer_not_thin",
     2: "few_spots",
@@ -61,8 +61,7 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def validity_of(variables: Mapping) -> xr.Variable:
-    """:func:`validity` of the variables of a dataset, in arithmetic of arrays: that of xarray takes as long as a
-    contact."""
+    """`validity` of the variables of a dataset. It computes with arrays, since DataArrays take as long as a contact."""
     status, used = variables["status"], variables["model_used"].attrs
     v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
@@ -75,13 +74,18 @@ def validity_of(variables: Mapping) -> xr.Variable:
         2: rough & (_spots(v) < FEW_SPOTS),
         4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
         8: (v["base"] == "thin_layer") & (n >= 1),
-        16: rough & _smeared(v["micro"]) & (v["lam0"] > MERGING),
+        16: rough & _smears(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
         64: rough & (_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
-    masks = {"flag_masks": np.array(list(ASSUMPTIONS), dtype=np.int32), "flag_meanings": " ".join(ASSUMPTIONS.values())}
-    return xr.Variable(status.dims, flags, attributes("validity") | masks)
+    return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())
+
+
+def validity_attributes() -> dict:
+    """CF flags of `validity`."""
+    masks = np.array(list(ASSUMPTIONS), dtype=np.int32)
+    return {"flag_masks": masks, "flag_meanings": " ".join(ASSUMPTIONS.values())}
 
 
 def _along(dims: tuple, variable: xr.Variable):
@@ -91,7 +95,7 @@ def _along(dims: tuple, variable: xr.Variable):
 
 
 def quantity(name: str) -> Callable:
-    """Make a formula the function that gives the quantity of this name of the vocabulary, and QUANTITIES know it."""
+    """Decorator of a formula: its result has the name and attributes of the vocabulary, and QUANTITIES holds it."""
 
     def register(formula: Callable) -> Callable:
         @wraps(formula)
@@ -141,7 +145,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     profile p; NaN for a law that is not registered.
     """
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
-    E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch together
+    E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
         given = [_given(dataset, name) for name in law.parameters]
@@ -176,12 +180,12 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
 
 
 def _rough(micro):
-    """Whether there are asperities; a law that is not registered has some."""
+    """Whether the cases have asperities. A law that is not registered is taken to have some."""
     return sum(micro == name for name, law in LAWS.items() if not law.rough) == 0
 
 
-def _smeared(micro):
-    """Whether the law spreads the pressure of the neighbours evenly; one that is not registered may."""
+def _smears(micro):
+    """Whether the law spreads the pressure of the neighbours evenly. One that is not registered is taken to do so."""
     return sum(micro == name for name, law in LAWS.items() if not law.smears) == 0
 
 
@@ -199,7 +203,7 @@ def _given(values, name: str):
 
 
 def named(array: xr.DataArray, name: str) -> xr.DataArray:
-    """The array under a name of the vocabulary, with its attributes. Raises ValueError for physical units."""
+    """The array with a name of the vocabulary and its attributes. Raises ValueError if it is not dimensionless."""
     if any(coordinate.attrs.get("units", "1") != "1" for coordinate in array.coords.values()):
         raise ValueError(
             f"{name} is derived from dimensionless datasets: derive first, then convert with study.to_physical"

@@ -4,9 +4,7 @@ import numpy as np
 import xarray as xr
 
 from .dataset import model_attributes, status_attributes
-from .derived import ASSUMPTIONS
-
-MASKS = {"flag_masks": list(ASSUMPTIONS), "flag_meanings": " ".join(ASSUMPTIONS.values())}
+from .derived import validity_attributes
 
 
 def decode(flags: xr.DataArray) -> xr.DataArray:
@@ -26,29 +24,26 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     >>> study.decode(found.model_used).values.tolist()
     ['smooth_half_space', 'smooth_half_space']
     """
-    known = {"status": status_attributes, "model_used": model_attributes, "validity": lambda: MASKS}
-    told = flags.attrs
-    if "flag_meanings" not in told:  # arithmetic of xarray loses attributes
+    known = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
+    attributes = flags.attrs
+    if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
         if flags.name not in known:
             raise ValueError(f"{flags.name or 'the array'} is none of {', '.join(known)}")
-        told = known[flags.name]()
-    words = told["flag_meanings"].split()
-    if "flag_masks" in told:
-        masks = np.atleast_1d(told["flag_masks"]).tolist()
-        names = {v: " ".join(w for m, w in zip(masks, words, strict=True) if v & m) for v in _values(flags)}
+        attributes = known[flags.name]()
+    words, values = attributes["flag_meanings"].split(), flags.values.astype(int)
+    if "flag_masks" in attributes:
+        masks = np.atleast_1d(attributes["flag_masks"]).tolist()
+        present = np.unique(values).tolist()
+        names = {v: " ".join(w for m, w in zip(masks, words, strict=True) if v & m) for v in present}
     else:
-        names = dict(zip(np.atleast_1d(told["flag_values"]).tolist(), words, strict=True))
-    texts = [names.get(value, str(value)) for value in flags.values.ravel().astype(int).tolist()]
+        names = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), words, strict=True))
+    texts = [names.get(value, str(value)) for value in values.ravel().tolist()]
     named = np.array(texts, dtype=str).reshape(flags.shape)
     return xr.DataArray(named, flags.coords, flags.dims, flags.name)
 
 
 def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
     """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
-    told = validity.attrs
-    masks = zip(np.atleast_1d(told["flag_masks"]).tolist(), told["flag_meanings"].split(), strict=True)
+    attributes = validity.attrs
+    masks = zip(np.atleast_1d(attributes["flag_masks"]).tolist(), attributes["flag_meanings"].split(), strict=True)
     return {name: (validity.values & mask) != 0 for mask, name in masks}
-
-
-def _values(flags: xr.DataArray) -> list[int]:
-    return np.unique(flags.values).astype(int).tolist()

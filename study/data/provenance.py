@@ -38,7 +38,7 @@ def provenance(definition: Definition, command: str) -> dict:
     }
 
 
-@cache  # reading versions and asking git takes 10 ms; they are those of the code that was imported
+@cache  # reading versions and asking git takes 10 ms
 def machine() -> dict:
     """The attributes that do not change while a program runs."""
     packages = ("numpy", "scipy", "xarray", "dask", "netCDF4")
@@ -57,13 +57,14 @@ def command_line() -> str:
     program = Path(sys.argv[0])
     first = "python -m study" if program.name == "__main__.py" and program.parent.name == "study" else program.name
     text = f"{first} {shlex.join(sys.argv[1:])}".strip()
-    return text.encode("utf-8", "backslashreplace").decode()  # a path may be other bytes, an attribute may not
+    # a path may have bytes that are not UTF-8, an attribute may not
+    return text.encode("utf-8", "backslashreplace").decode()
 
 
 def git_commit() -> str:
     """Commit of the checkout that holds this package, "-dirty" if tracked files were changed; "unknown" without one."""
     root = Path(__file__).resolve().parents[2]
-    if not (root / ".git").exists():  # installed: a repository further up would be another project's
+    if not (root / ".git").exists():  # the package is installed: a repository further up is of another project
         return "unknown"
     command = ["git", "-C", str(root), "describe", "--always", "--dirty", "--abbrev=40", "--exclude=*"]
     try:
@@ -89,7 +90,7 @@ def blas() -> str:
 
 
 def package_version(package: str) -> str:
-    """Of an installed package; "unknown" without one."""
+    """Version of an installed package; "unknown" if it is not installed."""
     try:
         return metadata.version(package)
     except metadata.PackageNotFoundError:

@@ -7,12 +7,12 @@ import xarray as xr
 
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 
-DONE = "physical_scale"
+PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical units
 
 
 def reduced_modulus(E, nu):
     """E* = E/(1 - ν²), in the unit of E."""
-    return E / (1 - nu * nu)  # a product is the same for one number and for an array of them, a power is not
+    return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
 
 
 def factor(name: str, R: float, E2_star: float) -> float:
@@ -54,8 +54,8 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
     ------
     ValueError : the dataset is physical already, or holds pressures in E1* (a micro-law study)
     """
-    if DONE in dataset.attrs:
-        raise ValueError(f"the dataset is in physical units already: {dataset.attrs[DONE]}")
+    if PHYSICAL_SCALE in dataset.attrs:
+        raise ValueError(f"the dataset is in physical units already: {dataset.attrs[PHYSICAL_SCALE]}")
     if "status" not in dataset and any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
         raise ValueError("pressures of a micro-law study are in E1*, not in E2*: no half-space is defined there")
     changed = {}
@@ -66,7 +66,7 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
             changed[name] = array.dims, array.data * factor(name, R, E2_star), attributes, fill
     physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})
     physical = physical.assign({name: made for name, made in changed.items() if name in dataset.data_vars})
-    return physical.assign_attrs({DONE: f"R = {R!r} m, E2* = {E2_star!r} Pa"})
+    return physical.assign_attrs({PHYSICAL_SCALE: f"R = {R!r} m, E2* = {E2_star!r} Pa"})
 
 
 def from_physical(*, R: float, E2_star: float, **parameters) -> dict:

@@ -1,1 +1,1 @@
-"""What we measure about ourselves: trade-off, validity maps, extremes."""
+"""What is measured of this program itself: work and precision, where the thin layer holds, random extreme cases."""

@@ -24,8 +24,7 @@ ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_lay
         ("layered", "P", "N Ra^2"), ("layered", "h", "n"))  # fmt: skip
 BARS = ("estimated error / rtol, median of the cell", "iterations, largest of the cell")
 BINS = 24
-#: Cases in a map from which on the points of those that converged are the smallest.
-_MANY = 10_000
+_MANY = 10_000  # cases in a map from which on converged ones are drawn as smaller points
 _FAILURES = [status for status in Status if status not in (Status.CONVERGED, *NO_SOLUTION)]
 FAILED = dict(zip(_FAILURES, ("#d55e00", "#cc79a7", "black", "#e69f00", "#0072b2", "#009e73"), strict=False))
 COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"), strict=True)) | FAILED
@@ -80,8 +79,10 @@ def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
 
 
 def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]) -> Columns:
-    """Per cell of the plane: its middle, the cases, those that converged and that failed, and the median and largest
-    error and largest number of iterations of the converged ones (NaN without any)."""
+    """Columns over the cells of the plane: middle, number of cases, of converged and of failed ones.
+
+    And of the converged ones median and largest error over rtol and largest number of iterations, NaN without any.
+    """
     at = [np.searchsorted(e[1:-1], cases[name], "right") for name, e in zip((x, y), edges, strict=True)]
     cell, status = at[0] * BINS + at[1], cases["status"]
     middles = np.meshgrid(*(np.sqrt(e[1:] * e[:-1]) for e in edges), indexing="ij")
@@ -97,7 +98,7 @@ def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]
 
 
 def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:
-    """Every case by its status, the failures uppermost."""
+    """Draw every case as a point in the colour of its status, failures on top."""
     least = 1.0 if len(cases["status"]) > _MANY else 2.0
     for status, colour in COLOURS.items():
         which = cases["status"] == status
@@ -107,14 +108,14 @@ def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:
 
 
 def shaded(axes, edges: list[np.ndarray], values: np.ndarray, norm):
-    """A map of cells; empty ones are grey."""
+    """Draw the values of the cells; empty ones are grey. Returns the image, for the colour bar."""
     axes.set_facecolor("0.9")
     grid = np.ma.masked_invalid(np.clip(values, norm.vmin, norm.vmax).reshape(BINS, BINS).T)
     return axes.pcolormesh(*edges, grid, norm=norm, cmap="viridis", rasterized=True)
 
 
 def legend(panels, images, present: np.ndarray) -> None:
-    """What the colours mean, below the columns; `present`: the statuses that occur."""
+    """Colour bars and legend below the columns. present : the statuses that occur"""
     figure = panels[0, 0].figure
     for column, image, label in zip(panels.T[1:], images, BARS, strict=True):
         bar = figure.colorbar(image, ax=column, location="bottom", fraction=0.03, pad=0.01, aspect=25)

@@ -1,5 +1,7 @@
-"""How far the paper's successive approximations get: the cycle in which they end over C and k, and one seen near the
-edge."""
+"""Where the paper's successive approximations converge: maps of the cycle in which they end, over C and k.
+
+A last panel shows two iterates of such a cycle near the edge of the contact.
+"""
 
 from importlib.resources import files
 
@@ -15,10 +17,10 @@ from ..figures.registry import TWO_COLUMNS, Columns, figure
 MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))
 """β and number of nodes of each map."""
 SHARES = (1e-2, 1e-4)
-"""p/p(0) of the lines A'(p) = (1 + 2k) C."""
+"""Each p/p(0) at which a line A'(p) = (1 + 2k) C is drawn."""
 LARGEST = 0.57021276802733
-"""Largest eigenvalue of the half-space operator on a contact of radius 1, without its value at the edge, over 4/π;
-tests/evidence/test_picard_domain.py has it from the matrix."""
+"""Largest eigenvalue, over 4/π, of the operator p -> u(r) - u(1) of the half-space on a contact of radius 1, from
+tests/evidence/test_picard_domain.py, which computes it of the matrix."""
 DECADES = 10.0 ** np.arange(-8, 0)
 LINES = {"color": "black", "linewidth": 0.9}
 DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
@@ -67,9 +69,9 @@ def cycle_size(part: xr.Dataset) -> np.ndarray:
 
 
 def draw_map(axes, part: xr.Dataset):
-    """Size of the cycle over C and 1 + 2k, grey where all of the pressure swings; the lines of the linear theory."""
+    """Draw the size of the cycle over C and 1 + 2k, grey above 0.1, and the lines of the linear theory."""
     C, k = compliance(part), part["k"].values
-    size = np.ma.masked_greater_equal(cycle_size(part), DECADES[-1])  # beyond, all of the pressure swings
+    size = np.ma.masked_greater_equal(cycle_size(part), DECADES[-1])  # beyond, the whole pressure swings
     axes.set_facecolor("0.75")
     style = {"shading": "nearest", "cmap": "YlGnBu_r", "norm": BoundaryNorm(DECADES, 256), "rasterized": True}
     image = axes.pcolormesh(C, 1 + 2 * k, size.clip(DECADES[0]), **style)
@@ -83,9 +85,11 @@ def draw_map(axes, part: xr.Dataset):
 
 
 def theory(part: xr.Dataset) -> list[np.ndarray]:
-    """Smallest 1 + 2k, over the thickness h, for which small errors die: of the whole contact by its half-space part
-    alone, and of the asperities alone where p/p(0) is each of SHARES, A'(p)/C. p(0) is that of the largest k, 5e-7 off
-    at most."""
+    """Smallest 1 + 2k for which small errors shrink, an array over h for each line.
+
+    The first is that of the whole contact, by its half-space part alone. The others are those of the asperities alone,
+    A'(p)/C, where p/p(0) is one of SHARES. p(0) is taken from the largest k, which is 5e-7 off at most.
+    """
     C, p0 = compliance(part), part["p0"].values[-1]
     a, n, B, Ra, beta = (float(part[name]) for name in ("a", "n", "B", "Ra", "beta"))
     slopes = [beta * B * Ra / n**beta * (share * p0) ** (beta - 1) for share in SHARES]
@@ -93,9 +97,9 @@ def theory(part: xr.Dataset) -> list[np.ndarray]:
 
 
 def cycle(axes) -> None:
-    """Two successive iterates near the edge, long after the load has settled, and the solution between them.
+    """Draw two successive iterates near the edge, long after the load has settled, and the solution between them.
 
-    Results hold no iterates: these stand in a file that tests/references/make_picard_cycle.py wrote.
+    Results hold no iterates. These are in a file, which tests/references/make_picard_cycle.py has written.
     """
     x, *iterates, solution = np.loadtxt(files(__package__) / "picard_cycle.csv", delimiter=",", skiprows=1).T
     for p, count, mark in zip(iterates, (1000, 1001), "os", strict=True):

@@ -1,4 +1,4 @@
-"""The problem sets of the work-precision study (the paper's on either base): arguments of `solver.Problem.of`."""
+"""The problem sets of the work-precision study: arguments of `solver.Problem.of`."""
 
 from functools import partial
 
@@ -8,13 +8,13 @@ from solver import fit_power_law
 
 from ..paper import numbers
 
-#: N̄ Ra² of the coatings: those of the paper's Table 1, so that its fits serve.
+#: N̄ Ra² of the coatings: those of the paper's Table 1, so that the law needs three fits only.
 DENSITIES = (0.25, 1.0, 4.0)
 
 
 def paper_cases(base: str, size: int, seed: int) -> dict:
-    """The paper's own on one base: its five roughnesses as power laws, under the loads of its figures."""
-    del seed  # nothing is drawn
+    """The paper's contacts on one base: its five roughnesses as power laws, under the loads of its figures."""
+    del seed  # nothing here is random
     loads = np.geomspace(1e-6, 5e-5, max(size // len(numbers.TABLE1), 1))
     row, load = (v.ravel() for v in np.indices((len(numbers.TABLE1), len(loads))))
     Ra, Nbar, B, beta = np.array(numbers.TABLE1).T[:, row]
@@ -23,7 +23,7 @@ def paper_cases(base: str, size: int, seed: int) -> dict:
 
 
 def coatings(size: int, seed: int) -> dict:
-    """Soft to hard coatings on the exact layer, exact law, both interfaces; B and beta are the fits of the law."""
+    """Soft to hard coatings on the exact layer with the exact law. B and beta are its fits, for the other law."""
     random = np.random.default_rng(seed)
     Ra, density = _between(random, 5e-4, 1e-2, size), random.integers(len(DENSITIES), size=size)
     B, beta, _ = np.array([fit_power_law(value) for value in DENSITIES]).T[:, density]
@@ -42,9 +42,9 @@ def coatings(size: int, seed: int) -> dict:
 
 
 def extremes(size: int, seed: int) -> dict:
-    """Log-uniform far beyond any scene, thin layer and half-space, both laws and interfaces.
+    """Random cases far beyond real contacts, on the thin layer and the half-space, with both laws and interfaces.
 
-    The exact layer there takes seconds a case at the reference's tolerance; `make extremes` has it.
+    The exact layer is left out: it takes seconds a case at the tolerance of the reference. `make extremes` has it.
     """
     random = np.random.default_rng(seed)
     Ra = _between(random, 1e-5, 0.1, size)

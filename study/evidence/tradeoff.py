@@ -1,9 +1,9 @@
 """Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
 
-Time is processor time of one thread, which other work on the machine hardly changes: the shortest of the repeats, over
-all cases of a set (copies of them, where a hundred take no time), solved as one batch. The error of a
-case is its largest relative error over a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11; a case without
-an answer, or more than 100 % off, counts as 1.
+Time is processor time of one thread, which other work on the machine hardly changes. A set is solved as one batch, or
+several copies of it where it would be too short to measure, and the shortest of several runs counts. The error of a
+case is the largest of the relative errors of a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11. A case
+without an answer, or more than 100 % off, has the error 1.
 """
 
 import hashlib
@@ -37,18 +37,19 @@ PAPERS = ("paper, layer", "paper, half-space")
 TOLERANCES = tuple(10.0**-i for i in range(2, 10))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
 SLOW, COPIES = 20, 10
-#: Among them those that just reach 1e-3, 1e-4, 1e-5 and 1e-6 on the paper's layer.
+#: Intervals of the paper's meshes, among them those that just reach 1e-3, 1e-4, 1e-5 and 1e-6 on the paper's layer.
 MESHES = (10.0, 20.0, 45.0, 80.0, 130.0)
 FINE = (390.0, 640.0, 1100.0)
 
 
 @dataclass(frozen=True)
 class Way:
-    """One way to solve: `run(cases, setting)` with each of the `settings`, which vary what `varied` says.
+    """One way to solve: `run(cases, setting)` for each of its `settings`.
 
-    sets : where it is measured; most : of their cases it takes no more, for slow ones;
-    copies : of the paper's cases in the batch that is timed, for what solves a hundred in no time;
-    prepare : what is done once for a setting, however many cases follow, and not timed
+    varied : what the settings are, in a word
+    sets : names of the problem sets on which it is measured; most : it takes at most so many cases of a set
+    copies : of the paper's cases in a batch, for ways so quick that a hundred cases cannot be timed
+    prepare(setting) : is called before, and not timed, as any number of cases can use what it prepares
     """
 
     run: Callable[[dict, float], Solution]
@@ -65,7 +66,7 @@ class Way:
 
 
 def changed(**parameters) -> Callable[[dict, float], Solution]:
-    """`run` of the solver on the cases with other parameters; one that is a function is given the setting."""
+    """`run` of the solver with some parameters changed, to a value or to a function of the setting."""
 
     def run(cases: dict, setting: float) -> Solution:
         new = {name: value(setting) if callable(value) else value for name, value in parameters.items()}
@@ -75,7 +76,7 @@ def changed(**parameters) -> Callable[[dict, float], Solution]:
 
 
 def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution]:
-    """`run` with one model for the other and the other for the one; the setting is rtol."""
+    """`run` of the solver with two values of the parameter `name` exchanged; the setting is rtol."""
 
     def run(cases: dict, setting: float) -> Solution:
         values = np.where(cases[name] == one, other, np.where(cases[name] == other, one, cases[name]))
@@ -90,8 +91,7 @@ def _picard(k: float) -> Way:
 
 
 def paper_way(k: float, settings=MESHES, sets=PAPERS, most=SLOW) -> Way:
-    """The paper's way with one k, on meshes of `settings` intervals; all is iterated until the mesh is the largest
-    error."""
+    """The paper's way with one k, on meshes of `settings` intervals. The tolerance is below the error of the mesh."""
 
     def run(cases: dict, intervals: float):
         return solve_uniform(Problem.of(**cases), int(intervals), k, 0.3 / intervals**2)
@@ -151,7 +151,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, com
 def measured(
     way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies: int = 1
 ) -> dict[str, float]:
-    """WORDS of one way with one setting; `copies` of the cases are timed together."""
+    """What WORDS lists, for one way and setting, with `copies` of the cases timed together."""
     way.prepare(setting)
     whole, reference = taken(cases, reference, np.tile(np.arange(len(reference.a)), copies))
     seconds, solution = timed(lambda: way.run(whole, setting), repeats)
@@ -163,7 +163,7 @@ def measured(
 
 
 def with_reference(cases: dict) -> tuple[dict, Solution]:
-    """The cases that the model can solve at all, and their solutions at the finest tolerance."""
+    """The cases that have a solution, and their solutions at the tolerance REFERENCE."""
     reference = solve(Problem.of(**cases | {"rtol": REFERENCE}), X)
     return taken(cases, reference, np.flatnonzero(np.isin(reference.status, ENDED)))
 
@@ -187,7 +187,7 @@ def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution
 
 
 def errors(solution: Solution, reference: Solution) -> np.ndarray:
-    """(B,) largest relative error of each case over JUDGED; at most, and without an answer, 1."""
+    """(B,) the largest of the relative errors of JUDGED of each case, at most 1; 1 without an answer."""
     with np.errstate(all="ignore"):
         found = [np.abs(getattr(solution, name) / getattr(reference, name) - 1) for name in JUDGED]
     return np.minimum(np.nan_to_num(np.max(found, axis=0), nan=1.0, posinf=1.0), 1.0)
@@ -220,9 +220,11 @@ def digest(text: str) -> str:
 
 
 def results(folder, size: int = SIZE, force: bool = False, command: str = "") -> xr.Dataset:
-    """The measurements in FOLDER/tradeoff.nc; made first if not there, damaged, of another plan, or by `force`.
+    """The measurements in FOLDER/tradeoff.nc. If they are missing, damaged or of another plan, they are made anew.
 
-    A damaged file is kept aside. Raises Unusable for one that is none of ours.
+    force : make them anew in any case
+
+    A damaged file is kept aside. Raises Unusable for a file that roughcoat has not written.
     """
     path = Path(folder) / "tradeoff.nc"
     found = examine(path)

@@ -7,8 +7,8 @@ from matplotlib.lines import Line2D
 from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 
 FLOOR = 1e-12
-"""Smaller errors are those of the reference."""
-TIMES = (5.0, 4e6)
+"""Smaller errors are drawn here: they are those of the reference."""
+TIMES = (5.0, 4e6)  # µs, ends of the abscissa
 STYLES = {
     "paper k = 0": ("#fdbe85", "o"),
     "paper k = 1": ("#fd8d3c", "s"),
@@ -32,12 +32,12 @@ NAMES = {
 MODELS = {"the other law": "power law for the exact law", "the other layer": "thin layer for the exact layer"}
 MODEL_LINE = {"color": "0.35", "linewidth": 0.8, "linestyle": (0, (4, 2)), "zorder": 0}
 SETTLED = 0.99
-"""Share of ended cases from which on a mark is filled."""
+"""From this share of ended cases on a mark is filled."""
 REACHED = 0.95
 """A setting reaches a target when this share of the cases ends and 95 % of all are within it."""
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
 ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-"""Where the paper's way is set beside Newton."""
+"""Errors at which the paper's way is compared with Newton."""
 
 
 @figure(
@@ -71,7 +71,7 @@ def work_precision(panels, found: xr.Dataset) -> Columns:
 
 
 def curve(axes, time, error, ended, colour: str, mark: str) -> None:
-    """One way; marks are open where more than a hundredth of the cases did not end."""
+    """Draw error against time of one way; marks are open where fewer than SETTLED of the cases ended."""
     error = np.maximum(error, FLOOR)
     axes.plot(time, error, "-", color=colour, linewidth=0.9)
     for where, face in ((ended >= SETTLED, colour), (ended < SETTLED, "white")):
@@ -182,7 +182,7 @@ def time_to(part: xr.Dataset, target: float) -> float:
     factor | .0f""",
 )
 def factors(found: xr.Dataset) -> list[tuple]:
-    """Error, time of the paper's way and which k, time of Newton, their ratio; where the paper's way gets there."""
+    """Error, time of the paper's way and its k, time of Newton, ratio; for errors that the paper's way reaches."""
     layer, table = found.sel(set="paper, layer"), []
     ways = [way for way in layer["way"].values.tolist() if way.startswith("paper") and int(layer["cases"].sel(way=way))]
     for target in ERRORS:

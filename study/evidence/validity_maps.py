@@ -75,7 +75,7 @@ def given_radius(panels, found: xr.Dataset) -> Columns:
 
 
 def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, str]) -> Columns:
-    """A map for each row (name, dataset, quantity) and each material; returns the errors drawn, where there are any."""
+    """Draw a map for each row (name, dataset, quantity) and each material. Returns the errors that are not NaN."""
     parts = []
     for i, (name, dataset, quantity) in enumerate(rows):
         for axes, case in zip(panels[i], materials(dataset), strict=True):
@@ -92,7 +92,7 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
         )
     for axes in panels[-1]:
         axes.set_xlabel("$h/a$")
-    return long(rows, parts)
+    return long_columns(rows, parts)
 
 
 def materials(dataset: xr.Dataset) -> list[xr.Dataset]:
@@ -147,8 +147,8 @@ def legend(panels, *, estimate: bool) -> None:
     panels[0][0].figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, handlelength=1.8)
 
 
-def long(rows, parts) -> Columns:
-    """Long columns: quantity (number of the row), material, h/a, n, error."""
+def long_columns(rows, parts) -> Columns:
+    """Columns with a line for each point: number of the row, of the material, h/a, n, error."""
     found, per_row = [], len(parts) // len(rows)
     for i, (h_a, error) in enumerate(parts):
         n, finite = error["n"].broadcast_like(error).values, np.isfinite(error.values)
@@ -187,8 +187,10 @@ def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
 
 
 def largest_thickness(case: xr.Dataset, name: str, level: float) -> float:
-    """Smallest h/a, over all n, at which |error| of a quantity exceeds `level`; the error is linear in ln(h/a) between
-    the points of the grid."""
+    """Smallest h/a, over all n, at which |error| of a quantity exceeds `level`; inf if it never does.
+
+    Between the points of the grid the error is taken as linear in ln(h/a).
+    """
     h_a, error = error_over_thickness(case, name)
     crossings = [np.inf]
     for x, e in zip(np.log(h_a.values), error.values, strict=True):

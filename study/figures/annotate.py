@@ -17,7 +17,7 @@ ASSUMPTION_TEXT = {
     "asperity_strain_not_small": rf"spots steep, $b > {STEEP_SPOT:g}\,R_a$",
 }
 OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
-"""What a note adds, where there is room for it: which quantities the criterion is about."""
+"""What a note above the axes adds to the text of an assumption; a legend has no room for it."""
 GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78")
 
 
@@ -41,7 +41,7 @@ def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", 
 
 
 def load_axis(axes, largest: float, P0: float) -> None:
-    """Abscissa of loads 0 to `largest` (E2* R²) in 1e-5; the load P0 of the main case is marked, and said to be it."""
+    """An abscissa of loads in 1e-5 E2* R², from 0 to `largest`, with a mark at P0, the load of the main case."""
     axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
     axes.axvline(P0 * 1e5, ymin=0.4, color="0.55", linestyle="-", linewidth=0.6, zorder=0)
     place = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "ha": "right", "va": "top"}
@@ -70,7 +70,7 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
 
 
 def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
-    """Above the axes: which curves break which assumptions; of each the flags of one case."""
+    """Write above the axes which curves break which assumptions. validity : curve name -> flags of one case."""
     found = {meaning: [name for name, where in of_curves.items() if where.any()]
              for meaning, of_curves in violations(validity).items()}  # fmt: skip
     note(axes, {meaning: curves for meaning, curves in found.items() if curves})
@@ -84,7 +84,7 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 
 
 def note(axes, everywhere: dict[str, list[str]]) -> None:
-    """A line for each assumption that is broken wherever its curves are drawn."""
+    """Write above the axes a line for each assumption: assumption -> names of the curves that break it everywhere."""
     lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH.get(meaning, '')}"
              for meaning, curves in everywhere.items()]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")

@@ -11,10 +11,9 @@ from .registry import TWO_COLUMNS, Columns, figure
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
 }  # fmt: skip
-"""By n, from soft (blue) to hard (red)."""
-PALE = 0.4
-"""Of stretches outside validity."""
-RANGE = (0.05, 20.0)
+"""Colour by n, from soft (blue) to hard (red)."""
+PALE = 0.4  # opacity of curves outside validity
+RANGE = (0.05, 20.0)  # of a/h
 
 
 @figure(
@@ -35,7 +34,7 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
     dashed.
     """
     peak = peak_pressure(found)
-    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # equal ν: no layer at all
+    bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # with equal ν this layer is as if it were not there
     quantities = {
         "E_eff/E1*": effective_modulus(found) / found["n"],
         "p_peak/p_peak uncoated": peak / bare,

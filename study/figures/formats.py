@@ -18,7 +18,7 @@ def as_text(table: Table, rows: list[tuple]) -> str:
 
 
 def as_csv(table: Table, rows: list[tuple]) -> str:
-    """All digits."""
+    """CSV with all digits."""
     return csv_text([column.text for column in table.columns], rows)
 
 

@@ -6,17 +6,17 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
+from ..physical.inputs import all_inputs, used_inputs
 from ..physical.names import SCENE
-from ..physical.told import in_order, told
 from ..scene import quantities
 from ..scene.quantities import READABLE, readable
 from ..spec.vocabulary import VOCABULARY, over_scale
 
 TIMES = r"\,"
-"""Between the factors of a product, in mathtext."""
+"""What is written between two factors, in mathtext."""
 GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "π": r"\pi ", "σ": r"\sigma ", "²": "^2"}
 UNITS = {"B": r"R_a/E_1^{*\beta}"}
-"""Units of what has no scale in E2* and R."""
+"""Units of parameters whose scale is not made of E2* and R."""
 
 
 def symbol(name: str) -> str:
@@ -26,7 +26,7 @@ def symbol(name: str) -> str:
 
 
 def plain_symbol(name: str) -> str:
-    """The symbol of a name as the vocabulary has it, and those of a physical scene; "" if it has none."""
+    """The symbol of a name in the vocabulary or of an input of a physical scene, as plain text; "" if it has none."""
     return VOCABULARY[name].symbol if name in VOCABULARY else name.replace("nu_", "ν_") if name in SCENE else ""
 
 
@@ -80,11 +80,13 @@ def written(value: float) -> str:
 
 
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
-    """The inputs that have one value in all the datasets, each as `value_text`; those that no case uses are left out,
-    and so are axes, which the figure shows, and names."""
+    """What is stated above a figure: `value_text` of each input that has one value in all the datasets.
+
+    Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials.
+    """
     datasets, found = list(datasets), []
-    of_some = {name for dataset in datasets for name in told(dataset)}
-    for name in in_order():
+    of_some = {name for dataset in datasets for name in used_inputs(dataset)}
+    for name in all_inputs():
         values = _values(datasets, name)
         if name not in of_some or len(values) != 1 or isinstance(value := values.pop(), str) and name != "bonding":
             continue
@@ -94,7 +96,7 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
 
 
 def wrapped(texts: list[str], most: float) -> str:
-    """Texts joined by commas, in lines of about so many characters; the marks of mathtext are not counted."""
+    """Texts joined by commas, in lines of about `most` characters, without those that mathtext does not print."""
     lines, length = [[]], 0
     for text in texts:
         shown = len(re.sub(r"\\(bar|mathrm|times|nu|beta)|[\\${}_^]", "", text)) + 2

@@ -1,4 +1,4 @@
-"""Any quantity of any results against another one: curves by a third, panels for the rest."""
+"""`plot`: any quantity of any results against another, a curve for each value of a third, panels for the rest."""
 
 from collections.abc import Callable
 from itertools import product
@@ -19,9 +19,9 @@ from .labels import axis_label, multiple, stated, value_text, wrapped, written
 from .registry import Columns
 from .style import style
 
-MOST_PANELS, MOST_NAMES = 12, 12
-BAND = {"alpha": 0.25, "linewidth": 0}
-OUTSIDE = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
+MOST_PANELS, MOST_NAMES = 12, 12  # of a figure, of its legend
+BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
+NOT_VALID = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
 def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
@@ -81,7 +81,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
 
 
 def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
-    """The dataset with those of the names that have to be derived. Raises StudyError for one that is not there."""
+    """The dataset, with those of the names added that have to be derived. Raises StudyError for an unknown name."""
     errors = []
     for name in names:
         if name in QUANTITIES and name not in dataset:
@@ -97,7 +97,7 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
 
 
 def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
-    """The cases that have the wanted values. Raises StudyError for a value that is not there."""
+    """The dataset at the wanted values of its axes. Raises StudyError for a value that is not there."""
     for name, value in where.items():
         if name not in dataset.coords or dataset[name].ndim != 1:
             axes = [str(dim) for dim in dataset.dims]
@@ -121,12 +121,12 @@ def number(name: str, value: float | str, unit: str) -> float:
         return value
     try:
         return quantity(name, value, unit).value
-    except (KeyError, ValueError) as error:  # of a unit that READABLE does not have, or of the value
+    except (KeyError, ValueError) as error:  # the unit is not in READABLE, or the value is wrong
         raise StudyError([str(error)]) from None
 
 
 def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
-    """The dimension along which a curve runs: `x` itself, or what `x` varies with, first of all load, radius, depth."""
+    """The dimension along which a curve runs: `x` itself, or one on which it depends, a control before others."""
     if x in dims:
         return x
     varies = [dim for dim in (*CONTROLS, *dims) if dim in dims and dim in found[x].dims]
@@ -151,7 +151,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             axes.fill_between(
                 across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colours[i], **BAND
             )
-        axes.plot(across / sizes[0], up / sizes[1], color=colours[i], **OUTSIDE)
+        axes.plot(across / sizes[0], up / sizes[1], color=colours[i], **NOT_VALID)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colours[i], linestyle="-")
         fixed = {
             name: np.full(len(up), array.item())
@@ -168,7 +168,7 @@ def shades(count: int) -> list:
 
 
 def name_of(found: xr.Dataset, dim: str, i: int) -> str:
-    """What a place along a dimension is called: its value, or the label of a case."""
+    """The name of index i of a dimension, for a title: its value, or the label of the case."""
     known = "label" if dim == "case" and "label" in found else dim
     if known not in found.coords:
         return f"{dim} {i}"
@@ -179,13 +179,13 @@ def name_of(found: xr.Dataset, dim: str, i: int) -> str:
 
 
 def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
-    """Labels, scales and the legend; the parameters stand above."""
+    """Labels, scales, the legend, and the parameters above the figure."""
     x, y, hue = names
-    spread = graded(found[x].values)
-    tall = spread and np.nanmin(found[y].values) > 0 and np.nanmax(found[y].values) > 30 * np.nanmin(found[y].values)
+    log_x = spaced_by_factors(found[x].values)
+    log_y = log_x and np.nanmin(found[y].values) > 0 and np.nanmax(found[y].values) > 30 * np.nanmin(found[y].values)
     for axes in panels:
         grid = axes.get_subplotspec()
-        axes.set(xscale="log" if spread else "linear", yscale="log" if tall else "linear")
+        axes.set(xscale="log" if log_x else "linear", yscale="log" if log_y else "linear")
         axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, found[x]))
         axes.label_outer()
@@ -198,7 +198,7 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         title, texts = entries(found, hue)
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
     if "validity" in found and (found["validity"] != 0).any():
-        handles.append(Line2D([], [], color="0.4", label="not valid", **OUTSIDE))
+        handles.append(Line2D([], [], color="0.4", label="not valid", **NOT_VALID))
     if f"{y}_spread" in found:
         handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
@@ -214,8 +214,8 @@ def entries(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
     return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]
 
 
-def graded(values: np.ndarray) -> bool:
-    """Whether values are spaced as by factors rather than by steps: their median is nearer to the geometric mean."""
+def spaced_by_factors(values: np.ndarray) -> bool:
+    """Whether values grow by factors rather than by steps: their median is nearer to the geometric mean."""
     known = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
     if not len(known) or known.min() <= 0 or known.max() < 10 * known.min():
         return False

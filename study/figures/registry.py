@@ -1,7 +1,7 @@
-"""The register of figures and tables: each is one decorated function of the opened datasets of the studies it names.
+"""The register of figures and tables. Each is a decorated function of the datasets of the studies that it names.
 
-`study.catalogue` imports every file of the rooms figures, paper, literature and evidence, so that a function placed in
-one of them is known to `python -m study plot` and `table`, and to `make`, without another line anywhere.
+`study.catalogue` imports every file of the rooms figures, paper, literature and evidence. So `python -m study plot` and
+`table`, and `make`, know a function in one of these rooms without another line anywhere.
 """
 
 import re
@@ -60,8 +60,8 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
     studies : names of the studies whose datasets `draw` takes, in this order
     size : width and height in inches
     panels : rows and columns; several make `axes` an array
-    caption : what the figure shows, for those who only see it; without, the first paragraph of the docstring. The
-        parameters that the studies share need not be said: they are added, and stand above the figure
+    caption : what the figure shows; by default the first paragraph of the docstring. The parameters that the studies
+        share are added by themselves, and stand above the figure
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
@@ -117,7 +117,7 @@ def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Da
 
 
 def command_of(study: str) -> str:
-    """The command that makes the results of a study; the trade-off is measured, which no study file says."""
+    """The command that makes the results of a study. The trade-off is no study file and has a command of its own."""
     return study if study == "tradeoff" else f"run {study}"
 
 

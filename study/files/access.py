@@ -1,9 +1,9 @@
-"""One thread at a time in netCDF, whichever thread it is.
+"""The lock that lets one thread at a time use netCDF.
 
-Neither netCDF nor HDF5 bears two threads at once, even on different files: the interpreter crashes, or a good file
-seems damaged. All that is done in `netcdf` is done under the lock that xarray takes for the datasets it opens, so a
-program may run studies, ask for their state, open results and read lazily opened ones in any threads. Worker processes
-and the threads that solve never come here: they return arrays.
+With two threads in netCDF or HDF5, even on different files, the interpreter crashes, or a good file seems damaged. The
+module `netcdf` does everything under the lock that xarray takes for datasets that it opens. So any thread of a program
+may run studies, ask for their state, open results and read lazily opened ones. Worker processes and the threads that
+solve do not use netCDF: they return arrays.
 """
 
 import os
@@ -19,7 +19,7 @@ from ..spec.definition import StudyError
 
 
 class Unusable(StudyError, OSError):
-    """A results file that cannot be used. `kind`: "damaged", "foreign" (none of ours) or "unreadable"."""
+    """A results file that cannot be used. `kind`: "damaged", "foreign" (not written by roughcoat) or "unreadable"."""
 
     code = 1
 
@@ -29,14 +29,14 @@ class Unusable(StudyError, OSError):
 
 
 class Access:
-    """The lock, taken for some work on the file `path`. A thread that holds it may take it again.
+    """The lock of xarray for netCDF, which a thread that holds it may take again, for work on the file `path`.
 
     As a context manager it turns errors of netCDF into `Unusable`, or into OSError when the file is written. It has the
-    methods of a lock because xarray takes it for one, and may send it to another process with a dataset.
+    methods of a lock because xarray uses it as one, and it can be sent to another process with a dataset.
     """
 
-    _mine = threading.RLock()  # xarray's lock blocks a thread that holds it; always taken in this order
-    _depth = 0
+    _mine = threading.RLock()  # taken first: xarray's own lock would block a thread that holds it
+    _depth = 0  # how often the thread that holds the lock has taken it
 
     def __init__(self, path, writing: bool = False):
         self.path, self.writing = Path(path), writing
@@ -45,7 +45,7 @@ class Access:
         if not Access._mine.acquire(blocking):
             return False
         try:
-            again = Access._depth and blocking  # xarray does not block when it closes what is garbage, at any moment
+            again = Access._depth and blocking  # not blocking: xarray closes a dataset that is garbage
             taken = again or NETCDF4_PYTHON_LOCK.acquire(blocking)
         except BaseException:
             Access._mine.release()
@@ -78,14 +78,14 @@ class Access:
 
 @contextmanager
 def access(path, writing: bool = False) -> Iterator[None]:
-    """Hold the lock, and SIGINT and SIGTERM back: an exception while locks are taken would leave one locked."""
+    """Hold the lock, with SIGINT and SIGTERM held back: their exception could leave a lock locked."""
     with interrupts_wait(), Access(path, writing):
         yield
 
 
 @contextmanager
 def interrupts_wait() -> Iterator[None]:
-    """Hold SIGINT and SIGTERM back until the block is left."""
+    """Hold SIGINT and SIGTERM back until the `with` block is left."""
     if threading.current_thread() is not threading.main_thread():
         yield
         return
@@ -101,6 +101,6 @@ def interrupts_wait() -> Iterator[None]:
             signal.raise_signal(pending[0])
 
 
-if hasattr(os, "register_at_fork"):  # a child has the lock of no thread that is not there, and no half-done work
+if hasattr(os, "register_at_fork"):  # a forked child must not inherit a lock whose thread it does not have
     _forking = Access("")
     os.register_at_fork(before=_forking.acquire, after_in_parent=_forking.release, after_in_child=_forking.release)

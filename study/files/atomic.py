@@ -1,19 +1,19 @@
-"""Files that are either whole or not there, and that a power cut does not take away again."""
+"""Files that are either whole or not there, also after a power cut."""
 
 import os
 import secrets
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from glob import escape
 from pathlib import Path
 
 
 @contextmanager
 def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
-    """A temporary path to write to; when the block ends well it is flushed to the disk and becomes `path`.
+    """A temporary path to write to. When the `with` block ends well, the file is flushed to disk and becomes `path`.
 
-    folder : where the temporary file is, on the file system of `path`; default beside it. The name is random, not the
-        process id: two machines that share a folder may have the same.
+    folder : where the temporary file is, on the file system of `path`; by default beside it. Its name is random, since
+        the process id may be the same on two machines that share a folder
     """
     if path.is_symlink():
         path, folder = target(path), None
@@ -26,23 +26,23 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
-    flush_folder(path.parent)  # and what comes after, such as removing blocks, before the rename
+    flush_folder(path.parent)  # else blocks might be removed before the rename is on the disk
 
 
 def target(path: Path) -> Path:
-    """The file that a path stands for: of a symbolic link what it leads to, on whatever file system that is."""
+    """The path itself, or where it leads if it is a symbolic link."""
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
 def remove_temporary(path: Path) -> None:
-    """Remove what writers of `path` that were killed have left beside it."""
+    """Remove the temporary files beside `path` of writers that were killed."""
     path = target(path)
     for found in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
         found.unlink(missing_ok=True)
 
 
 def make_folder(path: Path) -> None:
-    """Make a folder, and those above it, so that they outlast a power cut."""
+    """Make a folder and those above it, and flush their names to the disk."""
     missing = [folder for folder in (path, *path.parents) if not folder.exists()]
     path.mkdir(parents=True, exist_ok=True)
     for folder in missing:
@@ -50,14 +50,10 @@ def make_folder(path: Path) -> None:
 
 
 def flush_folder(path: Path) -> None:
-    """Flush the names in a folder to the disk; a system or a file system that knows no such thing is left alone."""
-    try:
+    """Flush the names in a folder to the disk, where the system can do that."""
+    with suppress(OSError):
         folder = os.open(path, os.O_RDONLY)
-    except OSError:
-        return
-    try:
-        os.fsync(folder)
-    except OSError:
-        pass
-    finally:
-        os.close(folder)
+        try:
+            os.fsync(folder)
+        finally:
+            os.close(folder)

@@ -1,6 +1,6 @@
-"""Checksums of a results file, which it carries in its attribute `checksums`: what they are of, how they compare.
+"""Checksums of a results file, which it carries in its attribute `checksums`.
 
-The text has a line for each thing that is summed, its name and 32 hexadecimal digits:
+The attribute is a text. Each line has a name and the 32 hexadecimal digits of a checksum:
 
     @NAME      a global attribute as roughcoat wrote it (all but the history, to which other programs add)
     =structure dimensions, types and attributes of all variables named here
@@ -10,7 +10,7 @@ The text has a line for each thing that is summed, its name and 32 hexadecimal d
     =runs      for each run of consecutive cases its own 32 digits, over all the variables over the cases
     =checksums the lines above
 
-So what is damaged can be named, and the cases that are not damaged can be told from those that are.
+So a message can name what is damaged, and the undamaged cases can still be used.
 """
 
 import hashlib
@@ -23,28 +23,31 @@ from .netcdf import File
 
 ATTRIBUTE = "checksums"
 NOT_SUMMED = (ATTRIBUTE, "history")
-RUN = 8192  # cases of a run, at least: a damaged one is computed again as a whole
-MOST_RUNS = 1024  # 32 kB of text
+RUN = 8192  # fewest cases of a run; all cases of a damaged run are computed again
+MOST_RUNS = 1024  # so that the text has at most 32 kB
 DIGITS = 32
 
 
 def digest(*parts) -> str:
-    """128 bits of sha256 over texts and arrays, as hexadecimal digits."""
+    """The first 128 bits of sha256 over texts and arrays, as hexadecimal digits."""
     found = hashlib.sha256()
     for part in parts:
-        found.update(part.encode("utf-8", "surrogatepass") if isinstance(part, str) else raw(part))
+        found.update(part.encode("utf-8", "surrogatepass") if isinstance(part, str) else as_bytes(part))
     return found.hexdigest()[:DIGITS]
 
 
-def raw(array: np.ndarray):
-    """The bytes of numbers in the order of a PC; texts (type object) one after another."""
+def as_bytes(array: np.ndarray):
+    """The bytes of an array: numbers in little-endian order, texts separated by null characters."""
     if array.dtype.kind in "OU":
         return "\0".join(map(str, array.ravel().tolist())).encode("utf-8", "surrogatepass")
     return np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(-1).view(np.uint8)
 
 
-class Rows:
-    """Digests of the variables over `size` cases, which come in pieces, from the first case to the last."""
+class CaseDigests:
+    """Digests of variables over `size` cases. Each variable is added in pieces, from the first case to the last.
+
+    digests : name -> a digest for each run of `run` cases
+    """
 
     def __init__(self, size: int):
         self.size = size
@@ -53,12 +56,12 @@ class Rows:
         self._open: dict[str, tuple[int, hashlib._Hash]] = {}
 
     def add(self, name: str, piece: np.ndarray) -> None:
-        """The next cases of a variable, (n, ...)."""
+        """Add the next cases of a variable, (n, ...)."""
         done = self.digests.setdefault(name, [])
         place, found = self._open.pop(name, (0, hashlib.sha256()))
         while len(piece):
             now, piece = np.split(piece, [self.run - place % self.run])
-            found.update(raw(now))
+            found.update(as_bytes(now))
             place += len(now)
             if place % self.run == 0 or place == self.size:
                 done.append(found.hexdigest()[:DIGITS])
@@ -66,7 +69,7 @@ class Rows:
         self._open[name] = place, found
 
     def lines(self, runs: bool = True) -> dict[str, str]:
-        """Those of the text: #NAME and, when all variables are there, =runs."""
+        """The lines #NAME and, if `runs`, =runs, for which all variables must have been added."""
         found = {f"#{name}": digest(*own) for name, own in self.digests.items()}
         if runs and found:
             found["=runs"] = "".join(digest(*all_of) for all_of in zip(*self.digests.values(), strict=True))
@@ -74,17 +77,20 @@ class Rows:
 
 
 def split_runs(line: str) -> list[str]:
-    """The digits of each run."""
+    """The digits of each run in the line =runs."""
     return [line[start : start + DIGITS] for start in range(0, len(line), DIGITS)]
 
 
-def identity(numerics: str, x: np.ndarray, keys: np.ndarray) -> str:
+def digest_of_cases(numerics: str, x: np.ndarray, keys: np.ndarray) -> str:
     """The line `=cases`."""
     return digest(numerics, np.asarray(x, dtype=np.float64), keys)
 
 
-def head(file: File, whole: list[str], over: list[str], attributes: list[str]) -> dict[str, str]:
-    """The lines of the attributes, the structure and the variables read `whole`; "lost" for what cannot be read."""
+def lines_of_head(file: File, whole: list[str], over: list[str], attributes: list[str]) -> dict[str, str]:
+    """All lines but those of the cases; "lost" for what cannot be read.
+
+    whole : variables that are read whole; over : those over the cases; attributes : of the file
+    """
 
     def line(make, *arguments) -> str:
         try:
@@ -102,25 +108,25 @@ def structure(file: File, names: list[str]) -> str:
     found, sizes, dims = {}, file.sizes, file.variables
     for name in names:
         kind = "str" if file.dtype(name) is str else file.dtype(name).str
-        attributes = {key: plain(file.attribute(key, name)) for key in file.attributes(name)}
+        attributes = {key: type_and_values(file.attribute(key, name)) for key in file.attributes(name)}
         found[name] = [kind, dims[name], [sizes[dim] for dim in dims[name]], attributes]
     return json.dumps(found, sort_keys=True)
 
 
-def plain(value) -> list:
-    """The type and the values of an attribute, as JSON has them; NaN as text."""
+def type_and_values(value) -> list:
+    """The type and the values of an attribute for JSON, which has no NaN: floats are texts."""
     array = np.atleast_1d(value)
     return [array.dtype.kind, [repr(one) if array.dtype.kind == "f" else one for one in array.tolist()]]
 
 
-def text(lines: dict[str, str]) -> str:
-    """The attribute."""
+def as_text(lines: dict[str, str]) -> str:
+    """The attribute, with the line =checksums at its end."""
     found = "".join(f"{name} {digits}\n" for name, digits in lines.items())
     return found + f"=checksums {digest(found)}\n"
 
 
 def parsed(given: str) -> dict[str, str]:
-    """The lines of the attribute, however damaged; `=checksums` is "right" or "wrong"."""
+    """The lines of the attribute, which may be damaged; `=checksums` has become "right" or "wrong"."""
     found = dict(line.rpartition(" ")[::2] for line in given.split("\n") if " " in line)
     right = given[: given.rfind("=checksums ")]
     return found | {"=checksums": "right" if found.get("=checksums") == digest(right) else "wrong"}

@@ -1,4 +1,4 @@
-"""What a results file is: sound, damaged and where, of an earlier version, or none of ours."""
+"""The condition of a results file: sound, damaged and where, of an earlier version, or of another program."""
 
 import math
 import os
@@ -14,30 +14,32 @@ import numpy as np
 from ..spec.grid import Grid, windows
 from ..spec.vocabulary import names
 from .access import Unusable
-from .apart import python
-from .checksums import ATTRIBUTE, Rows, head, parsed, split_runs
+from .checksums import ATTRIBUTE, CaseDigests, lines_of_head, parsed, split_runs
+from .child import python_command
 from .netcdf import File, check_regular
 from .seal import LARGE, is_whole
 
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
 BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError, MemoryError)
-"""Exceptions that come up when a file is read that is not laid out as our results are."""
-WHOSE = ("study_digest", "numerics_version", ATTRIBUTE)
-"""Attributes of which every results file has the first two."""
-SHOWN = 3  # damaged things that a message names
-PATIENCE, SLOWEST = 60.0, 5e6  # seconds, and bytes in a second: a damaged file may also be read for ever
+"""Exceptions while a file is read that is not laid out like our results."""
+OURS = ("study_digest", "numerics_version", ATTRIBUTE)
+"""Attributes by which our results are known. Every results file has the first two."""
+SHOWN = 3  # most damaged things that a message names
+PATIENCE, SLOWEST = 60.0, 5e6  # seconds, and bytes per second, that reading may take: of a damaged file it may not end
 CHANGED = "is damaged, or another program has changed it: "
 
 
 @dataclass(frozen=True, eq=False)
 class Condition:
-    """What a results file is found to be.
+    """The condition of a results file.
 
-    kind : "sound"; "unverified", without checksums (an earlier version wrote it), nothing wrong to be seen; "damaged";
-        "foreign", none of ours; "unreadable"; "missing"
-    reason : what is wrong; it follows the path in a message. digest, numerics : as the file says. sizes : of the
-        dimensions of the cases, in order. damage : names of the lines that do not fit, see `checksums`
-    intact : (N,) whether the numbers of each case can be trusted, None if not all of the file was looked at
+    kind : "sound"; "unverified": it seems right, but has no checksums, since an earlier version wrote it; "damaged";
+        "foreign": not written by roughcoat; "unreadable"; "missing"
+    reason : what is wrong; it follows the path in a message
+    digest, numerics : of the study and of the solver, as the file says
+    sizes : of the dimensions of the cases, in order
+    damage : names of the checksums that do not fit, see `checksums`
+    intact : (N,) whether the numbers of each case can be trusted; None if not all variables were examined
     """
 
     path: Path
@@ -62,10 +64,12 @@ class Condition:
 
 
 def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
-    """Look at a results file: at all of it, or of the variables over the cases at the `columns` only.
+    """The condition of a results file.
 
-    Attributes, coordinates and one column take milliseconds, all of it as long as reading and summing it twice. A file
-    without a whole seal (see `seal`) is looked at in another process, which takes a second more.
+    columns : the variables over the cases to be examined; None: all. Attributes, coordinates and one column take
+        milliseconds, all of the file as long as reading and summing it twice
+
+    A file whose seal is broken or missing (see `seal`) is examined in a child process, which takes a second more.
     """
     path = Path(path)
     try:
@@ -77,7 +81,7 @@ def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
         return Condition(path, error.kind, error.reason)
     except OSError as error:
         return Condition(path, "unreadable", f"cannot be read: {error.strerror}")
-    return examined(path, columns) if whole else examined_apart(path, columns, stamp(path))
+    return examined(path, columns) if whole else examined_in_child(path, columns, stamp(path))
 
 
 def stamp(path: Path) -> tuple | None:
@@ -90,22 +94,22 @@ def stamp(path: Path) -> tuple | None:
 
 
 @lru_cache(maxsize=16)
-def examined_apart(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
-    """The same of a file without a whole seal, which may end the process that reads it: in another process."""
+def examined_in_child(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
+    """`examine` in a child process: a file with a broken seal may crash the interpreter that reads it."""
     statement = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
     statement += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
-    command, environment = python(statement)
-    told = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
+    command, environment = python_command(statement)
+    options = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
     patience = PATIENCE + path.stat().st_size / SLOWEST
     try:
-        child = subprocess.run(command, **told, timeout=patience)
+        child = subprocess.run(command, **options, timeout=patience)
         return pickle.loads(child.stdout)
     except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
         return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
 
 
 def examined(path: Path, columns: tuple[str, ...] | None = None) -> Condition:
-    """:func:`examine`, in this process."""
+    """`examine` in this process."""
     try:
         with File(path) as file:
             return _examined(file, columns)
@@ -118,7 +122,7 @@ def examined(path: Path, columns: tuple[str, ...] | None = None) -> Condition:
 
 
 def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
-    about = {name: str(file.attribute(name)) for name in file.attributes() if name in WHOSE}
+    about = {name: str(file.attribute(name)) for name in file.attributes() if name in OURS}
     lines = parsed(about.pop(ATTRIBUTE)) if ATTRIBUTE in about else {}
     if not lines and len(about) < 2:
         return Condition(file.path, "foreign", "is a netCDF file of another program")
@@ -130,7 +134,7 @@ def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
     if strange:
         reason = f"another program has changed it: its dimensions are {dims[strange[0]]} in {strange[0]}"
         return Condition(file.path, "foreign", reason)
-    found = head(file, whole, over, [line[1:] for line in lines if line.startswith("@")])
+    found = lines_of_head(file, whole, over, [line[1:] for line in lines if line.startswith("@")])
     rows, lost = _read(file, [name for name in over if columns is None or name in columns], sizes)
     damage = [f"#{name}" for name in lost]
     if lines:
@@ -138,8 +142,8 @@ def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
         damage = [name for name in [*found, "=checksums"] if lines.get(name) != found.get(name, "right")]
     intact = _intact(rows, lines, lost) if columns is None and over else None
     kind = "damaged" if damage else "sound" if lines else "unverified"
-    reason = CHANGED + _said(damage, intact) if damage else ""
-    about = [about.get(name, "") for name in WHOSE[:2]]
+    reason = CHANGED + _in_words(damage, intact) if damage else ""
+    about = [about.get(name, "") for name in OURS[:2]]
     return Condition(file.path, kind, reason, *about, sizes, tuple(damage), intact)
 
 
@@ -164,24 +168,24 @@ def coordinates_of(file: File) -> set[str]:
     return {*file.variables["status"], *named.split()}
 
 
-def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[Rows, dict]:
-    """What the variables `over` the cases hold, summed; and name -> runs (start, stop) of cases that cannot be read."""
+def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[CaseDigests, dict]:
+    """Digests of the variables `over` the cases, and name -> [(start, stop)] of the cases that cannot be read."""
     grid, lost = Grid(sizes, {}), {}
-    rows = Rows(grid.size)
+    rows = CaseDigests(grid.size)
     for name in over:
         for start, stop, window in runs(grid):
             try:
                 piece = file.read(name, window).reshape(stop - start, -1)
             except (Unusable, *BROKEN):
                 lost.setdefault(name, []).append((start, stop))
-                piece = np.frombuffer(os.urandom(stop - start), np.uint8)  # fits no checksum
+                # random numbers in place of the lost ones: their checksum is wrong
+                piece = np.frombuffer(os.urandom(stop - start), np.uint8)
             rows.add(name, piece)
     return rows, lost
 
 
 def runs(grid: Grid) -> Iterator[tuple[int, int, dict[str, slice]]]:
-    """(start, stop, window) of consecutive cases that are read at a time: what can be read and what cannot is told
-    apart by these."""
+    """(start, stop, window) of consecutive cases that are read together. If reading fails, all of them are lost."""
     start = 0
     for window in windows(grid, CHUNK, CHUNK):
         stop = start + math.prod(part.stop - part.start for part in window.values())
@@ -189,8 +193,8 @@ def runs(grid: Grid) -> Iterator[tuple[int, int, dict[str, slice]]]:
         start = stop
 
 
-def _intact(rows: Rows, lines: dict[str, str], lost: dict) -> np.ndarray:
-    """(N,) whether the numbers of a case can be read and are those that were written, as far as that can be told."""
+def _intact(rows: CaseDigests, lines: dict[str, str], lost: dict) -> np.ndarray:
+    """(N,) whether the numbers of a case can be read and, if there are checksums, are those that were written."""
     found = np.ones(rows.size, dtype=bool)
     for start, stop in (part for parts in lost.values() for part in parts):
         found[start:stop] = False
@@ -202,8 +206,8 @@ def _intact(rows: Rows, lines: dict[str, str], lost: dict) -> np.ndarray:
     return found
 
 
-def _said(damage: list[str], intact: np.ndarray | None) -> str:
-    """What is damaged, in words, at most a line."""
+def _in_words(damage: list[str], intact: np.ndarray | None) -> str:
+    """What is damaged, and in which cases, in words."""
     words = {
         "=structure": "types, dimensions or attributes of its variables",
         "=runs": "",

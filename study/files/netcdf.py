@@ -1,4 +1,4 @@
-"""The only file that touches netCDF: results files opened, read, written; under the lock of `access`."""
+"""Results files are opened, read and written here alone, always under the lock of `access`."""
 
 import os
 import stat
@@ -18,14 +18,14 @@ except ImportError:  # not POSIX
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 END = {0: 40, 1: 44, 2: 28, 3: 28}
-"""Version of the superblock, byte 8 of a file of HDF5 -> place of the 8 bytes that say how long the file is."""
+"""Version of an HDF5 file, which is its byte 8 -> place of the 8 bytes that tell the length of the file."""
 
 
 class File:
-    """An open file; as a context manager it is closed at the end. Whatever is done with it is done under the lock."""
+    """An open netCDF file. Its methods take the lock; as a context manager it is closed at the end."""
 
     def __init__(self, path: Path, mode: str = "r", called: Path | None = None):
-        """Open a file to be read, or with mode "w" a new one, which messages call `called`.
+        """Open a file for reading, or with mode "w" make a new one. Messages name it `called`, by default its path.
 
         Raises FileNotFoundError, Unusable, and when it is written OSError.
         """
@@ -47,13 +47,13 @@ class File:
             with self._access():
                 self._file.close()
         else:
-            with access(self.path), suppress(RuntimeError):  # of a full disk; the first error is the one to tell
+            with access(self.path), suppress(RuntimeError):  # of a full disk: the first error is raised
                 self._file.close()
 
     def _access(self):
         return access(self.path, self._writing)
 
-    def _of(self, name: str):
+    def _file_or_variable(self, name: str):
         return self._file[name] if name else self._file
 
     @property
@@ -76,15 +76,15 @@ class File:
     def attributes(self, name: str = "") -> list[str]:
         """Names of the attributes of a variable, or of the file."""
         with self._access():
-            return self._of(name).ncattrs()
+            return self._file_or_variable(name).ncattrs()
 
     def attribute(self, name: str, of: str = ""):
-        """An attribute of a variable, or of the file, whatever bytes its text consists of."""
+        """An attribute of a variable, or of the file. A text that is not UTF-8 is read as Latin-1."""
         with self._access():
             try:
-                return self._of(of).getncattr(name)
+                return self._file_or_variable(of).getncattr(name)
             except UnicodeDecodeError:
-                return self._of(of).getncattr(name, encoding="latin-1")
+                return self._file_or_variable(of).getncattr(name, encoding="latin-1")
 
     def read(self, name: str, window: dict[str, slice] | None = None, characters: bool = False) -> np.ndarray:
         """A variable, or its part within a window, a slice for each dimension; texts as `characters` if asked for."""
@@ -108,7 +108,7 @@ class File:
             made.set_auto_mask(False)
             made.set_auto_chartostring(False)
             if "chunksizes" in options:
-                made.set_var_chunk_cache(size=1, nelems=1)  # whole chunks are written, once: 64 MB each would hold them
+                made.set_var_chunk_cache(size=1, nelems=1)  # each chunk is written once, whole: no cache of 64 MB
             made.setncatts(attributes)
 
     def write(self, name: str, array: np.ndarray, window: dict[str, slice] | None = None) -> None:
@@ -119,7 +119,7 @@ class File:
 
 
 def read(path: Path) -> xr.Dataset:
-    """All of a file, in memory."""
+    """A file as a dataset in memory."""
     check_regular(path)
     with access(path), xr.open_dataset(path, engine="netcdf4", lock=Access(path)) as dataset:
         return dataset.load()
@@ -145,7 +145,7 @@ def check_regular(path: Path) -> None:
 
 
 def _cannot_be_opened(path: Path, error: OSError) -> Exception:
-    """What is the matter with a file that the library does not open; it says -101 to most of it."""
+    """The error to raise for a file that netCDF cannot open. Its own message is -101 whatever is wrong."""
     try:
         with open(path, "rb") as file:
             head, size = file.read(64), os.fstat(file.fileno()).st_size

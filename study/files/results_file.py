@@ -1,4 +1,4 @@
-"""Results files as datasets: written whole, opened."""
+"""Results files as datasets: made, written and opened."""
 
 import os
 from itertools import count
@@ -8,20 +8,21 @@ import numpy as np
 import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
-from ..data.dataset import plainly_written
+from ..data.dataset import without_fill_values
 from ..physical.index import searchable
 from .atomic import replacing, target
-from .checksums import ATTRIBUTE, NOT_SUMMED, Rows, head, text
+from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head
 from .examine import examine
 from .netcdf import File, read, read_lazily
 from .seal import seal
 
 
 def encoding(array: xr.DataArray) -> dict:
-    """How a variable is stored, in the words of netCDF4.
+    """How a variable is stored: options of netCDF4's createVariable.
 
-    All have checksums but single numbers, which netCDF stores without; the attribute `checksums` covers those.
-    Profiles are nearly all of a file. Compressing them takes longer than the rest of the writing and gains little.
+    All but single numbers have netCDF's own checksums; the attribute `checksums` covers single numbers as well.
+    Profiles, which are nearly all of a file, are not compressed: that takes longer than all other writing and gains
+    little.
     """
     data, text = array.name not in array.coords, array.dtype.kind in "UO"
     options = {"fill_value": np.nan if data and array.dtype.kind == "f" else None}
@@ -34,7 +35,9 @@ def encoding(array: xr.DataArray) -> dict:
 
 
 def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int]) -> None:
-    """Dimensions, attributes and variables as in `part`, but of the sizes and with the coordinates of the `whole`.
+    """Define all variables of a results file, and write its coordinates.
+
+    part : a dataset of some cases, which has all variables; whole : one of all cases, which need not have results
 
     chunk : dimension -> its length in a chunk, where that is not all of it
     """
@@ -58,8 +61,8 @@ def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int
 def stored(array: xr.DataArray) -> np.ndarray:
     """The values as the file has them: texts as characters, along one more dimension.
 
-    As netCDF's own strings they would have no checksum, and HDF5 2.2 ends the interpreter when a file with such strings
-    is opened while it is open, as lazily opened results are.
+    NetCDF's own strings would have no checksum. And HDF5 2.2 crashes the interpreter when a file that has them is
+    opened a second time while it is open, as lazily opened results are.
     """
     if array.dtype.kind not in "UO":
         return array.values
@@ -67,29 +70,32 @@ def stored(array: xr.DataArray) -> np.ndarray:
     return words.astype(f"S{max(1, words.itemsize)}")[..., np.newaxis].view("S1")
 
 
-def add_checksums(file: File, rows: Rows, cases: dict[str, str]) -> None:
-    """The attribute, when all else is in the file; `rows` of the variables over the cases, and the line `=cases`."""
+def add_checksums(file: File, rows: CaseDigests, cases: dict[str, str]) -> None:
+    """Write the attribute `checksums`, the last of all.
+
+    rows : digests of the variables over the cases; cases : the line =cases
+    """
     whole = [name for name in file.variables if name not in rows.digests]
     attributes = [name for name in file.attributes() if name not in NOT_SUMMED]
-    found = head(file, whole, list(rows.digests), attributes) | rows.lines() | cases
-    file.define({}, {ATTRIBUTE: text(found)})
+    found = lines_of_head(file, whole, list(rows.digests), attributes) | rows.lines() | cases
+    file.define({}, {ATTRIBUTE: as_text(found)})
 
 
 def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write a small dataset: `path` either is complete or does not exist."""
+    """Write a small dataset. The file is complete or does not exist."""
     with replacing(path) as temporary:
         with File(temporary, "w", path) as file:
             create(file, dataset, dataset, {})
             for name, array in dataset.data_vars.items():
                 file.write(name, stored(array))
-            add_checksums(file, Rows(0), {})
+            add_checksums(file, CaseDigests(0), {})
         seal(temporary)
 
 
 def set_aside(path: Path) -> Path:
-    """Give a damaged file that is about to be replaced a second name, NAME.nc.damaged, which keeps it; returns that.
+    """Keep a damaged file, which is about to be replaced, under the name NAME.nc.damaged; returns its path.
 
-    Of a symbolic link it is what the link leads to that is kept, beside it, for that is what will be replaced.
+    Behind a symbolic link it is the file to which the link leads, since that will be replaced.
     """
     path = target(path)
     names = (f"{path.name}.damaged{f'-{number}' * (number > 1)}" for number in count(1))
@@ -113,9 +119,9 @@ def open_results(path) -> xr.Dataset:
     StudyError : it is damaged, or cannot be read; also an OSError
     """
     found = examine(path)
-    if found.kind != "foreign":  # another netCDF file is read as it is
+    if found.kind != "foreign":  # a netCDF file of another program is read as it is
         found.raise_if_bad()
-    return _shown(read(Path(path)))
+    return _for_users(read(Path(path)))
 
 
 def open_lazily(path) -> xr.Dataset:
@@ -124,10 +130,10 @@ def open_lazily(path) -> xr.Dataset:
     Attributes and coordinates are verified, and each chunk when it is read (StudyError, an OSError).
     """
     examine(path, ()).raise_if_bad()
-    return _shown(read_lazily(Path(path)))
+    return _for_users(read_lazily(Path(path)))
 
 
-def _shown(dataset: xr.Dataset) -> xr.Dataset:
-    """Without the checksums: they are those of the file, not of what somebody makes of the dataset and writes."""
+def _for_users(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset without the checksums: they would be wrong in a file that a user makes of it."""
     dataset.attrs.pop(ATTRIBUTE, None)
-    return searchable(plainly_written(dataset))
+    return searchable(without_fill_values(dataset))

@@ -1,7 +1,8 @@
-"""A checksum of a whole results file, which stands behind what HDF5 reads of it.
+"""The seal: a checksum of a whole results file, behind the end of its HDF5 data.
 
-HDF5 trusts what a file says of itself, and a flipped bit there may end the interpreter. So a file whose seal is broken
-or missing is first examined in another process (`examine`). If that process survives, this one reads the intact cases.
+HDF5 trusts what a file says of itself, so a flipped bit may crash the interpreter. A file whose seal is broken or
+missing is therefore examined in a child process first (`examine`). If that survives, this process reads the intact
+cases.
 """
 
 import os
@@ -11,18 +12,18 @@ from pathlib import Path
 MARK = b"\nroughcoat crc32 "
 LENGTH = len(MARK) + 8  # and the checksum in hexadecimal digits
 PIECE = 1 << 20
-LARGE = 256_000_000  # bytes, summed in some tenths of a second; more are not read where no number is asked for
+LARGE = 256_000_000  # bytes, summed in some tenths of a second; larger files are summed only with all their numbers
 
 
 def seal(path: Path) -> None:
-    """Append the checksum to a file that is complete. Other programs read it as before; HDF5 knows where it ends."""
+    """Append the seal to a complete file. Other programs read it as before, since HDF5 data tell their own length."""
     with open(path, "rb+") as file:
         found = _checksum(file, os.fstat(file.fileno()).st_size)
         file.write(MARK + b"%08x" % found)
 
 
 def is_whole(path: Path, most: float = float("inf")) -> bool:
-    """Whether a file has its seal, unbroken. Of a file of more than `most` bytes, whether it has one."""
+    """Whether the seal of a file is there and right. In a file of more than `most` bytes, whether it is there."""
     with open(path, "rb") as file:
         size = os.fstat(file.fileno()).st_size - LENGTH
         if size < 0:

@@ -8,14 +8,14 @@ from . import formulas
 from .formulas import Formula
 
 LEVELS = (0.01, 0.05)
-"""Errors whose ranges are told."""
+"""Errors for which the tables state the ranges of a/h."""
 SERIES_UP_TO = 0.15
 """a/h below which the series of F/F_H is fitted: with degree 6 the first two coefficients agree with those known in
 closed form to 1e-4 (tests/literature/test_literature.py)."""
 
 
 def of_material(rigid: xr.Dataset, bonded: bool, nu: float) -> xr.Dataset:
-    """The contacts of one layer on a rigid base, over a/h that rises. Without friction no Poisson ratio matters."""
+    """The contacts of one layer on a rigid base, by rising a/h. Without friction the Poisson ratio has no effect."""
     found = (rigid["bonding"] == ("bonded" if bonded else "frictionless")).values
     if bonded:
         found &= np.isclose(rigid["nu1"].values, nu)
@@ -43,7 +43,7 @@ def stiffness(coated: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
-    """Name of a formula -> its relative error (n, a/h); the last has an α of its own for each n, the best."""
+    """Name of a formula -> its relative error (n, a/h). The last formula has for each n the α that suits it best."""
     x, n, exact = stiffness(coated)
     nu = float(coated["nu1"])
     found = {name: of(x, n[:, None], nu) / exact - 1 for name, (of, _) in formulas.STIFFNESSES.items()}
@@ -87,7 +87,7 @@ def range_of(x: np.ndarray, error: np.ndarray, level: float, thin: bool) -> str:
 
 
 def around_one(n: np.ndarray, largest: np.ndarray, level: float) -> str:
-    """The n around 1 up to which, both ways, the largest error (n,) stays within the level."""
+    """The range of n around 1 in which the largest error (n,) stays within the level, in words."""
     above, below = n > 1, n < 1
     ends = []
     for side, order in ((below, -1), (above, 1)):

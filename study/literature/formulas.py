@@ -98,8 +98,8 @@ def squeezed(chi, nu):
     return 3 * np.pi / 8 * chi**3
 
 
-def bound(function: Callable, bonded: bool) -> Callable:
-    """Of an interface."""
+def for_interface(function: Callable, bonded: bool) -> Callable:
+    """A formula of (χ, ν, bonded) as one of (χ, ν)."""
     return lambda chi, nu: function(chi, nu, bonded)
 
 
@@ -109,13 +109,13 @@ LOADS = (
     Formula("Hayes et al. 1972", hayes, True, (0.3, 0.45, 0.5), BIOMOMENTUM),
     Formula("Dimitriadis et al. 2002, nu = 1/2", series(*DIMITRIADIS), True, (0.5,), PYFMRHEO),
     Formula("Dimitriadis et al. 2002, nu = 1/2", series(0.884, 0.781, 0.386, 0.0048), False, (0.5,), PYFMRHEO),
-    Formula("Dimitriadis et al. 2002, general", bound(dimitriadis, True), True, (0.0, 0.3, 0.45, 0.5), ATOMICJ),
-    Formula("Dimitriadis et al. 2002, general", bound(dimitriadis, False), False, (0.0, 0.3, 0.5), ATOMICJ),
+    Formula("Dimitriadis et al. 2002, general", for_interface(dimitriadis, True), True, (0.0, 0.3, 0.45, 0.5), ATOMICJ),
+    Formula("Dimitriadis et al. 2002, general", for_interface(dimitriadis, False), False, (0.0, 0.3, 0.5), ATOMICJ),
     Formula("Garcia and Garcia 2018", series(*GARCIA), True, (0.5,), PYFMRHEO),
-    Formula("Hermanowicz 2021", bound(hermanowicz, True), True, (0.5,), ATOMICJ + ", his program"),
-    Formula("Hermanowicz 2021", bound(hermanowicz, False), False, (0.3,), ATOMICJ + ", his program"),
-    Formula("Johnson 1985, springs", bound(springs, True), True, (0.0, 0.3, 0.45), DERIVED, thin=True),
-    Formula("Johnson 1985, springs", bound(springs, False), False, (0.3,), DERIVED, thin=True),
+    Formula("Hermanowicz 2021", for_interface(hermanowicz, True), True, (0.5,), ATOMICJ + ", his program"),
+    Formula("Hermanowicz 2021", for_interface(hermanowicz, False), False, (0.3,), ATOMICJ + ", his program"),
+    Formula("Johnson 1985, springs", for_interface(springs, True), True, (0.0, 0.3, 0.45), DERIVED, thin=True),
+    Formula("Johnson 1985, springs", for_interface(springs, False), False, (0.3,), DERIVED, thin=True),
     Formula("Johnson 1985, Jaffar 1989, nu = 1/2", squeezed, True, (0.5,), DERIVED, thin=True),
 )
 
@@ -155,10 +155,10 @@ def bec(x, n, nu):
     return 1 / (1 / (n * (1 + np.pi * x / 2)) + 1 / (1 + 2 / (np.pi * x)))
 
 
-def perriot_barthel(x, n, nu, exponent=1.27):
+def perriot_barthel(x, n, nu):
     """Perriot and Barthel 2004: n + (1 - n)/(1 + (k0/x)^1.27), log10 k0 = -0.093 - 0.792 log10 n + 0.05 log10² n."""
     log_n = np.log10(n)
-    return n + (1 - n) / (1 + (10 ** (-0.093 - 0.792 * log_n + 0.05 * log_n**2) / x) ** exponent)
+    return n + (1 - n) / (1 + (10 ** (-0.093 - 0.792 * log_n + 0.05 * log_n**2) / x) ** 1.27)
 
 
 def doerner_nix(x, n, nu, alpha):

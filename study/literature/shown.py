@@ -37,11 +37,11 @@ STYLES = {
     "Bec": ("#e08214", "-"),
     "Doerner": ("0.45", (0, (4, 1.5))),
 }
-"""First word of a name, and what follows its comma if there are two, -> colour, dashes."""
+"""First word of the name of a formula -> colour, dashes. If two begin alike, what follows the comma is in the key."""
 
 
 def look(name: str) -> dict:
-    """Of the line of a formula."""
+    """Colour, dashes and width of the line of a formula."""
     first = name.split()[0].strip(",")
     key = first if first in STYLES else f"{first}, {name.partition(', ')[2]}"
     colour, dashes = STYLES[key]
@@ -84,7 +84,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
 
 
 def is_short(formula: formulas.Formula, bonded: bool) -> bool:
-    """The short form of Dimitriadis for a loose layer, which is drawn though it is made for ν = 1/2."""
+    """Whether it is the short form of Dimitriadis without friction: it is drawn although it is made for ν = 1/2."""
     return not bonded and formula.name.endswith("nu = 1/2")
 
 

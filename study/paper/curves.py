@@ -1,4 +1,4 @@
-"""Figures 3 to 8 and 10 of the paper, from opened datasets, and a companion of each: the same on the exact layer.
+"""Figures 3 to 8 and 10 of the paper, and a companion of each that shows the same on the exact layer.
 
 The curves have the paper's names: 1 rough, layered; 2 rough, homogeneous; 1' smooth, layered; 2' smooth, homogeneous.
 A companion draws the curves of the layer on the exact layer, with the paper's thin layer dotted beside them.
@@ -40,14 +40,14 @@ def with_companion(name: str, *studies: str, caption: str, height: float = 3.0):
 
 
 def cases_of(dataset: xr.Dataset, curve: str, exact: bool) -> dict[str, xr.Dataset]:
-    """The case of a curve by its name; of a companion that on the exact layer, then the paper's "NAME, thin layer"."""
+    """{curve: its case}; in a companion the case on the exact layer, and the paper's under "CURVE, thin layer"."""
     if not (exact and curve in EXACT_LAYER):
         return {curve: pick(dataset, label=CURVES[curve])}
     return {curve: pick(dataset, label=EXACT_LAYER[curve]), f"{curve}, thin layer": pick(dataset, label=CURVES[curve])}
 
 
 def plot(axes, points: list[tuple], label: str) -> list:
-    """Lines through the (x, y) of one curve; the second, if any, is the paper's, dotted."""
+    """Draw the (x, y) of one curve; a second (x, y) is the paper's, dotted. Returns the lines."""
     lines = axes.plot(*points[0], label=label)
     for x, y in points[1:]:
         lines += axes.plot(x, y, color=lines[0].get_color(), **PAPER)

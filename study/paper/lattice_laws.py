@@ -1,5 +1,7 @@
-"""Table 1 and Figures 9 and 10 of the paper with the law of a square lattice, which smears no neighbours, beside the
-paper's."""
+"""Table 1 and Figures 9 and 10 of the paper beside the same for asperities on a square lattice.
+
+The law of the lattice takes each neighbour where it is; the paper's disc cell spreads the neighbours evenly.
+"""
 
 import numpy as np
 import xarray as xr
@@ -11,21 +13,14 @@ from ..figures.annotate import name_curve, note_violations
 from ..figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 from . import numbers
 from .curves import PAPER, pressure_axes, profile
-from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, printed
+from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, largest_error, printed
 
-INTERVAL = np.isclose(PRESSURES, np.clip(PRESSURES, *numbers.ERROR_INTERVAL), rtol=1e-9)
-"""Those over which the paper states the errors of its fits."""
 DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
 
 
 def on_lattice(Ra: float, Nbar: float) -> np.ndarray:
     """A/R at PRESSURES of asperities on a square lattice."""
     return LAWS["square_lattice"].at(PRESSURES, 1.0, Nbar=Nbar, Ra=Ra).A
-
-
-def off(A: np.ndarray, true: np.ndarray) -> float:
-    """Largest relative error over the paper's interval."""
-    return float(np.abs(A / true - 1)[INTERVAL].max())
 
 
 @table(
@@ -44,13 +39,13 @@ def off(A: np.ndarray, true: np.ndarray) -> float:
     error | .1%""",
 )
 def table1_lattice() -> list[tuple]:
-    """What the paper's constants and its disc cell miss of a lattice, and constants fitted to that."""
+    """Errors of the paper's constants and of its disc cell against a lattice, and constants fitted to the lattice."""
     rows = []
     for Ra, Nbar, *_ in numbers.TABLE1:
         true = on_lattice(Ra, Nbar)
         B, beta = least_squares(PRESSURES, true)
-        errors = [off(A, true) for A in (printed(Ra, Nbar), exact(Ra, Nbar))]
-        rows.append((Ra, Nbar, Nbar * Ra**2, *errors, B, beta, off(B * PRESSURES**beta, true)))
+        errors = [largest_error(A, true) for A in (printed(Ra, Nbar), exact(Ra, Nbar))]
+        rows.append((Ra, Nbar, Nbar * Ra**2, *errors, B, beta, largest_error(B * PRESSURES**beta, true)))
     return rows
 
 
@@ -106,7 +101,7 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
         cases = {name: true, f"{name}, power law": fitted}
         columns |= profile(axes, cases, a0, rf"{name}: $\bar N R^2 = {int(true['Nbar'])}$", side)
         for kind, other, style in (("power law", fitted, PAPER), ("disc cell", disc, DISC)):
-            r, difference = away(other, true, a0)
+            r, difference = difference_of_pressures(other, true, a0)
             beside.plot(r, 100 * difference, color=f"C{i}", **style)
             columns |= {f"r/a0 ({name}, {kind} off)": r, f"off/p(0) ({name}, {kind})": difference}
         validity[name] = true["validity"]
@@ -121,8 +116,8 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
     return columns
 
 
-def away(other: xr.Dataset, true: xr.Dataset, a0: float) -> tuple[np.ndarray, np.ndarray]:
-    """r/a0 as far as either contact goes, and there the difference of their pressures over the true p(0)."""
+def difference_of_pressures(other: xr.Dataset, true: xr.Dataset, a0: float) -> tuple[np.ndarray, np.ndarray]:
+    """r/a0 up to the larger of two contact radii, and the difference of the pressures there, over the true p(0)."""
     r = np.linspace(0, max(float(case["a"]) for case in (other, true)), true.sizes["x"])
     p = [np.interp(r, case["x"] * case["a"], case["p"], right=0.0) for case in (other, true)]
     return r / a0, (p[0] - p[1]) / float(true["p0"])

@@ -52,10 +52,13 @@ def printed(Ra: float, Nbar: float) -> np.ndarray:
 
 def printed_error(Ra: float, Nbar: float, B: float, beta: float) -> float:
     """Largest |B p^β / A[p] - 1| of printed constants over the paper's interval; B in R/E1*^β."""
-    low, high = numbers.ERROR_INTERVAL
-    p = PRESSURES
-    inside = (p > low * (1 - 1e-9)) & (p < high * (1 + 1e-9))  # both ends count, however they are rounded
-    return float(np.abs(B * p**beta / exact(Ra, Nbar) - 1)[inside].max())
+    return largest_error(B * PRESSURES**beta, exact(Ra, Nbar))
+
+
+def largest_error(A: np.ndarray, true: np.ndarray) -> float:
+    """Largest relative error of A at those PRESSURES for which the paper states errors, both ends included."""
+    inside = np.isclose(PRESSURES, np.clip(PRESSURES, *numbers.ERROR_INTERVAL), rtol=1e-9)
+    return float(np.abs(A / true - 1)[inside].max())
 
 
 def bound(Ra: float, Nbar: float) -> str:

@@ -1,7 +1,7 @@
-"""Where the paper's 0.6 % may come from: its numbers against single iterates of its own successive approximations.
+"""Why the paper's numbers may be 0.6 % off: they are compared with single iterates of its successive approximations.
 
-With k = 0 the iterates of Eq. (8) at a = 0.04 alternate about the answer and close in on it slowly. One that is
-stopped early has the wrong load, and the next one is wrong to the other side.
+With k = 0 the iterates of Eq. (8) at a = 0.04 alternate about the answer and come near it slowly. If the iteration is
+stopped early, the load of the last iterate is wrong to one side, and that of the next would be wrong to the other.
 """
 
 import numpy as np
@@ -20,7 +20,7 @@ RADIUS = 0.04
 INTERVALS = (20, 40, 80, 160)
 STEPS = 40
 SHARED = ("P", "D", "A0", "Ar_An", "p_max")
-"""What is compared of the rough layered contact; keys of `numbers.NUMBERS`."""
+"""Quantities of the rough layered contact that are compared; keys of `numbers.NUMBERS`."""
 
 
 def measured() -> xr.Dataset:
@@ -40,7 +40,7 @@ def measured() -> xr.Dataset:
 
 
 def nearest_pair(found: xr.Dataset) -> dict[str, int]:
-    """Places of the mesh and of the iterate that has the paper's load and whose successor has its depth, as nearly."""
+    """Indices of the mesh and of the iterate whose load, and whose successor's depth, are nearest to the paper's."""
     load = np.abs(found["iterate_P"] / numbers.NUMBERS["P"][1] - 1).isel(iterate=slice(None, -1)).values
     depth = np.abs(found["iterate_D"] / numbers.NUMBERS["D"][1] - 1).isel(iterate=slice(1, None)).values
     mesh, step = np.unravel_index(np.argmin(np.maximum(load, depth)), load.shape)

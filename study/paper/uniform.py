@@ -19,9 +19,9 @@ from solver.threads import one_blas_thread
 
 LIMIT, LIMIT_RELAXED = 200, 40
 """Most approximations at one radius: LIMIT, or LIMIT_RELAXED (1 + k) if that is more, since relaxation slows them by
-1 + k. What takes more ends in a cycle."""
+1 + k. Cases that take more end in a cycle."""
 ROWS = 64
-"""The operator is formed in so many rows at a time: all at once would take 0.5 GB on 1100 intervals."""
+"""Rows of the operator that are formed at a time. All at once would take 0.5 GB on 1100 intervals."""
 
 
 UniformMesh = namedtuple("UniformMesh", "x w K")
@@ -55,7 +55,7 @@ def rows(targets: np.ndarray, intervals: int) -> np.ndarray:
     ):
         t, c = target[chosen], cell[chosen]
         kernel = weight * elliptic(t[:, None], c[:, None] + place) / intervals
-        found[t - targets[0], c] += kernel @ (1 - place)  # no cell is there twice
+        found[t - targets[0], c] += kernel @ (1 - place)  # += counts each pair (t, c) once, and none occurs twice
         found[t - targets[0], c + 1] += kernel @ place
     return found
 
@@ -113,7 +113,7 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
         if not len(index):
             continue
         part = Contact(problem.take(index), uniform_mesh(int(intervals)), k, 0.1 * tolerance, limit)
-        with np.errstate(all="ignore"):  # a number that goes wrong is a NaN and a status
+        with np.errstate(all="ignore"):  # a case that diverges becomes NaN and a status
             for array, values in zip(whole, part.solved(), strict=True):
                 array[index] = values
     whole.status[invalid] = Status.INVALID_INPUT
@@ -156,15 +156,15 @@ class Contact:
                 break
         return settled
 
-    def missed(self, eta: np.ndarray, index: np.ndarray) -> np.ndarray:
+    def load_error(self, eta: np.ndarray, index: np.ndarray) -> np.ndarray:
         """Logarithm of the load (5) at ln a over the given one."""
         settled = self.approximate(np.exp(eta), index)
         load = 2 * np.pi * np.exp(2 * eta) * (self.p[index] @ self.mesh.w)
-        self.p[index[~settled]] = 0.0  # no cycle is handed on
+        self.p[index[~settled]] = 0.0  # a cycle is no start for the next radius
         return np.log(load / self.value[index])
 
     def start(self) -> np.ndarray:
-        """Radii to begin with: under the load of the half-space, of the layer and of asperities A ~ p^β alone."""
+        """Radii to begin with, from those on the half-space alone, the layer alone, and asperities A ~ p^β alone."""
         law, P = self.law, self.value
         gamma, beta = law.edge()
         e = 1 / beta
@@ -176,12 +176,12 @@ class Contact:
         every, law, mesh = np.arange(len(self.value)), self.law, self.mesh
         a = self.value
         if self.given == "P":
-            a = np.exp(halved(self.missed, np.log(self.start()), self.tolerance))
+            a = np.exp(halved(self.load_error, np.log(self.start()), self.tolerance))
         settled, p = self.approximate(a, every), self.p
         P = 2 * np.pi * a**2 * (p @ mesh.w)  # (5)
         if self.given == "P":
             settled &= np.abs(np.log(P / self.value)) < 10 * self.tolerance
-            P = self.value  # exactly as given
+            P = self.value  # without the error of the search
         status = np.where(settled, Status.CONVERGED, Status.ITERATION_LIMIT)
         status = np.where(np.isfinite(p).all(axis=1), status, Status.DIVERGED)
         q = p / law.p_star[:, None]
@@ -199,20 +199,20 @@ def compliance(problem: Problem) -> np.ndarray:
     return 2 * np.where(problem.bonding == "bonded", bonded, 0.5) * problem.h / problem.n
 
 
-def halved(missed, start: np.ndarray, tolerance: float) -> np.ndarray:
-    """Roots (B,) of increasing functions `missed(x, index)` by halving: from start ± 0.1, moved outwards, doubling,
+def halved(load_error, start: np.ndarray, tolerance: float) -> np.ndarray:
+    """Roots (B,) of increasing functions `load_error(x, index)` by halving: from start ± 0.1, moved outwards, doubling,
     until they enclose the root. A case is left alone when its bracket is below the tolerance, or its function NaN."""
     low, high = start - 0.1, start + 0.1
     for sign, end in ((-1, low), (1, high)):
         step, short = 0.1, np.arange(len(start))
         while len(short) and step < 1000:
-            short = short[sign * missed(end[short], short) < 0]
+            short = short[sign * load_error(end[short], short) < 0]
             step *= 2
             end[short] += sign * step
     active = np.arange(len(start))
     while len(active):
         middle = (low[active] + high[active]) / 2
-        found = missed(middle, active)
+        found = load_error(middle, active)
         low[active], high[active] = np.where(found < 0, [middle, high[active]], [low[active], middle])
         active = active[(high[active] - low[active] > tolerance) & ~np.isnan(found)]
     return (low + high) / 2

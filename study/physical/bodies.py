@@ -1,4 +1,4 @@
-"""Materials by name in a physical scene: `punch`, `layer` and `body` in place of E and ν of each."""
+"""Materials by name: `punch`, `layer` and `body` of a physical scene stand for E and ν of each."""
 
 from typing import Any
 
@@ -7,17 +7,17 @@ import numpy as np
 from ..scene import materials
 from ..scene.quantities import Quantity
 from ..spec.grid import twins
-from .names import RIGID_TEXTS, Known, Row
+from .names import RIGID_TEXTS, CaseValues, QuantityList
 
-#: Body -> its modulus and Poisson ratio, and the ratio of moduli that follows from it.
+#: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 _MAY_BE_RIGID = ("punch", "body")
 
 
 def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
-    """The parameters with E and ν of the materials named, and body -> (dimension, their names as in the table).
+    """The parameters with E and ν in place of materials, and body -> (dimension or "", names of its materials).
 
-    E and ν have the spreads of the table; messages are appended to `errors`.
+    E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
     found, names = dict(parameters), {}
     for body, follows in BODIES.items():
@@ -32,20 +32,20 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
             known = {text: _material(body, one) for text, one in {str(one): one for one in values}.items()}
         except LookupError as error:
             errors.append(f"{body}: {error.args[0]}")
-            found[follows[0]] = Quantity(1.0)  # it is not missing
+            found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing
             continue
         texts, *numbers = zip(*(known[str(one)] for one in values), strict=True)
-        for i, j in twins(texts) if several and not isinstance(given, Row) else ():
+        for i, j in twins(texts) if several and not isinstance(given, CaseValues) else ():
             errors.append(f"{body}[{i}] and {body}[{j}] are both {texts[i]}: values of an axis must differ")
-        dim = ("case" if isinstance(given, Row) else body) if several else ""
+        dim = ("case" if isinstance(given, CaseValues) else body) if several else ""
         for name, column in zip(follows, numbers, strict=False):
-            found[name] = Known(list(column), dim) if several else column[0]
+            found[name] = QuantityList(list(column), dim) if several else column[0]
         names[body] = dim, list(texts)
     return found, names
 
 
 def _material(body: str, name: Any) -> tuple[str, Quantity, Quantity]:
-    """Name, E and ν of a material. Raises LookupError when there is none."""
+    """Name, E and ν of a material. Raises LookupError for a name that is not in the table."""
     if body in _MAY_BE_RIGID and name in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3)
     if not isinstance(name, str):

@@ -1,4 +1,4 @@
-"""An index by which texts with units find the SI numbers of a dimension."""
+"""Selection by texts with units: `sel(h="3 um")` along a dimension of SI numbers."""
 
 from typing import Any
 
@@ -14,7 +14,7 @@ class UnitIndex(PandasIndex):
     """An index of SI numbers in which `sel(h="3 um")`, and slices of such texts, find 3e-6."""
 
     def sel(self, labels: dict, method=None, tolerance=None):
-        """As of any index of xarray. Raises ValueError for a text with no unit, or with one of something else."""
+        """As that of other indexes of xarray. Raises ValueError for a text without a unit, or of something else."""
         name, label = next(iter(labels.items()))
 
         def number(one: Any) -> Any:

@@ -1,4 +1,4 @@
-"""What a physical scene has, in which SI unit each of its numbers is."""
+"""Names, SI units and dimensions of the inputs of a physical scene."""
 
 import math
 from typing import Any, NamedTuple
@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 from ..scene.quantities import Quantity, quantity
 from ..spec.vocabulary import SI, VOCABULARY
 
-#: What a scene has besides the parameters of the solver: SI unit and long name.
+#: Inputs of a scene that are no parameters of the solver -> SI unit, long name.
 SCENE = {
     "R": ("m", "radius of the punch"),
     "R1": ("m", "radius of one body"),
@@ -20,28 +20,28 @@ SCENE = {
 RIGID, RIGID_TEXTS = ("E2", "E_punch"), ("rigid", "inf", "infinite")
 
 
-class Row(list):
-    """The values of a parameter over the dimension `case`."""
+class CaseValues(list):
+    """The values of a parameter, as they were given, over the dimension `case`."""
 
 
-class Known(NamedTuple):
-    """Values of a parameter in its SI unit, along a dimension."""
+class QuantityList(NamedTuple):
+    """The values of a parameter in its SI unit along a dimension."""
 
     quantities: list[Quantity]
     dim: str
 
 
 def dim_of(name: str) -> str:
-    """The dimension of several values of a parameter while the cases are solved.
+    """The dimension along which several values of a parameter lie while the cases are solved.
 
-    Of a parameter with a unit it is not the name alone: that stands for the dimensionless numbers, which may lie along
-    other dimensions too.
+    A parameter with a unit has a dimension "h in SI". The name alone is that of the dimensionless parameter h/R, which
+    depends on the dimension of R as well.
     """
     return name if unit_of(name) == "1" else f"{name} in SI"
 
 
 def unit_of(name: str) -> str:
-    """SI unit of a parameter or result, most of them in READABLE; "1" for pure numbers and texts."""
+    """SI unit of a parameter or result; "1" for pure numbers and texts."""
     return SCENE[name][0] if name in SCENE else VOCABULARY[name].unit
 
 
@@ -51,9 +51,9 @@ def powers_of(name: str) -> tuple[int, int]:
 
 
 def si(name: str, given: Any, called: str = "") -> Quantity:
-    """The SI value of a parameter or result given as text, quantity or number; messages call it `called`.
+    """The SI value of a parameter or result given as text, quantity of pint or number; messages call it `called`.
 
-    Raises ValueError for what is none, as `quantity` does.
+    Raises ValueError as `quantity` does.
     """
     if name in RIGID and (given in RIGID_TEXTS if isinstance(given, str) else given == math.inf):
         return Quantity(math.inf)

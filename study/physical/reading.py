@@ -14,17 +14,15 @@ from ..spec.definition import StudyError
 from ..spec.grid import MOVED, shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from ..terminal import on_one_line
 from .bodies import BODIES, with_materials
-from .names import SCENE, Known, Row, dim_of, si, unit_of
+from .bounds import beyond_bounds, value_text
+from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of
 from .scales import make_dimensionless, over_dimensions
 from .scene import STEP, Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
-#: What must hold of the scene before anything is derived from it: above, up to, and the words for it.
+#: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
-LONGEST_SHOWN = 60  # characters of a value in a message
-_PARTS = ("value", "spread")  # of a Quantity
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
@@ -32,29 +30,29 @@ def _has_unit(given: Any) -> bool:
     """Whether a parameter, or one of its values, has a unit or a spread."""
     if isinstance(given, xr.DataArray):
         return given.attrs.get("units", "1") != "1"
-    if isinstance(given, Known):
+    if isinstance(given, QuantityList):
         return True
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
 def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> Scene | None:
-    """The scene of physical parameters of `study.solve`; None if they are dimensionless.
+    """The physical scene that the parameters of `study.solve` describe; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
-    spreads : whether inputs with spreads are moved, for those of the results
+    spreads : whether the results shall have spreads, for which inputs with spreads are moved
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    every = [pair for table in (parameters, *rows) for pair in table.items()]
-    if not any(name in SCENE or name in BODIES or _has_unit(given) for name, given in every):
+    given = [pair for table in (parameters, *rows) for pair in table.items()]
+    if not any(name in SCENE or name in BODIES or _has_unit(value) for name, value in given):
         return None
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)
     parameters, scene.names = with_materials(parameters, errors)
     for name, given in parameters.items():
-        if name == "label" and isinstance(given, Row):
+        if name == "label" and isinstance(given, CaseValues):
             scene.labels = list(map(str, given))
         elif name not in SCENE and not is_parameter(name):
             errors.append(f"{shown(name)} is not a parameter{suggest(name, [*PARAMETERS, *SCENE, *BODIES])}")
@@ -64,7 +62,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
             except ValueError as error:
                 errors.append(str(error))
         else:
-            scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, Row) else given
+            scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, CaseValues) else given
     errors += _missing(parameters)
     errors += [] if errors else _impossible(scene)
     if errors:
@@ -72,44 +70,47 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     scene.spreads = scene.spreads if spreads else {}
     _move(scene)
     make_dimensionless(scene)
+    errors = beyond_bounds(scene, parameters)
+    if errors:
+        raise StudyError(errors)
     return scene
 
 
 def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
-    """The parameters, with those of the rows as a :class:`Row` each; first, as their dimension comes first."""
+    """The parameters, with those of the rows as CaseValues. These come first, since `case` is the first dimension."""
     found = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         if name in parameters or not all(name in row for row in rows):
             errors.append(f"{name} must be given in every case, or once for all")
         else:
-            found[name] = Row([row[name] for row in rows])
+            found[name] = CaseValues([row[name] for row in rows])
     return found | {name: given for name, given in parameters.items() if name not in found}
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:
-    """Put SI values and spreads of a parameter into the scene."""
+    """Put the SI values and spreads of an input into the scene. Raises ValueError for values that it cannot have."""
     if isinstance(given, xr.DataArray):
         value, spread = _of_array(name, given, unit_of(name)), 0.0
     else:
-        found = given if isinstance(given, (Known, Quantity)) else _quantities(name, given)
-        if isinstance(found, Known):
+        found = given if isinstance(given, (QuantityList, Quantity)) else _quantities(name, given)
+        if isinstance(found, QuantityList):
             scene.dims |= {found.dim: name} if found.dim == dim_of(name) else {}
-            columns = ([getattr(one, part) for one in found.quantities] for part in _PARTS)
-            value, spread = (xr.DataArray(column, dims=found.dim) for column in columns)
+            value = xr.DataArray([one.value for one in found.quantities], dims=found.dim)
+            spread = xr.DataArray([one.spread for one in found.quantities], dims=found.dim)
             if found.dim == dim_of(name):
                 _check_distinct(name, value.values.tolist())
         else:
             value, spread = found.value, found.spread
     if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
-        raise ValueError(f"{name} = {_text(given)}: must not be 0")
+        raise ValueError(f"{name} = {value_text(given)}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
     if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
-        raise ValueError(f"{name} = {_text(given)}: {limits}")
+        raise ValueError(f"{name} = {value_text(given)}: {limits}")
     if np.any(np.asarray(spread) > 0):
         reach = STEP * np.asarray(spread)
         if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
             text = f"with its spread it {limits}; at the limit itself give no spread"
-            raise ValueError(f"{name} = {_text(given)}: {text}")
+            raise ValueError(f"{name} = {value_text(given)}: {text}")
         scene.spreads[name] = spread
     scene.given[name] = value
 
@@ -120,8 +121,8 @@ def _check_distinct(name: str, values: list) -> None:
         raise ValueError(f"{name}[{i}] and {name}[{j}] are both {text}: values of an axis must differ")
 
 
-def _quantities(name: str, given: Any) -> Known | Quantity:
-    """The quantities in a list, array or single value."""
+def _quantities(name: str, given: Any) -> QuantityList | Quantity:
+    """The quantities in a list, an array or a single value."""
     given = given.tolist() if isinstance(given, np.ndarray) else given
     given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
     if not isinstance(given, (list, tuple, range)):
@@ -129,7 +130,7 @@ def _quantities(name: str, given: Any) -> Known | Quantity:
     if not len(given):
         raise ValueError(f"{name} is empty: must have at least one value")
     found = [si(name, one, f"{name}[{i}]") for i, one in enumerate(given)]
-    return Known(found, "case" if isinstance(given, Row) else dim_of(name))
+    return QuantityList(found, "case" if isinstance(given, CaseValues) else dim_of(name))
 
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
@@ -139,10 +140,6 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
-
-
-def _text(given: Any) -> str:
-    return on_one_line(str(given), LONGEST_SHOWN)
 
 
 def _missing(parameters: dict) -> list[str]:
@@ -187,7 +184,7 @@ def _shown(value: Any) -> str:
 
 
 def _move(scene: Scene) -> None:
-    """Give inputs with spreads the dimension along which they are moved: as given, then each up and down."""
+    """Give inputs with spreads the dimension MOVED: all as given, then each in turn moved up and moved down by STEP."""
     count = len(scene.spreads)
     for i, (name, spread) in enumerate(scene.spreads.items()):
         steps = np.zeros(1 + 2 * count)

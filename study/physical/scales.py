@@ -16,7 +16,7 @@ from .scene import Scene
 
 
 def make_dimensionless(scene: Scene) -> None:
-    """Put the effective radius, the unit of moduli and the parameters of the solver into a scene."""
+    """Add to a scene what follows from its SI values: effective radius, unit of moduli, parameters of the solver."""
     given = scene.given
     if "R1" in given:
         given["R"] = 1 / (1 / given["R1"] + 1 / given["R2"])
@@ -33,7 +33,7 @@ def make_dimensionless(scene: Scene) -> None:
 
 
 def moduli(given: dict, parameters: dict) -> tuple:
-    """The unit of moduli, E1* and E2* in Pa of what is given; E1* is E2* where there is no layer."""
+    """The unit of moduli, E1* and E2*, in Pa. Without E1 and n, on a half-space, E1* is E2*."""
     body = _reduced(given, "E2", "nu2")
     n = over_dimensions(given["n"] if "n" in given else parameters.get("n", 1.0), "n")
     layer = _reduced(given, "E1", "nu1") if "E1" in given else n * body
@@ -41,7 +41,7 @@ def moduli(given: dict, parameters: dict) -> tuple:
 
 
 def _where(condition: Any, yes: Any, no: Any) -> Any:
-    """xr.where, which takes a millisecond, where it is needed."""
+    """xr.where for arrays. For single numbers plain Python, as xr.where takes a millisecond."""
     return xr.where(condition, yes, no) if np.ndim(condition) else yes if condition else no
 
 

@@ -1,4 +1,4 @@
-"""A physical scene: what it gives the solver, and the results in SI units with their spreads."""
+"""A physical scene: its inputs in SI units, what the solver gets, and the results in SI units with their spreads."""
 
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -7,26 +7,30 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import Parts
-from ..data.units import DONE, physical_attributes, with_unit
+from ..data.units import PHYSICAL_SCALE, physical_attributes, with_unit
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY
 from .index import searchable
 from .names import SCENE, unit_of
 
-#: Part of a spread by which an input is moved for its derivative: small against what is not linear, large against rtol.
+#: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
+#: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
 STEP = 0.1
-#: Results that have no spread of their own.
-_ABOUT = ("error", "model_error", "residual")
+#: Results that get no spread.
+_WITHOUT_SPREAD = ("error", "model_error", "residual")
 
 
 @dataclass
 class Scene:
-    """A physical scene: `parameters` are dimensionless, for the solver; `dressed` gives its results in SI units.
+    """A physical scene.
 
-    given : name -> SI values, a float or a DataArray; spreads : the same of the inputs that have spreads;
-    R, unit : the radius, m, and the modulus, Pa, that are 1 for the solver: E2*, or E1* on a rigid base;
-    dims : dimension while solving -> name of the parameter; labels : of the dimension `case`;
+    given : input -> its SI values, a float or a DataArray
+    spreads : input -> standard deviations, likewise; only of inputs that have some
+    parameters : dimensionless, for the solver
+    R, unit : radius (m) and modulus (Pa) that are 1 for the solver; the modulus is E2*, or E1* on a rigid base
+    dims : dimension while the cases are solved -> name of it in the results
+    labels : of the dimension `case`
     names : punch, layer, body -> (dimension or "", names of materials along it)
     """
 
@@ -40,7 +44,7 @@ class Scene:
     unit: Any = 1.0
 
     def sizes(self, axes: list[str]) -> dict[str, int]:
-        """Dimension while solving -> its length, of `case` and of the axes in their order."""
+        """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
         names, found = {name: dim for dim, name in self.dims.items()}, {}
         arrays = [v for v in (*self.given.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
         known = {dim: size for array in arrays for dim, size in array.sizes.items()}
@@ -52,7 +56,7 @@ class Scene:
         return found
 
     def within(self, window: dict[str, slice]) -> "Scene":
-        """The scene of the cases within a window, a slice for each dimension while solving."""
+        """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
 
         def cut(value: Any) -> Any:
             if not isinstance(value, xr.DataArray):
@@ -66,8 +70,8 @@ class Scene:
             self, given=given, spreads=spreads, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit)
         )
 
-    def dressed(self, parts: Parts) -> xr.Dataset:
-        """The dimensionless results of `parameters` in SI units, the inputs as given, with spreads of the results."""
+    def results(self, parts: Parts) -> xr.Dataset:
+        """The dataset in SI units, made of the dimensionless results: inputs as given, results with their spreads."""
         results, coords = {}, {}
         for name, variable in (parts.variables | parts.coords).items():
             if name in self.given or name == MOVED:
@@ -87,16 +91,16 @@ class Scene:
             coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
         if self.labels:
             coords["label"] = xr.Variable("case", self.labels)
-        attributes = parts.attributes | {DONE: "SI; R, E1, E2 and E_punch are coordinates"}
+        attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
         return searchable(Parts(results, coords, attributes).dataset())
 
     def _coordinate(self, name: str, value: Any, long_name: str = "") -> xr.Variable:
-        """SI values of an input, with the unit of the parameter `name`."""
+        """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
         variable = _variable(value)
         variable = variable.isel({MOVED: 0}) if MOVED in variable.dims else variable
         words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
-        told = {"long_name": long_name or words} | _units(unit_of(name))
-        return self._renamed(xr.Variable(variable.dims, variable.data, told))
+        attributes = {"long_name": long_name or words} | _units(unit_of(name))
+        return self._renamed(xr.Variable(variable.dims, variable.data, attributes))
 
     def _renamed(self, variable: xr.Variable) -> xr.Variable:
         """The variable over the dimensions that the results have."""
@@ -106,9 +110,9 @@ class Scene:
         return xr.Variable(dims, variable.data, variable.attrs, variable.encoding)
 
 
-def shown(definition: Definition, parts: Parts) -> xr.Dataset:
-    """The dataset of a study as users see it: in SI units, if the study has units."""
-    return definition.scene.dressed(parts) if definition.scene else parts.dataset()
+def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
+    """The dataset of a study: in SI units if the study has units, else dimensionless."""
+    return definition.scene.results(parts) if definition.scene else parts.dataset()
 
 
 def _variable(value: Any) -> xr.Variable:
@@ -125,9 +129,9 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     powers = VOCABULARY[name].powers
     if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
         found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
-    else:  # most often; arithmetic of labelled arrays takes as long as a contact
+    else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
         found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
-    if found.dtype != variable.dtype:
+    if found.dtype != variable.dtype:  # astype takes time even where it changes nothing
         found = found.astype(variable.dtype)
     found.attrs = physical_attributes(name, variable.attrs)
     found.encoding = variable.encoding
@@ -135,8 +139,11 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
 
 
 def _spread(name: str, variable: xr.Variable) -> dict[str, xr.Variable]:
-    """The standard deviation `NAME_spread` of a result, to first order, of independent inputs; {} where it has none."""
-    if VOCABULARY[name].role not in ("control", "result", "profile") or name in _ABOUT:
+    """{"NAME_spread": standard deviation of a result}, {} for a result that gets none.
+
+    It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs.
+    """
+    if VOCABULARY[name].role not in ("control", "result", "profile") or name in _WITHOUT_SPREAD:
         return {}
     up, down = (variable.isel({MOVED: slice(first, None, 2)}) for first in (1, 2))
     spread = np.sqrt((((up - down) / (2 * STEP)) ** 2).sum(MOVED, skipna=False))

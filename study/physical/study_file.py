@@ -1,7 +1,7 @@
 """Study files, with units or without: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`.
 
-Inputs may have spreads ("200 ± 10 GPa", materials by name). Each case is then solved with every such input moved up and
-down as well, along the dimension MOVED, and the results have `NAME_spread` in its place, as those of `study.solve` do.
+Inputs may have spreads ("200 ± 10 GPa", materials by name). Then each case is solved several times: as given, and with
+each such input moved up and down, along the dimension MOVED. The results have `NAME_spread` in place of this dimension.
 """
 
 import hashlib
@@ -20,12 +20,11 @@ from ..spec.identity import digest_of_array
 from ..spec.sample import LIMITS, divisor, draw
 from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
 from .bodies import BODIES
-from .names import SCENE, Known, Row, dim_of, powers_of, unit_of
+from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, unit_of
 
-ANY = Parameter(interval="(-inf, inf)")
-"""What is allowed in a [sample] of numbers in SI: what is drawn is checked as any number with a unit is."""
-CHOICE = 'say dtype = "float64", or spreads = false'
-NOTE = "(numbers and limits are dimensionless here: lengths in R, loads in E2* R², Nbar in 1/R², n = E1*/E2*)"
+ANY_NUMBER = Parameter(interval="(-inf, inf)")
+"""Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
+FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
 
 
 def read(path) -> Definition:
@@ -35,12 +34,12 @@ def read(path) -> Definition:
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
-    with_unit = _with_unit(tables)
-    if not with_unit:
+    sign = _sign_of_units(tables)
+    if not sign:
         return definition.from_tables(tables, name, text, where)
-    from .reading import read as read_scene  # takes xarray with it, which a study without units need not wait for
+    from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
 
-    draft, given = definition.begun(tables, where)
+    draft, given = definition.new_draft(tables, where)
     definition.add_numerics(draft, given)
     parameters = _parameters(draft, given)
     if draft.errors:
@@ -51,17 +50,17 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
             raise StudyError([f"[output] spreads = {shown(spreads)}: must be true or false"])
         scene = read_scene(parameters, tables.get("cases"), spreads)
         if scene.spreads and dtype == "float32":
-            several = " and ".join(scene.spreads)
-            raise StudyError([f'[output] dtype = "float32" has too few digits for the spreads of {several}: {CHOICE}'])
+            problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
+            raise StudyError([f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}'])
     except StudyError as error:
-        hint = f" ({with_unit} makes this a study with units)"
+        hint = f" ({sign} makes this a study with units)"
         raise definition.refusal(where, [f"{m}{hint * ('has no unit' in m)}" for m in error.messages]) from None
     made = complete(draft, scene, list(given["axes"]), (given, name, text, where))
     return replace(made, digest=_digest(made))
 
 
 def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options) -> Definition:
-    """The definition of a scene, with a dimension for each of the `axes`, in their order; MOVED follows them.
+    """The definition of a study of a scene. Its dimensions are `case`, the `axes` in their order, and MOVED.
 
     about, options : the other arguments of `study.spec.definition.complete`
     """
@@ -72,14 +71,11 @@ def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options)
         draft.sizes[dim] = size
     for name, value in scene.parameters.items():
         draft.of_any_form(name, value)
-    try:
-        return replace(definition.complete(draft, *about, **options), scene=scene)
-    except StudyError as error:
-        raise StudyError([*error.messages, NOTE]) from None
+    return replace(definition.complete(draft, *about, **options), scene=scene)
 
 
-def _with_unit(tables: dict) -> str:
-    """The first parameter of a study file that only one with units has, as `NAME = VALUE`; "" if there is none."""
+def _sign_of_units(tables: dict) -> str:
+    """The first parameter that makes this a study with units, as `NAME = VALUE`; "" if there is none."""
     rows = tables["cases"] if isinstance(tables.get("cases"), list) else []
     for table in (tables.get("model"), tables.get("axes"), tables.get("sample"), *rows):
         for name, given in table.items() if isinstance(table, dict) else ():
@@ -90,7 +86,7 @@ def _with_unit(tables: dict) -> str:
 
 
 def _parameters(draft: Draft, given: dict) -> dict:
-    """The parameters of [model], [axes] and [sample], with ranges as lists of SI values; messages go to the draft."""
+    """The parameters of [model], [axes] and [sample], ranges as lists of their values; messages go to the draft."""
     errors, model, axes = draft.errors, given["model"], given["axes"]
     sample = _sampled(given["sample"], errors) if "sample" in given else {}
     if sample and "cases" in given:
@@ -109,34 +105,36 @@ def _parameters(draft: Draft, given: dict) -> dict:
     return sample | {name: _axis(name, raw, errors) for name, raw in axes.items()} | model
 
 
-def _axis(name: str, raw: Any, errors: list[str]) -> list | Known:
-    """The values of an axis; of a range with units evenly spaced in SI."""
+def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
+    """The values of an axis. A range with units becomes SI values."""
     if not isinstance(raw, dict) or not (name in SCENE or name in VOCABULARY) or unit_of(name) == "1":
         return axis_values(raw, name, errors)
     in_si = _in_si(raw, name, unit_of(name), errors)
     values = axis_values(in_si, name, errors) if in_si else []
-    return Known([Quantity(value) for value in values], dim_of(name))
+    return QuantityList([Quantity(value) for value in values], dim_of(name))
 
 
 def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
-    """A range whose ends are numbers in the SI `unit`; a message and {} for ends that are none."""
+    """A range with its ends as numbers in the SI `unit`; messages and {} for ends that it cannot have."""
     try:
         ends = {end: quantity(f"{key}: {end}", raw[end], unit).value for end in ("start", "stop") if end in raw}
     except ValueError as error:
         errors.append(str(error))
         return {}
-    return raw | ends
+    wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
+    errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
+    return {} if wrong else raw | ends
 
 
-def _sampled(table: Any, errors: list[str]) -> dict[str, Row | Known]:
-    """What [sample] draws, over the dimension `case`: numbers in SI from ranges, and what stands in a list."""
+def _sampled(table: Any, errors: list[str]) -> dict[str, CaseValues | QuantityList]:
+    """What [sample] draws, over the dimension `case`: SI numbers from ranges, entries of lists as they stand there."""
     drawn = table if isinstance(table, dict) else {}
     before, known, in_si = len(errors), {}, dict(drawn)
     for name, raw in drawn.items():
         if name in BODIES:
             known[name] = Parameter(choices=("a material",))
         elif name in SCENE or name in VOCABULARY:
-            known[name] = VOCABULARY[name].own if unit_of(name) == "1" and name in VOCABULARY else ANY
+            known[name] = VOCABULARY[name].own if unit_of(name) == "1" and name in VOCABULARY else ANY_NUMBER
             if isinstance(raw, dict):
                 in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
         elif name not in LIMITS:
@@ -144,7 +142,7 @@ def _sampled(table: Any, errors: list[str]) -> dict[str, Row | Known]:
     if len(errors) > before:
         return {}
     return {
-        name: Known(list(map(Quantity, values)), "case") if isinstance(drawn[name], dict) else Row(values)
+        name: QuantityList(list(map(Quantity, values)), "case") if isinstance(drawn[name], dict) else CaseValues(values)
         for name, values in draw(in_si if drawn else table, known, errors).items()
     }
 
@@ -159,7 +157,7 @@ def _unit_of_range(name: str, raw: dict) -> str:
 
 
 def _digest(made: Definition) -> str:
-    """The digest of a study with units: of its dimensionless numbers, and of the SI values that they are made of."""
+    """The digest of a study with units: of its dimensionless numbers, and of the SI values from which they follow."""
     scene = made.scene
     content = [made.digest, scene.labels, sorted(scene.names.items())]
     for name, value in sorted(scene.given.items()):

@@ -20,9 +20,9 @@ from ..terminal import on_one_line
 from .quantities import multiple
 
 SOFTEST, STIFFEST = 1e3, 2e12
-"""Pa: between them is every E of the table, 8.6 kPa to 1143 GPa, with a margin; an E in GPa, at most 1143, is below."""
+"""Bounds of E in Pa. Each E of the table, 8.6 kPa to 1143 GPa, is between them; one in GPa by mistake is below."""
 LEAST_SPREAD = 1e-6
-"""Of E: nothing is known better. A spread in GPa beside an E in Pa, 5 beside 207e9, is below."""
+"""Least spread of E, over E: no E is known better. A spread given in GPa by mistake, 5 beside 207e9 Pa, is below."""
 LONGEST_SHOWN = 60
 """Characters of a user's value in a message: a message stays on two lines of a terminal."""
 
@@ -90,7 +90,7 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     """
     known = _built_in() if among is None else among
     spelled = {_plain(word): entry for entry in known.values() for word in entry.also}
-    spelled |= {_plain(entry.name): entry for entry in known.values()}  # a name comes before another name
+    spelled |= {_plain(entry.name): entry for entry in known.values()}  # names win over other names
     plain = _plain(name)
     if plain in spelled:
         return spelled[plain]
@@ -186,7 +186,7 @@ def _is_allowed(key: str, value, modulus=None) -> bool:
     if key in NUMBERS:
         if not _is_number(value):
             return False
-        if key == "E_spread":  # beside an E that has a message of its own any spread will do
+        if key == "E_spread":  # where E is wrong itself, its spread is not compared with it
             return value >= 0 and (
                 value == 0 or not _is_allowed("E", modulus) or LEAST_SPREAD * modulus <= value < modulus
             )
@@ -201,6 +201,7 @@ def _is_number(value) -> bool:
 
 
 def _plain(name) -> str:
+    """A name in small letters, with single blanks for hyphens and underscores."""
     return " ".join(str(name).casefold().replace("-", " ").replace("_", " ").split())
 
 
@@ -225,7 +226,7 @@ def _in_multiples(value: float, spread: float) -> str:
 
 
 def _with_spread(value: float, spread: float) -> str:
-    """As many decimals as it takes to change neither number by more than a twentieth of the spread."""
+    """A number and its spread, with the fewest decimals that change neither by more than a twentieth of the spread."""
     if spread == 0:
         return f"{value:.4g}"
     enough = (n for n in range(9) if all(abs(round(x, n) - x) <= spread / 20 for x in (value, spread)))

@@ -1,4 +1,4 @@
-"""Asperities of a scan: what is taken off it, how they are found, and what is said about the answer."""
+"""Density and radius of the asperities of a scan, how they were found, and the doubts about them, in words."""
 
 import math
 import numbers
@@ -9,9 +9,9 @@ import numpy as np
 from . import summits
 from .scan import FEWEST, Scan
 
-#: A summit every five points or more often: white noise has one in nine points, three points apart.
+#: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
 RESOLVED = 5
-#: With fewer asperities N̄ is uncertain by more than a tenth, 1/√100; of a profile, twice that (N̄ is D²).
+#: With fewer asperities N̄ is uncertain by more than 1/√100 = 10 %; by twice that on a profile, where N̄ is a square.
 MANY = 100
 #: Skewness that a Gaussian surface of 100 asperities has by chance once in a thousand times, 3 √(6/100), rounded up.
 SKEWED = 0.8
@@ -65,7 +65,7 @@ class Roughness:
 
 
 def _length(x: float) -> str:
-    """A length in the unit that suits it."""
+    """A length as text, in m, mm, µm or nm."""
     for unit, size in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)):
         if x >= 0.9995 * size:
             return f"{x / size:.3g} {unit}"
@@ -139,7 +139,7 @@ def _filtered(scan: Scan, form: str | float, cutoff: float | None) -> tuple[np.n
                 f"{scan.name}: {' × '.join(map(str, z.shape))} points are left by a cutoff of {cutoff:g} m, which "
                 f"takes 0.75 cutoffs from each border; at least {FEWEST} in each direction are needed"
             )
-    if np.std(z) <= 1e-12 * np.abs(scan.z).max():  # rounding of what was taken off
+    if np.std(z) <= 1e-12 * np.abs(scan.z).max():  # only rounding errors of the subtraction are left
         raise ValueError(f"{scan.name}: nothing is left of the heights: {said}")
     return z, said
 

@@ -23,14 +23,14 @@ READABLE = {
     "m^2": ("an area", (("mm²", 1e-6), ("µm²", 1e-12), ("nm²", 1e-18))),
     "1": ("a pure number", (("", 1.0),)),
 }
-LONGEST = 100  # characters of a text with a unit: pint computes what is written there
-_SURE = 1e-5  # relative spread of a number that is not worth a ±
+LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there
+_SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
-#: A number and a unit, which is a product of powers: what it is in SI is the number times a size that is kept.
+#: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
-#: A power without ^, as in "mm2" and "mm-2". The letters follow no digit, or the e of "1e2" would be a unit.
+#: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
 
 
@@ -43,11 +43,19 @@ class Quantity:
 
 
 def has_unit(given: Any) -> bool:
-    """Whether something is a quantity of pint, or a text that begins with a number and is not only one."""
+    """Whether something is a quantity of pint, or a text that begins with a number and goes on behind it."""
     if isinstance(given, str):
         number = _NUMBER.match(given.strip())
         return bool(number) and number.end() < len(given.strip())
     return hasattr(given, "magnitude") and hasattr(given, "to")
+
+
+def unit_in(given: Any) -> str:
+    """The unit of a text or of a quantity of pint, as it is written there; "" where it is no plain product of units."""
+    if not isinstance(given, str):
+        return str(getattr(given, "units", ""))
+    plain = [_PLAIN.fullmatch(part) for part in _SPREAD.split(given.strip())]
+    return next((found[2] for found in plain if found), "")
 
 
 def quantity(name: str, given: Any, unit: str) -> Quantity:
@@ -61,7 +69,7 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
 
     Raises
     ------
-    ValueError : no number, no unit, a unit of something else; the message says what was understood
+    ValueError : there is no number or no unit, or the unit is of something else, which the message names
     """
     what = READABLE[unit][0] if unit in READABLE else f"a number of {unit}"
     wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
@@ -78,12 +86,12 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
         raise ValueError(f"{name} = {_shown(given)}: {wanted}")
     try:
         return Quantity(float(given.to(_pint_name(unit)).magnitude))
-    except Exception as error:  # of whatever registry the quantity is
+    except Exception as error:  # its class depends on the registry of the quantity
         raise ValueError(f"{name} = {given}: {wanted}") from error
 
 
 def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
-    """The quantity in a text; a unit behind the spread holds for the value as well."""
+    """The quantity in a text. In "200 ± 10 GPa" the unit holds for the value as well."""
     head, *spread = _SPREAD.split(text)
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
         raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": {wanted}')
@@ -100,9 +108,9 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     return Quantity(_si(name, head, unit, wanted), abs(_si(name, spread[0], unit, wanted)))
 
 
-@lru_cache(maxsize=4096)  # to read a text takes half a millisecond
+@lru_cache(maxsize=4096)  # reading a text takes half a millisecond
 def _si(name: str, text: str, unit: str, wanted: str) -> float:
-    """A text without spread in the SI unit, rounded once: "3 um" is the number 3e-6."""
+    """The SI value of a text without a spread. It is rounded once, so "3 um" is exactly the float 3e-6."""
     said, text = on_one_line(text, LONGEST), _POWER.sub(r"\1^\2", text.replace("⁻²", "^-2").replace("²", "^2"))
     plain = _PLAIN.fullmatch(text)
     size = _size(plain[2], unit) if plain else None
@@ -111,7 +119,7 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     registry = _registry()
     try:
         found = registry.Quantity(text)
-    except Exception as error:  # pint raises of many kinds
+    except Exception as error:  # pint raises many kinds of errors
         raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
@@ -125,17 +133,17 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
 
 @lru_cache(maxsize=256)
 def _size(word: str, unit: str) -> Decimal | None:
-    """A unit such as "um" or "1/mm^2" in the SI `unit`; None if it is none, or one of something else."""
-    registry = _registry()  # where pint itself does not work, nobody's unit is to blame
+    """The size of a unit such as "um" or "1/mm^2" in the SI `unit`; None if it cannot be told."""
+    registry = _registry()  # outside `try`: an error of pint itself is not one of the unit
     try:
         found = registry.Quantity(word).to(_pint_name(unit)).magnitude
-    except Exception:  # the whole text will be read, and what is wrong with it said
+    except Exception:  # pint then reads the whole text, and the message says what is wrong
         return None
     return found if isinstance(found, Decimal) and unit != "1" else None
 
 
 def _shown(given: Any) -> str:
-    """What was given, on a line."""
+    """What was given, as a message quotes it."""
     try:
         return on_one_line(repr(given), LONGEST)
     except ValueError:  # Python writes no whole number of more than 4300 digits
@@ -143,7 +151,7 @@ def _shown(given: Any) -> str:
 
 
 def _understood(found: Any) -> str:
-    """What a quantity of another dimension is."""
+    """What a quantity of the wrong dimension is, in words: "a force"."""
     for unit, (what, _) in READABLE.items():
         if found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
             return what
@@ -168,17 +176,18 @@ def _example(unit: str) -> str:
 
 
 def multiple(largest: float, unit: str) -> tuple[str, float]:
-    """Name and size of the multiple of an SI unit, one of READABLE, in which numbers up to `largest` are read most
-    easily: the largest that is no larger, or the smallest."""
+    """Name and size of the multiple of an SI unit in which numbers up to `largest` are read most easily.
+
+    It is the largest multiple that is not above `largest`, or the smallest of all. unit : one of READABLE
+    """
     multiples = READABLE[unit][1]
     return next(((name, size) for name, size in multiples if largest >= size), multiples[-1])
 
 
-def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> str:
+def readable(value: float, unit: str, spread: float = 0.0) -> str:
     """A number in SI as text in the multiple that suits it: readable(2.5e-6, "m") is "2.5 µm"; with ± its spread.
 
     value, spread : in the SI `unit`, one of READABLE; a spread of less than 1e-5 of the value is left out
-    digits : significant digits of a value without spread
     """
     if not math.isfinite(value):
         return "unknown"
@@ -188,5 +197,5 @@ def readable(value: float, unit: str, spread: float = 0.0, digits: int = 5) -> s
         places = max(0, 1 - math.floor(math.log10(spread)))  # two digits of the spread
         text = f"{number:.{places}f} ± {spread:.{places}f}" if places < 7 else f"{number:.3e} ± {spread:.1e}"
     else:
-        text = f"{number:.{digits}g}"
+        text = f"{number:.5g}"
     return f"{text} {name}".rstrip()

@@ -73,7 +73,7 @@ def cap_radius(height, width):
 
 
 def _positive(name: str, value):
-    """The value, as an array if it is a list, if all of it is positive and finite."""
+    """The value, a list as an array. Raises ValueError if not all of it is positive and finite."""
     value = np.asarray(value) if isinstance(value, list | tuple) else value
     if not (np.all(value > 0) and np.all(np.isfinite(value))):
         raise ValueError(f"{name} = {value}: must be > 0 and finite")
@@ -81,7 +81,7 @@ def _positive(name: str, value):
 
 
 def looks_like_iso_ra(Ra, Nbar) -> str | None:
-    """What is to be said if Ra is too small to be the radius of asperities so dense; None if it can be one.
+    """A warning if Ra is too small to be the radius of asperities so dense, perhaps an ISO roughness; None otherwise.
 
     Parameters
     ----------

@@ -7,13 +7,13 @@ import numpy as np
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
 UNITS = {"m": 1.0, "mm": 1e-3, **MICRO, "nm": 1e-9, "pm": 1e-12, "angstrom": 1e-10, "Å": 1e-10}
-#: Points in a direction: two bumps of eight points. Fewer say nothing about the next two.
+#: Fewest points in a direction. They can show two bumps of eight points each.
 FEWEST = 16
 #: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
-#: atomic force microscope up to 2.7: a scan beyond is in other units than was said, or full of spikes.
+#: atomic force microscope up to 2.7. A steeper scan has other units than the caller says, or is full of spikes.
 STEEPEST = 3.0
-#: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much; positions written
-#: with one digit less than the step stay within.
+#: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
+#: written to a tenth of the step pass.
 UNEVEN = 0.1
 
 
@@ -81,7 +81,7 @@ def metres(unit: str, name: str) -> float:
 
 
 def _step(x: np.ndarray, shape: tuple, name: str) -> float:
-    """Distance of the points of a uniform grid; refuses any other."""
+    """Distance of the points of a uniform grid. Raises ValueError for positions that are not uniform."""
     if x.shape != shape or x.ndim != 1 or x.size < 2:
         raise ValueError(f"{name}: {x.shape} positions for {shape} heights; one column of each is needed")
     if not np.isfinite(x).all():
@@ -99,7 +99,7 @@ def _step(x: np.ndarray, shape: tuple, name: str) -> float:
 
 
 def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str) -> Scan:
-    """The scan in metres, if it can be one."""
+    """The scan in metres. Raises ValueError for heights or distances that no scan has."""
     try:
         z = np.asarray(z, dtype=float)
     except (TypeError, ValueError) as error:
@@ -127,7 +127,7 @@ def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str) -> 
 
 
 def _plausible(scan: Scan, unit: str, height_unit: str) -> None:
-    """Refuses heights that no instrument measures on lengths like these: their unit is another."""
+    """Raise ValueError for slopes that no instrument measures: the unit of heights or lengths must be wrong."""
     span = np.ptp(scan.z)
     slope = max(np.sqrt(np.mean(np.diff(scan.z, axis=i) ** 2)) / step for i, step in enumerate(scan.steps))
     if span > max(scan.sizes) or slope > STEEPEST:

@@ -7,7 +7,7 @@ import numpy as np
 from .scan import FEWEST, Scan, height_map, metres, profile
 
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
-#: Separator and decimal mark of a text file, in the order in which they are tried on its first line of numbers.
+#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken.
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
 
 
@@ -93,7 +93,7 @@ def _text(path: Path) -> tuple[np.ndarray, str]:
     try:
         text = raw.decode("utf-8-sig")
     except UnicodeDecodeError:
-        text = raw.decode("latin-1")  # a µ in the heading of an older instrument
+        text = raw.decode("latin-1")  # older instruments write a µ of Latin-1 in the heading
     heading, dialect, rows = "", None, []
     for number, full in enumerate(text.splitlines(), 1):
         line = full.split("#")[0].split("%")[0].strip()
@@ -143,7 +143,7 @@ def _instrument(path: Path, unit: str | None, more: list[str]) -> Scan:
         found = read_topography(str(path))
     except OSError:
         raise
-    except Exception as error:  # its readers fail in ways of their own
+    except Exception as error:  # SurfaceTopography raises many kinds of errors
         reason = str(error).strip().splitlines() or [type(error).__name__]
         raise ValueError(f"{path.name}: SurfaceTopography cannot read it: {reason[0]}") from error
     if (found.unit is None) == (unit is None):

@@ -39,7 +39,7 @@ class Moments(NamedTuple):
 
 
 class Asperities(NamedTuple):
-    """Number in a unit of area (m⁻²), mean curvature (m⁻¹), standard deviation of the heights (m), number found."""
+    """Number per area (m⁻²), mean curvature (m⁻¹), standard deviation of heights (m), and how many were counted."""
 
     density: float
     curvature: float
@@ -50,7 +50,8 @@ class Asperities(NamedTuple):
 def without_form(z: np.ndarray, steps: tuple, form: str | float) -> np.ndarray:
     """The heights without their mean, their plane (least squares) or a sphere of known radius and the plane.
 
-    The plane has the slope of the sphere in the middle of the scan, which tells where its top is.
+    The slope of the plane of least squares is that of the sphere in the middle of the scan: from it follows where the
+    top of the sphere is.
     """
     if form == "mean":
         return z - z.mean()
@@ -142,6 +143,6 @@ def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
 
 
 def _second_differences(z: np.ndarray, axis: int) -> np.ndarray:
-    """Of the inner points, along one axis."""
+    """Second differences of the inner points along one axis."""
     inner = (slice(None) if i == axis else slice(1, -1) for i in range(z.ndim))
     return np.diff(z[tuple(inner)], 2, axis=axis)

@@ -17,14 +17,14 @@ from .identity import digest_of
 from .toml_text import text_in
 from .vocabulary import NUMERICS, finite, names, suggest
 
-POINTS = 33
-LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a slip, so `run` asks
-MOST_VALUES = 5_000_000_000  # 40 GB: a larger grid wants to be several studies
+POINTS = 33  # of a profile, when a study does not say it
+LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
+MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 DTYPES = ("float64", "float32")
 KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
-"""Of the tables of a study file; None: names of parameters."""
-PER_CASE = 16  # numbers per case besides the profiles, roughly
+"""Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
+PER_CASE = 16  # about how many numbers a case has besides the profiles
 SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
 
 
@@ -68,7 +68,7 @@ class Definition:
     @property
     def cases(self) -> str:
         """Number of cases and axes in words: "12 cases (h 2 x P 6)", "60 cases (h 2 x P 6, each 5 times for ±)"."""
-        dims = " x ".join(f"{name} {size}" for name, size in self.named(self.grid.sizes).items()) or "one case"
+        dims = " x ".join(f"{name} {size}" for name, size in self.in_results(self.grid.sizes).items()) or "one case"
         moved = f", each {self.grid.sizes[MOVED]} times for ±" if MOVED in self.grid.sizes else ""
         return f"{self.grid.size} cases ({dims}{moved})"
 
@@ -77,22 +77,17 @@ class Definition:
         """How many numbers the results hold, roughly."""
         return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
 
-    def named(self, of_dims: dict) -> dict:
-        """A dictionary of the dimensions of the grid, of those that the results have, under their names there."""
+    def in_results(self, of_dims: dict) -> dict:
+        """A dictionary of the dimensions of the grid, with the names that the results give these, and without MOVED."""
         names = self.scene.dims if self.scene else {}
         return {names.get(dim, dim): value for dim, value in of_dims.items() if dim != MOVED}
 
 
-def read(path) -> Definition:
-    """Definition of a study file without units. Raises StudyError with all that is wrong with it.
-
-    `study.physical.study_file.read` reads those with units as well.
-    """
-    return from_tables(*parsed(path))
-
-
 def parsed(path) -> tuple[dict, str, str, str]:
-    """The tables of a study file, its name, its text, and what begins every message. Raises StudyError for no TOML."""
+    """The tables of a study file, its name, its text, and the path that begins every message.
+
+    Raises StudyError when the file cannot be read or is not TOML.
+    """
     path = Path(path)
     where = path.as_posix()
     if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
@@ -111,12 +106,12 @@ def parsed(path) -> tuple[dict, str, str, str]:
 
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
-    """Definition of the parsed TOML tables; `where` begins every message."""
-    draft, given = begun(tables, where)
+    """Definition of the TOML tables of a study without units; `where` begins every message."""
+    draft, given = new_draft(tables, where)
     for key, value in given["model"].items():
         draft.scalar(key, value, "[model]")
     add_numerics(draft, given)
-    if "cases" in tables:  # their dimension comes first, wherever they are in the file: [[cases]] often are at the end
+    if "cases" in tables:  # before the axes, as `case` is the first dimension wherever [[cases]] stand in the file
         draft.cases(tables["cases"])
     if "sample" in tables:
         draft.sample(tables["sample"])
@@ -125,8 +120,8 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     return complete(draft, given, name, text, where)
 
 
-def begun(tables: dict, where: str) -> tuple[Draft, dict]:
-    """A new draft, with messages about sections, and the tables with all their sections."""
+def new_draft(tables: dict, where: str) -> tuple[Draft, dict]:
+    """An empty draft, which has the messages about unknown sections and keys, and the tables with all sections."""
     kind = tables.get("kind", "contact")
     if kind != "contact":
         gone = "; a micro law needs no study: call solver.fit_power_law" if kind == "micro_law" else ""
@@ -148,9 +143,10 @@ def add_numerics(draft: Draft, given: dict) -> None:
 
 
 def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
-    """Finish a draft with what else the `tables` say: the checks of the whole, and the digest.
+    """The definition of a draft that has all its parameters, with its digest. Raises StudyError with every message.
 
-    most : numbers that the results may hold. Raises StudyError with every message collected.
+    tables : title and the sections [numerics] and [output] are read here
+    most : how many numbers the results may hold
     """
     errors, title = draft.errors, tables.get("title", "")
     output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
@@ -175,7 +171,7 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
 
 
 def refusal(where: str, errors: list[str]) -> StudyError:
-    """The error with messages that each begin with `where`: no more of them than one reads."""
+    """The error to raise for these messages. Each begins with `where`; after MOST_MESSAGES the rest is counted."""
     more = len(errors) - MOST_MESSAGES
     shortened = errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
     return StudyError(f"{where}: {message}" for message in shortened)
@@ -208,7 +204,7 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
 
 
 def _table(tables: dict, section: str, known: tuple[str, ...] | None, errors: list[str]) -> dict:
-    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller looks)."""
+    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller checks them)."""
     found = tables.get(section, {})
     if not isinstance(found, dict):
         errors.append(f"{section} = {shown(found)}: must be a table [{section}]")

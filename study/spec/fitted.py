@@ -9,10 +9,10 @@ from .grid import Grid, along
 from .vocabulary import VOCABULARY
 
 MOST_FITS = 1000
-"""Values of Nbar Ra² to which laws are fitted, 2 ms each."""
+"""Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
 DIGITS = 10
-"""Of B and beta that are kept. They are part of what a result is found by on disk, and the last digits of a fit depend
-on the processor."""
+"""Significant digits of B and beta that are kept: the last ones of a fit depend on the processor, and results are found
+on disk by the values of their parameters."""
 COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.025 E1*, as in Section 4.1 of the paper"
 
 

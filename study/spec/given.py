@@ -1,28 +1,30 @@
-"""A grid in the making: every way to give parameters ends here, and everything wrong with them is collected."""
+"""A draft of a grid: it takes parameters in every form in which they can be given, and collects all mistakes."""
 
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 import numpy as np
 
+from .checks import missing_parameters, mixed_units, picard_for_nothing
 from .fitted import fitted, wants_a_fit
-from .grid import LONGEST_AXIS, Grid, along, as_array, axis_values, shown, twins
-from .laws import is_parameter, law_names, learn, smooth_laws
+from .grid import LONGEST_AXIS, Grid, as_array, axis_values, shown, twins
+from .laws import is_parameter, law_names, update_vocabulary
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, having, suggest
+from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
 
-MOST_MESSAGES = 30  # of one study: who has more mistakes begins with these
-MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x besides
+MOST_MESSAGES = 30  # that are shown for a study at a time
+MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
 
 
 @dataclass
 class Draft:
     """Collects parameters; `finish` makes the Grid of them.
 
-    errors : messages, no file name; sizes, values, labels : as of the Grid; sections : where each parameter was given;
-    claims : (parameter, dimension, its size, its coordinate or None) of each DataArray; physical : the results will be
-    in SI units
+    errors : messages, without the name of the file
+    sizes, values, labels : as those of the Grid
+    sections : parameter -> the section of the file where it is given, "" in Python
+    claims : (parameter, dimension, its size, its coordinate or None), of each dimension of each DataArray
+    physical : whether the results will be in SI units
     """
 
     errors: list[str] = field(default_factory=list)
@@ -34,10 +36,13 @@ class Draft:
     physical: bool = False
 
     def __post_init__(self):
-        learn()
+        update_vocabulary()
 
     def laws(self, given: list) -> None:
-        """Make micro laws that are given as objects known before their parameters come; `micro` tells what is wrong."""
+        """Register micro laws that are given as objects, so that their parameters are known when these come.
+
+        What is wrong with a law is told later, when `micro` itself is checked.
+        """
         with suppress(ValueError):
             law_names([law for one in given for law in (one if isinstance(one, list) else [one])])
 
@@ -68,7 +73,7 @@ class Draft:
             self.scalar(name, given, "")
 
     def cases(self, rows) -> None:
-        """Points that are no product: the dimension `case`. What a row leaves out takes its default, or NaN."""
+        """Rows of parameters: the dimension `case`. What a row leaves out has its default, or NaN if it has none."""
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             self.errors.append("cases must be [[cases]] tables (a list of dictionaries)")
             return
@@ -84,12 +89,12 @@ class Draft:
                 default = VOCABULARY[name].own.default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
                 self.values[name] = ("case",), self._checked(name, raw, gaps=True)
-        if len(self.errors) == before:  # else the values are of any size and kind
+        if len(self.errors) == before:  # otherwise the values need not be comparable
             points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
             self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)]
 
     def sample(self, table) -> None:
-        """Random points, drawn as the table says: the dimension `case`."""
+        """Random cases, drawn as the table [sample] says: the dimension `case`."""
         given = table if isinstance(table, dict) else {}
         known = {name: spec for name, spec in given.items() if name in LIMITS or self._accept(name, "[sample]")}
         if "case" in self.sizes:
@@ -130,13 +135,14 @@ class Draft:
             self.errors += errors
             grid = replace(self._grid(), fitted=True)
         if not self.errors:
-            self.errors += missing_parameters(grid) + lost_scheme(grid) + ([] if self.physical else mixed_units(grid))
+            self.errors += missing_parameters(grid) + picard_for_nothing(grid)
+            self.errors += [] if self.physical else mixed_units(grid)
         return grid
 
     def _has_its_law(self, name: str) -> bool:
-        """Whether some case has a law that a parameter belongs to, or it belongs to none."""
+        """Whether a parameter belongs to no law, or to the law of some case."""
         condition, laws = VOCABULARY[name].own.needed_by
-        _, given = self.values.get("micro", ((), ""))  # none, if what is given was refused
+        _, given = self.values.get("micro", ((), ""))  # "" if what was given has been refused
         return condition != "micro" or bool(np.isin(given, laws).any())
 
     def _grid(self) -> Grid:
@@ -146,7 +152,7 @@ class Draft:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
         if not is_parameter(name):
-            near = suggest(name, PARAMETERS) if len(self.errors) < MOST_MESSAGES else ""  # somebody will read it
+            near = suggest(name, PARAMETERS) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
@@ -158,8 +164,10 @@ class Draft:
         return False
 
     def _checked(self, name: str, raw: list, gaps: bool = False, distinct: bool = False) -> np.ndarray:
-        """The values as an array, with messages for those that are not allowed, and for `distinct` ones that are
-        twins."""
+        """The values as an array, with messages for those that are not allowed.
+
+        gaps : None is allowed, and becomes NaN; distinct : values that are equal get a message
+        """
         before = len(self.errors)
         if name == "micro":
             try:
@@ -191,7 +199,7 @@ class Draft:
         self.labels["label"] = ("case",), np.array(labels, dtype=str)
 
     def _check_dimensions(self) -> None:
-        """Dimensions of DataArrays: names that are free, sizes and coordinates that agree with the other parameters."""
+        """Messages for dimensions: names that are taken, sizes or coordinates on which two parameters disagree."""
         if len(self.sizes) > MOST_DIMENSIONS:
             self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
         for dim in self.sizes:
@@ -209,50 +217,3 @@ class Draft:
                 self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
             elif coordinate is not None and owner is not None and not np.array_equal(owner[1], coordinate):
                 self.errors.append(f"{name} has other values of {dim} than another parameter")
-
-
-def missing_parameters(grid: Grid) -> list[str]:
-    """Messages for parameters that some case needs and does not have."""
-    messages = []
-    for name in PARAMETERS:
-        selector, words = VOCABULARY[name].own.needed_by
-        if VOCABULARY[name].own.default is not None or (name in CONTROLS and name not in grid.values):
-            continue
-        gaps = np.isnan(along(grid, name)) & having(name, partial(along, grid))
-        if gaps.any():
-            case = np.argwhere(gaps)[0][list(grid.sizes).index("case")] if name in grid.values else ""
-            found = [shown(word) for word in words if word in along(grid, selector)]
-            reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
-            messages.append(f"{name} is missing{f' in case {case}' if name in grid.values else ''}{reason}")
-    return messages
-
-
-def is_rigid(grid: Grid) -> np.ndarray:
-    """Where the ratio n says that the base is rigid, along the dimensions of the grid."""
-    return along(grid, "n") == 0
-
-
-def mixed_units(grid: Grid) -> list[str]:
-    """A message if layers on a rigid base, whose numbers are in E1*, are among others, whose numbers are in E2*."""
-    if not is_rigid(grid).any():
-        return []
-    n, layered = np.broadcast_arrays(along(grid, "n"), having("n", partial(along, grid)))
-    if not (n[layered] > 0).any():
-        return []
-    return [
-        "n = 0, a rigid base, is among others: its numbers are in E1*, theirs in E2*. Make two studies, or give "
-        'physical values (R, E1, E2 = "rigid", ... with units)'
-    ]
-
-
-def lost_scheme(grid: Grid) -> list[str]:
-    """A message if successive approximations are asked for, and for smooth cases only.
-
-    In a grid that has them for asperities too, the smooth cases are refused one by one, by their status.
-    """
-    asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
-    if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
-        return []
-    others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
-    names = " or ".join(map(shown, smooth))
-    return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']

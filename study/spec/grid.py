@@ -11,18 +11,20 @@ from ..terminal import on_one_line
 from .vocabulary import VOCABULARY, Parameter, all_numbers_allowed, check, finite
 
 LONGEST_AXIS = 1_000_000
-SHOWN = 3  # messages of one kind for one parameter; the rest is counted
+SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
 MOVED = "moved input"
-"""The dimension along which inputs with spreads are moved, while cases are solved. Of a study file it is the last."""
+"""The dimension of the variations of each case while it is solved: as given, then each input with a spread moved up and
+down. Results have a spread in its place. Of a study file it is the last dimension."""
 
 
 @dataclass(frozen=True, eq=False)
 class Grid:
     """Labelled cases, the product of the dimensions.
 
-    sizes : dimension -> number of points, in order; values : parameter -> (its dimensions, array over them); labels :
-        the same for coordinates that are no parameters (`case`, `label`, coordinates of a given DataArray). NaN in
-        `values` means "not given for this case because nothing there needs it".
+    sizes : dimension -> number of points, in order
+    values : parameter -> (its dimensions, array over them); NaN: not given for this case, which does not need it
+    labels : the same for coordinates that are no parameters (`case`, `label`, coordinates of a given DataArray)
+    fitted : whether B and beta are fitted to Nbar and Ra
     """
 
     sizes: dict[str, int]
@@ -41,21 +43,23 @@ class Grid:
 
 
 def along(grid: Grid, name: str) -> np.ndarray:
-    """Values of a parameter with all dimensions of the grid, in its order, of length 1 where the parameter has none;
-    the default, or NaN, when it is not given."""
+    """Values of a parameter as an array with all dimensions of the grid, in its order.
+
+    A dimension on which the parameter does not depend has the length 1. What is not given has its default, or NaN.
+    """
     default = VOCABULARY[name].own.default
     dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
     array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
 
 
-def columns(grid: Grid, start: int, stop: int) -> dict[str, np.ndarray]:
-    """Parameters of the cases start <= i < stop, see `columns_at`."""
-    return columns_at(grid, np.arange(start, stop))
+def on_rigid_base(grid: Grid) -> np.ndarray:
+    """Where n = 0 says that the base is rigid, along the dimensions of the grid as `along` has them."""
+    return along(grid, "n") == 0
 
 
-def columns_at(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
-    """Parameters of the cases at `index` (k,), each (k,); NaN is what no case there needs."""
+def columns(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
+    """Parameters of the cases numbered `index` (k,), each (k,); NaN where the case does not need it."""
     places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}
     return {
         name: array[tuple(places[dim] for dim in dims)] if dims else np.full(len(index), array)
@@ -74,7 +78,9 @@ def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
 
 
 def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
-    """Windows of at most `most` cases that follow each other in the flat order of the cases, each of whole chunks.
+    """Windows, one behind the other in the flat order of the cases, that together are the grid.
+
+    A window has whole chunks, and at most `most` cases unless a single chunk has more.
 
     chunk : largest number of cases in a chunk; see `box`
     """
@@ -91,7 +97,10 @@ def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
 
 
 def box(shape: tuple[int, ...], most: int) -> list[int]:
-    """Lengths of a box of at most `most` cases that are consecutive in flat order: 1, ..., 1, length, whole, ..."""
+    """Lengths of a box of at most `most` cases that are consecutive in flat order.
+
+    They are 1, ..., 1, then a part of one dimension, then whole dimensions.
+    """
     lengths, inner = [1] * len(shape), 1
     for axis in reversed(range(len(shape))):
         pieces = -(-shape[axis] // (most // inner))
@@ -103,7 +112,7 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
 
 
 def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
-    """(B, ...) -> (*grid.shape, ...), the inverse of `columns`."""
+    """(B, ...) -> (*grid.shape, ...): an array over the cases as one over the dimensions."""
     return flat.reshape(grid.shape + flat.shape[1:])
 
 
@@ -183,7 +192,7 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
 
 
 def twins(values: list) -> list[tuple[int, int]]:
-    """The first two places that hold the same value, if any do: a coordinate with twins cannot be selected from."""
+    """[(i, j)], the first two places that hold the same value, or []: a coordinate must differ to be selected from."""
     first = {}
     for j, value in enumerate(values):
         i = first.setdefault(value, j)
@@ -193,7 +202,7 @@ def twins(values: list) -> list[tuple[int, int]]:
 
 
 def shown(value) -> str:
-    """A value as a message quotes it: not longer than a line."""
+    """A value as a message quotes it, at most 60 characters."""
     try:
         text = "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
     except ValueError:  # Python writes no whole number of more than 4300 digits

@@ -1,8 +1,8 @@
-"""What tells one case, and one study, from another: of the parameters only what can change a number.
+"""What tells one case, and one study, from another: only the values that can change a number.
 
 A value counts where its case uses the parameter (`needed_by`, `used_by` in the solver's table) and where it is not the
-default. So the edit of an unused value, or a parameter that is added with a default, leaves every key and digest as it
-is. Who changes a default changes NUMERICS_VERSION, which is in the digest and beside every key.
+default. So keys and digests stay as they are when an unused value is edited, or a parameter with a default is added to
+the program. Whoever changes a default must change NUMERICS_VERSION, which is in the digest and beside every key.
 """
 
 import hashlib
@@ -27,7 +27,7 @@ def counts(grid: Grid, name: str) -> np.ndarray:
 
 
 def law_versions(grid: Grid) -> list[str]:
-    """Name and version of the registered laws in the grid, one text each; of this package's own none."""
+    """ "NAME VERSION" of each micro law in the grid that does not come with this package."""
     words = set(grid.values["micro"][1].ravel().tolist()) if "micro" in grid.values else ()
     return sorted(identity(word) for word in words if identity(word) != word)
 
@@ -35,8 +35,8 @@ def law_versions(grid: Grid) -> list[str]:
 def digest_of(definition) -> str:
     """sha256 over what determines the results of a `Definition`: not title, comments or block size.
 
-    Of a parameter along no dimension of its own these are the values that count. Dimensions are selected from, so their
-    values are always in it.
+    The values of a dimension are always in it, since results are selected by them. Of the other parameters only the
+    values that count are.
     """
     grid = definition.grid
     arrays = {**grid.labels, "x": (("x",), definition.x)}
@@ -55,9 +55,10 @@ def digest_of(definition) -> str:
 
 
 def _digest_of_values(grid: Grid, name: str) -> tuple:
-    """Shape of a parameter, digests of the values that count for some case and of their places; () if none does."""
+    """Shape of a parameter, digest of the places whose value counts for some case, digest of these values; () if none
+    does."""
     dims, array = grid.values.get(name, ((), None))
-    if not dims and (array is None or array == VOCABULARY[name].own.default):  # as most are
+    if not dims and (array is None or array == VOCABULARY[name].own.default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))

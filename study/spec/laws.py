@@ -1,44 +1,47 @@
-"""Micro laws of others: how what is registered with the solver becomes part of the vocabulary."""
+"""Micro laws that users register with the solver, and how their parameters become part of the vocabulary."""
 
 from contextlib import suppress
 
 from solver import laws
-from solver.parameters import PARAMETERS as OF_THE_SOLVER
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 
 from .vocabulary import PARAMETERS, VOCABULARY, Entry, names
 
-laws.RESERVED.update(set(VOCABULARY) - set(OF_THE_SOLVER))
+laws.RESERVED.update(set(VOCABULARY) - set(SOLVER_PARAMETERS))  # a law must not call a parameter like a result
 
 
-def learn() -> None:
-    """Take up the micro laws that have been registered since the last time: their names and their parameters."""
+def update_vocabulary() -> None:
+    """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
     own = names("control", "material", "roughness", "numerics")
-    for name in set(PARAMETERS) - set(own):  # of laws that may have been replaced
+    for name in set(PARAMETERS) - set(own):  # their laws may have been replaced
         del VOCABULARY[name]
     PARAMETERS[:] = own
-    for name, told in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
+    for name, declared in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
         if name not in PARAMETERS:
-            words = told.long_name or f"parameter of the micro law {' and '.join(OF_THE_SOLVER[name].needed_by[1])}"
-            VOCABULARY[name] = Entry(name, told.symbol or name, words, "roughness", told.powers)
+            owners = " and ".join(SOLVER_PARAMETERS[name].needed_by[1])
+            words = declared.long_name or f"parameter of the micro law {owners}"
+            VOCABULARY[name] = Entry(name, declared.symbol or name, words, "roughness", declared.powers)
             PARAMETERS.append(name)
 
 
 def law_names(given: list) -> list:
-    """What stands for `micro`, with names in place of laws given as objects, which become known by them; and a law that
-    is not known is looked for among those of installed packages. Raises ValueError for a law that cannot be used."""
+    """The values of `micro` as names. A law given as an object is registered under its name.
+
+    If a name is not known, the laws of installed packages are loaded. Raises ValueError for a law that cannot be used.
+    """
     found = laws.named(given)
     if not laws.known((), [word for word in found if isinstance(word, str)]):
         laws.load()
-    learn()
+    update_vocabulary()
     return found
 
 
 def is_parameter(name: str) -> bool:
-    """Whether a name is that of a parameter, if need be of a law of an installed package."""
+    """Whether a name is that of a parameter. If it is not known, the laws of installed packages are loaded first."""
     if name not in PARAMETERS:
-        with suppress(ValueError):  # one that cannot be loaded is told of where `micro` names it
+        with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
             laws.load()
-        learn()
+        update_vocabulary()
     return name in PARAMETERS
 
 

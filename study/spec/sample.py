@@ -7,7 +7,7 @@ import numpy as np
 from .grid import LONGEST_AXIS, check_range, shown
 from .vocabulary import Parameter, check
 
-KEYS = ("start", "stop", "spacing", "over")
+KEYS = ("start", "stop", "spacing", "over")  # of a range
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 
 
@@ -20,14 +20,14 @@ def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, lis
         range {start, stop, spacing = "linear" | "log"}, drawn uniformly in the parameter or in its logarithm. A range
         with over = "Ra^2" is that of the product with Ra^2: what is drawn is divided by that power of another
         parameter of the sample.
-    known : what is allowed of each parameter in the table
+    known : parameter -> what values it may have
     errors : messages are appended here; {} is returned then
 
     Notes
     -----
-    Each parameter has a stream of its own, so that a further parameter changes no other and a larger `size` continues
-    the sample. The values are rounded to six digits: powers may differ in the last bit between machines, these do not,
-    and any case can be written down.
+    Each parameter has random numbers of its own, so that a further parameter changes no other and a larger `size`
+    continues the sample. Values are rounded to six digits: powers differ in the last bit between machines, rounded ones
+    do not, and any case can be written down.
     """
     if not isinstance(table, dict):
         errors.append(f"sample = {shown(table)}: must be a table [sample]")
@@ -44,7 +44,7 @@ def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, lis
     if len(errors) > before:
         return {}
     columns = {}
-    for name in sorted(drawn, key=lambda name: "over" in drawn[name]):  # what others are divided by comes first
+    for name in sorted(drawn, key=lambda name: "over" in drawn[name]):  # divisors come first
         columns[name] = _column(drawn[name], uniform(table["size"], table["seed"], name), columns)
     return {name: columns[name] for name in drawn}
 
@@ -66,7 +66,7 @@ def _column(given, u: np.ndarray, columns: dict[str, list]) -> list:
     values = np.clip(values, start, stop)
     if "over" in given:
         other, power = divisor(given)
-        with np.errstate(all="ignore"):  # what is not finite then is refused like any such value
+        with np.errstate(all="ignore"):  # a quotient that is not finite is refused later, as any such value
             values = _rounded(values / np.array(columns[other]) ** power)
     return values.tolist()
 
@@ -76,17 +76,17 @@ def _rounded(values: np.ndarray) -> np.ndarray:
 
 
 def divisor(given: dict) -> tuple[str, int]:
-    """What a range is divided by: ("Ra", 2) of over = "Ra^2", ("Ra", 1) of "Ra"; ("", 0) of all else, and of none."""
+    """Parameter and power by which a range is divided: ("Ra", 2) for over = "Ra^2"; ("", 0) without a valid `over`."""
     over = given.get("over")
     found = re.fullmatch(r"(\w+?)(?:\^([1-9]))?", over) if isinstance(over, str) else None
     return (found[1], int(found[2] or 1)) if found else ("", 0)
 
 
 def _check(name: str, drawn: dict, own: Parameter, errors: list[str]) -> None:
-    """Messages for one parameter of the table."""
+    """Append messages for the list or range of one parameter."""
     key, given = f"[sample] {name}", drawn[name]
     if isinstance(given, list) and given:
-        return  # its values are checked like any
+        return  # its values are checked later, as those of any parameter
     if not isinstance(given, dict) or own.choices or own.whole:
         form = "" if own.choices or own.whole else f"{{{', '.join(KEYS)}}} or "
         errors.append(f"{key} = {shown(given)}: must be {form}a list to choose from")

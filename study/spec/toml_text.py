@@ -1,18 +1,18 @@
-"""The text of a study file, if it is one that tomllib can be given: not endless, and not made to exhaust the memory."""
+"""The text of a study file. Files that would exhaust the memory while tomllib reads them are refused."""
 
 import errno
 import re
 from pathlib import Path
 
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
-MOST_PARTS = 50  # of a dotted key; tomllib takes memory by their square, 2.4 GB for 20,000
+MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
 _PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 
 
 def text_in(path: Path) -> str:
-    """The text of a study file. Raises OSError, or ValueError for what is none."""
-    if path.exists() and not path.is_file() and not path.is_dir():  # which says so itself
+    """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and for keys of too many parts."""
+    if path.exists() and not path.is_file() and not path.is_dir():  # opening a folder has a message of its own
         raise OSError(errno.EINVAL, "is no regular file")
     with open(path, "rb") as file:
         raw = file.read(LARGEST_FILE + 1)

@@ -8,16 +8,16 @@ from dataclasses import dataclass
 import numpy as np
 
 from solver.parameters import CONTROL, Parameter, among
-from solver.parameters import PARAMETERS as BESIDE_IT
-from solver.parameters import allowed as within
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+from solver.parameters import allowed as are_within
 
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
-"""Results that are whole numbers, and as what they are kept."""
+"""Results that are whole numbers -> the type in which they are stored."""
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 
 SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
-"""SI units by their powers of E2* and R; those of others are written in Pa and m."""
+"""SI units by their powers of E2* and R; all others are written as powers of Pa and m."""
 
 
 def si_unit(powers: tuple[int, int]) -> str:
@@ -27,10 +27,10 @@ def si_unit(powers: tuple[int, int]) -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """One name.
+    """A row of the vocabulary: one parameter, result or coordinate.
 
-    `powers` = (i, j) says that the dimensionless number times E2*^i R^j is the physical quantity. `interval` is
-    for a parameter that has narrower bounds in a study than in the solver.
+    powers : (i, j): the dimensionless number times E2*^i R^j is the physical quantity
+    interval : of a parameter that has narrower bounds in a study than in the solver
     """
 
     name: str
@@ -43,8 +43,8 @@ class Entry:
 
     @property
     def own(self) -> Parameter:
-        """What the solver's table says of a parameter: bounds, choices, default, which cases need it."""
-        known = CONTROL.get(self.name) or BESIDE_IT.get(self.name, Parameter())
+        """The row of a parameter in the solver's table: bounds, choices, default, which cases need it."""
+        known = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name, Parameter())
         return known._replace(interval=self.interval) if self.interval else known
 
     @property
@@ -54,7 +54,7 @@ class Entry:
 
     @property
     def ratio(self) -> str:
-        """What stands on an axis: "h/R", "P/(E2* R^2)"; empty without a symbol."""
+        """The symbol over its scale, as on the axis of a plot: "h/R", "P/(E2* R^2)"; empty without a symbol."""
         return over_scale(self.symbol, self.powers) if self.symbol else ""
 
     @property
@@ -65,7 +65,10 @@ class Entry:
 
 
 def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = ("E2*", "R"), gap: str = " ") -> str:
-    """A symbol over its scale E2*^i R^j, (i, j) = `powers`: "(dP/dD)/(E2* R)", "N̄ R^2"; `gap` is between factors."""
+    """A symbol over its scale E2*^i R^j: "(dP/dD)/(E2* R)", "N̄ R^2".
+
+    powers : (i, j); scales : how E2* and R are written; gap : what is written between two factors
+    """
     over, times = [], []
     for word, power in zip(scales, powers, strict=True):
         if power:
@@ -75,7 +78,7 @@ def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = (
     return text + (f"/({below})" if len(over) > 1 else f"/{below}" if over else "")
 
 
-LISTED = 40  # names in a message
+LISTED = 40  # most names that a message lists
 
 # fmt: off
 _ENTRIES = (
@@ -146,16 +149,16 @@ def names(*roles: str) -> tuple[str, ...]:
 CONTROLS = names("control")
 NUMERICS = names("numerics")
 PARAMETERS = list(names("control", "material", "roughness", "numerics"))
-"""Names of parameters; :func:`study.spec.laws.learn` adds those of registered laws here and to VOCABULARY."""
+"""Names of parameters; `study.spec.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
 
 
-def having(name: str, values) -> np.ndarray:
-    """bool: the cases that have a parameter, by `needed_by`; `values(name)` gives the texts of another one."""
+def cases_with(name: str, values) -> np.ndarray:
+    """bool: the cases that have a parameter; `values(other)` gives the texts of another one, on which that depends."""
     return among(VOCABULARY[name].own.needed_by, values)
 
 
 def matters(name: str, values) -> bool:
-    """Whether the answer of some case may depend on a parameter; `values` as above, of many cases."""
+    """Whether the answer of some case may depend on a parameter; `values` as in `cases_with`."""
     own = VOCABULARY[name].own
     return all(np.any(among(condition, values)) for condition in (own.needed_by, own.used_by))
 
@@ -195,16 +198,16 @@ def check(own: Parameter, value) -> str:
         return f"must be a finite number, {allowed(own).removeprefix('must be ')}"
     if own.whole and value != int(value):
         return "must be a whole number"
-    return "" if within(own, value).all() else allowed(own)
+    return "" if are_within(own, value).all() else allowed(own)
 
 
 def all_numbers_allowed(own: Parameter, values: list) -> bool:
-    """Whether all are floats within the bounds of a parameter: to look at a million one by one takes seconds."""
-    return set(map(type, values)) == {float} and bool(own.interval) and bool(within(own, values).all())
+    """Whether all are floats within the bounds of a parameter. For a million this takes less than `check` of each."""
+    return set(map(type, values)) == {float} and bool(own.interval) and bool(are_within(own, values).all())
 
 
 def finite(value) -> bool:
-    """Whether a value is a real number that a float can hold; True and False are none."""
+    """Whether a value is a finite real number that a float can hold; True and False are not numbers here."""
     try:
         return isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(float(value))
     except OverflowError:
@@ -212,7 +215,7 @@ def finite(value) -> bool:
 
 
 def suggest(word: str, known) -> str:
-    """ "; did you mean "Nbar"?" when a known word is near, otherwise the list of what is known."""
+    """The end of a message: '; did you mean "Nbar"?' when a known word is near, otherwise what is known."""
     lower = {name.lower(): name for name in known}
     near = difflib.get_close_matches(str(word).lower()[:100], lower, n=1, cutoff=0.6)
     if near:

@@ -1,8 +1,9 @@
 """One block on disk: arrays as `numpy.save` writes them, one after another, and a checksum of the whole file.
 
-The first array is a text in JSON, the facts and the names of the columns; the keys of the cases and the columns follow.
-Not netCDF: any thread may read and write it. No array holds Python objects, so nothing in it is executable. Nor an
-archive of `numpy.savez`, which takes twice as long: 14 ms to write and 18 ms to read 8,000 cases, against 8 and 8.
+The first array is a text in JSON: the facts and the names of the columns. The keys of the cases and the columns follow.
+It is not netCDF, because any thread must be able to read and write it. No array holds Python objects, so reading it
+executes nothing. It is not an archive of `numpy.savez`, which takes twice as long: 14 ms to write and 18 ms to read
+8,000 cases, against 8 and 8.
 """
 
 import json
@@ -15,18 +16,18 @@ import numpy as np
 from ..files.atomic import replacing
 from ..files.seal import is_whole, seal
 
-BEFORE = b"roughcoat block 1\n"
-"""How blocks began in an earlier version; nothing reads these any more."""
+OLD_FORMAT = b"roughcoat block 1\n"
+"""How blocks of an earlier version begin, which are not read any more."""
 
 
 class Damaged(OSError):
-    """What is no block, or no longer the one that was written. is_file : it is a file, of whatever content."""
+    """A file that is no block, or not the one that was written. is_file : whether it is a file at all."""
 
     is_file = True
 
 
 class NoFile(Damaged):
-    """A folder, a pipe or a device."""
+    """A folder, a pipe or a device in place of a block."""
 
     is_file = False
 
@@ -52,12 +53,12 @@ def write_block(path: Path, block: Block) -> None:
 
 def read_block(path: Path) -> Block:
     """The block in a file. Raises Damaged, or OSError when it cannot be read."""
-    if not stat.S_ISREG(path.stat().st_mode):  # a pipe would be waited for
+    if not stat.S_ISREG(path.stat().st_mode):  # reading a pipe would wait for ever
         raise NoFile(f"{path}: is no file, so no block")
     again = "the same command computes its cases again"
     if not is_whole(path):
         with open(path, "rb") as file:
-            if file.read(len(BEFORE)) == BEFORE:
+            if file.read(len(OLD_FORMAT)) == OLD_FORMAT:
                 raise Damaged(
                     f"{path}: is a block of an earlier version, which is not read; {again}, `clean` removes it"
                 )
@@ -70,5 +71,5 @@ def read_block(path: Path) -> Block:
         if keys.dtype != np.uint64 or keys.shape[1:] != (2,) or {len(keys), *map(len, arrays)} != {len(keys)}:
             raise ValueError("its columns are not as long as its keys")
         return block
-    except Exception as error:  # of what somebody else has sealed
+    except Exception as error:  # the checksum fits, the content does not: not written by us
         raise Damaged(f"{path}: is no whole block; {again}") from error

@@ -1,7 +1,7 @@
-"""The blocks of a study on disk, and which of its cases they hold. What is on disk is the progress.
+"""The blocks of a study on disk, and which of its cases they hold. There is no other record of the progress.
 
-Cases are found by their keys, so it does not matter by which version of the study, in which order or in blocks of which
-size they were computed. The cases of an earlier results file are found and read in the same way.
+Cases are found by their keys. So it does not matter from which version of the study they are, in which order they were
+computed, or how large the blocks are. The cases of an earlier results file are found and read in the same way.
 """
 
 import hashlib
@@ -68,7 +68,7 @@ class Store:
 
     @property
     def path(self) -> Path:
-        """Of the results file."""
+        """Path of the results file."""
         return self.results / f"{self.definition.name}.nc"
 
     @property
@@ -80,9 +80,12 @@ class Store:
 class Inventory:
     """Where each of the B cases is.
 
-    keys : (B, 2); sources : where cases are; source, row : (B,) int32, number of the source (-1: missing) and row in
-        it; status : (B,) int8, NOT_RUN for a missing case; blocks : every block -> how many cases, -1: it is not whole;
-        inside : the blocks that the results of this study replace: these will hold all of their numbers
+    keys : (B, 2)
+    sources : the blocks, and the earlier results file, that hold usable cases
+    source, row : (B,) int32, index of the source of each case (-1: missing), and the row of the case there
+    status : (B,) int8, NOT_RUN for a missing case
+    blocks : path of every block -> number of its cases, -1 for a damaged one
+    covered : paths of the blocks of which all numbers will be in the results file
     """
 
     keys: np.ndarray
@@ -91,7 +94,7 @@ class Inventory:
     row: np.ndarray
     status: np.ndarray
     blocks: dict[Path, int] = field(default_factory=dict)
-    inside: set[Path] = field(default_factory=set)
+    covered: set[Path] = field(default_factory=set)
 
     @property
     def missing(self) -> np.ndarray:
@@ -106,12 +109,12 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray) -> dict:
-    """What stored numbers depend on besides the cases: the numerics, and the points x of the profiles."""
+    """What stored numbers depend on besides the parameters: version of the numerics, points x of the profiles."""
     return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
 
 
 def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:
-    """Whether numbers computed under the facts `given` hold all that the study wants, at least as exactly."""
+    """Whether arrays computed under the facts `given` hold all that the study wants, with at least as many digits."""
     wanted = not_run(definition, 0)
     here = all(name in arrays and arrays[name].dtype.itemsize >= wanted[name].dtype.itemsize for name in wanted)
     same_points = not definition.profiles or given.get("x") == definition.x.tolist()
@@ -119,7 +122,7 @@ def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -
 
 
 def _is_kept(definition: Definition, block: Block) -> bool:
-    """Whether the results of a study hold all the numbers that a block holds of its cases."""
+    """Whether the results of a study have a place for all the numbers that a block holds of a case."""
     wanted, arrays = not_run(definition, 0), block.arrays
     same_points = block.facts.get("x") == definition.x.tolist() or not any(array.ndim > 1 for array in arrays.values())
     kept = all(name in wanted and array.dtype.itemsize <= wanted[name].dtype.itemsize for name, array in arrays.items())
@@ -127,11 +130,11 @@ def _is_kept(definition: Definition, block: Block) -> bool:
 
 
 def blocks_on_disk(store: Store) -> Iterator[tuple[Path, Block | None]]:
-    """Every block, None for one that is not whole: its cases are missing, so they are computed again."""
+    """(path, block) of every block; None for a damaged one, which is logged: its cases are computed again."""
     for path in sorted(store.folder.glob("*.block")):
         try:
             yield path, read_block(path)
-        except FileNotFoundError:  # the run that it belongs to has just ended
+        except FileNotFoundError:  # removed just now by the run to which it belongs
             continue
         except OSError as error:
             log.warning("%s", error)
@@ -143,33 +146,33 @@ def inventory(
 ) -> Inventory:
     """What is on disk of a study: in its blocks, and in an earlier results file if there is one.
 
-    retry : cases of these statuses count as missing; force : do without blocks of another version of the numerics
+    retry : cases of these statuses count as missing; force : ignore blocks of another version of the numerics
 
     Raises
     ------
     StudyError : there are blocks of another version of the numerics, and no `force`
     """
-    sources, blocks, inside = [], {}, set()
+    sources, blocks, covered = [], {}, set()
     keys = case_keys(store.definition.grid)
     first = np.sort(keys[:, 0])
     for path, block in blocks_on_disk(store):
         blocks[path] = -1 if block is None else len(block.keys)
         if block is None:
             continue
-        near = np.searchsorted(first, block.keys[:, 0])
-        if (first[np.minimum(near, len(first) - 1)] == block.keys[:, 0]).all() and _is_kept(store.definition, block):
-            inside.add(path)
+        near = np.minimum(np.searchsorted(first, block.keys[:, 0]), len(first) - 1)
+        if (first[near] == block.keys[:, 0]).all() and _is_kept(store.definition, block):
+            covered.add(path)
         if block.facts["numerics_version"] != NUMERICS_VERSION:
             if not force:
                 raise StudyError([_of_other_numerics(store, block.facts)])
         elif usable(store.definition, block.facts, block.arrays):
             sources.append(BlockSource(path, block.keys, block.arrays["status"]))
     sources += [earlier] if earlier else []
-    return Inventory(keys, sources, *_places(keys, sources, retry), blocks, inside)
+    return Inventory(keys, sources, *_places(keys, sources, retry), blocks, covered)
 
 
 def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> tuple[np.ndarray, ...]:
-    """Source, row and status of each case, (B,) each: where it ended best, the first of several such places."""
+    """Source, row and status of each case, (B,) each. Of several places the one of lowest status is taken."""
     parts = [(np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))]
     for number, found in enumerate(sources):
         row = np.flatnonzero(~np.isin(found.status, (NOT_RUN, *retry))).astype(np.int32)
@@ -187,7 +190,7 @@ def _of_other_numerics(store: Store, given: dict) -> str:
 
 
 def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
-    """Write the block of the cases at `index` (n,), with the digits that the study keeps, and note it."""
+    """Write a block of the cases at `index` (n,), in the types that the study keeps, and put it into the inventory."""
     kept = {name: array.dtype for name, array in not_run(store.definition, 0).items()}
     arrays = {name: array.astype(kept[name], copy=False) for name, array in arrays.items()}
     path = put(store, Block(facts(store.definition.x), known.keys[index], arrays))
@@ -195,13 +198,13 @@ def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.
     known.status[index] = arrays["status"]
     known.sources.append(BlockSource(path, known.keys[index], arrays["status"]))
     known.blocks[path] = len(index)
-    known.inside.add(path)
+    known.covered.add(path)
 
 
 def put(store: Store, block: Block) -> Path:
-    """Write a block under a name that says what is in it: a second run writes the same file again, not another.
+    """Write a block under a name that follows from its content, so that a second run writes the same file again.
 
-    A whole block of other cases that somebody has given this name stays: the new one takes the next name.
+    If something else has this name, a block of other cases or a folder, it stays, and the block gets the next name.
     """
     content = [block.keys.tobytes(), json.dumps(block.facts).encode(), json.dumps(list(block.arrays)).encode()]
     name = hashlib.sha256(b"".join(content)).hexdigest()[:32]
@@ -212,7 +215,7 @@ def put(store: Store, block: Block) -> Path:
 
 
 def _is_another(path: Path, block: Block) -> bool:
-    """Whether there is a whole block of other cases, or something that is no file."""
+    """Whether the path holds a block of other cases, or something that is no file."""
     try:
         there = read_block(path)
     except FileNotFoundError:
@@ -225,7 +228,7 @@ def _is_another(path: Path, block: Block) -> bool:
 def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, np.ndarray]:
     """Columns of the cases start <= i < stop, name -> (stop - start, ...); missing ones as `not_run` has them.
 
-    Raises Damaged when a source is no longer what it was when the inventory was made.
+    Raises Damaged when a source has changed since the inventory was made.
     """
     found = not_run(store.definition, stop - start)
     source = known.source[start:stop]
@@ -238,7 +241,7 @@ def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, n
 
 
 def remove_litter(store: Store) -> None:
-    """Remove what runs that were killed while they wrote have left, also beside a file that a link leads to."""
+    """Remove temporary files of runs that were killed while they wrote."""
     remove_temporary(store.path)
     for path in store.folder.glob(".*.tmp"):
         path.unlink(missing_ok=True)

@@ -1,4 +1,4 @@
-"""What the results file of an earlier version of a study is worth to this one, and what would be lost with it."""
+"""The results file of an earlier version of a study: which of its cases this one can use, and which would be lost."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -9,15 +9,15 @@ from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
 
 from ..data.dataset import not_run
-from ..data.units import DONE
+from ..data.units import PHYSICAL_SCALE
 from ..files.access import Unusable
-from ..files.checksums import ATTRIBUTE, identity, parsed
+from ..files.checksums import ATTRIBUTE, digest_of_cases, parsed
 from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
 from ..files.netcdf import File
-from ..physical.again import dimensionless, in_results, in_units, units_of
+from ..physical.from_si import grid_of_results, parameters_from_si, result_from_si, scales_of
 from ..physical.names import SCENE
 from ..spec.definition import Definition, StudyError
-from ..spec.grid import Grid, columns_at
+from ..spec.grid import Grid, columns
 from ..spec.vocabulary import NOT_RUN, PARAMETERS
 from .block_file import Damaged
 from .blocks import Store, facts, usable
@@ -28,8 +28,11 @@ MEND = "run the study as it was (its text is the attribute study), which mends i
 
 @dataclass(frozen=True, eq=False)
 class ResultsSource:
-    """The N cases of a results file, on a `grid`. names : of the columns; seen : the file as it was, see `stamp`;
-    units : of a file in SI units, the grid of the radius and the modulus that are 1 for the solver."""
+    """The N cases of a results file.
+
+    grid : their dimensionless parameters; names : of the columns; seen : `stamp` of the file when it was examined
+    scales : of a file in SI units, R and the unit of moduli of each case, as a grid
+    """
 
     path: Path
     grid: Grid
@@ -37,12 +40,14 @@ class ResultsSource:
     status: np.ndarray
     names: tuple[str, ...]
     seen: tuple | None
-    units: Grid | None = None
+    scales: Grid | None = None
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
-        """Columns of the cases at `rows`, read by the windows in which the file was examined: what can be read and what
-        cannot is told apart by these."""
-        given = columns_at(self.grid, rows)
+        """Columns of the cases at `rows`: name -> (n, ...).
+
+        The file is read by the windows in which it was examined, so that no window with damage is touched.
+        """
+        given = columns(self.grid, rows)
         found = {name: given[name] for name in self.names if name in self.grid.values}
         over = [name for name in self.names if name not in found]
         with File(self.path) as file:
@@ -56,9 +61,9 @@ class ResultsSource:
                     found[name][here] = piece[rows[here] - start]
         if stamp(self.path) != self.seen:
             raise Damaged(f"{self.path}: has been replaced while its cases were read; the same command goes on")
-        if self.units:
-            units = columns_at(self.units, rows)
-            found |= {name: in_units(name, found[name], units) for name in over}
+        if self.scales:
+            scales = columns(self.scales, rows)
+            found |= {name: result_from_si(name, found[name], scales) for name in over}
         return found
 
 
@@ -66,19 +71,19 @@ class ResultsSource:
 class Earlier:
     """A results file and its condition.
 
-    cases : how many it holds; told : whether it can be told which; numerics : their version; source : of those that
-    this study can use, or None
+    cases : how many it holds; identified : whether it is known which cases these are; numerics : their version
+    source : the cases that this study can use, or None
     """
 
     condition: Condition
     cases: int = 0
-    told: bool = False
+    identified: bool = False
     numerics: str = ""
     source: ResultsSource | None = None
 
 
 def earlier(definition: Definition, found: Condition) -> Earlier:
-    """What is in a results file that was examined."""
+    """What a results file holds that has been examined."""
     if found.kind in ("missing", "foreign", "unreadable") or not found.digest and not found.damage:
         return Earlier(found)
     try:
@@ -91,12 +96,12 @@ def earlier(definition: Definition, found: Condition) -> Earlier:
 
 
 def _described(definition: Definition, found: Condition, file: File) -> Earlier:
-    if "status" not in file.variables:  # a micro law
+    if "status" not in file.variables:  # no contacts, such as those of the trade-off
         return Earlier(found, numerics=found.numerics)
-    told = _told(definition, found, file)
-    if told is None:
+    identified = _identified(definition, found, file)
+    if identified is None:
         return Earlier(found, Grid(found.sizes, {}).size)
-    grid, x, numerics, units = told
+    grid, x, numerics, scales = identified
     names = tuple(not_run(definition, 0))
     columns = {name: np.empty(0, file.dtype(name)) for name in names if name in file.variables}
     columns |= {name: array[:0] for name, (_, array) in grid.values.items() if array.ndim}
@@ -104,30 +109,33 @@ def _described(definition: Definition, found: Condition, file: File) -> Earlier:
         return Earlier(found, grid.size, True, numerics)
     status = file.read("status").ravel()
     status = status if found.intact is None else np.where(found.intact, status, np.int8(NOT_RUN))
-    source = ResultsSource(found.path, grid, case_keys(grid), status, names, stamp(found.path), units)
+    source = ResultsSource(found.path, grid, case_keys(grid), status, names, stamp(found.path), scales)
     return Earlier(found, grid.size, True, numerics, source)
 
 
-def _told(definition: Definition, found: Condition, file: File) -> tuple | None:
-    """Grid, points x, numerics and units of the cases in a file: its own, or of the definition where those are
-    damaged."""
+def _identified(definition: Definition, found: Condition, file: File) -> tuple | None:
+    """(grid, points x, numerics, scales) of the cases in a file.
+
+    Where these are damaged in the file, they are those of the definition, if the line `=cases` of the checksums shows
+    that the file holds the cases of the definition. None if it does not.
+    """
     if not {*PARAMETERS, *SCENE, "x", "=structure", "@numerics_version"} & set(found.damage):
-        grid, units = _grid_in(file)
-        return grid, file.read("x"), found.numerics, units
+        grid, scales = _grid_in(file)
+        return grid, file.read("x"), found.numerics, scales
     lines = parsed(str(file.attribute(ATTRIBUTE))) if ATTRIBUTE in file.attributes() else {}
     grid, x = definition.grid, definition.x
-    same = list(in_results(definition, grid).sizes.items()) == list(found.sizes.items())
-    if same and lines.get("=cases") == identity(NUMERICS_VERSION, x, case_keys(grid)):
-        return in_results(definition, grid), x, NUMERICS_VERSION, units_of(definition)
+    same = list(grid_of_results(definition, grid).sizes.items()) == list(found.sizes.items())
+    if same and lines.get("=cases") == digest_of_cases(NUMERICS_VERSION, x, case_keys(grid)):
+        return grid_of_results(definition, grid), x, NUMERICS_VERSION, scales_of(definition)
     return None
 
 
 def _grid_in(file: File) -> tuple[Grid, Grid | None]:
-    """The grid that a results file was computed on, from its coordinates; and its units, if it is in SI."""
+    """The dimensionless grid of a results file, from its coordinates, and the scales of a file in SI units."""
     dims, values = file.variables, {}
     for name in (*PARAMETERS, *SCENE):
         if name in dims and name in coordinates_of(file):
-            array = file.read(name)  # texts without the dimension of their characters
+            array = file.read(name)  # a text has lost the dimension of its characters, so `dims` may be longer
             values[name] = dims[name][: array.ndim], array.astype(str) if array.dtype.kind in "OU" else array
     versions = str(file.attribute("micro_laws")).split("\n") if "micro_laws" in file.attributes() else []
     if "micro" in values:  # a law of another version than the registered one is another law
@@ -135,10 +143,10 @@ def _grid_in(file: File) -> tuple[Grid, Grid | None]:
         old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
         values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
     sizes = {dim: file.sizes[dim] for dim in dims["status"]}
-    if DONE not in file.attributes():
+    if PHYSICAL_SCALE not in file.attributes():
         return Grid(sizes, values), None
-    values, units = dimensionless(values)
-    return Grid(sizes, values), Grid(sizes, units)
+    values, scales = parameters_from_si(values)
+    return Grid(sizes, values), Grid(sizes, scales)
 
 
 def statuses(path: Path) -> np.ndarray:
@@ -148,18 +156,19 @@ def statuses(path: Path) -> np.ndarray:
 
 
 def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: bool = False) -> None:
-    """Raise StudyError when a results file holds cases that those of `keys` (B, 2), written in its place, are not.
+    """Raise StudyError when a results file holds cases that are not among those of `keys` (B, 2), which replace it.
 
-    force : they may be lost. What is none of our results is never replaced.
+    force : they may be lost. A file that roughcoat has not written is never replaced.
     """
     digest, file = store.definition.digest, found.condition
     damaged = file.kind == "damaged"
     if file.kind in ("foreign", "unreadable"):
         raise Unusable(file.path, file.kind, f"{file.reason}; move it away, or use --results DIR")
-    nothing = file.kind == "missing" or damaged and not (file.digest or found.cases)  # cut off: nothing can be told
+    # a file that is cut off: nothing in it can be read
+    nothing = file.kind == "missing" or damaged and not (file.digest or found.cases)
     if force or nothing or file.digest == digest:
         return
-    if damaged and not found.told:
+    if damaged and not found.identified:
         raise StudyError([f"{file.path}: {file.reason}; which cases it holds cannot be told: {MEND}"])
     if found.numerics != NUMERICS_VERSION:
         owner = f"version {found.numerics} of the numerics, this is {NUMERICS_VERSION}"

@@ -1,6 +1,8 @@
-"""One 128-bit key per case, made of the values that count for it alone: the same case in another order of the axes, on
-another grid or in another run has the same key. Numpy only, a million cases in a fraction of a second. Whoever makes
-other keys of the same cases changes NUMERICS_VERSION: blocks and results of before are found by nobody.
+"""A key of 128 bits for each case, made only of the values that count for it.
+
+So a case has the same key on another grid, in another order of the axes and in another run. A million keys take a
+fraction of a second. Whoever changes how keys are made must change NUMERICS_VERSION, since no case on disk is found by
+the new keys.
 """
 
 import hashlib
@@ -17,7 +19,7 @@ from ..spec.vocabulary import PARAMETERS
 def case_keys(grid: Grid) -> np.ndarray:
     """(B, 2) uint64: two independent sums of a hash of (name, value), over the parameters whose value counts.
 
-    A sum, so that each parameter is hashed along its own dimensions only. -0.0 is 0.0.
+    It is a sum so that a parameter is hashed along its own dimensions only. -0.0 counts as 0.0.
     """
     lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
     for name in PARAMETERS:
@@ -28,9 +30,9 @@ def case_keys(grid: Grid) -> np.ndarray:
 
 
 def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
-    """(B,) int64: for each of the keys (B, 2) its row among the `known` (N, 2), the one of lowest `rank`; -1: none.
+    """(B,) int64: the row of each of the keys (B, 2) among the `known` (N, 2), that of lowest `rank`; -1: not there.
 
-    Two different known keys with the same first half are not told apart: one of them may be reported as not there.
+    Of two different known keys with the same first half one may be reported as not there.
     """
     if not len(known):
         return np.full(len(keys), -1)
@@ -41,17 +43,17 @@ def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
 
 
 def _hashed(name: str, array: np.ndarray) -> np.ndarray:
-    """(2, *shape) uint64 from a parameter's values, a seed of its name in each lane."""
+    """(2, *shape) uint64: two hashes of each value of a parameter, which depend on its name."""
     if array.dtype.kind == "U":
         word = law_identity if name == "micro" else str
         bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
-        while left.any():  # word by word: there are few, and to sort a million takes seconds
+        while left.any():  # word by word: there are few words, and np.unique of a million takes seconds
             here = array == array.flat[left.argmax()]
             bits[here] = _digest(word(str(array[here][0])), 8)[0]
             left &= ~here
     else:
         numbers = array.astype(np.float64) + 0.0
-        bits = np.where(np.isnan(numbers), np.nan, numbers).view(np.uint64)  # one NaN of many
+        bits = np.where(np.isnan(numbers), np.nan, numbers).view(np.uint64)  # every NaN has the same bits
     return _mixed(bits ^ _digest(name, 16).reshape(2, *[1] * array.ndim))
 
 

@@ -17,13 +17,14 @@ except ImportError:  # not POSIX: two runs at once compute the same blocks twice
 def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callable = lambda: None) -> Iterator[bool]:
     """Hold the lock file `path`, whose folder is made when missing; yields whether it is held.
 
-    shared : together with others that share it; wait : until it is free, after a call of `waiting`, else False at once.
-    A file system without locks counts as free: every file is written under a name of its own and then renamed.
+    shared : others may hold it shared at the same time
+    wait : wait until it is free, after a call of `waiting`; otherwise yield False at once
+    On a file system without locks it counts as held: every file is written under a name of its own and then renamed.
     """
     file = _opened(path)
     try:
         mine = _locked(file, shared, wait, waiting)
-        while mine and not _is_at(file, path):  # its last holder removed the folder while this one waited
+        while mine and not _is_at(file, path):  # while this one waited, the last holder removed the folder
             os.close(file)
             file = _opened(path)
             mine = _locked(file, shared, wait, waiting)

@@ -9,16 +9,16 @@ from .lock import held
 
 
 def tidy(store: Store, known: Inventory | None = None) -> str:
-    """Remove the blocks of which the results file holds everything; says what else lies there, "" if nothing does."""
+    """Remove the blocks of which the results file holds all numbers. Returns what else is in the folder, in words."""
     known = known or inventory(store, force=True)
-    for path in known.inside:
+    for path in known.covered:
         path.unlink(missing_ok=True)
     remove_litter(store)
     rest = _rest(store)
     if rest:
         return f"{store.folder} keeps {_counted(rest, known)} that are not in it, `clean` removes them"
     store.lock.unlink(missing_ok=True)
-    with suppress(OSError):  # it is not there, or another run has just come
+    with suppress(OSError):  # the folder is gone, or another run has come
         store.folder.rmdir()
     return ""
 
@@ -43,7 +43,7 @@ def clean(store: Store, done: bool) -> list[str]:
         for path in gone:
             path.unlink(missing_ok=True)
         said = [f"{store.folder}: removed {_counted(gone, known)}"] if gone else []
-        known.inside.intersection_update(gone)
+        known.covered.intersection_update(gone)
         if tidy(store, known):
             what = "; `run` goes on from there" if used else ""
             said.append(f"{store.folder}: kept {_counted(_rest(store), known)}{what}")

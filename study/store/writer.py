@@ -5,25 +5,25 @@ from dataclasses import replace
 
 from solver import NUMERICS_VERSION
 
-from ..data.dataset import assembled, parts
+from ..data.dataset import labelled, parts
 from ..files.atomic import replacing
-from ..files.checksums import Rows, identity
+from ..files.checksums import CaseDigests, digest_of_cases
 from ..files.examine import CHUNK
 from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, set_aside
 from ..files.seal import seal
-from ..physical.scene import shown
+from ..physical.scene import dataset_of
 from ..spec.grid import MOVED, Grid, box, cut_out, windows
 from .blocks import Inventory, Store, gather
 
-AT_ONCE = 64_000_000  # bytes gathered at a time; less, and blocks in another order than the cases are read too often
+AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often
 
 
 def writing(store: Store, known: Inventory, command: str, aside: bool = False) -> Iterator[None]:
-    """Write the results file from the blocks, in steps, while other threads compute: each `next` is one step.
+    """Write the results file from the blocks, in steps, while other threads compute. Each `next` is one step.
 
-    Steps do nothing while the cases whose turn it is are missing. At the end of the iteration the file is in its place.
-    aside : keep what is there, as `set_aside` does
+    A step does nothing while the next cases are missing. When the iterator ends, the file is in its place.
+    aside : keep the file that is there, as `set_aside` does
 
     Raises
     ------
@@ -42,9 +42,9 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
     definition, start = store.definition, 0
     sizes = {dim: size for dim, size in definition.grid.sizes.items() if dim != MOVED}
     in_file = Grid(sizes, {})
-    rows = Rows(in_file.size)
+    rows = CaseDigests(in_file.size)
     most = AT_ONCE * in_file.size // (8 * definition.numbers)
-    chunk = definition.named(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
+    chunk = definition.in_results(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
     for window in windows(in_file, most, CHUNK):
         window |= {MOVED: slice(None)} if MOVED in definition.grid.sizes else {}
         grid = cut_out(definition.grid, window)
@@ -52,13 +52,13 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
             yield
         arrays = gather(store, known, start, start + grid.size)
         here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))
-        part, place = shown(here, parts(here, arrays, command)), definition.named(window)
+        part, place = dataset_of(here, parts(here, arrays, command)), definition.in_results(window)
         if not start:
-            whole = shown(definition, assembled(definition, {}, "x", definition.x, command))
+            whole = dataset_of(definition, labelled(definition, {}, command))
             create(file, part, whole, chunk)
         for name, array in part.data_vars.items():
             file.write(name, array.values, place)
             rows.add(name, array.values.reshape(-1, *array.shape[len(sizes) :]))
             yield
         start += grid.size
-    add_checksums(file, rows, {"=cases": identity(NUMERICS_VERSION, definition.x, known.keys)})
+    add_checksums(file, rows, {"=cases": digest_of_cases(NUMERICS_VERSION, definition.x, known.keys)})

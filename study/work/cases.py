@@ -1,6 +1,7 @@
-"""A block: some cases of a study, and all that a worker needs to solve them, wherever it is.
+"""Cases are packed into parcels, which hold all that a worker needs to solve them, on any machine.
 
-Imports neither xarray nor netCDF4: a worker process starts in half the time without them, and takes 44 MB less.
+This module imports neither xarray nor netCDF4: without them a worker process starts in half the time and takes 44 MB
+less.
 """
 
 import traceback
@@ -12,7 +13,7 @@ from solver import NUMERICS_VERSION, Problem, Solution, laws, solve
 from solver.laws import Law
 
 from ..spec.definition import Definition
-from ..spec.grid import columns_at
+from ..spec.grid import columns
 from ..spec.vocabulary import CONTROLS, INTEGERS, names
 
 
@@ -20,8 +21,11 @@ from ..spec.vocabulary import CONTROLS, INTEGERS, names
 class Parcel:
     """Cases to be solved.
 
-    first, last : numbers of its first and last case; parameters : name -> (n,) or (1,) for all its cases; x : (m,);
-    numerics : version of the solver's numerics that is wanted; laws : those that a worker may not have registered
+    first, last : numbers of the first and the last case
+    parameters : name -> (n,), or (1,) for all cases
+    x : (m,) points of the profiles; profiles : names of those that are wanted
+    numerics : version of the solver's numerics that is wanted
+    laws : micro laws that the worker may not have registered
     """
 
     first: int
@@ -42,8 +46,8 @@ class Failure:
 
 
 def parcel(definition: Definition, index: np.ndarray) -> Parcel:
-    """The cases at `index` (n,), n > 0."""
-    found = columns_at(definition.grid, index)
+    """The parcel of the cases numbered `index` (n,), n > 0."""
+    found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
     own = tuple(laws.LAWS[name] for name in set(found["micro"].tolist()) if laws.LAWS[name].version)
     return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION, own)
@@ -57,7 +61,7 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
 
 
 def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """The columns that are stored, by their names in the vocabulary: (B,), and (B, m) of the wanted profiles."""
+    """What is stored of a solution: name in the vocabulary -> (B,), and (B, m) of the wanted profiles."""
     special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
     kept = (*CONTROLS, *names("result"), *INTEGERS)
     found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
@@ -66,7 +70,7 @@ def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.nda
 
 
 def guarded(wanted: Parcel) -> dict[str, np.ndarray] | Failure:
-    """`compute`, with an exception as a value."""
+    """`compute`; an exception is returned as a Failure."""
     try:
         if wanted.numerics != NUMERICS_VERSION:
             raise RuntimeError(f"the worker has version {NUMERICS_VERSION} of the numerics, not {wanted.numerics}")
@@ -76,11 +80,11 @@ def guarded(wanted: Parcel) -> dict[str, np.ndarray] | Failure:
         return Failure(message, traceback.format_exc())
 
 
-def cut(missing: np.ndarray, size: int, part: tuple[int, int] = (1, 1)) -> list[np.ndarray]:
-    """The numbers of the missing cases in runs of at most `size`.
+def blocks_of(missing: np.ndarray, size: int, part: tuple[int, int] = (1, 1)) -> list[np.ndarray]:
+    """The missing cases cut into blocks of at most `size`: the numbers of the cases of each.
 
-    part : (i, n), only those of the i-th of n parts. Which cases these are depends on `size` alone, not on what is
-        missing: parts that start at different times share no case.
+    part : (i, n), only the i-th of n parts. Which cases belong to a part does not depend on what is missing, so that
+        parts that start at different times share no case
     """
     mine = missing[missing // size % part[1] == part[0] - 1]
     return [mine[start : start + size] for start in range(0, len(mine), size)]

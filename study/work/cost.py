@@ -1,4 +1,4 @@
-"""What a run would cost: time by a sample of the cases, memory and size by their number."""
+"""What a run would cost: time, measured on a sample of the cases, and memory and disk, from their number."""
 
 import time
 from dataclasses import dataclass
@@ -14,24 +14,29 @@ from .cases import compute, parcel
 from .progress import duration
 from .workers import AHEAD, available_workers, processes_for
 
-SAMPLE = 256  # cases
+SAMPLE = 256  # cases whose time is measured
 PROCESS, WORKER = 250_000_000, 110_000_000  # bytes of Python and its packages, and of those in a worker process
 PER_CASE = 100  # bytes for the key of a case, and to find it
-WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, in sizes of its result
-# What solving takes besides, as it was measured: peaks of runs on 17 to 256 nodes, and of 300 cases of
-# studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
-SOLVING, MATRICES = 80_000_000, 3  # bytes for each worker, and matrices (B, n, n) of a stack of cases
+WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, over the size of its result
+# Bytes that solving takes besides in each worker, and how many matrices (B, n, n) are there at a time. Measured: peaks
+# of runs on 17 to 256 nodes, and of 300 cases of studies/extremes_layered.toml, which fill every table (0.86 GB in one
+# process).
+SOLVING, MATRICES = 80_000_000, 3
 KEY = 16  # bytes of the key of a case in a block
-# Of the results file besides its numbers: what HDF5 takes for itself, and its chunks at the edge of a grid, which have
-# room for a whole one. As it was measured on files of 3000 and of 1e6 cases.
+# Bytes of a results file besides its numbers, and a factor for chunks, which are stored whole at the edges of a grid.
+# Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
-TABLES = 600_000_000  # bytes that each process keeps of the exact layer: 0.4 GB of tables, and what they are made from
+TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and what they are made of
 
 
 @dataclass(frozen=True)
 class Estimate:
-    """cases; present, of these on disk; seconds for the rest; memory, bytes at most; size, bytes of the results; disk,
-    bytes at most of what a run writes before it removes its blocks."""
+    """What a run would cost.
+
+    cases : of the study; present : those on disk; seconds : for the others
+    memory : bytes at most; size : bytes of the results
+    disk : bytes at most of the results and the blocks together, before a run removes its blocks
+    """
 
     cases: int
     present: int
@@ -42,7 +47,7 @@ class Estimate:
 
 
 def estimate(definition: Definition, workers: int | None = None, present: int = 0) -> Estimate:
-    """The cost of the cases that are not present, by the time of a sample spread over all."""
+    """The cost of the cases that are not present. The time is that of a sample spread over all cases."""
     count, cases = workers or available_workers(), definition.grid.size
     missing = cases - present
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
@@ -56,28 +61,28 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
 
 
 def disk_for(definition: Definition, missing: int) -> float:
-    """Bytes of the results file, and of the blocks of the missing cases: both are there when it is complete."""
+    """Bytes of the results file and of the blocks of the missing cases. Both are on disk when the file is complete."""
     block = KEY + sum(array.nbytes for array in not_run(definition, 1).values())
     results = definition.numbers * np.dtype(definition.dtype).itemsize
     return HEAD + ROOM * results + block * missing
 
 
 def _matrices(definition: Definition) -> int:
-    """Bytes of the matrices that a worker has at a time, on the largest mesh."""
+    """Bytes of the matrices that a worker has at a time on the largest mesh."""
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     stack = 3 * STACK if _on_exact_layer(definition) else STACK
     return 8 * MATRICES * nodes * min(nodes * min(definition.block, definition.grid.size), stack)
 
 
 def _on_exact_layer(definition: Definition) -> bool:
-    """Whether some case may need the operator of the exact layer, be it for the error of the thin layer."""
+    """Whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer."""
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
     judged = np.any(base == "thin_layer") and np.any(judged == "first_order")
     return bool(judged or np.isin(base, ("layered", "auto")).any())
 
 
 def seconds_per_case(definition: Definition) -> float:
-    """Time of a case on one worker. The first call prepares what all cases share, and is not counted."""
+    """Time of a case on one worker. The first call prepares tables that all cases share, and is not counted."""
     places = np.linspace(0, definition.grid.size - 1, min(SAMPLE, definition.grid.size)).astype(int)
     wanted = parcel(definition, places)
     compute(wanted)

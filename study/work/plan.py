@@ -1,4 +1,4 @@
-"""What a run is asked for, what it reports, and what it checks before it begins."""
+"""The order and the report of a run, and what is checked before it begins."""
 
 import tempfile
 from dataclasses import dataclass, replace
@@ -27,9 +27,10 @@ class CannotWrite(StudyError):
 class Report:
     """What a run did.
 
-    computed : cases computed now; failures : number of the block -> reason; counts : status -> number of cases, empty
-    when there was nothing to do; path : written if `complete`, otherwise cases failed or belong to other parts; kept :
-    what still lies among the blocks, in words
+    path : of the results; complete : whether it is written; if not, blocks failed or other parts are missing
+    cases : of the study; computed : those computed now; failures : number of a block -> why it failed
+    counts : status -> number of cases; {} when there was nothing to do
+    kept : what is still in the folder of the blocks, in words
     """
 
     path: Path
@@ -45,12 +46,14 @@ class Report:
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `workers.engine`; processes : workers may be processes, which know what is installed but
-    nothing that the calling program has defined; part : (i, n), only the i-th of n parts, whichever ends last writes
-    the results; retry : compute cases of these statuses again; fail_fast : stop at the first block that raises or holds
-    a case that has failed (one without a solution has not); force : replace a results file of which cases would be
-    lost; yes : go on however large the study is; command : for the history of the results; stream : text stream for
-    progress
+    workers, scheduler : see `workers.engine`
+    processes : workers may be processes, which do not know what the calling program itself defines
+    part : (i, n), compute the i-th of n parts only; the part that ends last writes the results
+    retry : compute cases of these statuses again
+    fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
+    force : replace the results file even if cases in it are lost
+    yes : go on however large the study is
+    command : for the history of the results; stream : where progress is written
     """
 
     definition: Definition
@@ -68,7 +71,7 @@ class Order:
 
     @property
     def path(self) -> Path:
-        """Of the results file."""
+        """Path of the results file."""
         return self.store.path
 
     @property
@@ -77,7 +80,7 @@ class Order:
 
     @property
     def shared(self) -> bool:
-        """Whether others compute at the same time."""
+        """Whether other runs compute other parts at the same time."""
         return self.part[1] > 1
 
     def done(self, found: Condition) -> bool:
@@ -92,9 +95,9 @@ class Order:
 
 
 def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:
-    """`examine` the results file of a study, the order of its dimensions included."""
+    """`examine` the results file of a study. One with other dimensions than the study is foreign."""
     definition, found = store.definition, examine(store.path, columns)
-    sizes = list(definition.named(definition.grid.sizes).items())
+    sizes = list(definition.in_results(definition.grid.sizes).items())
     if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
         reason = (
             f"another program has changed it: its dimensions are {list(found.sizes)}, not {[dim for dim, _ in sizes]}"
@@ -118,23 +121,23 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 
 def check_writable(path: Path) -> None:
-    """Raise CannotWrite when the folder of the results cannot be made or written, or that which a link leads to."""
+    """Raise CannotWrite when the results cannot be written to their folder, or to where a symbolic link leads."""
     folder = path.parent
     try:
         str(path.absolute()).encode()
         make_folder(folder)
         folder = target(path).parent
-        with tempfile.TemporaryFile(dir=folder):  # has no name that a kill could leave behind
+        with tempfile.TemporaryFile(dir=folder):  # a file without a name: nothing is left if the program is killed
             pass
     except OSError as error:
         raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
-    except UnicodeEncodeError:  # Python keeps other bytes of a path as lone surrogates
+    except UnicodeEncodeError:  # Python has lone surrogates for bytes of a path that are not UTF-8
         wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
         raise StudyError([wrong]) from None
 
 
 def check_countable(store: Store, yes: bool) -> bool:
-    """Whether there may be cases on disk. Raises StudyError when looking for them would take very much memory."""
+    """Whether there may be cases on disk. Raises StudyError when counting them would take very much memory."""
     definition = store.definition
     if not store.path.exists() and not any(store.folder.glob("*.block")):
         return False
@@ -146,7 +149,7 @@ def check_countable(store: Store, yes: bool) -> bool:
 
 
 def check_size(order: Order) -> None:
-    """Raise StudyError for a study so large that it may be a slip, with what it would cost."""
+    """Raise StudyError, which says the cost, for a study so large that it may be a mistake."""
     definition = order.definition
     if definition.numbers > LARGE and not order.yes:
         cost = describe(estimate(definition, order.workers))

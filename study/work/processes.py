@@ -1,10 +1,10 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
-They are ours and no `dask.distributed.LocalCluster`, which starts 2.5 s later: first answers of two workers after 2.0 s
-against 4.5 s, means of three in alternation on two processors that others used too. With a run of 100,000 thin rough
-cases and the two starts it takes 11.5 s against 18.1 s of processor time, and a run twice as much with dask's own
-settings, which make workers give memory back after each block. `python tests/benchmark_engine.py 3 100` measures it.
-Dask's own process scheduler is a pool of `concurrent.futures` inside: it holds all results in memory, and one killed
+`dask.distributed.LocalCluster` is not used because it starts 2.5 s later. The first answers of two workers came after
+2.0 s, with dask after 4.5 s (means of three in alternation on two processors that others used too). Two starts and a
+run of 100,000 thin rough cases took 11.5 s of processor time, with dask 18.1 s; the run alone took twice as much with
+dask's own settings, which make workers give memory back after each block. `python tests/benchmark_engine.py 3 100`
+measures it. Dask's process scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed
 process ends it.
 """
 
@@ -18,20 +18,20 @@ from collections.abc import Callable
 from contextlib import suppress
 from queue import Empty, SimpleQueue
 
-from ..files.apart import python
+from ..files.child import python_command
 from .cases import Failure
 
-#: Times that a block is tried before it is given up: a process may be killed for the memory that others take, but a
-#: block that is itself too large for the machine must not kill processes for ever.
+#: Times that a block is tried. A process may be killed because others take the memory, so once is too few; a block that
+#: is itself too large would be tried for ever.
 ATTEMPTS = 3
 KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps for want of memory"
-#: Seconds after which a process ends that nobody gives a task, with its memory: it is started again when there is one.
+#: Seconds after which a process without a task ends, and frees its memory. It is started again for the next task.
 IDLE = 60
 SERVE = "from study.work.processes import serve; serve()"
 
 
 class Processes:
-    """A process of its own for each thread that calls; it is started at the first call, and again when it is killed."""
+    """A process for each thread that calls, started at its first call, and again when it has ended or was killed."""
 
     def __init__(self):
         self._mine = threading.local()
@@ -48,7 +48,7 @@ class Processes:
                 pickle.dump(task, process.stdin)
                 process.stdin.flush()
                 return pickle.load(process.stdout)
-            except (EOFError, OSError, pickle.UnpicklingError):  # nobody reads, nobody writes, or only a part
+            except (EOFError, OSError, pickle.UnpicklingError):  # the process has ended, perhaps in the middle
                 self._mine.process = None
         return Failure(KILLED, "")
 
@@ -60,12 +60,12 @@ class Processes:
             process.kill()
             process.wait()
             for pipe in (process.stdin, process.stdout):
-                with suppress(OSError):  # of what was written and nobody has read
+                with suppress(OSError):  # the pipe holds data that nobody has read
                     pipe.close()
 
     def _started(self) -> subprocess.Popen:
-        """A new process, in a group of its own: Ctrl-C in a terminal is for the process that runs the study alone."""
-        command, environment = python(SERVE)
+        """A new process. It has a group of its own, so that Ctrl-C in a terminal does not reach it."""
+        command, environment = python_command(SERVE)
         with self._changing:
             if self._ended:
                 raise EOFError
@@ -77,10 +77,11 @@ class Processes:
 def serve() -> None:
     """What a worker process does: read pairs (function, its arguments) from stdin, write the results to stdout.
 
-    It ends when stdin is closed, which the system does however the process that runs the study ends, or without tasks.
+    It ends after IDLE seconds without a task, or when stdin is closed. The system closes it when the process that runs
+    the study ends, however that ends.
     """
     tasks, answers = SimpleQueue(), os.fdopen(os.dup(sys.stdout.fileno()), "wb")
-    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints is no answer
+    os.dup2(sys.stderr.fileno(), sys.stdout.fileno())  # what a library prints must not be among the answers
 
     def receive() -> None:
         try:
@@ -98,7 +99,7 @@ def serve() -> None:
         try:
             function, given = pickle.loads(task)
             found = function(*given)
-        except Exception as error:  # of a function, say, that is not defined here
+        except Exception as error:  # the function is not defined in this process, say
             found = Failure(f"{type(error).__name__}: {error}", traceback.format_exc())
         pickle.dump(found, answers)
         answers.flush()

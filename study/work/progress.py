@@ -12,9 +12,10 @@ BLINK = 0.1  # seconds between rewritten lines
 
 @dataclass
 class Progress:
-    """Counts cases; `done` begins with those found on disk, the rate counts only what is computed now.
+    """Counts cases and writes how far a run is.
 
-    A case without a solution has not `failed`.
+    done : cases on disk when the run began, and those computed since; computed : the latter alone, for the rate
+    failed : cases that have failed; a case without a solution has not
     """
 
     name: str
@@ -31,22 +32,22 @@ class Progress:
         self.done += cases
         self.computed += cases
         self.failed += failed
-        now = time.monotonic()
-        self._show(self._line, now)
+        self._show(self._line)
 
     def close(self) -> None:
         """End the rewritten line."""
         self._show(self._end)
 
-    def _show(self, what: Callable, *given) -> None:
-        """Do without the stream from where on it cannot be written: that nobody looks must not end a run."""
+    def _show(self, what: Callable[[], None]) -> None:
+        """Write to the stream, if there is one. When that fails, go on without it: a run must not end because of it."""
         try:
             if self.stream is not None:
-                what(*given)
-        except (OSError, ValueError):  # its reader has left, or its terminal; its disk is full; it has been closed
+                what()
+        except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
             self.stream = None
 
-    def _line(self, now: float) -> None:
+    def _line(self) -> None:
+        now = time.monotonic()
         if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
             self.written = now
             self._write(now)
@@ -58,8 +59,8 @@ class Progress:
 
     def _write(self, now: float) -> None:
         counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
-        if self.stream.isatty():
-            self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")  # the last one may wrap
+        if self.stream.isatty():  # a line that fills the last column may wrap
+            self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")
         else:
             self.stream.write(f"{describe(*counts)}\n")
         self.stream.flush()
@@ -76,7 +77,7 @@ def columns(terminal: TextIO) -> int:
 def describe(
     name: str, done: int, total: int, failed: int, computed: int, seconds: float, *, width: int | None = None
 ) -> str:
-    """The line: "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left"; so much of it as `width` characters hold."""
+    """The line "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left", shortened to at most `width` characters."""
     rate = computed / seconds if seconds > 0 else 0.0
     left = f", {duration((total - done) / rate)} left" if rate and done < total else ""
     share = f"{100 * done // total} %"

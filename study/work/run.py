@@ -1,4 +1,4 @@
-"""Run a study: missing cases -> blocks -> workers -> one writer -> results file. What is on disk is the progress."""
+"""Run a study: missing cases -> blocks -> workers -> blocks on disk -> results file."""
 
 import logging
 from collections.abc import Iterator
@@ -12,7 +12,7 @@ import xarray as xr
 from ..data.dataset import NO_SOLUTION, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
-from ..physical.scene import shown
+from ..physical.scene import dataset_of
 from ..spec.definition import Definition
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.earlier import check_replaceable, earlier
@@ -20,7 +20,7 @@ from ..store.lock import held
 from ..store.tidy import tidy
 from ..store.writer import writing
 from ..terminal import say
-from .cases import Failure, cut, guarded, parcel
+from .cases import Failure, blocks_of, guarded, parcel
 from .cost import Estimate, estimate
 from .plan import Order, Report, check_countable, check_size, check_writable, look
 from .progress import Progress
@@ -42,25 +42,25 @@ def run(definition: Definition, results="results", **options) -> Report:
     order = Order(definition, Path(results), **options)
     found, seen = look(order.store), stamp(order.path)
     if order.done(found):
-        if order.store.folder.exists():  # a run was killed between its last two steps, or other blocks lie there
-            return _last(order, order.report())
+        if order.store.folder.exists():  # a run was killed before it removed its blocks, or other blocks are there
+            return _finish_if_last(order, order.report())
         return order.report()
     check_writable(order.path)
     check_size(order)
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-            if stamp(order.path) != seen:  # by the run that this one has waited for
+            if stamp(order.path) != seen:  # the run for which this one has waited has written it
                 found = look(order.store)
-            report = _computed(order, found)
-        return _last(order, report) if order.shared else report
+            report = _compute(order, found)
+        return _finish_if_last(order, report) if order.shared else report
     except FileNotFoundError:
-        if order.done(look(order.store)):  # by another run, which has removed the blocks: without locks
+        if order.done(look(order.store)):  # on a file system without locks another run has ended and removed the blocks
             return order.report()
         raise
 
 
-def _computed(order: Order, found: Condition) -> Report:
-    """Compute what is missing, and write the results unless others compute too."""
+def _compute(order: Order, found: Condition) -> Report:
+    """Compute what is missing, and write the results unless other runs compute other parts."""
     if order.done(found):
         return order.report(kept=tidy(order.store))
     if found.kind == "damaged":
@@ -75,8 +75,8 @@ def _computed(order: Order, found: Condition) -> Report:
     return order.report(known, computed=missing - len(known.missing), failures=failures, kept=kept)
 
 
-def _last(order: Order, report: Report) -> Report:
-    """What the last of several runs does: write the results, remove the blocks. The others leave it to that one."""
+def _finish_if_last(order: Order, report: Report) -> Report:
+    """If no other run holds the lock, this one is the last of several: it writes the results and removes the blocks."""
     with held(order.store.lock, wait=False) as alone:
         if not alone:
             return report
@@ -94,7 +94,7 @@ def _writing(order: Order, known: Inventory, found: Condition) -> Iterator[None]
 
 
 def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> str:
-    """The rest of the steps, if no case is missing; what then still lies among the blocks, in words."""
+    """If no case is missing, take the other steps and remove the blocks. Returns what `tidy` does, else ""."""
     if len(known.missing):
         return ""
     for _ in steps:
@@ -107,7 +107,7 @@ def say_waiting(order: Order) -> None:
 
 
 def prepared(order: Order, file: Condition) -> Inventory:
-    """What is on disk, cases of an earlier results file included. Raises StudyError when these would be lost."""
+    """What is on disk, in blocks and in an earlier results file. Raises StudyError when cases of that would be lost."""
     if not order.shared:
         remove_litter(order.store)
     found = earlier(order.definition, file)
@@ -117,11 +117,11 @@ def prepared(order: Order, file: Condition) -> Inventory:
 
 
 def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dict[int, str]:
-    """Compute and store the missing cases, a step of the results file after each block; returns the failures.
+    """Compute and store the missing cases, with a step of the results file after each block; returns the failures.
 
-    A block that raises costs that block only.
+    A block that raises does not stop the others.
     """
-    blocks, failures = cut(known.missing, order.definition.block, order.part), {}
+    blocks, failures = blocks_of(known.missing, order.definition.block, order.part), {}
     if not blocks:
         return failures
     size = order.definition.grid.size
@@ -167,4 +167,4 @@ def partial_dataset(definition: Definition, results) -> xr.Dataset:
     """The grid with the blocks computed so far; the rest is NaN with status 127, not run."""
     store = Store(definition, Path(results))
     arrays = gather(store, inventory(store), 0, definition.grid.size)
-    return shown(definition, parts(definition, arrays, "partial results"))
+    return dataset_of(definition, parts(definition, arrays, "partial results"))

@@ -1,4 +1,4 @@
-"""The scheduler of a dask cluster: whether its address is one, whether it answers, and a client of it."""
+"""A client of the scheduler of a dask cluster, and checks of its address and of whether it answers."""
 
 import logging
 import re
@@ -6,7 +6,7 @@ import socket
 import struct
 
 ADDRESS = re.compile(r"(?:(tcp|tls|ws|wss|ucx)://)?(\[[0-9a-fA-F:.%]+\]|[\w.-]+):(\d{1,5})|inproc://.+", re.ASCII)
-GREETING = 1_000_000  # bytes of the first message of a scheduler, which are some hundreds
+GREETING = 1_000_000  # most bytes of the first message of a scheduler; it has some hundreds
 
 
 def address_error(text: str) -> str:
@@ -24,7 +24,7 @@ def connected(address: str, seconds: float):
     ------
     StudyError : nothing answers there in so many seconds, or what answers is no scheduler
     """
-    from ..spec.definition import StudyError  # imports numpy, for which a complaint about an address does not wait
+    from ..spec.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
 
     reason = address_error(address)
     if reason:
@@ -33,13 +33,13 @@ def connected(address: str, seconds: float):
         from dask.distributed import Client
     except ImportError:
         raise StudyError(["--scheduler needs the package distributed: pip install 'roughcoat[cluster]'"]) from None
-    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # says at length what `Lost` says
+    logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are long; `Lost` says the same
     try:
         if address.startswith(("tls:", "wss:")):
             _certified()
         _greeted(address, seconds)
         return Client(address, timeout=seconds, set_as_default=False)
-    except Exception as error:  # the client makes any of what it hears and does not understand
+    except Exception as error:  # what the client raises for an answer that it does not understand is not known
         said = str(error) or type(error).__name__
         raise StudyError([f"--scheduler {address}: no scheduler answers there ({said})"]) from None
 
@@ -53,9 +53,9 @@ def _certified() -> None:
 
 
 def _greeted(address: str, seconds: float) -> None:
-    """Raise OSError for a host that has no address, and when who listens there does not greet as dask does.
+    """Raise OSError when the host has no address, or when the first bytes from there are not those of dask.
 
-    Dask takes the first bytes for the length of a message whatever they are, and tries to find that much memory.
+    Dask takes the first bytes as the length of a message, whatever they are, and asks for that much memory.
     """
     scheme, host, port = ADDRESS.fullmatch(address).groups()
     if host is None or scheme not in (None, "tcp"):
@@ -67,7 +67,7 @@ def _greeted(address: str, seconds: float) -> None:
         raise OSError(f"{host}: {error.strerror}") from None
     try:
         peer = socket.create_connection(where, timeout=seconds)
-    except OSError:  # perhaps it is about to start: the client goes on asking
+    except OSError:  # perhaps the scheduler is about to start: the client asks again
         return
     with peer, peer.makefile("rb") as stream:
         try:

@@ -1,5 +1,4 @@
-"""Where blocks are computed: threads or processes of this machine, or the workers of a dask cluster. One way to use
-any."""
+"""Where blocks are computed: threads or processes of this machine, or workers of a dask cluster; one interface."""
 
 import os
 from collections.abc import Callable, Iterable, Iterator
@@ -12,9 +11,9 @@ from .cases import Failure
 from .processes import Processes
 from .scheduler import connected
 
-CONNECT = 10  # seconds
-AHEAD = 4  # blocks submitted for each worker: it goes on while this thread writes
-MANY = 8  # blocks from which on it pays to start processes: threads wait for each other's Python
+CONNECT = 10  # seconds that a scheduler has to answer
+AHEAD = 4  # blocks submitted for each worker, which goes on with them while this thread writes
+MANY = 8  # blocks from which on it pays to start processes, which do not share a lock of Python as threads do
 
 
 class Lost(ConnectionError):
@@ -26,7 +25,7 @@ class Lost(ConnectionError):
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """submit : takes a function and its task; width : how many tasks it should have at a time, which may change."""
+    """submit(function, task) -> Future; width() : how many tasks it should have at a time, which may change."""
 
     submit: Callable[..., Future]
     width: Callable[[], int]
@@ -34,10 +33,12 @@ class Engine:
 
 @contextmanager
 def engine(workers: int | None, scheduler: str | None, blocks: int = 0) -> Iterator[Engine]:
-    """Threads, for many `blocks` processes (default one for each processor), or with the address of a `scheduler` its
-    workers (at most so many).
+    """The engine that computes so many `blocks`: threads for few, processes for many, or the workers of a cluster.
 
-    What has been submitted and not begun is cancelled at the end. A thread ends what it has begun, a process does not.
+    workers : how many, by default one for each processor; at most so many of a cluster
+    scheduler : the address of the scheduler of a cluster
+
+    At the end tasks that wait are cancelled. A thread finishes its task, a process is killed.
     """
     if scheduler is not None:
         with _cluster(workers, scheduler) as found:
@@ -54,7 +55,7 @@ def engine(workers: int | None, scheduler: str | None, blocks: int = 0) -> Itera
 
 
 def processes_for(workers: int, blocks: int) -> int:
-    """How many processes compute so many blocks; 0: as many threads as workers do."""
+    """How many processes compute so many blocks; 0: threads compute them."""
     return min(workers, blocks) if workers > 1 and blocks >= MANY else 0
 
 
@@ -83,7 +84,7 @@ def available_workers() -> int:
 def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterator[tuple[int, object]]:
     """(number of the task, function(task)) in the order in which they end, in this thread.
 
-    A task is made when there is room for it, and forgotten when its result has been taken: memory stays bounded.
+    A task is made when there is room for it, and dropped when its result has been taken, so that memory is bounded.
     Raises Lost when the scheduler of a cluster is gone.
     """
     pending: dict[Future, int] = {}
@@ -103,5 +104,5 @@ def _next(pending: dict[Future, int]) -> tuple[int, object]:
         return number, future.result()
     except CancelledError:
         raise Lost from None
-    except Exception as error:  # of the cluster, such as a block that killed its workers
+    except Exception as error:  # of the cluster: a block has killed its workers, say
         return number, Failure(f"{type(error).__name__}: {error}", "")

@@ -19,7 +19,7 @@ from test_cli import GOOD, studies  # noqa: F401
 
 from study.__main__ import main
 from study.api import load
-from study.terminal import open_the_closed, say
+from study.terminal import open_closed_streams, say
 from study.work import progress
 from study.work.progress import Progress
 
@@ -156,7 +156,7 @@ def _numbers_of_files(answers) -> None:
     for number in range(3):
         os.close(number)
     sys.stdin = sys.stdout = sys.stderr = None
-    open_the_closed()
+    open_closed_streams()
     with open(os.devnull) as file:
         answers.put((file.fileno(), [os.get_inheritable(number) for number in range(3)]))
     print("not heard")

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import study
 from study.__main__ import main
 from study.figures.labels import axis_label, stated, written
-from study.figures.lines import drawn, graded
+from study.figures.lines import drawn, spaced_by_factors
 from study.spec.definition import StudyError
 
 AXES = {"P": [1e-6, 1e-5, 1e-4], "n": [0.2, 0.5], "bonding": ["frictionless", "bonded"]}
@@ -160,8 +160,8 @@ def test_the_command_and_the_methods(tmp_path, monkeypatch, capsys):
 
 
 def test_scales_follow_the_spacing():
-    assert graded(np.geomspace(1e-6, 1e-4, 21)) and not graded(np.linspace(1e-8, 5e-5, 251))
-    assert not graded(np.array([0.1, 0.2])) and not graded(np.array(["a", "b"]))
+    assert spaced_by_factors(np.geomspace(1e-6, 1e-4, 21)) and not spaced_by_factors(np.linspace(1e-8, 5e-5, 251))
+    assert not spaced_by_factors(np.array([0.1, 0.2])) and not spaced_by_factors(np.array(["a", "b"]))
 
 
 def test_names_and_numbers_of_labels(found):

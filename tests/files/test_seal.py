@@ -53,7 +53,7 @@ def test_a_file_that_ends_the_program_which_reads_it_is_damaged(path, monkeypatc
         return real([*command[:2], "import os; os.abort()"], **options)
 
     monkeypatch.setattr(examine.subprocess, "run", killed)
-    examine.examined_apart.cache_clear()
+    examine.examined_in_child.cache_clear()
     found = examine.examine(path)
     assert (found.kind, found.reason) == ("damaged", "is damaged: a program that reads it breaks down")
 
@@ -61,6 +61,6 @@ def test_a_file_that_ends_the_program_which_reads_it_is_damaged(path, monkeypatc
         return real([*command[:2], "while True: pass"], **options | {"timeout": 0.5})
 
     monkeypatch.setattr(examine.subprocess, "run", endless)
-    examine.examined_apart.cache_clear()
+    examine.examined_in_child.cache_clear()
     assert examine.examine(path).kind == "damaged"
-    examine.examined_apart.cache_clear()
+    examine.examined_in_child.cache_clear()

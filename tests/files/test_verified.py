@@ -16,7 +16,7 @@ from same import assert_same
 import study
 from study.__main__ import main
 from study.files import checksums, results_file
-from study.files.checksums import Rows
+from study.files.checksums import CaseDigests
 from study.files.examine import examine, examined
 
 ONE = '[model]\nmicro = "smooth"\nbase = "thin_layer"\nP = 1e-5\nh = 0.02\nn = 0.5\n[output]\nx = 3\n'
@@ -104,7 +104,7 @@ def runs(tmp_path_factory):
         patch.setattr("study.files.examine.CHUNK", 5)
         patch.setattr("study.store.writer.CHUNK", 5)
         # another process would have the usual runs of cases
-        patch.setattr("study.files.examine.examined_apart", lambda path, columns, _: examined(path, columns))
+        patch.setattr("study.files.examine.examined_in_child", lambda path, columns, _: examined(path, columns))
         found = load(folder / "line.toml")
         found.run()
         yield found
@@ -198,12 +198,12 @@ def test_digests_do_not_depend_on_the_pieces(monkeypatch):
     monkeypatch.setattr(checksums, "RUN", 4)
     numbers, found = np.arange(22.0).reshape(11, 2), []
     for pieces in ([11], [4, 4, 3], [1, 2, 8], [3, 3, 3, 2]):
-        rows = Rows(11)
+        rows = CaseDigests(11)
         for piece in np.split(numbers, np.cumsum(pieces)[:-1]):
             rows.add("p", piece)
         found.append(rows.lines())
     assert all(lines == found[0] for lines in found) and len(found[0]["=runs"]) == 3 * 32
-    assert Rows(10**9).run == -(-(10**9) // 1024), "the attribute stays small"
+    assert CaseDigests(10**9).run == -(-(10**9) // 1024), "the attribute stays small"
 
 
 def test_a_damaged_file_is_kept_under_a_name_of_its_own(tmp_path, monkeypatch):

@@ -18,7 +18,7 @@ import study
 from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS, Parameter
 from study.figures.labels import stated
-from study.physical.told import told
+from study.physical.inputs import used_inputs
 from study.spec.definition import from_tables
 from study.store.keys import case_keys
 from study.work.cases import parcel
@@ -59,7 +59,7 @@ def test_its_parameter_is_told_in_words_and_in_figures():
     assert "cones, Nbar = 2.5e+05 R^-2, alpha = 1.3\n" in text and "nu1" not in text, "without friction ν is not used"
     assert stated([found])[-1] == "$\\alpha$ = 1.3"
     spheres = study.solve(**CASE, P=1e-5, Ra=0.004, x=2)
-    assert "alpha" not in told(spheres.assign_coords(alpha=1.3)), "which another law has"
+    assert "alpha" not in used_inputs(spheres.assign_coords(alpha=1.3)), "which another law has"
 
 
 def test_against_rings_of_constant_pressure():

@@ -13,7 +13,7 @@ from solver.laws.disc_cell import contact_fraction, largest_pressure
 from solver.models.model_error import NODES, first_order
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases
-from study.spec.definition import read
+from study.physical.study_file import read
 from study.spec.grid import columns
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
@@ -25,7 +25,7 @@ CONTACT = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
 def grid(name):
     """A thinned validity study (dict of columns) and its true solution: on the exact layer."""
     whole = read(ROOT / f"studies/{name}.toml").grid
-    given = columns(whole, 0, whole.size)
+    given = columns(whole, np.arange(whole.size))
     exact = np.flatnonzero(given["base"] == "layered")[::EVERY]
     given = {key: column[exact] for key, column in given.items()}
     return given, solve(Problem.of(**given))

@@ -4,7 +4,7 @@ import pytest
 from test_definition import GOOD, messages, read
 
 import study
-from study.spec import definition
+from study.physical import study_file
 
 # what is replaced in GOOD, by what, and the message that must appear
 BAD = [
@@ -119,15 +119,15 @@ def test_malformed_toml_names_file_and_place(tmp_path, content, reason):
     path = tmp_path / "fig99.toml"
     path.write_bytes(content)
     with pytest.raises(study.StudyError, match=f"fig99.toml: is not valid TOML: .*{reason}"):
-        definition.read(path)
+        study_file.read(path)
 
 
 def test_missing_file(tmp_path):
     with pytest.raises(study.StudyError, match="none.toml: cannot be read: No such file"):
-        definition.read(tmp_path / "none.toml")
+        study_file.read(tmp_path / "none.toml")
     (tmp_path / "folder.toml").mkdir()
     with pytest.raises(study.StudyError, match="folder.toml: cannot be read: Is a directory"):
-        definition.read(tmp_path / "folder.toml")
+        study_file.read(tmp_path / "folder.toml")
 
 
 @pytest.mark.parametrize("name", [".hidden.toml", "a b.toml", "..toml", "fig04.txt", "é.toml"])

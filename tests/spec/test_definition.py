@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 import study
-from study.spec import definition, identity
+from study.physical import study_file
+from study.spec import identity
 from study.spec.definition import MOST_VALUES
 from study.spec.vocabulary import PARAMETERS, VOCABULARY
 
@@ -29,7 +30,7 @@ x = [0, 0.5, 1]
 def read(tmp_path, text, name="fig99.toml"):
     path = tmp_path / name
     path.write_text(text, encoding="utf-8")
-    return definition.read(path)
+    return study_file.read(path)
 
 
 def messages(tmp_path, text) -> list[str]:

@@ -22,7 +22,7 @@ def test_columns_and_unflatten_are_inverse(shape, data):
     grid = Grid(sizes, values)
     start = data.draw(st.integers(0, grid.size))
     stop = data.draw(st.integers(start, grid.size))
-    whole, part = columns(grid, 0, grid.size), columns(grid, start, stop)
+    whole, part = columns(grid, np.arange(grid.size)), columns(grid, np.arange(start, stop))
     for name, (dims, array) in values.items():
         expected = xr.DataArray(array, dims=dims).broadcast_like(xr.DataArray(np.empty(shape), dims=list(sizes)))
         np.testing.assert_array_equal(unflatten(grid, whole[name]), expected.transpose(*sizes))
@@ -157,7 +157,9 @@ def test_what_a_case_does_not_need_stays_nan():
     """The solver does not look at it; no number is made up."""
     found = study.solve(cases=[{"base": "half_space"}, {"base": "layered", "h": 0.01}], P=1e-5, n=0.5, micro="smooth")
     assert np.array_equal(found.h, [np.nan, 0.01], equal_nan=True) and (found.status == 0).all()
-    assert np.array_equal(columns(Grid({"case": 2}, {"h": (("case",), found.h.values)}), 0, 2)["h"], found.h, True)
+    assert np.array_equal(
+        columns(Grid({"case": 2}, {"h": (("case",), found.h.values)}), np.arange(2))["h"], found.h, True
+    )
 
 
 def test_cases_in_python_with_an_axis():

@@ -80,14 +80,14 @@ def replaced(tmp_path, kind="sound", digest="other", force=False, **found) -> No
     """Ask whether a results file, of the six cases of `line` but for what is `found`, may be replaced by theirs."""
     definition = line()
     keys = case_keys(definition.grid)
-    given = {"numerics": NUMERICS_VERSION, "keys": keys, "cases": 6, "told": True} | found
+    given = {"numerics": NUMERICS_VERSION, "keys": keys, "cases": 6, "identified": True} | found
     condition, known = Condition(tmp_path / "f.nc", kind, "is so and so", digest), given.pop("keys")
     status = np.zeros(6, np.int8)
     given["source"] = None if known is None else ResultsSource(condition.path, definition.grid, known, status, (), None)
     check_replaceable(Store(definition, tmp_path), Earlier(condition, **given), keys, force)
 
 
-NOTHING = {"numerics": "", "keys": None, "cases": 0, "told": False}
+NOTHING = {"numerics": "", "keys": None, "cases": 0, "identified": False}
 
 
 def test_what_may_be_replaced(tmp_path):
@@ -123,7 +123,7 @@ def test_what_may_not(tmp_path, found, message):
     ("found", "message"),
     [
         (
-            {"kind": "damaged", "told": False},
+            {"kind": "damaged", "identified": False},
             "f.nc: is so and so; which cases it holds cannot be told: run the study as",
         ),
         (

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from same import assert_same
 
 import study
-from study.data.dataset import labelled
+from study.data.dataset import parts
 from study.files.results_file import open_lazily, write
 from study.spec.definition import from_tables
 from study.spec.grid import Grid, box, cut_out, windows
@@ -68,7 +68,7 @@ def test_written_by_windows_as_written_whole(tmp_path, monkeypatch, size, output
     definition = from_tables(tables(**output), "windows", "text", "windows.toml")
     opened = study.Study(definition, tmp_path)
     opened.run()
-    whole = labelled(definition, compute(parcel(definition, np.arange(24))), "command")
+    whole = parts(definition, compute(parcel(definition, np.arange(24))), "command").dataset()
     write(whole, tmp_path / "whole.nc")
     expected, found = study.open_results(tmp_path / "whole.nc"), opened.open()
     assert_same(found, expected)
@@ -81,8 +81,8 @@ def test_a_grid_cut_out_is_the_cases_there(low, length):
     window = {dim: slice(low % size, min(low % size + length, size)) for dim, size in grid.sizes.items()}
     from study.spec.grid import columns
 
-    part, whole = cut_out(grid, window), columns(grid, 0, grid.size)
-    for name, column in columns(part, 0, part.size).items():
+    part, whole = cut_out(grid, window), columns(grid, np.arange(grid.size))
+    for name, column in columns(part, np.arange(part.size)).items():
         expected = whole[name].reshape(grid.shape)[tuple(window.values())].ravel()
         np.testing.assert_array_equal(column, expected)
 

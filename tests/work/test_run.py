@@ -160,8 +160,8 @@ def test_retry_computes_the_cases_of_a_status_again(file, monkeypatch, ended):
 
 def test_a_block_size_of_one_part_does_not_change_which_cases_it_has(file):
     whole = np.arange(23)
-    shares = [np.concatenate([*cases.cut(whole, 5, (i, 3)), []]) for i in (1, 2, 3)]
+    shares = [np.concatenate([*cases.blocks_of(whole, 5, (i, 3)), []]) for i in (1, 2, 3)]
     assert sorted(np.concatenate(shares).tolist()) == whole.tolist()
-    later = np.concatenate(cases.cut(whole[whole % 2 == 0], 5, (2, 3)))
+    later = np.concatenate(cases.blocks_of(whole[whole % 2 == 0], 5, (2, 3)))
     assert set(later) == {case for case in shares[1] if case % 2 == 0}
-    assert [len(block) for block in cases.cut(whole, 5)] == [5, 5, 5, 5, 3]
+    assert [len(block) for block in cases.blocks_of(whole, 5)] == [5, 5, 5, 5, 3]

@@ -92,7 +92,7 @@ def test_the_last_part_finds_that_another_has_written_the_results(opened, monkey
         assert not report.complete
         assert opened.run(part=(1, 2)).complete
 
-    once(monkeypatch, "_last", last)
+    once(monkeypatch, "_finish_if_last", last)
     report = opened.run(part=(2, 2))
     assert report.complete and report.computed == 10
     assert state(opened) == WHOLE and leftovers(opened.results) == []

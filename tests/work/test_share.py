@@ -13,7 +13,7 @@ from children import PATIENCE
 
 import study
 from solver import laws
-from study.files.apart import python
+from study.files.child import python_command
 from study.spec.definition import LARGE, StudyError, complete
 from study.spec.given import Draft
 from study.work import share
@@ -41,7 +41,7 @@ def definition(size=30, **parameters):
     ],
 )
 def test_blocks_follow_from_the_grid_alone(size, scheme, expected):
-    blocks = share.cut(definition(size, base="half_space", Nbar=250000.0, Ra=0.004, scheme=scheme))
+    blocks = share.blocks_of_grid(definition(size, base="half_space", Nbar=250000.0, Ra=0.004, scheme=scheme))
     assert [len(block) for block in blocks] == expected
     np.testing.assert_array_equal(np.concatenate(blocks), np.arange(size))
 
@@ -71,7 +71,7 @@ class Threads:
 def threads(monkeypatch):
     """Blocks of ten cases, which it always pays to compute apart."""
     kept = Threads(lambda function, given: function(given))
-    for name, value in {"BLOCK": 10, "START": 1e-9, "_kept": kept}.items():
+    for name, value in {"BLOCK": 10, "START": 1e-9, "_pool": kept}.items():
         monkeypatch.setattr(share, name, value)
     return kept
 
@@ -120,7 +120,7 @@ def test_a_feeder_that_fails_leaves_no_gaps(monkeypatch):
             wait([found])
             return [found]
 
-    monkeypatch.setattr(share, "_kept", kept := Pool(None))
+    monkeypatch.setattr(share, "_pool", kept := Pool(None))
     monkeypatch.setattr(share, "parcel", parcel)
     with pytest.raises(MemoryError, match="no room"):
         share.solved(definition(**SMOOTH), 2)
@@ -151,24 +151,24 @@ def test_where_there_are_no_processes(monkeypatch):
     themselves, in a program that is not Python, and for laws that only this program knows."""
     ordinary = definition(**SMOOTH)
     monkeypatch.setattr(share, "available_workers", lambda: 4)
-    assert [share._beside(ordinary, workers) for workers in (None, 1, 2)] == [3, 0, 1]
+    assert [share._processes_allowed(ordinary, workers) for workers in (None, 1, 2)] == [3, 0, 1]
     found = []
-    thread = threading.Thread(target=lambda: found.extend(share._beside(ordinary, n) for n in (None, 2)))
+    thread = threading.Thread(target=lambda: found.extend(share._processes_allowed(ordinary, n) for n in (None, 2)))
     thread.start()
     thread.join()
     assert found == [0, 1]
     with monkeypatch.context() as patch:
         patch.setattr(multiprocessing, "parent_process", lambda: "a process")
-        assert share._beside(ordinary, None) == 0
+        assert share._processes_allowed(ordinary, None) == 0
     for name, value in {"executable": "/usr/bin/blender", "frozen": True}.items():
         with monkeypatch.context() as patch:
             patch.setattr(sys, name, value, raising=False)
-            assert share._beside(ordinary, 2) == 0
+            assert share._processes_allowed(ordinary, 2) == 0
     mine = replace(laws.LAWS["disc_cell"], name="mine_alone", version="1", curve=own_curve)
     rough = definition(micro=mine, base="half_space", Nbar=250000.0, Ra=0.004)
-    assert share._beside(rough, 2) == 1
+    assert share._processes_allowed(rough, 2) == 1
     monkeypatch.setattr(own_curve, "__module__", "__main__")
-    assert share._beside(rough, 2) == 0
+    assert share._processes_allowed(rough, 2) == 0
 
 
 def own_curve(y):
@@ -184,8 +184,8 @@ print("begun")
 share.BLOCK, share.START = 10, 1e-9
 grid = {"P": np.geomspace(1e-6, 1e-4, 40), "micro": "smooth", "base": "thin_layer", "h": 0.02, "n": 0.5}
 here, found = (study.solve(**grid, workers=count) for count in (1, 2))
-assert share._kept.count == 1
-assert share._kept.feed(lambda call: call(str, 1), 1)[0].result() == "1"
+assert share._pool.count == 1
+assert share._pool.feed(lambda call: call(str, 1), 1)[0].result() == "1"
 for name in here.variables:
     assert here[name].values.tobytes() == found[name].values.tobytes(), name
 print("ended")
@@ -196,7 +196,7 @@ def test_a_script_needs_no_guard(tmp_path):
     """It runs once, in whatever folder; its processes compute, and none of them holds it up at its end."""
     path = tmp_path / "script.py"
     path.write_text(SCRIPT)
-    _, environment = python("")
+    _, environment = python_command("")
     ended = subprocess.run(
         [sys.executable, path], cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=PATIENCE
     )
@@ -204,7 +204,7 @@ def test_a_script_needs_no_guard(tmp_path):
 
 
 def test_a_process_that_nobody_asks_ends():
-    command, environment = python("from study.work import processes; processes.IDLE = 0.01; processes.serve()")
+    command, environment = python_command("from study.work import processes; processes.IDLE = 0.01; processes.serve()")
     with subprocess.Popen(command, env=environment, stdin=subprocess.PIPE) as process:
         assert process.wait(PATIENCE) == 0
 

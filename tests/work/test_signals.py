@@ -152,14 +152,14 @@ class Last:
     def __del__(self, write=os.write):
         write(2, b"torn down")
 
-number, real = int(sys.argv.pop(1)), ending.start
+number, real = int(sys.argv.pop(1)), ending.listen
 
 def start():
     real()
     if number:
         atexit.register(signal.raise_signal, number)
 
-ending.start, last = start, Last()
+ending.listen, last = start, Last()
 runpy.run_module("study", run_name="__main__", alter_sys=True)
 """
 

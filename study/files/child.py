@@ -5,10 +5,10 @@ import sys
 from pathlib import Path
 
 
-def python(statement: str) -> tuple[list[str], dict[str, str]]:
+def python_command(statement: str) -> tuple[list[str], dict[str, str]]:
     """Command and environment of a Python process that executes a statement.
 
-    It looks for modules in the working folder last: a user may have a solver.py there, which is not ours.
+    It looks for modules in the working folder last, because a user may have a solver.py there.
     """
     where = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH")]))
     command = [sys.executable, "-P", "-c", f"import sys; sys.path.append(''); {statement}"]

@@ -3,8 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from ..data.units import DONE
 from ..scene.quantities import READABLE, multiple
+from .units import PHYSICAL_SCALE
 
 
 def readable(dataset: xr.Dataset) -> xr.Dataset:
@@ -15,7 +15,7 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
 
     Raises ValueError for a dataset without physical units.
     """
-    if DONE not in dataset.attrs:
+    if PHYSICAL_SCALE not in dataset.attrs:
         raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
     found = {}
     for name, variable in dataset.variables.items():
@@ -29,4 +29,4 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
     coords = {name: variable for name, variable in found.items() if name in dataset.coords}
     made = dataset.drop_vars(list(coords)).assign_coords(coords)
     made = made.assign({name: variable for name, variable in found.items() if name in dataset.data_vars})
-    return made.assign_attrs({DONE: "readable multiples of SI units, by the attribute units"})
+    return made.assign_attrs({PHYSICAL_SCALE: "readable multiples of SI units, by the attribute units"})

@@ -1,4 +1,4 @@
-"""Which inputs of contacts a text or a figure tells, and in which order."""
+"""Which inputs of contacts a text or a figure states, and in which order."""
 
 import numpy as np
 import xarray as xr
@@ -10,17 +10,17 @@ from .bodies import BODIES
 _OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
 
 
-def in_order() -> list[str]:
-    """All inputs: radii, what the bodies are made of, the control, the layer, the asperities."""
+def all_inputs() -> list[str]:
+    """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities."""
     between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
     of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
     return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, "micro", *of_laws]
 
 
-def told(contacts: xr.Dataset) -> list[str]:
-    """Those of the inputs in a dataset that some contact uses: no ν of a rigid body, no n where E1 and E2 say it.
+def used_inputs(contacts: xr.Dataset) -> list[str]:
+    """The inputs in a dataset that the answer of some contact depends on; [] for a dataset without contacts.
 
-    Measurements such as those of the trade-off are a dataset without contacts, and have none.
+    Left out are ν of a rigid body, and n and m where the moduli are given.
     """
     if "base" not in contacts.coords:
         return []
@@ -37,7 +37,7 @@ def told(contacts: xr.Dataset) -> list[str]:
     with_modulus = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
     return [
         name
-        for name in in_order()
+        for name in all_inputs()
         if name in contacts.variables
         and name not in hidden
         and (name not in VOCABULARY or name in with_modulus or matters(name, values))

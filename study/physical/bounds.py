@@ -1,0 +1,91 @@
+"""Messages for inputs with units that are beyond the bounds of the solver, as they were given: "P = -10 N: ..."."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver.parameters import allowed as within
+from solver.parameters import ends
+
+from ..data.units import with_unit
+from ..scene.quantities import multiple, quantity, unit_in
+from ..spec.grid import MOVED
+from ..spec.vocabulary import VOCABULARY, allowed
+from ..terminal import on_one_line
+from .names import SCENE, QuantityList, unit_of
+from .scene import Scene
+
+LONGEST_SHOWN = 60  # characters of a value in a message
+#: Ratios of moduli, and the modulus from which each follows.
+_RATIOS = (("n", "E1"), ("m", "E_punch"))
+
+Place = dict[str, int]
+"""Dimension -> index along it."""
+
+
+def beyond_bounds(scene: Scene, given: dict) -> list[str]:
+    """A message for each input with a unit, and each ratio of moduli, that is outside its interval.
+
+    given : the parameters as the user gave them
+    """
+    with_units = [name for name in scene.given if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
+    messages = [
+        _message(scene, name, given[name], place) for name in with_units for place in _first_outside(scene, name)
+    ]
+    for ratio, modulus in _RATIOS:
+        for place in _first_outside(scene, ratio) if modulus in scene.given else ():
+            entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
+            messages.append(f"{entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
+    return messages
+
+
+def value_text(given: Any) -> str:
+    """What a user gave, as a message quotes it."""
+    return on_one_line(str(given), LONGEST_SHOWN)
+
+
+def _first_outside(scene: Scene, name: str) -> list[Place]:
+    """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
+    values = scene.parameters[name]
+    outside = np.argwhere(~within(VOCABULARY[name].own, np.asarray(values)))[:1].tolist()
+    return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
+
+
+def _at(value: Any, place: Place) -> Any:
+    """The number of an array at a place, the first one along dimensions that the place does not have."""
+    if not isinstance(value, xr.DataArray):
+        return value
+    return value.isel({dim: place.get(dim, 0) for dim in value.dims}).item()
+
+
+def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
+    """The message for the value of an input at a place."""
+    value, entry = scene.given[name], VOCABULARY[name]
+    as_given = place | ({MOVED: 0} if MOVED in place else {})
+    index = [as_given[dim] for dim in getattr(value, "dims", ()) if dim != MOVED]
+    called = f"{name}{index}" if index else name
+    text, word, size = _written(given, index, _at(value, as_given), unit_of(name))
+    moved = "with its spread it " if place != as_given else ""
+    R, unit = _at(scene.R, place), _at(scene.unit, place)
+    low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
+    interval = f"{entry.own.interval[0]}{low}, {high}{entry.own.interval[-1]}"
+    scale = entry.scale.replace("E2*", "E1*") if np.isinf(_at(scene.given["E2"], place)) else entry.scale
+    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}"
+    return f"{called} = {value_text(text)}: {moved}{bounds}"
+
+
+def _written(given: Any, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
+    """A value as it was given, the word for its unit there, and the size of that in the SI `unit`.
+
+    A value of a range, or with a unit that is no single word, has the multiple of the SI unit that suits it.
+    """
+    if isinstance(given, xr.DataArray):
+        word = given.attrs["units"]
+        text = f"{given.values[tuple(index)]} {word}"
+    else:
+        text = None if isinstance(given, QuantityList) else given[index[0]] if index else given
+        word = unit_in(text)
+    word = word or multiple(abs(value), unit)[0]
+    size = quantity("", f"1 {word}", unit).value
+    return f"{value / size:g} {word}" if text is None else text, word, size

@@ -1,0 +1,70 @@
+"""An input with a unit that is beyond the bounds of the solver: what was given, and the bounds in the same unit."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+from study.__main__ import main
+
+pytest.importorskip("pint")
+GIVEN = {"R": "5 mm", "E1": "210 GPa", "nu1": 0.3, "E2": "210 GPa", "nu2": 0.3, "h": "2 um", "micro": "smooth"}
+#: 1e-24 and 1e3 E2* R², E2* = 210 GPa/0.91.
+LOADS = r"must be in \[5.769e-18, 5.769e\+09\] N, which is \[1e-24, 1e3\] E2\* R\^2"
+LENGTHS = r"which is \[1e-12, 1e6\] R"
+
+
+def refusal(**change) -> str:
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(**GIVEN | {"P": "1 N"} | change)
+    return str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"P": "-10 N"}, f"^P = -10 N: {LOADS}$"),
+        ({"P": "0 N"}, f"^P = 0 N: {LOADS}$"),
+        ({"P": ["1 N", "-0.01 kN"]}, r"^P\[1\] = -0.01 kN: must be in \[5.769e-21, 5.769e\+06\] kN, which is"),
+        ({"h": "-0.002 mm"}, rf"^h = -0.002 mm: must be in \[5e-12, 5e\+06\] mm, {LENGTHS}"),
+        ({"h": "2e-9 um"}, rf"^h = 2e-9 um: must be in \[5e-09, 5e\+09\] um, {LENGTHS}"),
+        ({"h": ["2 um", "-3e-6 m"], "R": ["5 mm", "6 mm"]}, r"^h\[1\] = -3e-6 m: must be in \[5e-15, 5000\] m"),
+        ({"h": ["2 um", "5e-9 um"], "R": ["5 mm", "6 mm"]}, r"^h\[1\] = 5e-9 um: must be in \[6e-09, 6e\+09\] um"),
+        ({"P": "-10 ± 1 N"}, f"^P = -10 ± 1 N: {LOADS}$"),
+        ({"P": "1 ± 10 N"}, f"^P = 1 ± 10 N: with its spread it {LOADS}$"),
+        ({"P": "-10 N ± 5 %"}, f"^P = -10 N ± 5 %: {LOADS}$"),
+        ({"Nbar": "-1 µm⁻²", "Ra": "1 um"}, r"^Nbar = -1 µm⁻²: must be in \[4e-12, 4e\+10\] 1/µm², which is"),
+        ({"P": xr.DataArray([2.0, -1.0], dims="q", attrs={"units": "N"})}, rf"^P\[1\] = -1.0 N: {LOADS}$"),
+        ({"P": "-1 N", "h": "-1 um"}, "(?s)^h = -1 um.*\nP = -1 N"),
+        ({"P": "-1 N", "E2": "rigid"}, r"which is \[1e-24, 1e3\] E1\* R\^2$"),
+        ({"E1": "1e-9 Pa"}, "^ratio of the reduced moduli of layer and half-space: n = 4.762e-21: must be 0 or in"),
+        ({"E_punch": "1e-9 Pa"}, r"^ratio of .* layer and punch, 0: rigid: m = .*: must be in \[0, 1e9\]"),
+    ],
+)  # fmt: skip
+def test_the_message_has_the_unit_that_was_given(change, message):
+    assert re.search(message, refusal(**change)), refusal(**change)
+
+
+def test_quantities_of_pint():
+    import pint
+
+    unit = pint.UnitRegistry()
+    assert "P = -10 newton: must be in [5.769e-18, 5.769e+09] newton" in refusal(P=unit.Quantity(-10, "N"))
+    assert "P[1] = -2.0 newton: must be in [5.769e-18" in refusal(P=unit.Quantity(np.array([1.0, -2.0]), "N"))
+
+
+def test_rows_ranges_and_the_command_line(tmp_path, capsys):
+    with pytest.raises(study.StudyError, match=r"^P\[1\] = -2 N: must be in"):
+        study.solve(**GIVEN, cases=[{"P": "1 N"}, {"P": "-2 N"}])
+    path = tmp_path / "slip.toml"
+    path.write_text(
+        '[model]\nR = "5 mm"\nE1 = "210 GPa"\nE2 = "210 GPa"\nh = "2 um"\nmicro = "smooth"\n'
+        '[axes]\nP = { start = "-2 mN", stop = "1 N", num = 4 }\n'
+    )
+    with pytest.raises(study.StudyError, match=r"slip.toml: P\[0\] = -2 mN: must be in \[5.769e-15, 5.769e\+12\] mN"):
+        study.load(path)
+    words = [f"{name}={value}" for name, value in GIVEN.items()]
+    assert main(["point", *words, "P=-10 N"]) == 2
+    assert "P = -10 N: must be in [5.769e-18, 5.769e+09] N" in capsys.readouterr().err

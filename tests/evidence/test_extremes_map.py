@@ -19,6 +19,8 @@ def datasets(results):
     found[0]["status"][thin_layer] = [Status.TOLERANCE_NOT_MET, Status.THIN_LAYER_NOT_APPLICABLE, Status.CONVERGED]
     found[0]["error"][thin_layer] = [1e-3, np.nan, 7e-7]
     found[0]["iterations"][thin_layer] = [99, 0, 5]
+    found[1]["error"].loc[{"micro": "power_law"}] = [1e-7, 5e-7, 3e-7]
+    found[1]["iterations"].loc[{"micro": "power_law"}] = [7, 9, 30]
     return found
 
 
@@ -28,6 +30,8 @@ def test_table_counts_every_case(datasets):
     third = 1 / 3
     assert rows["half-space", "disc cell"][:6] == (3, 0, third, 0.5, 0, 0.5)
     assert rows["thin layer", "disc cell"] == (3, third, 0, 0.5, 0.5, 0, *[pytest.approx(0.7)] * 3, 5, 5)
+    # of three: the median, and 0.998 of the way from it to the largest
+    assert rows["exact layer", "power law"] == (3, 0, 0, 1, 0, 0, *map(pytest.approx, (0.3, 0.4996, 0.5)), 9, 30)
     assert rows["half-space", "smooth"][:6] == rows["exact layer", "smooth"][:6] == (3, 0, 0, 1, 0, 0)
 
 

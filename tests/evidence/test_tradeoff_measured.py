@@ -125,13 +125,16 @@ def test_measurements_stand_at_their_set_way_and_step(monkeypatch):
     assert found["set"].values.tolist() == list(sets) and found["way"].values.tolist() == list(ways)
 
 
-def test_plan_names_all_that_changes_the_numbers():
+def test_plan_names_all_that_changes_the_numbers(monkeypatch):
     text = tradeoff.plan(WAYS, 100)
     way = WAYS["newton, rtol"]
     for change in ({"varied": "x"}, {"settings": (1e-3,)}, {"sets": ("coatings",)}, {"most": 3}, {"copies": 2}):
         other = tradeoff.plan(WAYS | {"newton, rtol": replace(way, **change)}, 100)
         assert tradeoff.digest(other) != tradeoff.digest(text), change
     assert tradeoff.plan(WAYS, 99) != text
+    before = tradeoff.digest(text)
+    monkeypatch.setattr(tradeoff, "NUMERICS_VERSION", "other")
+    assert tradeoff.digest(text) != before
 
 
 def test_ways_change_what_they_say():

@@ -81,6 +81,15 @@ def test_what_does_not_settle_says_so():
     assert paper(40, 1.0, P=LOAD, base="half_space").status[0] == Status.ITERATION_LIMIT
 
 
+def test_what_diverges_has_no_numbers_and_harms_no_neighbour():
+    """From p = 0 the asperities of the exact law would have to yield more than at full contact."""
+    pair = {"P": [LOAD, LOAD], "base": ["half_space", "thin_layer"], "micro": ["disc_cell", "power_law"]}
+    found = paper(20, 20.0, **pair)
+    assert found.status.tolist() == [Status.DIVERGED, Status.CONVERGED]
+    numbers = np.array([found.a, found.P, found.D, found.p0, found.p_max, found.Ar_An, found.A0])
+    assert np.isnan(numbers[:, 0]).all() and np.isfinite(numbers[:, 1]).all()
+
+
 def test_to_follow_the_pressure_saves_approximations():
     """The search for the radius under a load takes far less than each of its 25 radii from p = 0."""
     given, anew = (

@@ -116,22 +116,25 @@ def test_estimated_memory_grows_with_the_largest_mesh(monkeypatch):
 
 
 @pytest.mark.parametrize(
-    ("points", "block", "dtype", "parts"),
+    ("points", "block", "dtype", "workers", "parts"),
     [
         # Python, keys, three windows of the results file, nine blocks of results, solver, three stacks of matrices
-        ((8, 10), 10, "float64", (250e6, 100 * 80, 3 * 52_480, 9 * 6_560, 80e6, 3 * 8 * 96 * 960)),
-        ((8, 10), 10, "float32", (250e6, 100 * 80, 3 * 26_240, 9 * 3_280, 80e6, 3 * 8 * 96 * 960)),
-        ((8, 10), 4000, "float64", (250e6, 100 * 80, 3 * 52_480, 9 * 52_480, 80e6, 3 * 8 * 96 * 7_680)),
-        ((1000, 2000), 8000, "float64", (250e6, 200e6, 3 * 64e6, 9 * 5_248_000, 80e6, 3 * 8 * 96 * 40_000)),
+        ((8, 10), 10, "float64", 1, (250e6, 100 * 80, 3 * 52_480, 9 * 6_560, 80e6, 3 * 8 * 96 * 960)),
+        ((8, 10), 10, "float32", 1, (250e6, 100 * 80, 3 * 26_240, 9 * 3_280, 80e6, 3 * 8 * 96 * 960)),
+        ((8, 10), 4000, "float64", 1, (250e6, 100 * 80, 3 * 52_480, 9 * 52_480, 80e6, 3 * 8 * 96 * 7_680)),
+        ((1000, 2000), 8000, "float64", 1, (250e6, 200e6, 3 * 64e6, 9 * 5_248_000, 80e6, 3 * 8 * 96 * 40_000)),
+        # two threads: blocks, solver and matrices of each
+        ((8, 10), 40, "float64", 2, (250e6, 100 * 80, 3 * 52_480, 18 * 26_240, 160e6, 6 * 8 * 96 * 3_840)),
     ],
 )
-def test_estimated_memory_is_the_sum_of_its_parts(monkeypatch, points, block, dtype, parts):
+def test_estimated_memory_is_the_sum_of_its_parts(monkeypatch, points, block, dtype, workers, parts):
     monkeypatch.setattr(estimates, "seconds_per_case", lambda _: 0.0)
     axes = {name: {"start": 0.1, "stop": 0.4, "num": num} for name, num in zip(("P", "nu1"), points, strict=True)}
     model, output = {"base": "half_space", "micro": "smooth"}, {"dtype": dtype}
     tables = {"model": model, "axes": axes, "numerics": {"block": block}, "output": output}
     # a sum in another order
-    assert estimates.estimate(from_tables(tables, "s", "", "s"), 1).memory == pytest.approx(sum(parts), rel=1e-12)
+    definition = from_tables(tables, "s", "", "s")
+    assert estimates.estimate(definition, workers).memory == pytest.approx(sum(parts), rel=1e-12)
 
 
 def test_time_is_of_the_missing_cases_over_the_workers(monkeypatch):

@@ -54,6 +54,13 @@ def test_what_newton_leaves_is_found_by_its_radius(steps):
     assert s.iterations[0] == counted > 100
 
 
+def test_a_step_changes_the_radius_by_no_more_than_a_factor():
+    """From a poor first guess, of a film between soft and stiff: 14 steps in all, without a limit to each 50."""
+    film = {"h": 2.7e-7, "n": 4.7e-8, "Ra": 100.0, "Nbar": 11529.0, "base": "thin_layer", "micro": "disc_cell"}
+    s = solve(Problem.of(P=1.72e-5, **film))
+    assert s.status[0] == Status.CONVERGED and s.iterations[0] < 30
+
+
 def test_the_residual_of_smooth_thin_layers_is_measured():
     """Rounding of the equation for the edge, which is not zero for all of twenty."""
     s = one(D=np.geomspace(1e-4, 1e-2, 20), base="thin_layer", micro="smooth")

@@ -69,6 +69,16 @@ def test_half_space_exact_law_has_no_start():
     assert np.isnan(s.a[0])
 
 
+def test_each_case_of_a_batch_has_its_own_mesh():
+    """As many nodes as it asks for, or as its tolerance needs; and the numbers that it has alone."""
+    meshes = {"nodes": [16, 32, 0, 0], "rtol": [1e-2, 1e-2, 1e-2, 1e-6]}
+    s = picard(a=0.04, k=10.0, **meshes)
+    assert s.nodes.tolist() == [16, 32, 6, 12]
+    for i in range(4):
+        alone = picard(a=0.04, k=10.0, **{name: values[i] for name, values in meshes.items()})
+        assert s.status[i] == alone.status[0] and s.P[i] == pytest.approx(alone.P[0], rel=1e-9)
+
+
 def test_limit():
     s = picard(a=0.04, k=5.0, max_iterations=3)
     assert s.iterations[0] == 3

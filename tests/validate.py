@@ -14,13 +14,14 @@ import xarray as xr
 from validate_cases import HALF_SPACE, LAYERED, THINNER, together
 from validate_figures import draw_limits, draw_means
 from validate_film import films, sparse
-from validate_heights import SPHERES, cells, compared
+from validate_heights import SPHERES, cells, compared, finer
 from validate_page import page
 
 
 def found(folder: Path) -> dict[str, xr.Dataset]:
     """Everything that is shown, solved where it is missing."""
-    spheres = xr.concat([compared(sphere, folder) for sphere in SPHERES], "case", join="outer")
+    spheres = xr.concat([compared(sphere, folder) for sphere in SPHERES], "case")
+    spheres["finer"] = "quantity", finer(folder)
     return {
         "half_space": together(HALF_SPACE, folder),
         "layer": together(LAYERED, folder),

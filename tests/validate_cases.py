@@ -126,7 +126,7 @@ def compared(case: Case, folder: Path) -> xr.Dataset:
     shown = two.isel(x=slice(None, None, 8))
     data["profile_r"] = (*dims, "x"), shown["a"].values[..., None] * shown["x"].values
     data["profile"] = (*dims, "x"), shown["p"].values
-    return xr.Dataset(data, {"base": two["base"].values, "law": list(LAWS)})
+    return xr.Dataset(data, {"base": two["base"].values, "law": list(LAWS), "cell": np.arange(len(r))})
 
 
 def cell_errors(r, mean, two: xr.Dataset, case: Case) -> np.ndarray:

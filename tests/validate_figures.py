@@ -101,7 +101,6 @@ def _plain(panel, ticks: list[float]) -> None:
 def _spheres(found: xr.Dataset, panel) -> None:
     for i, name in enumerate(found["case"].values):
         one = found.sel(case=name)
-        one = one.isel(ring=(one["law_mean"].max("law") > 0).values)
         r, law = 1e3 * one["r"].values, 100 * one["law_mean"]
         _resolved(panel, r, 100 * one["mean"].values, 200 * one["unsure"].values, f"C{i}")
         panel.plot(r, law.sel(law="heights").values, color=f"C{i}", linewidth=1, label=name)

@@ -22,8 +22,12 @@ from solver.laws.heights import UNIFORM
 CUT = 4.0
 #: How many draws of a sphere, and of a periodic cell: their means are then known to a third of the scatter of a sphere.
 DRAWS, CELLS_DRAWN = 8, 8
-#: Summits a side of a periodic cell, elements a side of a summit's cell, and the nominal pressures in E pitch/Ra.
-SUMMITS, COUNTS, PRESSURES = 15, (8, 16), (0.01, 0.03, 0.1, 0.3)
+#: Orders of the errors of depth, width, area and largest pressure in the side of an element.
+ORDERS = np.array([2, 2, 1, 2])
+#: Rings of cells within the contact of the law.
+RINGS = 8
+#: Summits a side of a periodic cell, elements a side, no multiple of them, and the nominal pressures in E pitch/Ra.
+SUMMITS, MESHES, PRESSURES = 15, (124, 248), (0.01, 0.03, 0.1, 0.3)
 #: σ over A* = 1/(π N̄ Ra), by which equal asperities give way at full contact three times.
 SPREADS = (0.0, 0.1, 0.3)
 ONES = {"Nbar": 1.0, "Ra": 1.0}
@@ -81,22 +85,29 @@ def sphere(case: Sphere, draw: int) -> dict[str, np.ndarray]:
     return {"meshes": np.array(rows), "r": r, "mean": mean}
 
 
+def finer(folder: Path) -> np.ndarray:
+    """What elements half as large change of depth, width, area and largest pressure (4,), over them, in one draw."""
+    case = SPHERES[0]._replace(counts=(*SPHERES[0].counts, 2 * SPHERES[0].counts[-1]))
+    meshes = kept(folder, ("heights", RA, CUT, case[1:], 0), lambda: sphere(case, 0))["meshes"]
+    return richardson(meshes[1], meshes[2], ORDERS) / richardson(meshes[0], meshes[1], ORDERS) - 1
+
+
 def draws(case: Sphere, folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """Depth, width, area and largest pressure (draw, 4), extrapolated; r (cell,), and means of cells (draw, cell)."""
     found = [
         kept(folder, ("heights", RA, CUT, case[1:], one), lambda one=one: sphere(case, one)) for one in range(DRAWS)
     ]
-    order = np.array([2, 2, 1, 2])
-    values = [richardson(*one["meshes"][-2:], order) for one in found]
+    values = [richardson(*one["meshes"][-2:], ORDERS) for one in found]
     return np.array(values), found[0]["r"], np.array([one["mean"] for one in found])
 
 
-def rings(r, mean, pitch) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Mean r, mean and its standard error (ring,), of the cells (draw, cell) in rings as wide as two pitches."""
-    ring = (r / (2 * pitch)).astype(int)
+def rings(r, mean, a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean r, mean and its standard error (RINGS,), of the cells (draw, cell) in rings of equally many within a."""
+    inside = r < a
+    ring = np.arange(np.count_nonzero(inside)) * RINGS // np.count_nonzero(inside)  # r ascends
     count = np.bincount(ring)
-    own = np.array([np.bincount(ring, one) / count for one in mean])
-    return np.bincount(ring, r) / count, own.mean(axis=0), own.std(axis=0, ddof=1) / np.sqrt(len(own))
+    own = np.array([np.bincount(ring, one[inside]) / count for one in mean])
+    return np.bincount(ring, r[inside]) / count, own.mean(axis=0), own.std(axis=0, ddof=1) / np.sqrt(len(own))
 
 
 def compared(case: Sphere, folder: Path) -> xr.Dataset:
@@ -115,25 +126,26 @@ def compared(case: Sphere, folder: Path) -> xr.Dataset:
     data = {"error": (("law", "quantity"), guesses / exact - 1), "scatter": ("quantity", scatter / exact)}
     data |= {"resolved": ("quantity", exact), "spots": float((mean > 0).sum(axis=1).mean())}
     data |= {"sigma": case.sigma, "pitch": case.pitch, "p0": float(two[0]["p0"]), "a0": float(two[0]["a"])}
-    data |= dict(zip(("r", "mean", "unsure"), (("ring", one) for one in rings(r, mean, case.pitch)), strict=True))
+    data |= dict(zip(("r", "mean", "unsure"), (("ring", one) for one in rings(r, mean, data["a0"])), strict=True))
     at = [np.interp(r, x * float(one["a"]), one["p"].values, right=0.0) for one in two]
-    data["law_mean"] = ("law", "ring"), [rings(r, np.stack([one, one]), case.pitch)[1] for one in at]
-    return xr.Dataset(data, {"law": ["heights", "one height"], "quantity": ["D", "a", "Ar_An", "p_max"]})
+    data["law_mean"] = ("law", "ring"), [rings(r, np.stack([one, one]), data["a0"])[1] for one in at]
+    names = {"law": ["heights", "one height"], "quantity": ["D", "a", "Ar_An", "p_max"]}
+    return xr.Dataset(data, names)
 
 
-def cell(spread: float, p: float, draw: int, counts: tuple[int, ...] = COUNTS) -> dict[str, np.ndarray]:
+def cell(spread: float, p: float, draw: int, meshes: tuple[int, ...] = MESHES) -> dict[str, np.ndarray]:
     """A of the mean plane and λ of one periodic cell of normal heights on each mesh (mesh, 2)."""
     heights, rows, start = drawn("normal_heights", spread / np.pi, SUMMITS, [2, draw]), [], None
     around = np.pad(heights, 1, mode="wrap")
-    for count in counts:
-        points = SUMMITS * count
-        waves = 2 * np.pi * count * np.hypot(fft.fftfreq(points)[:, None], fft.rfftfreq(points))
+    for points in meshes:
+        side = SUMMITS / points
+        waves = 2 * np.pi / side * np.hypot(fft.fftfreq(points)[:, None], fft.rfftfreq(points))
         waves[0, 0] = np.inf  # the mean displacement is dropped
 
         def displaced(pressure, waves=waves):
             return fft.irfft2(2 / waves * fft.rfft2(pressure))
 
-        at = (np.arange(points) + 0.5) / count - SUMMITS / 2
+        at = (np.arange(points) + 0.5) * side - SUMMITS / 2
         shape = asperities(*np.meshgrid(at, at, indexing="ij"), 1.0, 1.0, around)
         A, pressure = pressed(displaced, shape, np.ones_like(shape) if start is None else start, p, TOLERANCE)
         touched = pressure > 0
@@ -151,7 +163,7 @@ def cells(folder: Path) -> xr.Dataset:
         for j, p in enumerate(PRESSURES):
             for k in range(CELLS_DRAWN):
                 draw = k if spread else 0
-                key = ("cell", CUT, SUMMITS, COUNTS, spread, p, draw)
+                key = ("cell", CUT, SUMMITS, MESHES, spread, p, draw)
                 one = kept(folder, key, lambda spread=spread, p=p, draw=draw: cell(spread, p, draw))
                 found[i, j, k] = richardson(*one["meshes"][-2:], np.array([2, 1]))
     dims, where = ("spread", "p", "draw"), {"spread": list(SPREADS), "p": list(PRESSURES)}

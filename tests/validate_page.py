@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from validate_cases import LAWS, LAYERED, QUANTITIES, RA
 from validate_figures import WORDS
-from validate_heights import CELLS_DRAWN, CUT, DRAWS, SUMMITS
+from validate_heights import CELLS_DRAWN, CUT, DRAWS, RINGS, SUMMITS
 
 HEADS = {"D": "depth", "a": "width", "p_max": "largest pressure", "Ar_An": "real area"}
 BASES = {"half_space": "", "layered": "", "thin_layer": "thin layer, "}
@@ -79,7 +79,9 @@ the disc cell of one height. (d) Depth of the mean plane of periodic cells: poin
 Summits on a square lattice of the pitch 0.0027, on a half-space, {draws} draws each; A* = 1/(π N̄ Ra), and normal
 heights are cut at {cut:g} σ. The depth is that of the mean plane of the summits, D - cσ of the law. "Scatter" is the
 standard deviation of one draw, ± the standard error of the mean. "One height" is `disc_cell`: what leaving the heights
-out says. Rings: the largest difference of the mean pressure of rings of cells, over p(0), ± its standard error.
+out says. Rings: the largest difference of the mean pressure of {rings} rings of equally many cells, over p(0), ± the
+largest standard error. Elements half as large change the depth of a draw by {finer_D:.2%} and its real area by
+{finer_Ar_An:.1%}.
 
 {heights}
 
@@ -90,8 +92,9 @@ what the mean field is off in it and in λ. p is in E pitch/Ra.
 
 {cells}
 
-σ = 0 is the disc cell's own error. The rest is what a mean field leaves out: a high summit presses its neighbours down
-more than the others, which takes load from them where they are nearest to touch; and where spots fill their cells.
+σ = 0 is the error of the disc cell itself. The rest is what the mean field leaves out. A high summit presses down what
+lies under its neighbours. They carry less than the mean, and so they press it less than the mean field has it: its depth
+is too large.
 """
 
 
@@ -172,9 +175,8 @@ def films_table(found: xr.Dataset) -> str:
 
 def sparse_table(found: xr.Dataset) -> str:
     """δA/A by n and λ."""
-    heads = [
-        f"λ = {float(one['lam']):g}, pitch/h = {float(one['pitch_over_h']):.1f}" for _, one in found.groupby("lam")
-    ]
+    columns = zip(found["lam"].values, found["pitch_over_h"].values, strict=True)
+    heads = [f"λ = {lam:g}, pitch/h = {pitch:.1f}" for lam, pitch in columns]
     rows = [[f"n = {n:g}", *(f"{value:+.1%}" for value in found["formula"].sel(n=n).values)] for n in found["n"].values]
     return table(["", *heads], rows)
 
@@ -227,6 +229,8 @@ def page(parts: dict[str, xr.Dataset]) -> str:
     """The page in Markdown."""
     best = parts["layer"].sel(base="layered", law="square_lattice")
     words = {f"layer_{name}": float(abs(best[f"{name}_error"]).max()) for name in ("D", "a", "p_max")}
-    words |= {"Ra": RA, "draws": DRAWS, "cut": CUT, "summits": SUMMITS, "cells_drawn": CELLS_DRAWN}
+    words |= {"Ra": RA, "draws": DRAWS, "rings": RINGS, "cut": CUT, "summits": SUMMITS, "cells_drawn": CELLS_DRAWN}
     words["lams"] = ", ".join(f"{lam:.2f}" for lam in parts["films"]["lam"].values)
+    finer = abs(parts["heights"]["finer"])
+    words |= {f"finer_{name}": float(finer.sel(quantity=name)) for name in ("D", "Ar_An")}
     return PAGE.format(**words, **{name: write(parts[name]) for name, write in TABLES.items()})

@@ -6,6 +6,8 @@ from validate_cases import LAWS, LAYERED, QUANTITIES, RA
 from validate_figures import WORDS
 from validate_heights import CELLS_DRAWN, CUT, DRAWS, RINGS, SUMMITS
 
+from solver.laws import LAWS as KNOWN
+
 HEADS = {"D": "depth", "a": "width", "p_max": "largest pressure", "Ar_An": "real area"}
 BASES = {"half_space": "", "layered": "", "thin_layer": "thin layer, "}
 PAGE = """# Two scales against one
@@ -29,11 +31,14 @@ middle, in cells that lie inside the contact by a pitch.
 
 {half_space}
 
+With {spots:.0f} spots the lattice law is as right as with many. The disc cell has A 1 % larger than the lattice at
+λ = {one_percent:.3f}, 5 % at {five_percent:.2f} and 10 % at {ten_percent:.2f}.
+
 ## Layers
 
 The influence coefficients of a layer on a half-space are Love's of the layer's material, and the Hankel transform of
-L - 1 by a kernel that shares nothing with the solver's. Nothing says which modulus the asperities feel: that it is the
-layer's follows. A hard bonded layer has no `thin_layer`.
+L - 1 by a kernel that shares nothing with the solver's. Nothing tells the asperities which modulus they feel: that it
+is the layer's is a result. A hard bonded layer has no `thin_layer`.
 
 {layer}
 
@@ -56,15 +61,15 @@ layer shows what A errs. To the first order in L - 1 it is a sum over the waves 
 F(x) = \\frac{{3(\\sin x - x\\cos x)}}{{x^3}}
 ```
 
-The largest |δA|/A of four layers, n = 0.1 to 5, at three nominal pressures (λ = {lams}), and what p_max errs there, by
-resolved cells:
+The largest |δA|/A of four layers, n = 0.1 to 5, at three nominal pressures (λ = {lams}), and what p_max errs
+there, by resolved cells:
 
 {films}
 
 Up to a pitch of h nothing of this is seen, whatever the spots. The mask `spot_not_small_against_h` of
 [validity](model.md#four-answers) asks for b(0) ≤ 0.1 h. Where the spots cover a hundredth of the area or more that is
 stricter than need be. Sparse spots are different: a stiff layer bends between them. With b = 0.1 h on a bonded layer,
-to the first order, δA/A is
+to the first order, which is too large where it is large, δA/A is
 
 {sparse}
 
@@ -80,21 +85,23 @@ Summits on a square lattice of the pitch 0.0027, on a half-space, {draws} draws 
 heights are cut at {cut:g} σ. The depth is that of the mean plane of the summits, D - cσ of the law. "Scatter" is the
 standard deviation of one draw, ± the standard error of the mean. "One height" is `disc_cell`: what leaving the heights
 out says. Rings: the largest difference of the mean pressure of {rings} rings of equally many cells, over p(0), ± the
-largest standard error. Elements half as large change the depth of a draw by {finer_D:.2%} and its real area by
-{finer_Ar_An:.1%}.
+largest standard error.
 
 {heights}
 
-The `p_max` of the law is that of the highest summit it knows, in the middle of the contact: the most that can be.
+The disc cell alone has {disc_D:+.2%} in the depth at this pitch. Elements half as large change the depth of a draw by
+{finer_D:+.2%} and its real area by {finer_Ar_An:+.1%}, so the real area is known to that only. The `p_max` of the law
+is that of the highest summit it knows, in the middle of the contact. Normal draws of so few summits have none that is
+as high there.
 
-The same in periodic cells of {summits} × {summits} summits, {cells_drawn} draws: the depth of the mean plane in A*, and
-what the mean field is off in it and in λ. p is in E pitch/Ra.
+The same in periodic cells of {summits} × {summits} summits, {cells_drawn} draws: what the mean field is off in the
+depth of the mean plane, in A*, and in λ. p is in E pitch/Ra.
 
 {cells}
 
 σ = 0 is the error of the disc cell itself. The rest is what the mean field leaves out. A high summit presses down what
-lies under its neighbours. They carry less than the mean, and so they press it less than the mean field has it: its depth
-is too large.
+lies under its neighbours. They carry less than the mean, and so they press it down less than the mean field has it,
+which is too deep.
 """
 
 
@@ -120,9 +127,21 @@ def half_space_table(found: xr.Dataset) -> str:
     rows = []
     for name in found["case"].values:
         one = found.sel(case=name)
-        first = [f"{float(one['pitch'] / one['a0']):.3f}", f"{float(one['lam0']):.3f}"]
-        rows += [(first if i == 0 else ["", ""]) + row for i, row in enumerate(predictions(one))]
-    return table(["pitch/a", "λ(0)", "law", *HEADS.values(), "cell means"], rows)
+        first = [f"{float(one['pitch'] / one['a0']):.3f}", f"{spots(one):.0f}", f"{float(one['lam0']):.3f}"]
+        rows += [(first if i == 0 else [""] * 3) + row for i, row in enumerate(predictions(one))]
+    return table(["pitch/a", "spots", "λ(0)", "law", *HEADS.values(), "cell means"], rows)
+
+
+def spots(one: xr.Dataset) -> float:
+    """Number of spots by the lattice law, N̄πa²."""
+    return float(np.pi * (one["a0"] / one["pitch"]) ** 2)
+
+
+def off_by(share: float) -> float:
+    """λ at which A of the disc cell is larger by this share than that of the square lattice."""
+    p = np.geomspace(1e-6, 0.3, 400)
+    disc, lattice = (KNOWN[name].at(p, 1.0, Nbar=1.0, Ra=1.0) for name in ("disc_cell", "square_lattice"))
+    return float(np.interp(share, disc.A / lattice.A - 1, lattice.lam))
 
 
 def layer_table(found: xr.Dataset) -> str:
@@ -231,6 +250,9 @@ def page(parts: dict[str, xr.Dataset]) -> str:
     words = {f"layer_{name}": float(abs(best[f"{name}_error"]).max()) for name in ("D", "a", "p_max")}
     words |= {"Ra": RA, "draws": DRAWS, "rings": RINGS, "cut": CUT, "summits": SUMMITS, "cells_drawn": CELLS_DRAWN}
     words["lams"] = ", ".join(f"{lam:.2f}" for lam in parts["films"]["lam"].values)
-    finer = abs(parts["heights"]["finer"])
+    words |= {"one_percent": off_by(0.01), "five_percent": off_by(0.05), "ten_percent": off_by(0.1)}
+    words["spots"] = spots(parts["half_space"].isel(case=0))
+    words["disc_D"] = float(parts["half_space"]["D_error"].sel(law="disc_cell").isel(case=1, base=0))
+    finer = parts["heights"]["finer"]
     words |= {f"finer_{name}": float(finer.sel(quantity=name)) for name in ("D", "Ar_An")}
     return PAGE.format(**words, **{name: write(parts[name]) for name, write in TABLES.items()})

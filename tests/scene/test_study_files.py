@@ -53,8 +53,8 @@ def test_results_are_those_of_solve_in_si(folder):
         for E2 in ("210 GPa", "rigid"):
             case = found.sel(h=h, E2=E2, P="10 N")
             alone = study.solve(**model, h=h, E2=E2, P="10 N", x=3)
-            for name in ("a", "D", "p0", "dP_dD", "p"):
-                np.testing.assert_allclose(case[name], alone[name], rtol=1e-14, err_msg=name)
+            for name in ("a", "D", "p0", "dP_dD", "p"):  # BLAS sums a batch in another order
+                np.testing.assert_allclose(case[name], alone[name], rtol=1e-12, err_msg=name)
     with xr.open_dataset(folder / "dlc.nc") as plain:
         assert plain.h.attrs["units"] == "m" and plain.p.dims == ("E2", "h", "P", "x")
     assert "a rigid base" in study.summary(found.sel(h="2 um", E2="rigid", P="10 N"))

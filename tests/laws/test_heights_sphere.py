@@ -1,6 +1,7 @@
 """Random heights: the mean field against spheres and periodic cells with every asperity resolved, on coarse meshes."""
 
 import numpy as np
+import pytest
 import validate_heights as heights
 from numpy.testing import assert_allclose
 from rough_sphere import asperities, width
@@ -45,3 +46,20 @@ def test_periodic_cells():
     A, lam = np.mean([heights.cell(0.3, 0.03, draw, (124,))["meshes"][0] for draw in range(2)], axis=0)
     assert 0.02 < np.pi * (law.A - A) - heights.CUT * 0.3 < 0.06
     assert abs(law.lam / lam - 1) < 0.05
+
+
+def test_what_is_kept_is_not_solved_again(tmp_path):
+    """Another key is another contact, and what was interrupted is none."""
+    solved = []
+
+    def solve_once():
+        solved.append(1)
+        return {"D": np.array(len(solved))}
+
+    def interrupted():
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        heights.kept(tmp_path, ("sphere", 1), interrupted)
+    found = [int(heights.kept(tmp_path, ("sphere", key), solve_once)["D"]) for key in (1, 2, 1)]
+    assert found == [1, 2, 1] and len(solved) == 2

@@ -113,12 +113,12 @@ def copied(name: str, folder: Path) -> list[Path]:
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
     """Write what `compose` gives as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-    paths = [write_text(stem.with_suffix(".csv"), csv_text(columns, rows))]
-    for suffix, dated in ((".pdf", {"CreationDate": None}), (".png", {})):
-        paths.append(stem.with_suffix(suffix))
+    write_text(stem.with_suffix(".csv"), csv_text(columns, rows))
+    for suffix, dated in ((".png", {}), (".pdf", {"CreationDate": None})):
         with style():
-            figure.savefig(paths[-1], metadata={"Title": title} | dated)
-    return paths
+            figure.savefig(stem.with_suffix(suffix), metadata={"Title": title} | dated)
+            figure.set_layout_engine(None)  # the next keeps the layout: to find it takes half the time of a large map
+    return [stem.with_suffix(f".{kind}") for kind in FIGURE]
 
 
 def tabulate(name: str, results="results", folder="tables") -> list[Path]:

@@ -17,6 +17,10 @@ PROCESSES.set_forkserver_preload(["study.api", "distributed"])
 PATIENCE = 300  # seconds for what takes one or two: a busy machine makes a test slow, not red
 SLOW = 0.01  # seconds that a block takes at least: moments to kill it in
 
+# Nothing waits for the disk, here and in the processes below: a run of 60 blocks flushes 124 times, and waited for that
+# as long as it computed on a busy machine. No test cuts the power; tests/files/test_atomic.py asks what is flushed.
+os.fsync = lambda file: None
+
 
 def child(file: Path, log: Path, at: str = "", locks: bool = True, **options) -> multiprocessing.Process:
     """A started process that runs the study of a file into the folder beside it, and logs to `log`.

@@ -189,7 +189,7 @@ def refused(opened, address: str) -> str:
     ("words", "why"), [(b"SSH-2.0-OpenSSH_9\r\n", "something else listens there"), (b"", "it says nothing")]
 )
 def test_a_port_that_is_not_dask(tmp_path, monkeypatch, words, why, scheme):
-    monkeypatch.setattr(engines, "CONNECT", 0.5)
+    monkeypatch.setattr(engines, "CONNECT", PATIENCE if words else 0.5)
     opened = written(tmp_path)
     with listening(words) as address:
         assert f"no scheduler answers there ({why}" in refused(opened, scheme + address)

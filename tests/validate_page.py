@@ -68,8 +68,9 @@ there, by resolved cells:
 
 Up to a pitch of h nothing of this is seen, whatever the spots. The mask `spot_not_small_against_h` of
 [validity](model.md#four-answers) asks for b(0) ≤ 0.1 h. Where the spots cover a hundredth of the area or more that is
-stricter than need be. Sparse spots are different: a stiff layer bends between them. With b = 0.1 h on a bonded layer,
-to the first order, which is too large where it is large, δA/A is
+stricter than need be. Sparse spots are different: a stiff layer bends between them, and the
+mask `pitch_not_small_against_h` asks for a pitch ≤ 2 h. With b = 0.1 h on a bonded layer, to the first order, which is
+too large where it is large, δA/A is
 
 {sparse}
 

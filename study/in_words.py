@@ -5,7 +5,16 @@ import xarray as xr
 
 from solver import Status
 
-from .data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
+from .data.derived import (
+    COMPRESSED,
+    FEW_SPOTS,
+    MERGING,
+    NOT_THIN,
+    PITCH_OVER_LAYER,
+    SPOT_OVER_LAYER,
+    STEEP,
+    STEEP_SPOT,
+)
 from .data.flags import broken, decode
 from .physical.bodies import BODIES
 from .physical.inputs import is_rigid, used_inputs
@@ -43,6 +52,8 @@ BROKEN = {
     f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
     "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most "
     "materials yield before that, and pmax is larger than any real pressure.",
+    "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "
+    f"{PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
 }
 
 

@@ -36,6 +36,7 @@ WORDS = {  # of the legend, by the masks of `validity`
     16: r"spots merge, $\lambda(0) > 0.4$",
     32: r"$a > 0.2\,R$ or strain $> 0.1$",
     64: r"spots steep, $b > 0.5\,R_a$",
+    128: r"asperities far apart, pitch $> 2\,h$",
 }
 NOTED = WORDS | {1: WORDS[1] + r" in $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$"}  # above the axes
 

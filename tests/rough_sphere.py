@@ -1,14 +1,31 @@
 """A rough sphere with every asperity resolved: the contact of both scales at once, by conjugate gradients."""
 
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from conjugate_gradients import pressed
-from scipy import fft
+from influence import Layer, coefficients, convolution
+
+#: Yastrebov, Anciaux and Molinari, Tribology International 114 (2017) 161: a contact of elements is too large by this
+#: times its edge along the elements, times their side, if they lie on the contact's edge at random.
+OUTSIDE = (np.pi - 1 + np.log(2)) / 24
+
+
+class Punch(NamedTuple):
+    """The sphere r²/2 with paraboloids of radius Ra on a square lattice, one in the middle; R = 1.
+
+    heights : of the summits (cells, cells) above their mean plane, cells odd; None: all of one height
+    """
+
+    pitch: float
+    Ra: float
+    heights: np.ndarray | None = None
 
 
 class Resolved(NamedTuple):
-    """Depth D, pressure (n, n) at the middles of the elements, their positions (n,) and their side; R = E = 1."""
+    """Depth D of the mean plane of the summits, pressure (n, n) at the middles of the elements, their positions (n,)
+    and their side; R = E2* = 1."""
 
     D: float
     p: np.ndarray
@@ -16,37 +33,49 @@ class Resolved(NamedTuple):
     side: float
 
 
-def resolved(pitch, Ra, P, half, points, start=None, tolerance=1e-5) -> Resolved:
-    """The sphere r²/2 with paraboloids of radius Ra on a square lattice, pressed on a half-space by P.
+def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=None, tolerance=1e-5) -> Resolved:
+    """The punch pressed by P on a half-space, or on a layer on one.
 
-    Square elements of constant pressure (Johnson 1985, 3.25) over a square of 2 `half`, `points` a side, not periodic:
-    the kernel is padded to twice the size. tests/conjugate_gradients.py solves it, from the pressure `start`.
+    Square elements of constant pressure over a square of 2 `half`, `points` a side, not periodic; of summits of one
+    height a quarter of them. tests/conjugate_gradients.py solves it, from the pressure `start` (points, points).
     """
     side = 2 * half / points
     middle = (np.arange(points) + 0.5) * side - half
-    x, y = np.meshgrid(middle, middle, indexing="ij")
-    beside = [v - np.round(v / pitch) * pitch for v in (x, y)]
-    height = (x**2 + y**2) / 2 + (beside[0] ** 2 + beside[1] ** 2) / (2 * Ra)
-
-    def corner(x, y):
-        return x * np.arcsinh(y / np.abs(x)) + y * np.arcsinh(x / np.abs(y))
-
-    far = np.meshgrid(*2 * [np.arange(-points, points) * side], indexing="ij")
-    right, top, left, bottom = far[0] + side / 2, far[1] + side / 2, far[0] - side / 2, far[1] - side / 2
-    kernel = corner(right, top) - corner(left, top) - corner(right, bottom) + corner(left, bottom)
-    kernel = fft.rfft2(fft.ifftshift(kernel / np.pi))
-
-    def displaced(p):
-        return fft.irfft2(kernel * fft.rfft2(p, s=(2 * points, 2 * points)))[:points, :points]
-
-    if start is None:
-        start = np.where(np.hypot(x, y) < 0.8 * half, 1.0, 0.0)
-    D, p = pressed(displaced, height, start, P / (2 * half) ** 2, tolerance)
+    even = punch.heights is None
+    own = slice(points // 2, None) if even else slice(None)
+    displaced = convolution(coefficients(side, points, layer), even)
+    x, y = np.meshgrid(middle[own], middle[own], indexing="ij")
+    start = np.where(np.hypot(x, y) < 0.8 * half, 1.0, 0.0) if start is None else start[own, own]
+    D, p = pressed(displaced, height(punch, x, y), start, P / (2 * half) ** 2, tolerance)
+    if even:
+        p = np.pad(p, [(points // 2, 0)] * 2, mode="symmetric")
     return Resolved(D, p, middle, side)
 
 
+def height(punch: Punch, x, y) -> np.ndarray:
+    """Height of the punch over the mean plane of its summits where that is lowest."""
+    macro = (x**2 + y**2) / 2
+    if punch.heights is None:
+        near = [v - np.round(v / punch.pitch) * punch.pitch for v in (x, y)]
+        return macro + (near[0] ** 2 + near[1] ** 2) / (2 * punch.Ra)
+    summits = np.pad(punch.heights, 1, constant_values=-np.inf)  # there is none beside the lattice
+    return macro + asperities(x, y, punch.pitch, punch.Ra, summits)
+
+
+def asperities(x, y, pitch, Ra, summits) -> np.ndarray:
+    """Height over their mean plane of the lowest of the paraboloids nearby; `summits` (n, n) has the one above x = y =
+    0 in its middle, and one more on each side than there are cells below."""
+    near, middle = [np.round(v / pitch).astype(int) for v in (x, y)], len(summits) // 2
+
+    def one(i, j):
+        apart = (x - i * pitch) ** 2 + (y - j * pitch) ** 2
+        return apart / (2 * Ra) - summits[i + middle, j + middle]
+
+    return np.min([one(near[0] + i, near[1] + j) for i, j in product((-1, 0, 1), repeat=2)], axis=0)
+
+
 def cell_means(found: Resolved, pitch) -> tuple[np.ndarray, np.ndarray]:
-    """Distance from the middle, and mean pressure, of each cell of the lattice that is touched; ascending distance."""
+    """Distance from the middle, and mean pressure, of each cell of the lattice; ascending distance."""
     which = np.round(found.middle / pitch).astype(int)
     which -= which.min()
     count = which.max() + 1
@@ -54,9 +83,15 @@ def cell_means(found: Resolved, pitch) -> tuple[np.ndarray, np.ndarray]:
     load = np.bincount(place, found.p.ravel(), count**2) * found.side**2 / pitch**2
     at = (np.arange(count) - (count - 1) / 2) * pitch
     r = np.hypot(at[:, None], at[None, :]).ravel()
-    touched = load > 0
-    order = np.argsort(r[touched])
-    return r[touched][order], load[touched][order]
+    order = np.argsort(r, kind="stable")
+    return r[order], load[order]
+
+
+def real_area(found: Resolved) -> float:
+    """Area of the elements with pressure, less what they stand out over the edge of the contact."""
+    touched = found.p > 0
+    edge = sum(np.count_nonzero(np.diff(touched, axis=axis)) for axis in (0, 1))
+    return (np.count_nonzero(touched) - OUTSIDE * edge) * found.side**2
 
 
 def width(r, p, area) -> float:

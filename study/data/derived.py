@@ -19,6 +19,9 @@ FEW_SPOTS = 100.0
 """The model spreads the asperities evenly: with fewer spots than this in the nominal area, N̄πa², they are not many."""
 SPOT_OVER_LAYER = 0.1
 """The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
+PITCH_OVER_LAYER = 2.0
+"""Largest pitch 1/sqrt(N̄) over h: the layer then bends between the asperities. On a cell twice as wide as the layer is
+thick A errs by up to 2.4 %, on one three times as wide by 11 % (`make validate`, docs/validate.md)."""
 NOT_THIN = 0.1
 """Largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %."""
 MERGING = 0.4
@@ -43,6 +46,7 @@ ASSUMPTIONS = {
     16: "spots_merging",
     32: "strain_not_small",
     64: "asperity_strain_not_small",
+    128: "pitch_not_small_against_h",
 }
 
 
@@ -51,8 +55,9 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
     1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
     8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING, but on a lattice; 32
-    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra. A case without numbers (see `status`)
-    only gets the masks that need none. int32 over the dimensions of `status`.
+    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra; 128 1/sqrt(N̄) > PITCH_OVER_LAYER h on
+    a layer of any kind. A case without numbers (see `status`) only gets the masks that need none. int32 over the
+    dimensions of `status`.
     """
     found = validity_of(dataset.variables)
     flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
@@ -77,6 +82,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         16: rough & _smears(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
         64: rough & (_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")),
+        128: layered & rough & (_given(v, "Nbar") * (PITCH_OVER_LAYER * h) ** 2 < 1),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
     return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())

@@ -4,7 +4,16 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data.derived import COMPRESSED, FEW_SPOTS, MERGING, NOT_THIN, SPOT_OVER_LAYER, STEEP, STEEP_SPOT
+from ..data.derived import (
+    COMPRESSED,
+    FEW_SPOTS,
+    MERGING,
+    NOT_THIN,
+    PITCH_OVER_LAYER,
+    SPOT_OVER_LAYER,
+    STEEP,
+    STEEP_SPOT,
+)
 from ..data.flags import broken
 
 ASSUMPTION_TEXT = {
@@ -15,10 +24,11 @@ ASSUMPTION_TEXT = {
     "spots_merging": rf"spots merge, $\lambda(0) > {MERGING:g}$",
     "strain_not_small": rf"$a > {STEEP:g}\,R$ or strain $> {COMPRESSED:g}$",
     "asperity_strain_not_small": rf"spots steep, $b > {STEEP_SPOT:g}\,R_a$",
+    "pitch_not_small_against_h": rf"asperities far apart, pitch $> {PITCH_OVER_LAYER:g}\,h$",
 }
 OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
 """What a note above the axes adds to the text of an assumption; a legend has no room for it."""
-GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78")
+GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78", "0.71")
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:

@@ -71,6 +71,7 @@ def test_the_masks_and_thresholds_are_those_of_the_code():
         "COMPRESSED",
         "COMPRESSED",
         "STEEP_SPOT",
+        "PITCH_OVER_LAYER",
     )
     assert [float(value) for value in thresholds] == [getattr(derived, name) for name in constants]
 

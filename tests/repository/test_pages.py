@@ -9,6 +9,7 @@ import pytest
 from benchmark_page import PAGE
 from conftest import ROOT
 from test_repository import TARGETS
+from validate_page import PAGE as RESOLVED
 
 import solver
 import study
@@ -34,6 +35,11 @@ def test_the_page_of_speeds_is_that_of_its_command():
     """Its text stands in the benchmark, so that `make speed` loses nothing."""
     pieces = re.split(r"\{.*?\}", PAGE)
     assert len(pieces) > 10 and [piece for piece in pieces if piece not in TEXT["docs/speed.md"]] == []
+
+
+def test_the_page_of_resolved_spheres_is_that_of_its_command():
+    pieces = [piece.replace("{{", "{").replace("}}", "}") for piece in re.split(r"(?<!\{)\{[A-Za-z][^{}]*\}", RESOLVED)]
+    assert len(pieces) > 20 and [piece for piece in pieces if piece not in TEXT["docs/validate.md"]] == []
 
 
 @pytest.mark.parametrize("page", pages.PAGES)

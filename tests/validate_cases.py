@@ -1,0 +1,148 @@
+"""The contacts of `make validate` whose asperities have one height: resolved, predicted by two scales, and compared."""
+
+import hashlib
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from influence import Layer
+from rough_sphere import Punch, Resolved, cell_means, real_area, resolved, width
+
+import study
+
+RA = 0.004
+LAWS = ("power_law", "disc_cell", "square_lattice")
+#: What is compared, and its name in the results of the two scales.
+QUANTITIES = {"D": "D", "a": "width", "p_max": "p_max", "Ar_An": "area"}
+#: Change of the pressure in the last step of the conjugate gradients, over it.
+TOLERANCE = 1e-6
+
+
+class Case(NamedTuple):
+    """A sphere under the load P with asperities of RA at this pitch; R = E2* = 1. Cells a side, an odd number, and
+    elements a side on each mesh, each twice as many. They are no multiple of the cells: so each spot lies differently
+    on the elements, and what the edges of the spots err in the area differs too."""
+
+    name: str
+    P: float
+    pitch: float
+    cells: int
+    points: tuple[int, ...]
+    layer: Layer | None = None
+
+
+HALF_SPACE = (
+    Case("a half-space, few spots", 2e-5, 0.0054, 13, (318, 636, 1272)),
+    Case("a half-space", 2e-5, 0.0027, 25, (410, 820, 1640)),
+    Case("a half-space, many spots", 2e-5, 0.00135, 51, (644, 1288)),
+)
+LAYERED = (
+    Case("the paper's layer", 2.704e-5, 0.002, 41, (344, 688, 1376), Layer(0.02, 0.5)),
+    Case("a soft bonded film", 2e-5, 0.003, 27, (336, 672, 1344), Layer(0.006, 0.2, bonded=True)),
+    Case("a hard bonded coating", 4e-5, 0.002, 29, (360, 720, 1440), Layer(0.015, 4.0, bonded=True)),
+)
+THINNER = tuple(
+    Case(f"h = {h:g}", 2e-5, 0.0054, 15, (366, 732), Layer(h, 0.5)) for h in (0.016, 0.008, 0.004, 0.002, 0.001)
+)
+
+
+def kept(folder: Path, key: tuple, solve) -> dict[str, np.ndarray]:
+    """The arrays that `solve` returns, from the folder, where they are if a run before this one had the same key."""
+    name = hashlib.sha256(repr(key).encode()).hexdigest()[:16]
+    path = folder / f"{name}.npz"
+    if not path.exists():
+        folder.mkdir(parents=True, exist_ok=True)
+        part = path.with_suffix(".part.npz")
+        np.savez_compressed(part, **solve())
+        part.replace(path)
+        print(path, *key, flush=True)
+    with np.load(path) as data:
+        return dict(data)
+
+
+def solved(case: Case, folder: Path) -> list[Resolved]:
+    """The contact on each of its meshes, from the folder or solved now; each begins with the one before."""
+    found, start = [], None
+    for points in case.points:
+
+        def solve(points=points, start=start):
+            half = case.cells * case.pitch / 2
+            one = resolved(Punch(case.pitch, RA), case.P, half, points, case.layer, start, TOLERANCE)
+            return one._asdict()
+
+        data = kept(folder, ("sphere", RA, case._replace(name="", points=()), points), solve)
+        found.append(Resolved(float(data["D"]), data["p"], data["middle"], float(data["side"])))
+        start = np.kron(found[-1].p, np.ones((2, 2)))
+    return found
+
+
+def given(layer: Layer | None) -> dict:
+    """The layer in the words of the two scales, with every base that is claimed for it."""
+    if layer is None:
+        return {"base": ["half_space"]}
+    words = {"bonding": "bonded" if layer.bonded else "frictionless", "base": ["layered", "thin_layer"]}
+    return {"h": layer.h, "n": layer.n, "nu1": layer.nu1, "nu2": layer.nu2} | words
+
+
+def predicted(case: Case) -> xr.Dataset:
+    """The two scales, over the bases and the laws, in the quantities of `measured`."""
+    asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 801, "rtol": 1e-6}
+    found = study.solve(**asked, **given(case.layer), micro=list(LAWS)).load().transpose("base", "micro", "x")
+    x, p = found["x"].values, found["p"].values
+    scaled = [[width(x, one, x) for one in some] for some in p]
+    found["width"] = ("base", "micro"), scaled * found["a"].values
+    found["area"] = found["Ar_An"] * np.pi * found["a"] ** 2
+    return found
+
+
+def measured(found: Resolved) -> dict[str, float]:
+    """The QUANTITIES of one mesh; the area in R². p_max is of the central spot, whose summit is a corner of elements on
+    every mesh; elsewhere the largest comes nearer to a summit on one mesh than on the next."""
+    middle = len(found.p) // 2
+    r = np.hypot(found.middle[:, None], found.middle[None, :])
+    return {"D": found.D, "a": width(r, found.p, 1.0), "p_max": found.p[middle, middle], "Ar_An": real_area(found)}
+
+
+def richardson(coarse: float, fine: float, order: int) -> float:
+    """The limit of values on meshes each twice as fine, if the error is of this order."""
+    return fine + (fine - coarse) / (2**order - 1)
+
+
+def compared(case: Case, folder: Path) -> xr.Dataset:
+    """All that is shown of a case: errors over (base, law), the means of the cells, and the nominal pressures."""
+    meshes, two = solved(case, folder), predicted(case)
+    coarse, fine = (measured(mesh) for mesh in meshes[-2:])
+    finest = {name: richardson(coarse[name], fine[name], 1 if name == "Ar_An" else 2) for name in QUANTITIES}
+    r, mean = cell_means(meshes[-1], case.pitch)
+    r, mean = r[mean > 0], mean[mean > 0]
+    dims = ("base", "law")
+    best = two.isel(base=0).sel(micro="square_lattice")
+    data = {f"{name}_resolved": finest[name] for name in QUANTITIES}
+    data |= {f"{name}_uncertain": abs(finest[name] / fine[name] - 1) / 2 for name in QUANTITIES}
+    data |= {f"{name}_error": (dims, two[own].values / finest[name] - 1) for name, own in QUANTITIES.items()}
+    data |= {"a0": float(best["a"]), "lam0": float(best["lam0"]), "p0": float(best["p0"])}
+    data |= {"pitch": case.pitch, "h": case.layer.h if case.layer else np.inf}
+    data |= {"thin_error": two["model_error"].values[-1, -1], "cell_error": (dims, cell_errors(r, mean, two, case))}
+    data |= {"r": ("cell", r), "mean": ("cell", mean)}
+    shown = two.isel(x=slice(None, None, 8))
+    data["profile_r"] = (*dims, "x"), shown["a"].values[..., None] * shown["x"].values
+    data["profile"] = (*dims, "x"), shown["p"].values
+    return xr.Dataset(data, {"base": two["base"].values, "law": list(LAWS), "cell": np.arange(len(r))})
+
+
+def cell_errors(r, mean, two: xr.Dataset, case: Case) -> np.ndarray:
+    """Largest difference of a cell's mean from p(r), over p(0), of each base and law, a pitch inside the contact."""
+    errors = np.full(two["a"].shape, np.nan)
+    for place, a in np.ndenumerate(two["a"].values):
+        inside = r < a - case.pitch  # none where the base is not claimed, and a is NaN
+        if inside.any():
+            p = two["p"].values[place]
+            errors[place] = np.abs(np.interp(r[inside], two["x"].values * a, p) - mean[inside]).max() / p[0]
+    return errors
+
+
+def together(cases: tuple[Case, ...], folder: Path) -> xr.Dataset:
+    """`compared` of all cases, along a dimension of their names."""
+    found = xr.concat([compared(case, folder) for case in cases], "case", join="outer")
+    return found.assign_coords(case=[case.name for case in cases])

@@ -1,0 +1,174 @@
+"""The contacts of `make validate` whose asperities have random heights: draws of a sphere, and of periodic cells.
+
+Both have their summits on a square lattice. Cells are in units E = Ra = pitch = 1. Depths count from the mean plane of
+all summits that could be drawn, which the micro laws have c σ deeper than the touch of the highest.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+from conjugate_gradients import pressed
+from rough_sphere import OUTSIDE, Punch, asperities, cell_means, real_area, resolved, width
+from scipy import fft
+from scipy.special import ndtr, ndtri
+from validate_cases import RA, TOLERANCE, kept, richardson
+
+import study
+from solver.laws import LAWS
+from solver.laws.heights import UNIFORM
+
+CUT = 4.0
+#: How many draws of a sphere, and of a periodic cell: their means are then known to a third of the scatter of a sphere.
+DRAWS, CELLS_DRAWN = 8, 8
+#: Orders of the errors of depth, width, area and largest pressure in the side of an element.
+ORDERS = np.array([2, 2, 1, 2])
+#: Rings of cells within the contact of the law.
+RINGS = 8
+#: Summits a side of a periodic cell, elements a side, no multiple of them, and the nominal pressures in E pitch/Ra.
+SUMMITS, MESHES, PRESSURES = 15, (124, 248), (0.01, 0.03, 0.1, 0.3)
+#: σ over A* = 1/(π N̄ Ra), by which equal asperities give way at full contact three times.
+SPREADS = (0.0, 0.1, 0.3)
+ONES = {"Nbar": 1.0, "Ra": 1.0}
+
+
+class Sphere(NamedTuple):
+    """A sphere on a half-space under the load P; σ = spread A*. Cells a side, an odd number, and elements a side of a
+    cell on each mesh."""
+
+    name: str
+    micro: str
+    spread: float
+    cells: int
+    P: float = 2e-5
+    pitch: float = 0.0027
+    counts: tuple[int, ...] = (8, 16)
+
+    @property
+    def sigma(self) -> float:
+        """Standard deviation of the heights."""
+        return self.spread * self.pitch**2 / (np.pi * RA)
+
+
+SPHERES = (
+    Sphere("normal, σ = 0.05 A*", "normal_heights", 0.05, 27),
+    Sphere("normal, σ = 0.2 A*", "normal_heights", 0.2, 33),
+    Sphere("uniform, σ = 0.2 A*", "uniform_heights", 0.2, 29),
+)
+
+
+def drawn(micro: str, sigma: float, count: int, seed: list[int]) -> np.ndarray:
+    """Heights (count, count) of summits above the mean, as the law has them."""
+    share = np.random.default_rng(seed).uniform(size=(count, count))
+    if micro == "uniform_heights":
+        return sigma * UNIFORM * (2 * share - 1)
+    return sigma * ndtri(ndtr(-CUT) + share * (ndtr(CUT) - ndtr(-CUT)))
+
+
+def highest(micro: str, sigma: float) -> float:
+    """The height of the highest summit of the law above the mean plane, c σ."""
+    return sigma * (UNIFORM if micro == "uniform_heights" else CUT)
+
+
+def sphere(case: Sphere, draw: int) -> dict[str, np.ndarray]:
+    """One draw: depth, width, area and largest pressure on each mesh, and means of the cells on the finest one."""
+    punch = Punch(case.pitch, RA, drawn(case.micro, case.sigma, case.cells, [1, draw]))
+    rows, start = [], None
+    for count in case.counts:
+        half, points = case.cells * case.pitch / 2, case.cells * count
+        one = resolved(punch, case.P, half, points, start=start, tolerance=TOLERANCE)
+        across = np.hypot(one.middle[:, None], one.middle[None, :])
+        rows.append([one.D, width(across, one.p, 1.0), real_area(one), one.p.max()])
+        start = np.kron(one.p, np.ones((2, 2)))
+    r, mean = cell_means(one, case.pitch)
+    return {"meshes": np.array(rows), "r": r, "mean": mean}
+
+
+def finer(folder: Path) -> np.ndarray:
+    """What elements half as large change of depth, width, area and largest pressure (4,), over them, in one draw."""
+    case = SPHERES[0]._replace(counts=(*SPHERES[0].counts, 2 * SPHERES[0].counts[-1]))
+    meshes = kept(folder, ("heights", RA, CUT, case[1:], 0), lambda: sphere(case, 0))["meshes"]
+    return richardson(meshes[1], meshes[2], ORDERS) / richardson(meshes[0], meshes[1], ORDERS) - 1
+
+
+def draws(case: Sphere, folder: Path) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Depth, width, area and largest pressure (draw, 4), extrapolated; r (cell,), and means of cells (draw, cell)."""
+    found = [
+        kept(folder, ("heights", RA, CUT, case[1:], one), lambda one=one: sphere(case, one)) for one in range(DRAWS)
+    ]
+    values = [richardson(*one["meshes"][-2:], ORDERS) for one in found]
+    return np.array(values), found[0]["r"], np.array([one["mean"] for one in found])
+
+
+def rings(r, mean, a) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Mean r, mean and its standard error (RINGS,), of the cells (draw, cell) in rings of equally many within a."""
+    inside = r < a
+    ring = np.arange(np.count_nonzero(inside)) * RINGS // np.count_nonzero(inside)  # r ascends
+    count = np.bincount(ring)
+    own = np.array([np.bincount(ring, one[inside]) / count for one in mean])
+    return np.bincount(ring, r[inside]) / count, own.mean(axis=0), own.std(axis=0, ddof=1) / np.sqrt(len(own))
+
+
+def compared(case: Sphere, folder: Path) -> xr.Dataset:
+    """All that is shown of a sphere: over the laws, that of its heights, and those of one height at their mean."""
+    values, r, mean = draws(case, folder)
+    laws = [case.micro, "disc_cell"]
+    asked = {"P": case.P, "base": "half_space", "Nbar": case.pitch**-2, "Ra": RA, "x": 401, "rtol": 1e-5}
+    own = {"sigma": case.sigma} | ({"cut": CUT} if case.micro == "normal_heights" else {})
+    two = [study.solve(**asked, micro=law, **(own if law == case.micro else {})).load() for law in laws]
+    x = two[0]["x"].values
+    depth = [float(two[0]["D"]) - highest(case.micro, case.sigma), float(two[1]["D"])]
+    wide = [width(x, one["p"].values, x) * float(one["a"]) for one in two]
+    area = [float(one["Ar_An"] * np.pi * one["a"] ** 2) for one in two]
+    guesses = np.array([depth, wide, area, [float(one["p_max"]) for one in two]]).T
+    exact, scatter = values.mean(axis=0), values.std(axis=0, ddof=1)
+    data = {"error": (("law", "quantity"), guesses / exact - 1), "scatter": ("quantity", scatter / exact)}
+    data |= {"resolved": ("quantity", exact), "spots": float((mean > 0).sum(axis=1).mean())}
+    data |= {"sigma": case.sigma, "pitch": case.pitch, "p0": float(two[0]["p0"]), "a0": float(two[0]["a"])}
+    data |= dict(zip(("r", "mean", "unsure"), (("ring", one) for one in rings(r, mean, data["a0"])), strict=True))
+    at = [np.interp(r, x * float(one["a"]), one["p"].values, right=0.0) for one in two]
+    data["law_mean"] = ("law", "ring"), [rings(r, np.stack([one, one]), data["a0"])[1] for one in at]
+    names = {"law": ["heights", "one height"], "quantity": ["D", "a", "Ar_An", "p_max"]}
+    return xr.Dataset(data, names)
+
+
+def cell(spread: float, p: float, draw: int, meshes: tuple[int, ...] = MESHES) -> dict[str, np.ndarray]:
+    """A of the mean plane and λ of one periodic cell of normal heights on each mesh (mesh, 2)."""
+    heights, rows, start = drawn("normal_heights", spread / np.pi, SUMMITS, [2, draw]), [], None
+    around = np.pad(heights, 1, mode="wrap")
+    for points in meshes:
+        side = SUMMITS / points
+        waves = 2 * np.pi / side * np.hypot(fft.fftfreq(points)[:, None], fft.rfftfreq(points))
+        waves[0, 0] = np.inf  # the mean displacement is dropped
+
+        def displaced(pressure, waves=waves):
+            return fft.irfft2(2 / waves * fft.rfft2(pressure))
+
+        at = (np.arange(points) + 0.5) * side - SUMMITS / 2
+        shape = asperities(*np.meshgrid(at, at, indexing="ij"), 1.0, 1.0, around)
+        A, pressure = pressed(displaced, shape, np.ones_like(shape) if start is None else start, p, TOLERANCE)
+        touched = pressure > 0
+        edge = sum(np.count_nonzero(touched != np.roll(touched, 1, axis)) for axis in (0, 1))
+        rows.append([A, (np.count_nonzero(touched) - OUTSIDE * edge) / points**2])
+        start = np.kron(pressure, np.ones((2, 2)))
+    return {"meshes": np.array(rows)}
+
+
+def cells(folder: Path) -> xr.Dataset:
+    """A of the mean plane over A*, and λ, of periodic cells and of the law, over (spread, p, draw)."""
+    shape = (len(SPREADS), len(PRESSURES), CELLS_DRAWN)
+    found = np.empty((*shape, 2))
+    for i, spread in enumerate(SPREADS):
+        for j, p in enumerate(PRESSURES):
+            for k in range(CELLS_DRAWN):
+                draw = k if spread else 0
+                key = ("cell", CUT, SUMMITS, MESHES, spread, p, draw)
+                one = kept(folder, key, lambda spread=spread, p=p, draw=draw: cell(spread, p, draw))
+                found[i, j, k] = richardson(*one["meshes"][-2:], np.array([2, 1]))
+    dims, where = ("spread", "p", "draw"), {"spread": list(SPREADS), "p": list(PRESSURES)}
+    laws = [LAWS["normal_heights"].at(np.array(PRESSURES), 1.0, **ONES, sigma=s / np.pi, cut=CUT) for s in SPREADS]
+    data = {"A": (dims, np.pi * found[..., 0]), "lam": (dims, found[..., 1])}
+    data["law_A"] = dims[:2], [np.pi * one.A - CUT * s for s, one in zip(SPREADS, laws, strict=True)]
+    data["law_lam"] = dims[:2], [one.lam for one in laws]
+    return xr.Dataset(data, where)

@@ -148,6 +148,12 @@ def test_digest_is_of_the_numbers(tmp_path):
     assert digest not in found
 
 
+def test_the_order_of_axes_is_in_the_digest(tmp_path):
+    """Of a study whose other values are the same for all cases too: its results have their dimensions in this order."""
+    model, P, n = "[model]\nmicro = 'smooth'\nh = 0.1\n[axes]\n", "P = [1e-5, 2e-5]\n", "n = [0.5, 0.6]\n"
+    assert read(tmp_path, model + P + n).digest != read(tmp_path, model + n + P).digest
+
+
 def test_digest_changes_with_the_numerics(tmp_path, monkeypatch):
     digest = read(tmp_path, GOOD).digest
     monkeypatch.setattr(identity, "NUMERICS_VERSION", "other")

@@ -21,12 +21,12 @@ def test_shading_names_the_assumption_and_its_curves():
     axes = Figure().subplots()
     attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
     first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first * 0})
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first.copy(data=[0] * 3)})
     assert axes.get_legend_handles_labels()[1] == [f"not valid: {WORDS[1]} (1)", f"not valid: {WORDS[2]} (1)"]
     assert axes.get_title("left") == ""
     bands_so_far = len(axes.patches)
-    everywhere = (first * 0 + 1).assign_attrs(attributes)
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": everywhere, "4": first * 0, "5": everywhere * 2 + 1})
+    nowhere, one, two = (first.copy(data=[mask] * 3) for mask in (0, 1, 3))
+    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": one, "4": nowhere, "5": two})
     assert axes.get_title("left") == f"3, 5: {NOTED[1]}\n5: {NOTED[2]}"
     assert len(axes.get_legend_handles_labels()[1]) == 2
     assert len(axes.patches) == bands_so_far

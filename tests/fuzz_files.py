@@ -145,13 +145,19 @@ def flip_block(example: Example, chance: random.Random, seen: Counter) -> None:
     seen["block"] += 1
 
 
-def apart(flip, example: Example, chance: random.Random, seen: Counter, said: Path) -> str:
+def apart(flip, example: Example, seed: float, seen: Counter, said: Path, slow: bool = False) -> str:
     """Do it in a process of its own; returns the fault or "". HDF5's memory suffers from damaged files: after some
-    hundred of them in one process it ends the interpreter."""
+    hundred of them in one process it ends the interpreter.
+
+    slow : look into damaged files in a further process, as roughcoat does; else most are looked into by this one, and
+        those that end it are done again in the slow way.
+    """
+    chance = random.Random(seed)
+    slow = chance.random() <= THE_SLOW_WAY or slow
     child = os.fork()
     if not child:
         counts, fault = Counter(), ""
-        if chance.random() > THE_SLOW_WAY:  # this process may end as well as another
+        if not slow:
             looked_at.examined_in_child = lambda path, columns, _: looked_at.examined(path, columns)
         try:
             flip(example, chance, counts)
@@ -160,6 +166,8 @@ def apart(flip, example: Example, chance: random.Random, seen: Counter, said: Pa
         said.write_text(json.dumps([counts, fault]), encoding="utf-8")
         os._exit(0)
     _, ending = os.waitpid(child, 0)
+    if ending and not slow:
+        return apart(flip, example, seed, seen, said, slow=True)
     if ending:
         return f"the process ended by signal {ending}"
     counts, fault = json.loads(said.read_text(encoding="utf-8"))
@@ -177,7 +185,7 @@ def main(flips: int, seed: int) -> int:
             example, seen = Example(kind, folder), Counter()
             for number in range(flips // len(STUDIES)):
                 flip = flip_block if example.blocks and number % 4 == 3 else flip_results
-                fault = apart(flip, example, random.Random(chance.random()), seen, Path(name) / "said")
+                fault = apart(flip, example, chance.random(), seen, Path(name) / "said")
                 if fault:
                     faults.append(f"{kind}, flip {number}: {fault}")
             print(f"{kind}: {dict(seen)}", flush=True)

@@ -117,7 +117,7 @@ def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]
     for suffix, dated in ((".png", {}), (".pdf", {"CreationDate": None})):
         with style():
             figure.savefig(stem.with_suffix(suffix), metadata={"Title": title} | dated)
-            figure.set_layout_engine(None)  # the next keeps the layout: to find it takes half the time of a large map
+            figure.set_layout_engine(None)  # the second keeps the layout, which takes long to find for many axes
     return [stem.with_suffix(f".{kind}") for kind in FIGURE]
 
 

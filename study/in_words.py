@@ -5,16 +5,7 @@ import xarray as xr
 
 from solver import Status
 
-from .data.derived import (
-    COMPRESSED,
-    FEW_SPOTS,
-    MERGING,
-    NOT_THIN,
-    PITCH_OVER_LAYER,
-    SPOT_OVER_LAYER,
-    STEEP,
-    STEEP_SPOT,
-)
+from .data import derived
 from .data.flags import broken, decode
 from .physical.bodies import BODIES
 from .physical.inputs import is_rigid, used_inputs
@@ -38,22 +29,22 @@ MODELS = {
     "smooth_layered": "the exact layered half-space, without asperities",
 }
 BROKEN = {
-    "layer_not_thin": f"The layer is not thin: the thin-layer equation errs by more than {NOT_THIN:.0%} here. Take "
-    'base = "layered".',
-    "few_spots": f"Fewer than {FEW_SPOTS:.0f} asperities are in the contact: the model, which spreads them evenly, "
-    "describes an average over many contacts.",
-    "spot_not_small_against_h": f"The contact spots are not small against the layer (b > {SPOT_OVER_LAYER:g} h): they "
-    "feel the body below, and the asperities' part is only roughly right.",
+    "layer_not_thin": f"The layer is not thin: the thin-layer equation errs by more than {derived.NOT_THIN:.0%} here. "
+    'Take base = "layered".',
+    "few_spots": f"Fewer than {derived.FEW_SPOTS:.0f} asperities are in the contact: the model, which spreads them "
+    "evenly, describes an average over many contacts.",
+    "spot_not_small_against_h": f"The contact spots are not small against the layer (b > {derived.SPOT_OVER_LAYER:g} "
+    "h): they feel the body below, and the asperities' part is only roughly right.",
     "n_not_below_one": "The layer is not softer than the body (n >= 1), which the paper's thin layer assumes. Take "
     'base = "layered".',
-    "spots_merging": f"The contact spots merge (λ(0) > {MERGING:g}): the disc cell overestimates what the asperities "
-    "yield by 10 % or more.",
-    "strain_not_small": f"The strain is not small (a > {STEEP:g} R, or the layer gives way by more than "
-    f"{COMPRESSED:.0%}): linear elasticity is only roughly right.",
-    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {STEEP_SPOT:g} Ra): most "
+    "spots_merging": f"The contact spots merge (λ(0) > {derived.MERGING:g}): the disc cell overestimates what the "
+    "asperities yield by 10 % or more.",
+    "strain_not_small": f"The strain is not small (a > {derived.STEEP:g} R, or the layer gives way by more than "
+    f"{derived.COMPRESSED:.0%}): linear elasticity is only roughly right.",
+    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {derived.STEEP_SPOT:g} Ra): most "
     "materials yield before that, and pmax is larger than any real pressure.",
     "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "
-    f"{PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
+    f"{derived.PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
 }
 
 

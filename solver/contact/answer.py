@@ -16,8 +16,7 @@ _SURE = 0.1
 #: A gap higher than this times a²/2, and tension of more than this part of the load, are no rounding.
 _GAP, _TENSION = 1e-9, 1e-9
 #: A case is stuck where its error is above this part of that on the mesh before, on a mesh of so many nodes or more,
-#: and above this times rtol. Of 1200 random coatings 67 were still above rtol on 96 nodes; 48 were stuck by this rule,
-#: 2 of them wrongly.
+#: and above this times rtol: two meshes of the ladder are left, and halving it on each is far from a hundredth.
 _FALLS, _LATE, _FAR = 0.5, 48, 100.0
 #: Where the error does not fall, and is below this times that of the operator, it is what the operator leaves.
 _NOISE = 30.0

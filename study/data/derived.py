@@ -20,8 +20,8 @@ FEW_SPOTS = 100.0
 SPOT_OVER_LAYER = 0.1
 """The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0
-"""Largest pitch 1/sqrt(N̄) over h: the layer then bends between the asperities. On a cell twice as wide as the layer is
-thick A errs by up to 2.4 %, on one three times as wide by 11 % (`make validate`, docs/validate.md)."""
+"""A layer bends between asperities whose pitch 1/sqrt(N̄) is larger than this times h. A[p] then errs: by up to 2.4 %
+where the pitch is 2 h, by up to 11 % where it is 3 h (`make validate`, docs/validate.md)."""
 NOT_THIN = 0.1
 """Largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %."""
 MERGING = 0.4

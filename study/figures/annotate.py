@@ -4,27 +4,18 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data.derived import (
-    COMPRESSED,
-    FEW_SPOTS,
-    MERGING,
-    NOT_THIN,
-    PITCH_OVER_LAYER,
-    SPOT_OVER_LAYER,
-    STEEP,
-    STEEP_SPOT,
-)
+from ..data import derived
 from ..data.flags import broken
 
 ASSUMPTION_TEXT = {
-    "layer_not_thin": f"layer not thin, error > {NOT_THIN * 100:g} %",
-    "few_spots": f"fewer than {FEW_SPOTS:g} spots",
-    "spot_not_small_against_h": rf"spots not small, $b > {SPOT_OVER_LAYER:g}\,h$",
+    "layer_not_thin": f"layer not thin, error > {derived.NOT_THIN * 100:g} %",
+    "few_spots": f"fewer than {derived.FEW_SPOTS:g} spots",
+    "spot_not_small_against_h": rf"spots not small, $b > {derived.SPOT_OVER_LAYER:g}\,h$",
     "n_not_below_one": r"layer not soft, $n \geq 1$",
-    "spots_merging": rf"spots merge, $\lambda(0) > {MERGING:g}$",
-    "strain_not_small": rf"$a > {STEEP:g}\,R$ or strain $> {COMPRESSED:g}$",
-    "asperity_strain_not_small": rf"spots steep, $b > {STEEP_SPOT:g}\,R_a$",
-    "pitch_not_small_against_h": rf"asperities far apart, pitch $> {PITCH_OVER_LAYER:g}\,h$",
+    "spots_merging": rf"spots merge, $\lambda(0) > {derived.MERGING:g}$",
+    "strain_not_small": rf"$a > {derived.STEEP:g}\,R$ or strain $> {derived.COMPRESSED:g}$",
+    "asperity_strain_not_small": rf"spots steep, $b > {derived.STEEP_SPOT:g}\,R_a$",
+    "pitch_not_small_against_h": rf"asperities far apart, pitch $> {derived.PITCH_OVER_LAYER:g}\,h$",
 }
 OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
 """What a note above the axes adds to the text of an assumption; a legend has no room for it."""

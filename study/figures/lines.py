@@ -64,7 +64,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         sizes = ", ".join(f"{dim} ({found.sizes[dim]})" for dim in rest)
         raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose with --where NAME=VALUE"])
     whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in found.dims}
-    found = found.assign(whole)  # without coordinates: it has them, and older versions of xarray refuse them twice
+    found = found.assign(whole)  # without coordinates: it has them, and xarray 2026.2 refuses to align them
     columns = 2 if count == 4 else min(count, 3)
     rows = -(-count // columns)
     size = max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), 2.2 * rows + 0.4

@@ -140,7 +140,7 @@ def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[
 
 
 def _next(queue: deque) -> list:
-    """[the next item of a queue], or [] if it is empty. It is not asked before, as other threads take items too."""
+    """[the next item of a queue], or [] if it is empty: other threads take items too, so one cannot look first."""
     try:
         return [queue.popleft()]
     except IndexError:

@@ -18,7 +18,8 @@ def test_a_sphere_with_sixty_spots():
     s = solve(Problem.of(P=P, base="half_space", micro=["square_lattice", "disc_cell"], Nbar=PITCH**-2, Ra=RA))
     assert abs(s.D[0] / D - 1) < 1.5e-3 and 4e-3 < s.D[1] / D - 1 < 8e-3
     assert abs(s.p_max[0] / p_max - 1) < 8e-3
-    assert abs(s.Ar_An[0] * np.pi * s.a[0] ** 2 / real_area(found) - 1) < 0.037
+    # 3.1 % too large by the correction for the edges, whose spots have few elements here; 3.9 % too small without it
+    assert 0 < s.Ar_An[0] * np.pi * s.a[0] ** 2 / real_area(found) - 1 < 0.037
 
 
 def test_means_of_cells():

@@ -29,11 +29,14 @@ STUDIES = sorted((ROOT / "studies").glob("*.toml"))
 
 
 def shrunken(tables: dict) -> dict:
-    """The tables of a study file cut down: ranges to 4 points, lists to first, middle and last, samples to 3 cases."""
-    axes = {}
+    """The tables of a study file cut down: ranges to 4 points, lists to first, middle and last, samples to 3 cases.
+
+    Ranges of a real system have 2 points: its inputs have spreads, so each case is solved up to thirteen times.
+    """
+    axes, most = {}, 2 if "R" in tables.get("model", {}) else 4
     for name, values in tables.get("axes", {}).items():
         if isinstance(values, dict):
-            axes[name] = values | {"num": min(values["num"], 4)}
+            axes[name] = values | {"num": min(values["num"], most)}
         else:
             axes[name] = values if len(values) <= 3 else [values[0], values[len(values) // 2], values[-1]]
     sample = {"sample": tables["sample"] | {"size": min(tables["sample"]["size"], 3)}} if "sample" in tables else {}
@@ -91,7 +94,17 @@ def compute_results(folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def drawing(results) -> Callable:
-    """A figure by its name, from the shrunken results: what `study.catalogue.compose` gives; composed once."""
+    """A figure by its name, from the shrunken results: what `study.catalogue.compose` gives; composed once, of results
+    that are opened and verified once."""
     from study.catalogue import compose
+    from study.figures import registry
 
-    return cache(lambda name: compose(name, results))
+    opened = cache(registry.open_results)
+
+    @cache
+    def composed(name: str) -> tuple:
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(registry, "open_results", opened)
+            return compose(name, results)
+
+    return composed

@@ -15,11 +15,13 @@ from types import SimpleNamespace
 os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")} | os.environ
 
 import pytest
+import xarray as xr
 from children import run_forked
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws
+from study import open_results
 from study.spec.laws import update_vocabulary
 from study.store.lock import held
 
@@ -94,17 +96,30 @@ def compute_results(folder: Path) -> None:
 
 @pytest.fixture(scope="session")
 def drawing(results) -> Callable:
-    """A figure by its name, from the shrunken results: what `study.catalogue.compose` gives; composed once, of results
-    that are opened and verified once."""
+    """A figure by its name, from the shrunken results: what `study.catalogue.compose` gives; composed once."""
     from study.catalogue import compose
-    from study.figures import registry
-
-    opened = cache(registry.open_results)
 
     @cache
     def composed(name: str) -> tuple:
         with pytest.MonkeyPatch.context() as patched:
-            patched.setattr(registry, "open_results", opened)
+            patched.setattr("study.figures.registry.open_results", opened)
             return compose(name, results)
 
     return composed
+
+
+@pytest.fixture(scope="session")
+def tables(results, tmp_path_factory) -> Path:
+    """Folder with every table of the shrunken results, as .txt, .csv and .tex."""
+    from study.catalogue import TABLES, tabulate
+
+    folder = tmp_path_factory.mktemp("tables")
+    for name in TABLES:
+        assert tabulate(name, results, folder) == [folder / f"{name}.{suffix}" for suffix in ("txt", "csv", "tex")]
+    return folder
+
+
+@cache
+def opened(path: Path) -> xr.Dataset:
+    """A file of the fixture `results`: read, and verified, once. Nobody changes the dataset."""
+    return open_results(path)

@@ -45,8 +45,8 @@ def test_the_rule(octave, n):
 @pytest.mark.parametrize("octave", [-8, -5, -2, 0, 3])
 def test_few_nodes_determine_the_operator(octave, stiffness):
     """That of L - 1, and about as well that of u dL/du, of other layers than those by which they were chosen, limits
-    included: beside all nodes, over the size of the operator. The last two are those of loose operators, of which single
-    entries may miss more than is left out of the kernel (tests/body/test_loose.py has the solutions)."""
+    included: beside all nodes, over the size of the operator. The last two are those of loose operators. Single entries
+    of these may miss more than is left out of the kernel (tests/body/test_loose.py has the solutions)."""
     random, size, grid = np.random.default_rng(octave + 100), 60, mesh(16)
     loose, of_layers = divmod(stiffness, 4)
     low, high = np.log([1e-9, *STIFFEST][of_layers : of_layers + 2])

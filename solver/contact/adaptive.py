@@ -49,6 +49,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
         return np.where(useless, np.nan, error), found.finer, found._replace(finer=None)
 
     a = guess_radius(cases)
+    cases = cases._replace(body=cases.body.within(np.where(free, rtol, 0.0), a))
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
     found = _together(rungs, size, len(x))
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED

@@ -45,6 +45,13 @@ def shrunken(tables: dict) -> dict:
     return tables | ({"axes": axes} if axes else {}) | sample
 
 
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files that look at the shrunken results come first. So the first of several processes of pytest has them all: it
+    computes the results while others have other things to do, and no other draws the same figures again."""
+    asking = {item.path for item in items if "results" in getattr(item, "fixturenames", ())}
+    items.sort(key=lambda item: item.path not in asking)
+
+
 @pytest.fixture(autouse=True)
 def laws_as_they_were() -> Iterator[None]:
     """After each test only the laws of this package are known."""

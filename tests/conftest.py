@@ -126,7 +126,9 @@ def tables(results, tmp_path_factory) -> Path:
     return folder
 
 
-@cache
 def opened(path: Path) -> xr.Dataset:
-    """A file of the fixture `results`: read, and verified, once. Nobody changes the dataset."""
-    return open_results(path)
+    """A file of the fixture `results`, which is read, and verified, once: a copy, which a test may change."""
+    return _opened(path).copy(deep=True)
+
+
+_opened = cache(open_results)

@@ -69,7 +69,7 @@ def test_soft_layers_plates_and_films_do_not():
     assert is_loose(rtol=1e-7) == (True, 36) and is_loose(rtol=1e-7, n=1e-4, h=0.01) == (False, 52)
     assert is_loose(n=900.0) == (False, 90)
     assert is_loose(rtol=0.1, n=1e4) == (False, 104) and is_loose(rtol=0.1, n=1e7) == (False, 104)
-    film = [
-        body.at(np.ones(1), mesh(5)).parts[0] for body in (layer(h=1e-3), layer(h=1e-3).within(np.ones(1), np.ones(1)))
-    ]
-    assert all(part.film is not None for part in film) and np.array_equal(film[0].L1, film[1].L1)
+    film, loose = layer(h=1e-3), layer(h=1e-3).within(np.ones(1), np.ones(1))
+    (part,), (other,) = (body.at(np.ones(1), mesh(5)).parts for body in (film, loose))
+    assert part.film is not None and np.array_equal(part.L1, other.L1)
+    assert loose.loose[0] and loose.error(np.ones(1), 5) == film.error(np.ones(1), 5)

@@ -107,7 +107,7 @@ def _command(folder: Path, first: int, arguments, ignoring, stuck: bool, prepare
 
 
 def run_forked(command: list[str], *, input: bytes, timeout: float, **_) -> SimpleNamespace:
-    """`subprocess.run` of `python -c STATEMENT` in a forked process, which has nothing to import any more; `stdout` is
+    """`subprocess.run` of `python -c STATEMENT` in a forked process, which has little to import any more; `stdout` is
     what it has written, nothing if it broke down."""
     ours, its = PROCESSES.Pipe(duplex=False)
     process = started(_execute, command[-1], input, its)
@@ -127,6 +127,7 @@ def run_forked(command: list[str], *, input: bytes, timeout: float, **_) -> Simp
 def _execute(statement: str, given: bytes, answer) -> None:
     sys.stdin, sys.stdout = io.TextIOWrapper(io.BytesIO(given)), io.TextIOWrapper(io.BytesIO())
     exec(statement, {})
+    sys.stdout.flush()
     answer.send_bytes(sys.stdout.buffer.getvalue())
 
 

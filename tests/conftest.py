@@ -15,11 +15,13 @@ from types import SimpleNamespace
 os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")} | os.environ
 
 import pytest
+import xarray as xr
 from children import run_forked
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws
+from study import open_results
 from study.spec.laws import update_vocabulary
 from study.store.lock import held
 
@@ -29,15 +31,25 @@ STUDIES = sorted((ROOT / "studies").glob("*.toml"))
 
 
 def shrunken(tables: dict) -> dict:
-    """The tables of a study file cut down: ranges to 4 points, lists to first, middle and last, samples to 3 cases."""
-    axes = {}
+    """The tables of a study file cut down: ranges to 4 points, lists to first, middle and last, samples to 3 cases.
+
+    Ranges of a real system have 2 points: its inputs have spreads, so each case is solved up to thirteen times.
+    """
+    axes, most = {}, 2 if "R" in tables.get("model", {}) else 4
     for name, values in tables.get("axes", {}).items():
         if isinstance(values, dict):
-            axes[name] = values | {"num": min(values["num"], 4)}
+            axes[name] = values | {"num": min(values["num"], most)}
         else:
             axes[name] = values if len(values) <= 3 else [values[0], values[len(values) // 2], values[-1]]
     sample = {"sample": tables["sample"] | {"size": min(tables["sample"]["size"], 3)}} if "sample" in tables else {}
     return tables | ({"axes": axes} if axes else {}) | sample
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Files that look at the shrunken results come first. So the first of several processes of pytest has them all: it
+    computes the results while others have other things to do, and no other draws the same figures again."""
+    asking = {item.path for item in items if "results" in getattr(item, "fixturenames", ())}
+    items.sort(key=lambda item: item.path not in asking)
 
 
 @pytest.fixture(autouse=True)
@@ -94,4 +106,27 @@ def drawing(results) -> Callable:
     """A figure by its name, from the shrunken results: what `study.catalogue.compose` gives; composed once."""
     from study.catalogue import compose
 
-    return cache(lambda name: compose(name, results))
+    @cache
+    def composed(name: str) -> tuple:
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr("study.figures.registry.open_results", opened)
+            return compose(name, results)
+
+    return composed
+
+
+@pytest.fixture(scope="session")
+def tables(results, tmp_path_factory) -> Path:
+    """Folder with every table of the shrunken results, as .txt, .csv and .tex."""
+    from study.catalogue import TABLES, tabulate
+
+    folder = tmp_path_factory.mktemp("tables")
+    for name in TABLES:
+        assert tabulate(name, results, folder) == [folder / f"{name}.{suffix}" for suffix in ("txt", "csv", "tex")]
+    return folder
+
+
+@cache
+def opened(path: Path) -> xr.Dataset:
+    """A file of the fixture `results`: read, and verified, once. Nobody changes the dataset."""
+    return open_results(path)

@@ -1,11 +1,9 @@
 """Pages of text with Python in them: what stands in a block is run, what it prints is the block of text after it."""
 
-import os
 import re
-import subprocess
-import sys
 from pathlib import Path
 
+from children import PATIENCE, run_forked
 from conftest import ROOT
 
 PAGES = (
@@ -15,6 +13,16 @@ PAGES = (
     *sorted(path.relative_to(ROOT).as_posix() for path in (ROOT / "docs").glob("*.md")),
 )
 _END = "-- end of block --"
+_SCRIPT = """
+import os, sys, traceback, warnings
+os.chdir({folder!r})
+os.environ["MPLBACKEND"] = "agg"
+warnings.simplefilter("error", FutureWarning)
+try:
+    exec({code!r}, {{"__name__": "__main__"}})
+except BaseException:
+    traceback.print_exc(file=sys.stdout)
+"""
 
 
 def read(page: str) -> str:
@@ -33,14 +41,15 @@ def examples(page: str) -> list[tuple[str, str]]:
 
 
 def check_examples(page: str, folder: Path, most: int | None = None) -> None:
-    """Run the Python of a page, or its first blocks, in `folder`, in one process; compare what it prints."""
+    """Run the Python of a page, or its first blocks, in `folder`, in one process; compare what it prints.
+
+    The process is forked from one that has imported `study`: an interpreter that starts takes a second or two longer.
+    """
     found = examples(page)[:most]
-    script = "".join(f"{code}\nprint({_END!r})\n" for code, _ in found)
-    environment = os.environ | {"MPLBACKEND": "agg", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error::FutureWarning"}
-    command = [sys.executable, "-c", script]
-    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=600)
-    assert ran.returncode == 0, ran.stderr
-    for (code, text), printed in zip(found, ran.stdout.split(_END + "\n"), strict=False):
+    script = _SCRIPT.format(folder=str(folder), code="".join(f"{code}\nprint({_END!r})\n" for code, _ in found))
+    *outputs, rest = run_forked([script], input=b"", timeout=PATIENCE).stdout.decode().split(_END + "\n")
+    assert len(outputs) == len(found), f"after {len(outputs)} blocks: {rest}"
+    for (code, text), printed in zip(found, outputs, strict=True):
         assert not text or same(printed.split(), text.split()), f"{code}\nprints\n{printed}\nnot\n{text}"
 
 

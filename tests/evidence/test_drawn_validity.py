@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import opened
 from drawn import contours, frame, legend, lines, same_contours, texts, ticks
 from matplotlib.colors import to_hex, to_rgb
 from matplotlib.figure import Figure
 
 from solver.models.thin_layer_error import thin_layer_error
-from study import open_results
 
 # Figure -> its rows: symbol, micro law, quantity.
 ROWS = {
@@ -42,7 +42,7 @@ FIGURES = pytest.mark.parametrize("name", ROWS)
 def panels(drawing, results, name: str) -> list[tuple]:
     """(axes, row, number of the material, the dataset of the panel) of every panel."""
     figure, _, _ = drawing(name)
-    found = open_results(results / f"{name}.nc")
+    found = opened(results / f"{name}.nc")
     axes = np.reshape(figure.axes, (len(ROWS[name]), 5))
     return [
         (axes[i, j], i, j, found.sel(micro=micro).isel(case=j))

@@ -2,18 +2,18 @@
 
 import numpy as np
 import pytest
+from conftest import opened
 from drawn import frame, legend, lines, mesh
 from matplotlib.figure import Figure
 
 from solver import Status
-from study import open_results
 from study.evidence.extremes_map import BINS, ROWS, binned, maps, shares
 
 
 @pytest.fixture(scope="module")
 def datasets(results):
     """The two studies, with some cases that failed or have no solution, and a largest error."""
-    found = [open_results(results / f"{name}.nc") for name in ("extremes", "extremes_layered")]
+    found = [opened(results / f"{name}.nc") for name in ("extremes", "extremes_layered")]
     half_space, thin_layer = ({"base": base, "micro": 1} for base in (0, 1))
     found[0]["status"][half_space] = [Status.CONVERGED, Status.DIVERGED, Status.LIFT_OFF]
     found[0]["status"][thin_layer] = [Status.TOLERANCE_NOT_MET, Status.THIN_LAYER_NOT_APPLICABLE, Status.CONVERGED]
@@ -39,7 +39,7 @@ def test_maps_hold_every_case_once(drawing, results):
     _, columns, _ = drawing("extremes")
     assert (columns["cases"] > 0).all() and set(columns["row"]) == set(range(len(ROWS)))
     for i, (base, *_) in enumerate(ROWS):
-        found = open_results(results / ("extremes_layered.nc" if base == "layered" else "extremes.nc"))
+        found = opened(results / ("extremes_layered.nc" if base == "layered" else "extremes.nc"))
         assert columns["cases"][columns["row"] == i].sum() == found.sizes["case"] * found.sizes["micro"]
     assert columns["largest error/rtol"].max() <= 1
 

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import opened
 from drawn import frame, legend, lines, ticks
 from drawn import mesh as mesh_of
 from matplotlib.colors import to_hex
@@ -13,7 +14,6 @@ from solver import Problem, Status, solve
 from solver.contact import picard
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases, dimensionless
-from study import open_results
 from study.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
 from study.paper.uniform import uniform_mesh
 
@@ -84,7 +84,7 @@ def test_pressures_below_the_line_cycle_and_those_above_do_not():
 
 
 def test_the_study_holds_cycles_and_answers(results):
-    found = open_results(results / "picard_domain.nc")
+    found = opened(results / "picard_domain.nc")
     status = found["status"].values
     assert set(np.unique(status)) <= {
         Status.CONVERGED,
@@ -123,7 +123,7 @@ def sizes(found, beta: float, nodes: int) -> np.ndarray:
 
 def test_maps_show_the_size_of_the_cycle(drawing, results):
     figure, columns, _ = drawing("picard_domain")
-    found = open_results(results / "picard_domain.nc")
+    found = opened(results / "picard_domain.nc")
     C, k = 2 * found.h.values, found.k.values
     parts = []
     for axes, (title, (beta, nodes)) in zip(figure.axes, MAPPED.items(), strict=False):
@@ -157,7 +157,7 @@ def status_of(found, beta: float, nodes: int) -> np.ndarray:
 
 def test_lines_of_the_maps_are_those_of_the_theory(drawing, results):
     figure, _, _ = drawing("picard_domain")
-    h = open_results(results / "picard_domain.nc").h.values
+    h = opened(results / "picard_domain.nc").h.values
     entries = legend(figure.legends[0])
     assert list(entries) == [WORDS[0], WORDS[1], *SLOPES]
     for axes, (beta, _) in zip(figure.axes, MAPPED.values(), strict=False):

@@ -8,10 +8,10 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
-from conftest import STUDIES
+from conftest import STUDIES, opened
 from scipy.integrate import simpson
 
-from study import StudyError, open_results
+from study import StudyError
 from study.catalogue import FIGURES, SCHEMES, draw, save
 from study.data.derived import effective_modulus, from_layered, peak_pressure
 from study.figures.registry import pick
@@ -43,7 +43,7 @@ CONVERGING = [file for file in STUDIES if file.stem != "picard_domain"]
 
 @pytest.mark.parametrize("file", CONVERGING, ids=lambda file: file.stem)
 def test_every_study_runs_and_converges(results, file):
-    found = open_results(results / f"{file.stem}.nc")
+    found = opened(results / f"{file.stem}.nc")
     refused = (found["status"] == 4) & (found["base"] == "thin_layer")
     assert ((found["status"] == 0) | refused).all()
     assert bool(refused.any()) == file.stem.startswith("validity")
@@ -70,7 +70,7 @@ def test_the_same_results_give_the_same_bytes(figures, results, tmp_path):
 
 
 def test_profiles_of_figures_3_7_and_10_carry_the_load(figures, results):
-    main = open_results(results / "main_case.nc")
+    main = opened(results / "main_case.nc")
     a0, P0 = float(pick(main, label=CURVES["1"])["a"]), float(main["P"])
     for name in ("fig03", "fig07", "fig10", "fig03_layered", "fig07_layered", "fig10_layered"):
         columns = list(numbers(figures, name).values())
@@ -87,7 +87,7 @@ def test_a_layer_spreads_the_contact_and_lowers_the_pressure(figures):
 
 
 def test_figures_against_load_show_the_dataset(figures, results):
-    sweep = open_results(results / "load_sweep.nc")
+    sweep = opened(results / "load_sweep.nc")
     for name, quantity, curves in (("fig04", "Ar_An", 2), ("fig05", "p_max", 2), ("fig06", "D", 2), ("fig08", "D", 4)):
         found = numbers(figures, name)
         for curve in list(CURVES)[:curves]:
@@ -100,7 +100,7 @@ def test_companions_show_the_exact_layer_and_the_papers_beside_it(figures, resul
     assert {name.removesuffix("_layered") for name in FIGURES if name.endswith("_layered")} == {
         f"fig{number}" for number in ("03", "04", "05", "06", "07", "08", "10")
     }
-    sweep = open_results(results / "load_sweep.nc")
+    sweep = opened(results / "load_sweep.nc")
     for name, quantity in (("fig04", "Ar_An"), ("fig05", "p_max"), ("fig06", "D"), ("fig08", "D")):
         found = numbers(figures, f"{name}_layered")
         np.testing.assert_array_equal(found[f"{quantity} (1)"], pick(sweep, label=EXACT_LAYER["1"])[quantity])
@@ -113,7 +113,7 @@ def test_companions_show_the_exact_layer_and_the_papers_beside_it(figures, resul
 
 
 def test_validity_maps_show_the_error_and_leave_out_what_does_not_apply(figures, results):
-    found, shown = open_results(results / "validity.nc"), numbers(figures, "validity")
+    found, shown = opened(results / "validity.nc"), numbers(figures, "validity")
     a = found.a.sel(micro="disc_cell", case=0).transpose("base", "n", "h")
     first = (shown["row"] == 0) & (shown["material"] == 0)
     expected = a.sel(base="thin_layer") / a.sel(base="layered") - 1
@@ -127,7 +127,7 @@ def test_validity_maps_show_the_error_and_leave_out_what_does_not_apply(figures,
 
 
 def test_coatings_go_from_the_film_to_the_body(results):
-    found = open_results(results / "coatings.nc")
+    found = opened(results / "coatings.nc")
     smooth = effective_modulus(found).sel(micro="smooth")
     np.testing.assert_allclose(smooth.sel(n=1, bonding="bonded"), 1, rtol=1e-6)  # no layer at all
     over_film = smooth / found.n
@@ -139,7 +139,7 @@ def test_coatings_go_from_the_film_to_the_body(results):
 
 
 def test_the_largest_pressure_of_a_hard_coating_is_not_in_the_middle(results):
-    found = open_results(results / "coatings.nc")
+    found = opened(results / "coatings.nc")
     peak = peak_pressure(found)
     rough = {"micro": "disc_cell"}
     np.testing.assert_allclose(peak.sel(n=1e-3, **rough), found.p_max.sel(n=1e-3, **rough), rtol=1e-9)
@@ -173,7 +173,7 @@ def test_messages_of_plot(results, tmp_path):
 
 
 def test_pick_wants_exactly_one_case(results):
-    found = open_results(results / "spot_density.nc")
+    found = opened(results / "spot_density.nc")
     with pytest.raises(StudyError, match="spot_density: 2 cases have Nbar = 62500: needs one"):
         pick(found, Nbar=62_500)
     with pytest.raises(StudyError, match="spot_density: 0 cases have Nbar = 62500.001, base = layered: needs one"):
@@ -184,7 +184,7 @@ def test_pick_wants_exactly_one_case(results):
 def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
     from PIL import Image
 
-    studies = (open_results(results / f"{name}.nc") for name in ("load_sweep", "main_case"))
+    studies = (opened(results / f"{name}.nc") for name in ("load_sweep", "main_case"))
     title = "fig04, studies " + " ".join(found.attrs["study_digest"][:16] for found in studies)
     assert Image.open(figures("fig04").with_suffix(".png")).text["Title"] == title
     assert title.encode() in (figures("fig04").with_suffix(".pdf")).read_bytes()
@@ -192,13 +192,14 @@ def test_files_carry_the_name_and_the_studies_and_fit_a_page(figures, results):
     assert max(recipe.size[1] for recipe in FIGURES.values()) < 9.5
 
 
-def test_captions_of_all_figures_that_have_results(results, tmp_path):
+def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatch):
+    monkeypatch.setattr("study.figures.registry.open_results", opened)
     (path,) = draw("captions", results, tmp_path)
     said = dict(re.findall(r"^[*]{2}(\w+)\.[*]{2} (.*)$", path.read_text(encoding="utf-8"), flags=re.MULTILINE))
     assert set(said) == {*FIGURES, *SCHEMES} and all(len(text) > 40 for text in said.values())
     assert "Parameters: $P/(E_2^*\\,R^2)$ = $2.704\\times10^{-5}$, $h/R$ = 0.02" in said["fig03"]
     assert "The layer is exact" in said["fig03_layered"] and "1e-14 to 1e-3" in said["coatings"]
-    found = open_results(results / "coatings.nc")
+    found = opened(results / "coatings.nc")
     assert (float(found["P"].min()), float(found["P"].max())) == pytest.approx((1e-14, 1e-3))
     (path,) = draw("captions", tmp_path, tmp_path)
     said = re.findall(r"^[*]{2}(\w+)\.", path.read_text(encoding="utf-8"), flags=re.MULTILINE)

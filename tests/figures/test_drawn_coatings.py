@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import opened
 from drawn import frame, legend, lines, ticks
 
-from study import open_results
 from study.figures.coatings import COLOURS, PALE, power
 
 # Row -> label, scale of the ordinate, column of the CSV.
@@ -33,7 +33,7 @@ def peak(case: xr.Dataset) -> xr.DataArray:
 
 @pytest.fixture(scope="module")
 def found(results) -> xr.Dataset:
-    return open_results(results / "coatings.nc")
+    return opened(results / "coatings.nc")
 
 
 def curves(found, bonding: str) -> list[tuple[xr.Dataset, xr.Dataset, np.ndarray]]:

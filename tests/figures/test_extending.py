@@ -2,13 +2,11 @@
 
 import csv
 import re
-import subprocess
-import sys
 
 import numpy as np
 import pages
 import pytest
-from conftest import ROOT
+from children import PATIENCE, run_forked
 
 import study
 from study import catalogue, open_results
@@ -29,7 +27,7 @@ import sys
 import study.figures
 study.figures.__path__.append(sys.argv[1])
 from study.__main__ import main
-sys.exit(main(["plot", "stiffness", "--results", sys.argv[2], "--figures", sys.argv[3]]))
+print(main(["plot", "stiffness", "--results", sys.argv[2], "--figures", sys.argv[3]]))
 """
 
 
@@ -51,9 +49,9 @@ def numbers(path) -> tuple[list[str], np.ndarray]:
 def test_a_figure_is_one_function_in_one_new_file(results, tmp_path):
     """In a process of its own, where the file lies beside those of study/figures."""
     (tmp_path / "stiffness.py").write_text(FIGURE, encoding="utf-8")
-    command = [sys.executable, "-c", SCRIPT, tmp_path, results, tmp_path / "figures"]
-    ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, timeout=300)
-    assert ran.returncode == 0, ran.stderr
+    arguments = [str(path) for path in (tmp_path, results, tmp_path / "figures")]
+    ran = run_forked([f"import sys; sys.argv[1:] = {arguments}\n{SCRIPT}"], input=b"", timeout=PATIENCE)
+    assert ran.stdout.endswith(b"\n0\n")
     assert sorted(path.suffix for path in (tmp_path / "figures").iterdir()) == [".csv", ".pdf", ".png"]
     head, columns = numbers(tmp_path / "figures/stiffness.csv")
     sweep = open_results(results / "load_sweep.nc")

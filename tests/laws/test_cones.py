@@ -198,6 +198,7 @@ alpha = {start = 1.0, stop = 1.5, num = 40}
 [numerics]
 block = 4
 """
+CALLS = "import sys; from study.__main__ import main; sys.exit(max([main(call.split()) for call in sys.argv[1:]]))"
 
 
 def test_a_study_of_an_installed_law_in_processes(tmp_path):
@@ -209,21 +210,22 @@ def test_a_study_of_an_installed_law_in_processes(tmp_path):
     source = (ROOT / "tests/laws/cones.py").read_text()
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(tmp_path), str(ROOT)])}
 
-    def run(*words, text=source):
+    def run(*calls, text=source):
         (tmp_path / "cones.py").write_text(text)
-        command = [sys.executable, "-m", "study", *words]
+        command = [sys.executable, "-c", CALLS, *calls]
         return subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True, timeout=300)
 
-    first = run("run", "mine.toml", "--workers", "2")
+    first = run("run mine.toml --workers 2")
     assert first.returncode == 0, first.stderr
     with study.open_results(tmp_path / "results/mine.nc") as found:
         assert (found.status == 0).all() and found.attrs["micro_laws"] == "cones 1"
         same = study.solve(P=1e-5, base="half_space", micro=cones.CONES, alpha=found.alpha.values, Nbar=250_000.0)
         assert_allclose(found.a, same.a, rtol=1e-12, atol=0)
     newer = source.replace('version="1"', 'version="2"')
-    assert "outdated (0 of 40 cases can be used again)" in run("status", "mine.toml", text=newer).stdout
-    assert "40 of its 40 cases are not in this one" in run("run", "mine.toml", text=newer).stderr
-    broken = run("run", "mine.toml", text="raise OSError('no disk')\n")
+    refused = run("status mine.toml", "run mine.toml", text=newer)
+    assert "outdated (0 of 40 cases can be used again)" in refused.stdout
+    assert "40 of its 40 cases are not in this one" in refused.stderr
+    broken = run("run mine.toml", text="raise OSError('no disk')\n")
     assert broken.returncode == 2
     assert "entry point cones = cones:CONES of roughcoat.laws: no disk" in broken.stderr
 

@@ -6,13 +6,13 @@ import numpy as np
 import pages
 import pytest
 import xarray as xr
+from conftest import opened
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
 import study
 from solver import Problem, solve
 from solver.body.kernel import layered_kernel
-from study import open_results
 from study.figures.registry import TABLES
 from study.literature import compared, formulas
 from study.literature.page import page
@@ -142,6 +142,6 @@ def test_the_numbers_on_the_page_are_those_of_the_solver(contacts):
 
 
 def test_what_is_decided_is_drawn_from_the_results(results):
-    rigid_base, coated = (open_results(results / f"{name}.nc") for name in ("literature", "literature_coatings"))
+    rigid_base, coated = (opened(results / f"{name}.nc") for name in ("literature", "literature_coatings"))
     for row in TABLES["literature_decided"].rows(rigid_base, coated):
         assert row[4] == row[2] / row[3] - 1 or np.isnan(row[4])

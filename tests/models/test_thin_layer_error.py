@@ -5,13 +5,13 @@ import re
 import numpy as np
 import pages
 import pytest
+from conftest import opened
 from scipy.integrate import quad
 
 from solver import Problem, solve
 from solver.body.kernel import layered_kernel
 from solver.body.springs import thin_layer_coefficients
 from solver.models.thin_layer_error import edge_shift, thin_layer_error
-from study import open_results
 from study.data.derived import from_layered
 
 STATED = {  # largest |ln| of estimated over computed: of P_thin/P at given a, of a_thin/a at given P
@@ -83,7 +83,7 @@ def test_nothing_is_estimated_where_the_thin_layer_does_not_apply():
 @pytest.mark.parametrize("number", range(5))
 def test_estimate_has_its_stated_accuracy_on_the_grid(results, number):
     for study, quantity in (("validity_load", "P"), ("validity", "a")):
-        case = open_results(results / f"{study}.nc").isel(case=number).sel(micro="smooth")
+        case = opened(results / f"{study}.nc").isel(case=number).sel(micro="smooth")
         a = case.a if quantity == "P" else case.a.sel(base="layered", drop=True)
         computed = np.log1p(from_layered(case, quantity)).transpose("h", "n")
         h_a = (case.h / a).broadcast_like(computed).transpose("h", "n")

@@ -1,10 +1,10 @@
 """The rows of every table, computed from the datasets by other means than the tables themselves."""
 
 import numpy as np
+from conftest import opened
 
 from solver import fit_power_law
 from solver.laws.disc_cell import displacement
-from study import open_results
 
 
 def table1(folder) -> list[list]:
@@ -26,8 +26,8 @@ def table1(folder) -> list[list]:
 
 
 def paper_numbers(folder) -> list[list]:
-    main, fit = open_results(folder / "main_case.nc"), fit_power_law(4.0)
-    reference = open_results(folder / "reference_load.nc")
+    main, fit = opened(folder / "main_case.nc"), fit_power_law(4.0)
+    reference = opened(folder / "reference_load.nc")
     assert main.label.values[:4].tolist() == [
         "rough, layered",
         "rough, homogeneous",
@@ -58,7 +58,7 @@ def paper_numbers(folder) -> list[list]:
 
 def validity(folder) -> list[list]:
     """Crossings sought on a fine mesh of ln(h/a), where the error is linear between the points of the study."""
-    load, radius = (open_results(folder / f"{name}.nc") for name in ("validity", "validity_load"))
+    load, radius = (opened(folder / f"{name}.nc") for name in ("validity", "validity_load"))
     symbols = {"P": "P", "a": "a", "p0": "p(0)", "D": "D", "Ar_An": "Ar/An", "p_max": "pmax"}
     rows = []
     for punch, micro, names in (("smooth", "smooth", ("P", "a", "p0", "D")), ("rough", "disc_cell", symbols)):
@@ -85,7 +85,7 @@ def crossings(case, name: str) -> list[float]:
 def extremes(folder) -> list[list]:
     rows = []
     for base, name in (("half_space", "half-space"), ("thin_layer", "thin layer"), ("layered", "exact layer")):
-        found = open_results(folder / ("extremes_layered.nc" if base == "layered" else "extremes.nc"))
+        found = opened(folder / ("extremes_layered.nc" if base == "layered" else "extremes.nc"))
         found = found.sel(base=base) if "base" in found.dims else found
         for law in ("smooth", "disc_cell", "power_law"):
             here = found.sel(micro=law)
@@ -101,7 +101,7 @@ def extremes(folder) -> list[list]:
 
 
 def tradeoff(folder) -> list[list]:
-    found = open_results(folder / "tradeoff.nc")
+    found = opened(folder / "tradeoff.nc")
     names = {"the other law": "power law for the exact law", "the other layer": "thin layer for the exact layer"}
     rows = []
     for i, name in enumerate(found.set.values):
@@ -116,7 +116,7 @@ def tradeoff(folder) -> list[list]:
 
 def paper_error(folder) -> list[list]:
     """The printed numbers of the rough layered contact first; tests/evidence/test_tradeoff_measured.py has ours."""
-    found = open_results(folder / "tradeoff.nc")
+    found = opened(folder / "tradeoff.nc")
     printed = {
         "load P at a = a0, rough, layered": 2.72e-5,
         "D, rough, layered": 1.038e-3,

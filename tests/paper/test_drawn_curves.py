@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import opened
 from drawn import NOTED, WORDS, bands, frame, legend, lines, texts
 
 from solver import fit_power_law
 from solver.laws.disc_cell import displacement
-from study import open_results
 
 CASES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
@@ -67,7 +67,7 @@ def check_legend(axes, drawn: list, words: list[str], exact: bool) -> dict:
 def test_curves_against_the_load_are_the_datasets(drawing, results, name, exact):
     quantity, scale, label, curves = AGAINST_LOAD[name]
     axes, columns, (*drawn, mark) = parts(drawing, name, exact)
-    sweep = open_results(results / "load_sweep.nc")
+    sweep = opened(results / "load_sweep.nc")
     wanted, heads = [], []
     for curve in curves:
         layer = exact and curve in EXACT
@@ -95,7 +95,7 @@ def test_loads_are_shaded_where_a_curve_breaks_an_assumption(drawing, results, n
     """Each load counts as the nearest of the study; what is broken at all of them is written down."""
     axes, _, (*drawn, _) = parts(drawing, name, exact)
     curves = AGAINST_LOAD[name][3]
-    sweep = open_results(results / "load_sweep.nc")
+    sweep = opened(results / "load_sweep.nc")
     validity = {c: of_label(sweep, EXACT[c] if exact and c in EXACT else CASES[c]).validity.values for c in curves}
     P = sweep.P.values * 1e5
     trial = np.linspace(1e-4, 5, 997)
@@ -123,7 +123,7 @@ def test_loads_are_shaded_where_a_curve_breaks_an_assumption(drawing, results, n
 def test_pressures_are_the_profiles_of_the_datasets(drawing, results, name, exact):
     study, curves = PROFILES[name]
     axes, columns, drawn = parts(drawing, name, exact)
-    found = open_results(results / f"{study}.nc")
+    found = opened(results / f"{study}.nc")
     a0 = float(found.a[0])
     assert a0 == pytest.approx(0.04, rel=1e-6), "the paper's"
     expected, words, broken = [], [], {}

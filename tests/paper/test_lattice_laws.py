@@ -3,11 +3,11 @@ datasets."""
 
 import numpy as np
 import pytest
+from conftest import opened
 from drawn import frame, legend, lines, texts
 
 from solver import laws
 from solver.laws.disc_cell import displacement
-from study import open_results
 from study.catalogue import TABLES
 from study.paper import lattice_laws
 
@@ -55,7 +55,7 @@ def test_figure_9_shows_the_lattice_and_the_papers_laws(drawing):
 def test_figure_10_shows_the_lattice_and_what_the_paper_is_off(drawing, results):
     figure, columns, _ = drawing("fig10_lattice")
     left, right = figure.axes
-    found, paper = (open_results(results / f"{name}.nc") for name in ("spot_density_lattice", "spot_density"))
+    found, paper = (opened(results / f"{name}.nc") for name in ("spot_density_lattice", "spot_density"))
     a0 = float(paper.a[0])
     pressures, differences = lines(left), lines(right)[:6]
     for i in range(3):

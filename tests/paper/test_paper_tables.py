@@ -5,8 +5,9 @@ import csv
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import opened
 
-from study import StudyError, open_results
+from study import StudyError
 from study.catalogue import TABLES, tabulate
 from study.evidence.validity_maps import largest_thickness
 from study.figures.formats import as_csv, as_latex, as_text, latex
@@ -30,21 +31,13 @@ CONVERGED = {  # of the thin-layer equation with the power law; every digit stab
 DIGITS = {"p0": 5, "p_max": 4, "A0": 4, "p_max homogeneous": 4, "Ar_An": 5, "An_ratio": 5, "Ar_An homogeneous": 5}
 
 
-@pytest.fixture(scope="module")
-def written(results, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("tables")
-    for name in TABLES:
-        tabulate(name, results, folder)
-    return folder
-
-
 def rows_of(path) -> list[list[str]]:
     with open(path, encoding="utf-8", newline="") as file:
         return list(csv.reader(file))
 
 
-def test_paper_numbers_are_the_converged_ones(written):
-    rows = rows_of(written / "paper_numbers.csv")[1:-3]  # the last three are bounds
+def test_paper_numbers_are_the_converged_ones(tables):
+    rows = rows_of(tables / "paper_numbers.csv")[1:-3]  # the last three are bounds
     ours = {key: float(row[2]) for key, row in zip(numbers.NUMBERS, rows, strict=True)}
     for key, value in CONVERGED.items():
         digits = DIGITS.get(key, 6)
@@ -56,13 +49,13 @@ def test_paper_numbers_are_the_converged_ones(written):
 
 
 def test_load_of_the_other_studies_is_that_of_the_reference(results):
-    reference = float(open_results(results / "reference_load.nc")["P"])
+    reference = float(opened(results / "reference_load.nc")["P"])
     for study in ("main_case", "spot_density"):
-        assert float(open_results(results / f"{study}.nc")["P"]) == pytest.approx(reference, rel=2e-8)
+        assert float(opened(results / f"{study}.nc")["P"]) == pytest.approx(reference, rel=2e-8)
 
 
-def test_table1_refits_the_paper(written):
-    rows = rows_of(written / "table1.csv")[1:]
+def test_table1_refits_the_paper(tables):
+    rows = rows_of(tables / "table1.csv")[1:]
     expected = {"4.0": (0.0919, 0.4908, 0.077), "1.0": (0.3157, 0.5342, 0.042), "0.25": (1.0006, 0.5664, 0.025)}
     for Ra, _, ratio, _, _, _, found, B, beta, error in rows:
         coefficient, exponent, largest = expected[ratio]
@@ -74,7 +67,7 @@ def test_table1_refits_the_paper(written):
 
 def test_a_bound_of_the_paper_that_does_not_hold_is_called_so(results, monkeypatch):
     monkeypatch.setitem(numbers.ERROR_BOUNDS, 4.0, 0.07)
-    studies = (open_results(results / f"{name}.nc") for name in ("reference_load", "main_case"))
+    studies = (opened(results / f"{name}.nc") for name in ("reference_load", "main_case"))
     assert [row[1:4:2] for row in paper_numbers(*studies)[-3:]] == [
         ("at most 7%", "does not hold"), ("at most 5%", "holds"), ("at most 5%", "holds"),
     ]  # fmt: skip
@@ -121,19 +114,19 @@ def test_the_largest_thickness_is_where_the_error_first_exceeds_the_level(errors
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_text_is_aligned(written, name):
-    caption, _, head, rule, *lines = (written / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+def test_text_is_aligned(tables, name):
+    caption, _, head, rule, *lines = (tables / f"{name}.txt").read_text(encoding="utf-8").splitlines()
     assert caption == TABLES[name].caption
     assert set(rule) == {"-"} and len(rule) == max(map(len, [head, *lines]))
     assert len({len(line) for line in lines}) == 1
 
 
 @pytest.mark.parametrize("name", TABLES)
-def test_latex_has_every_cell(written, name):
-    text = (written / f"{name}.tex").read_text(encoding="utf-8")
+def test_latex_has_every_cell(tables, name):
+    text = (tables / f"{name}.tex").read_text(encoding="utf-8")
     columns = len(TABLES[name].columns)
     body = [line for line in text.splitlines() if line.endswith(r"\\")]
-    assert len(body) == len(rows_of(written / f"{name}.csv"))
+    assert len(body) == len(rows_of(tables / f"{name}.csv"))
     assert all(line.count("&") == columns - 1 for line in body)
     assert not any(mark in line.replace(r"\%", "") for line in body[1:] for mark in ("%", "_", "#"))
     assert text.count(r"\begin{") == text.count(r"\end{") == 2

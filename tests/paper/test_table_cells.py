@@ -6,7 +6,7 @@ import re
 import pytest
 from expected_tables import EXPECTED
 
-from study.catalogue import TABLES, tabulate
+from study.catalogue import TABLES
 
 # Heading in text, heading in LaTeX, format of the cells: s text, otherwise a number.
 HEADS = {
@@ -113,14 +113,6 @@ HEADS = {
 TOLERANCE = {"validity": {"rel": 2e-4, "abs": 5e-4}}
 
 
-@pytest.fixture(scope="module")
-def written(results, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("tables")
-    for name in TABLES:
-        assert tabulate(name, results, folder) == [folder / f"{name}.{suffix}" for suffix in ("txt", "csv", "tex")]
-    return folder
-
-
 def rows_of(path) -> list[list[str]]:
     with open(path, encoding="utf-8", newline="") as file:
         return list(csv.reader(file))
@@ -135,8 +127,8 @@ def test_every_table_is_checked():
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_csv_holds_the_numbers_of_the_datasets(written, results, name):
-    head, *rows = rows_of(written / f"{name}.csv")
+def test_csv_holds_the_numbers_of_the_datasets(tables, results, name):
+    head, *rows = rows_of(tables / f"{name}.csv")
     assert head == [text for text, _, _ in HEADS[name]]
     close = TOLERANCE.get(name, {"rel": 1e-12, "abs": 1e-15})  # the same arithmetic, written with all digits
     for row, expected in zip(rows, EXPECTED[name](results), strict=True):
@@ -148,14 +140,14 @@ def test_csv_holds_the_numbers_of_the_datasets(written, results, name):
 
 
 @pytest.mark.parametrize("name", HEADS)
-def test_text_and_latex_hold_the_cells_of_the_csv(written, name):
-    head, *rows = rows_of(written / f"{name}.csv")
+def test_text_and_latex_hold_the_cells_of_the_csv(tables, name):
+    head, *rows = rows_of(tables / f"{name}.csv")
     forms = [form for _, _, form in HEADS[name]]
     cells = [[as_printed(cell, form) for cell, form in zip(row, forms, strict=True)] for row in rows]
-    _, blank, *lines = (written / f"{name}.txt").read_text(encoding="utf-8").splitlines()
+    _, blank, *lines = (tables / f"{name}.txt").read_text(encoding="utf-8").splitlines()
     assert blank == "" and set(lines[1]) == {"-"}
     assert [re.split(r" {2,}", line.strip()) for line in (lines[0], *lines[2:])] == [head, *cells]
-    text = (written / f"{name}.tex").read_text(encoding="utf-8")
+    text = (tables / f"{name}.tex").read_text(encoding="utf-8")
     body = [line.removesuffix(r" \\").split(" & ") for line in text.splitlines() if line.endswith(r"\\")]
     assert body == [[latex for _, latex, _ in HEADS[name]], *([in_latex(cell) for cell in row] for row in cells)]
     columns = "".join("l" if form == "s" else "r" for form in forms)
@@ -180,10 +172,10 @@ def in_latex(cell: str) -> str:
     return " ".join([*words, last]).replace("%", "\\%")
 
 
-def test_the_first_line_says_what_the_table_shows(written):
+def test_the_first_line_says_what_the_table_shows(tables):
     for name, words in {
         "table1": "the paper's constants, the error that it states and the one that we find; our constants and their",
         "paper_numbers": "Numbers printed in the paper and the converged ones",
         "validity": "Largest h/a (0.01 or more) up to which the thin-layer model errs by less than 1% and 10%",
     }.items():
-        assert words in (written / f"{name}.txt").read_text(encoding="utf-8").splitlines()[0]
+        assert words in (tables / f"{name}.txt").read_text(encoding="utf-8").splitlines()[0]

@@ -137,9 +137,8 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 
 def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
-    alone(f"import study.spec.vocabulary, study.spec.grid, study.spec.given, study.spec.definition; {NOT_HEAVY}")
-    alone(f"import study.commands.arguments, study.work.processes; {NOT_HEAVY}")
-    alone(f"import study.scene.materials; {NOT_HEAVY}")
+    light = ("spec.vocabulary", "spec.grid", "spec.given", "spec.definition", "commands.arguments", "work.processes")
+    alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "scene.materials")))
 
 
 def test_rooms_are_there_after_import_of_the_package_alone():

@@ -22,6 +22,7 @@ from study.work.cases import compute, parcel
 shapes = st.lists(st.integers(1, 7), max_size=4).map(tuple)
 
 
+@settings(deadline=None)
 @given(shape=shapes, most=st.integers(1, 60), chunk=st.integers(1, 30))
 @example(shape=(7,), most=5, chunk=3)
 def test_windows_follow_each_other_in_flat_order(shape, most, chunk):
@@ -35,6 +36,7 @@ def test_windows_follow_each_other_in_flat_order(shape, most, chunk):
         assert all(part.start % length == 0 for part, length in zip(window.values(), chunks, strict=True))
 
 
+@settings(deadline=None)
 @given(shape=shapes, most=st.integers(1, 60))
 def test_a_box_is_not_needlessly_small(shape, most):
     lengths = box(shape, most)

@@ -6,6 +6,7 @@ import os
 import random
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,12 +25,20 @@ from study.work import progress
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX signals and limits")
 
+LARGE = 50  # cases in a block, where few blocks are enough
 IN_FLIGHT = 4 * 2 * BLOCK  # cases submitted and not stored, for two workers
 
 
 @pytest.fixture
 def opened(tmp_path) -> study.Study:
     return written(tmp_path)
+
+
+@pytest.fixture
+def coarse(tmp_path) -> study.Study:
+    """The same study in six blocks, for what may happen to any of them."""
+    found = written(tmp_path)
+    return study.Study(replace(found.definition, block=LARGE), found.results)
 
 
 def test_killed_at_ten_random_moments(opened, undisturbed, tmp_path):
@@ -69,10 +78,10 @@ def spoil(path: Path, how: str) -> None:
 
 
 @pytest.mark.parametrize("how", ["truncated", "emptied", *["bit flipped"] * 5])
-def test_a_damaged_block_is_computed_again(opened, undisturbed, caplog, how):
-    paths = [store_block(opened, start, start + BLOCK) for start in range(0, CASES, 50)]
+def test_a_damaged_block_is_computed_again(coarse, undisturbed, caplog, how):
+    paths = [store_block(coarse, start, start + LARGE) for start in range(0, CASES - LARGE, LARGE)]
     spoil(paths[3], how)
-    assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK)
+    assert_ends_well(coarse, undisturbed, CASES - (len(paths) - 1) * LARGE)
     assert f"{paths[3]}: is no whole block; the same command computes its cases again" in caplog.text
 
 
@@ -90,17 +99,17 @@ def test_a_block_damaged_after_the_inventory_stops_the_results(opened, undisturb
     assert_ends_well(opened, undisturbed, BLOCK)
 
 
-def test_a_block_of_another_study_is_not_taken_for_one_of_this(opened, undisturbed, tmp_path):
-    paths = [store_block(opened, start, start + BLOCK) for start in range(0, CASES, 50)]
+def test_a_block_of_another_study_is_not_taken_for_one_of_this(coarse, undisturbed, tmp_path):
+    paths = [store_block(coarse, start, start + LARGE) for start in range(0, CASES - LARGE, LARGE)]
     (tmp_path / "other").mkdir()
     other = written(tmp_path / "other", TEXT.replace("n = 0.5", "n = 0.6"))
-    paths[0].write_bytes(store_block(other, 0, BLOCK).read_bytes())
-    assert_ends_well(opened, undisturbed, CASES - (len(paths) - 1) * BLOCK, kept=paths[:1])
+    paths[0].write_bytes(store_block(other, 0, LARGE).read_bytes())
+    assert_ends_well(coarse, undisturbed, CASES - (len(paths) - 1) * LARGE, kept=paths[:1])
 
 
-def test_nothing_executable_is_read(opened, undisturbed, tmp_path):
+def test_nothing_executable_is_read(coarse, undisturbed, tmp_path):
     """A block with a right checksum and columns of Python objects is refused like a damaged one."""
-    path = store_block(opened, 0, BLOCK)
+    path = store_block(coarse, 0, LARGE)
     block = read_block(path)
     head = np.array(json.dumps({"facts": block.facts, "columns": list(block.arrays)}))
     with open(path, "wb") as file:
@@ -109,7 +118,7 @@ def test_nothing_executable_is_read(opened, undisturbed, tmp_path):
     seal(path)
     with pytest.raises(block_file.Damaged):
         read_block(path)
-    assert_ends_well(opened, undisturbed, CASES)
+    assert_ends_well(coarse, undisturbed, CASES)
 
 
 @pytest.mark.parametrize("locks", [True, False])
@@ -139,10 +148,10 @@ def test_parts_at_once(opened, undisturbed, tmp_path):
     assert_ends_well(opened, undisturbed, 0)
 
 
-def test_a_lazy_reader_keeps_its_file_while_it_is_replaced(opened, undisturbed, monkeypatch, tmp_path):
+def test_a_lazy_reader_keeps_its_file_while_it_is_replaced(coarse, undisturbed, monkeypatch, tmp_path):
     monkeypatch.setattr(study.api, "LAZY", 0)
-    opened.run()
-    reader = opened.open()
+    coarse.run()
+    reader = coarse.open()
     assert reader.p.chunks
     written(tmp_path, TEXT.replace("num = 100", "num = 2")).run(force=True)
     assert_same(reader.load(), undisturbed)

@@ -1,6 +1,7 @@
 """Running a study: blocks, resume, interruption, failures."""
 
 import tempfile
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -127,13 +128,20 @@ def test_failing_block_costs_that_block_only(file, monkeypatch, caplog):
     assert opened.run().computed == 5
 
 
+AXES = {"P": [1e-6, 3e-6, 5e-6, 9e-6], "h": [0.001, 0.002, 0.003], "nu1": [0.2, 0.3], "bonding": ["bonded"]}
+MODEL = {"micro": "smooth", "n": 0.5, "base": "thin_layer"}
+
+
+@cache
+def solved_whole() -> xr.Dataset:
+    return study.solve(**AXES, **MODEL, x=3)
+
+
 @settings(max_examples=15, deadline=None)
 @given(data=st.data())
 def test_random_blocks_orders_workers_and_parts_give_the_same_dataset(data):
-    axes = {"P": [1e-6, 3e-6, 5e-6, 9e-6], "h": [0.001, 0.002, 0.003], "nu1": [0.2, 0.3], "bonding": ["bonded"]}
-    model = {"micro": "smooth", "n": 0.5, "base": "thin_layer"}
-    shuffled = {name: data.draw(st.permutations(axes[name])) for name in data.draw(st.permutations(list(axes)))}
-    tables = {"model": model, "axes": shuffled, "numerics": {"block": data.draw(st.integers(1, 30))}}
+    shuffled = {name: data.draw(st.permutations(AXES[name])) for name in data.draw(st.permutations(list(AXES)))}
+    tables = {"model": MODEL, "axes": shuffled, "numerics": {"block": data.draw(st.integers(1, 30))}}
     tables |= {"output": {"x": 3}}
     parts, workers = data.draw(st.integers(1, 4)), data.draw(st.integers(1, 3))
     with tempfile.TemporaryDirectory() as folder:
@@ -142,8 +150,8 @@ def test_random_blocks_orders_workers_and_parts_give_the_same_dataset(data):
             report = opened.run(workers=workers, part=(part + 1, parts))
         assert report.complete and leftovers(Path(folder)) == ["random.nc"]
         found = as_solved(opened.open())
-    whole = study.solve(**axes, **model, x=3)
-    assert_same_numbers(found.sel({name: whole[name] for name in axes}).transpose(*whole.dims), whole)
+    whole = solved_whole()
+    assert_same_numbers(found.sel({name: whole[name] for name in AXES}).transpose(*whole.dims), whole)
 
 
 @pytest.mark.parametrize("ended", [True, False])

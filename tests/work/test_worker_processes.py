@@ -7,9 +7,10 @@ from multiprocessing.process import BaseProcess as Run
 from pathlib import Path
 
 import pytest
-from children import PATIENCE, command, held, lines, note, stored, wait_for
+from children import PATIENCE, command, held, lines, stored, wait_for
 from line_study import load, present
 from same import assert_same
+from tasks import note_and_die, note_and_wait
 
 from study.work.cases import Failure
 from study.work.processes import ATTEMPTS, KILLED
@@ -100,13 +101,13 @@ def test_what_a_process_does_not_know_is_said(monkeypatch):
     monkeypatch.delenv("PYTHONPATH", raising=False)
     with engine(2, None, 8) as found:
         failure = found.submit(note_and_die, Path()).result(PATIENCE)
-        assert failure.message == "ModuleNotFoundError: No module named 'test_worker_processes'"
+        assert failure.message == "ModuleNotFoundError: No module named 'tasks'"
         assert found.submit(abs, -1).result(PATIENCE) == 1
 
 
 @pytest.fixture
 def importable(monkeypatch):
-    """Worker processes can import this file."""
+    """Worker processes can import the files beside conftest.py."""
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
 
 
@@ -119,22 +120,12 @@ def test_a_task_that_kills_its_process_is_given_up_and_others_are_not(importable
         assert found.submit(abs, -1).result(PATIENCE) == 1
 
 
-def note_and_die(log: Path) -> None:
-    note(log, "begun")
-    os.kill(os.getpid(), signal.SIGKILL)
-
-
 def test_a_process_does_not_end_what_nobody_waits_for(importable, tmp_path):
     with engine(2, None, 8) as found:
         found.submit(note_and_wait, tmp_path / "log")
         wait_for(lambda: lines(tmp_path / "log"))
     (process,) = lines(tmp_path / "log")
     assert not Path("/proc", process).exists()
-
-
-def note_and_wait(log: Path) -> None:
-    note(log, str(os.getpid()))
-    signal.pause()
 
 
 def test_a_killed_worker_costs_the_blocks_it_computed_only(opened, tmp_path):

@@ -9,7 +9,7 @@ from solver.parameters import allowed as within
 from solver.parameters import ends
 
 from ..data.units import with_unit
-from ..scene.quantities import multiple, quantity, unit_in
+from ..scene.quantities import multiple, quantity, readable, unit_in
 from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY, allowed
 from ..terminal import on_one_line
@@ -70,8 +70,11 @@ def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
     interval = f"{entry.own.interval[0]}{low}, {high}{entry.own.interval[-1]}"
-    scale = entry.scale.replace("E2*", "E1*") if np.isinf(_at(scene.given["E2"], place)) else entry.scale
-    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}"
+    modulus = "E1*" if np.isinf(_at(scene.given["E2"], place)) else "E2*"
+    scale = entry.scale.replace("E2*", modulus)
+    units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
+    here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
+    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
     return f"{called} = {value_text(text)}: {moved}{bounds}"
 
 

@@ -150,7 +150,7 @@ def test_spreads_of_hertz():
         ({"nu1": "0.6"}, r"nu1 = 0.6: must be in \(-1, 0.5\]"),
         ({"E2": "-2 GPa"}, "E2 = -2 GPa: must be > 0"),
         ({"hh": "2 um"}, '"hh" is not a parameter; did you mean "h"'),
-        ({"R": "5 km", "h": "2 nm"}, r"^h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R$"),
+        ({"R": "5 km", "h": "2 nm"}, r"^h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R, R = 5000 m$"),
         ({"h": xr.DataArray([1e-6], dims="film")}, 'the DataArray has no attribute "units"; a length needs one'),
     ],
 )

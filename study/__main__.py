@@ -4,7 +4,7 @@ point | list | check | run | retry | status | verify | clean | plot | table | tr
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (list, check, status, --dry-run).
+that do nothing but answer (point, list, check, status, --dry-run).
 """
 
 import argparse

@@ -73,8 +73,10 @@ def cap_radius(height, width):
 
 
 def _positive(name: str, value):
-    """The value, a list as an array. Raises ValueError if not all of it is positive and finite."""
+    """The value, a list as an array. Raises ValueError if it is text, or not all of it is positive and finite."""
     value = np.asarray(value) if isinstance(value, list | tuple) else value
+    if value is None or np.asarray(value).dtype.kind in "OSU" and not hasattr(value, "magnitude"):
+        raise ValueError(f"{name} = {value!r}: must be a number, all lengths in one unit, or a quantity of pint")
     if not (np.all(value > 0) and np.all(np.isfinite(value))):
         raise ValueError(f"{name} = {value}: must be > 0 and finite")
     return value

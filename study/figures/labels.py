@@ -56,9 +56,11 @@ def axis_label(name: str, array: xr.DataArray) -> str:
     unit, _ = multiple(array)
     if unit:
         return f"{symbol(name)}, {unit}"
-    if not array.attrs.get("scale") or not plain_symbol(name):
+    scale = array.attrs.get("scale")
+    if not scale or not plain_symbol(name):
         return symbol(name)
-    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, ('E_2^*', 'R'), TIMES)}$"
+    units = ("E_1^*" if "E1*" in scale else "E_2^*", "R")  # E1* is the unit on a rigid base
+    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, units, TIMES)}$"
 
 
 def value_text(name: str, array: xr.DataArray, value) -> str:

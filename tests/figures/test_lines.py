@@ -209,5 +209,5 @@ def test_only_what_is_used_is_stated():
 
 def test_a_rigid_base_is_stated():
     gel = study.solve(P=1e-5, h=0.02, n=0, micro="smooth", x=2)
-    assert stated([gel]) == ["rigid base", "$P/(E_2^*\\,R^2)$ = $10^{-5}$", "$h/R$ = 0.02", "frictionless interface"]
+    assert stated([gel]) == ["rigid base", "$P/(E_1^*\\,R^2)$ = $10^{-5}$", "$h/R$ = 0.02", "frictionless interface"]
     assert "rigid base" not in stated([gel, study.solve(P=1e-5, h=0.02, n=0.5, micro="smooth", x=2)])

@@ -128,7 +128,8 @@ def solve(
     xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
     is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
     spreads: one standard deviation, to first order. Numerical settings of one value are attributes. `study.summary`
-    says it in words. A warning tells of physical cases that violate an assumption of the model.
+    says it in words. A warning tells of physical cases that violate an assumption of the model, or
+    that have inputs of which the unit must be wrong.
 
     Raises
     ------

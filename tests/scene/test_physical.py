@@ -170,3 +170,10 @@ def test_what_is_beyond_the_model_is_said_once():
         warnings.simplefilter("error")
         study.solve(**COATED, P="10 N", x=2)
         study.solve(P=1e-2, n=1e-3, h=1e-3, micro="smooth", x=2)  # dimensionless: `validity` says it
+
+
+def test_the_poisson_ratio_of_a_punch_of_which_none_is_given_is_in_the_results():
+    given = COATED | {"E_punch": "210 GPa", "P": "10 N", "x": 2}
+    found, said = quiet(**given), quiet(**given, nu_punch=0.3)
+    assert found.nu_punch == 0.3 and found.a == said.a
+    assert study.summary(found) == study.summary(said)

@@ -150,6 +150,8 @@ def solve(
     scene = read_scene(parameters, cases)
     about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
+        if cases is not None and not (rows and len(rows) == len(cases)):
+            raise StudyError(["cases must be a list of dictionaries, at least one"])
         definition = complete_scene(draft, scene, [], about, most=LARGE)
     else:
         if cases is not None:

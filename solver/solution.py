@@ -129,25 +129,32 @@ class Solution:
         `model_error` may always be NaN.
         """
         names = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)
-        if all(np.isfinite(getattr(self, name).sum()) for name in names):  # as in most batches, and quick to see
+        ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+        if all(np.isfinite(values.sum()) for values in self._of(names, ended)):  # as in most batches, and quick to see
             return np.zeros(len(self.a), dtype=bool)
         finite = np.all([np.isfinite(_ends(getattr(self, name))).all(axis=0) for name in names], axis=0)
-        return ~finite & np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+        return ~finite & ended
 
     def out_of_range(self):
         """(B,) bool: the case has converged to a number that is negative, or nought, or above 1 where it cannot be.
 
         In units R = E2* = 1, where no number is rounded to nought by its unit.
         """
-        least = {name: getattr(self, name).min(initial=1.0) for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)}
-        most = max(getattr(self, name).max(initial=0.0) for name in _SHARES)
+        names, ended = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES), self.status == Status.CONVERGED
+        least = dict(zip(names, (values.min(initial=1.0) for values in self._of(names, ended)), strict=True))
+        most = max(values.max(initial=0.0) for values in self._of(_SHARES, ended))
         if most <= 1 + _ROUNDING and all(v > 0 if name in _POSITIVE else v >= 0 for name, v in least.items()):
             return np.zeros(len(self.a), dtype=bool)
-        ends = {name: _ends(getattr(self, name)) for name in (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)}
+        ends = {name: _ends(getattr(self, name)) for name in names}
         wrong = [~(low > 0) for name, (low, _) in ends.items() if name in _POSITIVE]
         wrong += [low < 0 for low, _ in ends.values()]
         wrong += [ends[name][1] > 1 + _ROUNDING for name in _SHARES]
-        return np.any(wrong, axis=0) & (self.status == Status.CONVERGED)
+        return np.any(wrong, axis=0) & ended
+
+    def _of(self, names, chosen):
+        """The arrays of these names, of the `chosen` (B,) cases alone."""
+        arrays = (getattr(self, name) for name in names)
+        return arrays if chosen.all() else (values[chosen] for values in arrays)
 
     def refused(self, mask, status):
         """The same without the numbers of the cases of `mask` (B,), whose status says why."""

@@ -94,9 +94,9 @@ def _routes(problem, solvable):
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
     iterated = solvable & (~is_smooth | (problem.base == "layered"))
     kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
-    present = ([word for word in known if word in set(words[iterated].tolist())] for known, words in kinds)
-    for law, body, scheme in product(*present):
-        chosen = iterated & (problem.micro == law) & (problem.base == body) & (problem.scheme == scheme)
+    present = ([(word, words == word) for word in known if np.any(words == word)] for known, words in kinds)
+    for (_, of_law), (_, on_body), (scheme, by_scheme) in product(*present):
+        chosen = iterated & of_law & on_body & by_scheme
         for limit in np.unique(problem.max_iterations[chosen]):
             yield from _route(chosen & (problem.max_iterations == limit), SCHEMES[scheme])
 

@@ -12,7 +12,7 @@ nothing of it remains. It is linear in c, so that it is tabulated like the rest.
 """
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -96,16 +96,13 @@ class Convolution:
     shares: list
 
     @property
-    def nbytes(self):
-        """Size in bytes."""
-        table = self.__dict__.get("table", np.empty(0)).nbytes
-        return table + sum(array.nbytes for share in self.shares for array in share)
+    def arrays(self):
+        """All its arrays."""
+        return self.shares
 
     def of(self, c):
         """The matrices (b, m, n) for c (b, T)."""
         size = len(c), self.shape[0], self.shape[1] * self.shape[2]
-        if len(c) >= MANY:
-            return (c @ self.table).reshape(size)
         out, by_octave = np.zeros((len(c), *self.shape)), c.reshape(len(c), -1, _TAU)
         for row, panel, octave, basis, weight, columns in self.shares:
             for one, nodes in zip(out, by_octave, strict=True):
@@ -113,9 +110,8 @@ class Convolution:
                 one[row, panel] += against(values, columns)
         return out.reshape(size)
 
-    @cached_property
-    def table(self):
-        """The matrices of all unit vectors c, (T, m n): for many c together."""
+    def whole(self):
+        """The same as a :class:`Whole`."""
         m, panels, order = self.shape
         out = np.zeros((len(waves()[1]), m, panels, order))
         for row, panel, octave, basis, weight, columns in self.shares:
@@ -125,7 +121,19 @@ class Convolution:
             spread = csc_array((basis.ravel(), place.ravel(), ends), shape=(len(row) * len(out), octave.size))
             own = spread @ (weight[..., None] * columns).reshape(octave.size, order)
             out[:, row, panel] += own.reshape(len(row), len(out), order).transpose(1, 0, 2)
-        return out.reshape(len(out), -1)
+        return Whole((m, panels * order), out.reshape(len(out), -1))
+
+
+class Whole(NamedTuple):
+    """A :class:`Convolution` at m points for many c together: the matrices of all unit vectors c, `table` (T, m n);
+    `shape` is (m, n)."""
+
+    shape: tuple
+    table: np.ndarray
+
+    def of(self, c):
+        """The matrices (b, m, n) for c (b, T)."""
+        return (c @ self.table).reshape(len(c), *self.shape)
 
 
 def convolution(grid, points, cut):

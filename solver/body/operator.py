@@ -61,6 +61,10 @@ class Body(Protocol):
     def take(self, index):
         """The body of the sub-batch at `index`."""
 
+    def within(self, rtol, a):
+        """The body with an operator right to a hundredth of rtol (B,), if that is cheaper, for contacts of about the
+        radius a."""
+
     def at(self, a, mesh, near=None):
         """The :class:`Operator` at the radii a (B,). `near`: one of these cases, perhaps at other radii or on another
         mesh; what of it holds here is not computed again."""

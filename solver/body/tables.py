@@ -1,23 +1,21 @@
 """Tables of the layered operator: Hankel transforms at the nodes of the quadrature of each octave of h/a."""
 
-from collections import OrderedDict
-from functools import lru_cache
+from functools import lru_cache, wraps
 from itertools import pairwise
-from threading import Lock
 from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import legvander
 from scipy.special import j0
 
+from ..numerics.kept import Kept
 from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
-from .wave_rule import CUT, FILM, few, quadrature
+from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
 
-#: A table of J0 φ of more numbers than this is not kept; the product is then formed case by case.
+#: Tables of more numbers than this are not kept, J0 between the nodes is then formed anew, and the product of J0 φ case
+#: by case.
 _KEEP = 4e6
-#: The same limit of tables between the nodes. It is lower, since there are many of them.
-_KEEP_BETWEEN = 4e4
 #: All tables that are kept take at most so many bytes.
 _MOST_BYTES = 4e8
 #: The transform of J0 is formed in pieces, along each of which the argument of J0 grows by at most so many radians.
@@ -37,7 +35,7 @@ class Table(NamedTuple):
     (G,); `spread`, (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the quadrature,
     π/2 included.
 
-    `film`: the m nodes where the convolution is felt, the :class:`film.Convolution` there, and at the edge (T, n).
+    `film`: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge (T, n).
     """
 
     k: np.ndarray
@@ -54,58 +52,62 @@ class Table(NamedTuple):
         return L1 * self.spread if self.spread.ndim == 1 else L1 @ self.spread
 
 
-_tables = OrderedDict()
-_tables_lock = Lock()
+_tables = Kept(_MOST_BYTES)
 
 
-def table(grid, octave, stiffness, many=True):
-    """The :class:`Table` of a mesh, for many cases or few; the latest used, up to _MOST_BYTES, are kept."""
-    key = grid, octave, stiffness, many
-    with _tables_lock:
-        if key in _tables:
-            _tables.move_to_end(key)
-            return _tables[key]
-    found = _table(*key)
-    with _tables_lock:
-        _tables[key] = found
-        while len(_tables) > 1 and sum(_size(kept) for kept in _tables.values()) > _MOST_BYTES:
-            _tables.popitem(last=False)
+def _kept(make):
+    """A function of hashable arguments whose latest results are kept in `_tables`."""
+
+    @wraps(make)
+    def found(*key):
+        return _tables.get((make.__name__, *key), lambda: make(*key))
+
     return found
 
 
-def _size(found):
-    """Bytes of a table."""
-    return sum(getattr(part, "nbytes", 0) for part in (*found[:-1], *(found.film or ())))
-
-
-def _table(grid, octave, stiffness, many):
-    k, weight = quadrature(octave, stiffness)
-    J_edge, phi = j0(k), transform(grid, k)
-    J = j0(k[:, None] * grid.x) - J_edge[:, None]
+@_kept
+def table(grid, octave, stiffness, many):
+    """The :class:`Table` of a mesh, for many cases or few."""
+    k, J, phi, J_edge = _waves(grid, octave, stiffness % len(STIFFEST))
     at_edge, product = J_edge[:, None] * phi, None
     if octave != FILM:
-        spread = np.pi / 2 * few(octave, stiffness).spread
+        spread = _spread(octave, stiffness)
         edge = spread @ at_edge
         if many:
             product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
     else:
-        spread = np.pi / 2 * weight
+        spread = np.pi / 2 * quadrature(octave, stiffness)[1]
         edge = spread[:, None] * at_edge
         if many and phi.size * grid.n <= _KEEP:
             product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
-    return Table(k, J, phi, J_edge, spread, edge, product, _film_table(grid) if octave == FILM else None)
+    return Table(k, J, phi, J_edge, spread, edge, product, _film_table(grid, many) if octave == FILM else None)
 
 
-@lru_cache(maxsize=4)
-def _film_table(grid):
+@_kept
+def _waves(grid, octave, stiffness):
+    """k, J, φ and J_edge of a :class:`Table`, which those for many cases and for few have in common."""
+    k, _ = quadrature(octave, stiffness)
+    J_edge = j0(k)
+    return k, j0(k[:, None] * grid.x) - J_edge[:, None], transform(grid, k), J_edge
+
+
+@_kept
+def _spread(octave, stiffness):
+    """The `spread` of a :class:`Table`, which all meshes have in common."""
+    return np.pi / 2 * few(octave, stiffness).spread
+
+
+@_kept
+def _film_table(grid, many):
     near = felt(grid, grid.x)
-    return near, film.convolution(grid, grid.s[near], CUT), film.convolution(grid, np.zeros(1), CUT).table
+    return near, film_rows(grid, grid.s[near].tobytes(), many), film_rows(grid, np.zeros(1).tobytes(), True).table
 
 
-@lru_cache(maxsize=8)
-def film_rows(grid, s_bytes):
-    """The :class:`film.Convolution` at points s between the nodes."""
-    return film.convolution(grid, np.frombuffer(s_bytes), CUT)
+@_kept
+def film_rows(grid, s_bytes, many):
+    """The :class:`film.Convolution` at points s between the nodes for few cases, for many the :class:`film.Whole`."""
+    found = film.convolution(grid, np.frombuffer(s_bytes), CUT)
+    return found.whole() if many else found
 
 
 def felt(grid, x):
@@ -156,11 +158,11 @@ def _angles(low, high, k, order):
 
 def between(octave, stiffness, x):
     """J0(k x) - J0(k), (G, m)."""
-    small = len(x) * len(quadrature(octave, stiffness)[0]) <= _KEEP_BETWEEN
-    return (_between_kept if small else _between_kept.__wrapped__)(octave, stiffness, x.tobytes())
+    small = len(x) * len(quadrature(octave, stiffness)[0]) <= _KEEP
+    return (_between if small else _between.__wrapped__)(octave, stiffness % len(STIFFEST), x.tobytes())
 
 
-@lru_cache(maxsize=600)
-def _between_kept(octave, stiffness, x_bytes):
+@_kept
+def _between(octave, stiffness, x_bytes):
     k, _ = quadrature(octave, stiffness)
     return j0(k[:, None] * np.frombuffer(x_bytes)) - j0(k)[:, None]

@@ -25,10 +25,14 @@ _WIDEST = 200.0
 #: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: beyond the first class the first panel
 #: ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: How many nodes determine L - 1 of each class of stiffness: the most that were needed in any octave.
-_FEW = (52, 90, 104, 104)
+#: What a loose operator leaves out over the largest L, of each class of stiffness. The two stiffest are never loose:
+#: fewer nodes would hardly do, since the pressure under a plate can be a small difference.
+LOOSE = (1e-10, 1e-11, np.inf, np.inf)
+#: How many nodes determine L - 1 of each class of stiffness, then of those in a loose operator: the most that were
+#: needed in any octave.
+_FEW = (52, 90, 104, 104, 36, 61)
 #: The few nodes are found from so many random layers, their L - 1 and u dL/du. What the nodes leave out of these
-#: functions is at most this part of the largest of them, which is rounding.
+#: functions is at most this part of the largest of them, which is rounding; or that of LOOSE.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 
 
@@ -51,17 +55,25 @@ CUT = _end(FILM) * 2.0**-FILM
 
 
 def place_of(layer, a):
-    """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each."""
+    """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each.
+
+    The class of a loose operator is that of its stiffness and len(STIFFEST); films are never loose.
+    """
     eta = layer.h / a
     octave = np.floor(np.log2(eta))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)  # of a film, that of its quadrature's end
-    return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
+    stiffness = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
+    return octave, stiffness if layer.loose is None else stiffness + len(STIFFEST) * (layer.loose & (octave != FILM))
+
+
+def quadrature(octave, stiffness):
+    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness, loose or not."""
+    return _quadrature(octave, stiffness % len(STIFFEST))
 
 
 @lru_cache(maxsize=256)
-def quadrature(octave, stiffness):
-    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness."""
+def _quadrature(octave, stiffness):
     scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness]
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
@@ -94,11 +106,12 @@ def few(octave, stiffness):
     be another.
     """
     k, weight = quadrature(octave, stiffness)
-    scale = weight / (1 + k * k)
-    rest, nodes, rows = _samples(octave, stiffness, k, scale), [], []
+    loose, of_layers = divmod(stiffness, len(STIFFEST))
+    scale, left_out = weight / (1 + k * k), LOOSE[of_layers] if loose else _LEFT_OUT
+    rest, nodes, rows = _samples(octave, of_layers, k, scale), [], []
     left = np.sum(rest**2, axis=0)
     most = left.max()
-    while left.max() > _LEFT_OUT**2 * most and len(nodes) < _FEW[stiffness]:
+    while left.max() > left_out**2 * most and len(nodes) < _FEW[stiffness]:
         nodes.append(np.argmax(left))
         direction = rest[:, nodes[-1]] / np.sqrt(left[nodes[-1]])
         rows.append(np.einsum("i,ij->j", direction, rest))

@@ -14,7 +14,7 @@ from ..solution import Solution
 from ..status import Status
 from .answer import Answer, answer, hopeless, stuck
 from .driver import BUDGET, newton_steps, solve_on
-from .equation import error_floor, evaluate
+from .equation import evaluate
 from .panels import solve_on_panels
 from .start import approach, first_guess, guess_radius, nodes_wanted
 
@@ -42,18 +42,19 @@ def solve_newton(cases, rtol, nodes, limit, x):
         work[index] += iterated.count * part.body.work(a[index], n)[1]
         goes_on = free[index] & (n < LADDER[-1]) & (work[index] <= BUDGET)
         found = answer(iterated, x, np.where(goes_on, rtol[index], np.inf), before[index])
-        useless = (found.solution.status != Status.CONVERGED) | _hopeless(part, found, rtol[index])
+        useless = (found.solution.status != Status.CONVERGED) | _hopeless(found, rtol[index])
         useless |= stuck(found.solution.error, found.slow, n, rtol[index]) | (work[index] > BUDGET)
         error = np.where(free[index] & found.unsure, np.inf, found.solution.error)
         before[index] = error
         return np.where(useless, np.nan, error), found.finer, found._replace(finer=None)
 
     a = guess_radius(cases)
+    cases = cases._replace(body=cases.body.within(np.where(free, rtol, 0.0), a))
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
     found = _together(rungs, size, len(x))
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
     missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET
-    opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(cases, found, rtol)) & free & (limit == 0)
+    opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol)) & free & (limit == 0)
     opened = np.flatnonzero(opened & ~spent)
     ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in opened]
     ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)  # no panels say that it lifts off
@@ -62,20 +63,19 @@ def solve_newton(cases, rtol, nodes, limit, x):
 
 def _together(rungs, size, points):
     """The last :class:`.answer.Answer` of each case from those on all meshes, (index, answer); their steps add up."""
-    count, tension = np.zeros(size, int), np.zeros(size)
+    count, (tension, floor) = np.zeros(size, int), np.zeros((2, size))
     gap, slow = np.zeros((2, size), bool)
     for index, found in rungs:
         count[index] += found.solution.iterations
-        tension[index], gap[index], slow[index] = found.tension, found.gap, found.slow
+        tension[index], gap[index], slow[index], floor[index] = found[1:-1]
     solution = Solution.join(size, points, [(index, found.solution) for index, found in rungs])
-    return Answer(replace(solution, iterations=count.astype(np.int32)), tension, gap, slow, None)
+    return Answer(replace(solution, iterations=count.astype(np.int32)), tension, gap, slow, floor, None)
 
 
-def _hopeless(cases, found, rtol):
+def _hopeless(found, rtol):
     """(B,) bool: the error is above rtol, and no mesh makes it smaller."""
-    solution = found.solution
-    floor = error_floor(cases.body, solution.a, solution.nodes)
-    return (solution.status == Status.CONVERGED) & hopeless(solution.error, found.slow, floor, rtol) & ~found.unsure
+    closed, error = found.solution.status == Status.CONVERGED, found.solution.error
+    return closed & hopeless(error, found.slow, found.floor, rtol) & ~found.unsure
 
 
 def _ended(solution, missed, lifted, spent):
@@ -117,7 +117,7 @@ def _on_panels(case, before, rtol, x, left):
         if not found.gap[0] and found.solution.error[0] < np.nan_to_num(best.error[0], nan=np.inf):
             best = found.solution
         missed = (best.status == Status.CONVERGED) & (best.error > rtol)
-        if best.status[0] == Status.CONVERGED and (not missed[0] or _hopeless(case, found, rtol)[0]):
+        if best.status[0] == Status.CONVERGED and (not missed[0] or _hopeless(found, rtol)[0]):
             spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))

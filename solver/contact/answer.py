@@ -7,7 +7,7 @@ import numpy as np
 from ..solution import Solution
 from ..status import Status
 from . import newton
-from .equation import State, error_floor
+from .equation import State
 from .error import area_error, estimate, refine
 from .results import profiles, quantities
 
@@ -27,19 +27,21 @@ class Answer(NamedTuple):
 
     tension : (B,) tensile part of the load over the load; gap : (B,) bool, whether there is a gap inside the contact.
     Either may also mean that the mesh does not resolve the pressure. slow : (B,) bool, the error is hardly smaller
-    than on the mesh before. finer : the state on the next finer mesh.
+    than on the mesh before. floor : (B,) below which no mesh brings the error. finer : the state on the next finer
+    mesh.
     """
 
     solution: Solution
     tension: np.ndarray
     gap: np.ndarray
     slow: np.ndarray
+    floor: np.ndarray
     finer: State | None
 
     def take(self, index):
         """The sub-batch at `index`."""
         finer = None if self.finer is None else self.finer.take(index)
-        return Answer(self.solution.take(index), self.tension[index], self.gap[index], self.slow[index], finer)
+        return Answer(self.solution.take(index), *(values[index] for values in self[1:-1]), finer)
 
     @property
     def lifted(self):
@@ -79,9 +81,8 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     if len(last):  # of cases that stay on this mesh dP/dD is that of this mesh, as their other numbers are
         at = ev.take(last)
         slope[last] = newton.stiffness(at, newton.tangent(at), own.P[last], own.D[last])
-    floor = error_floor(ev.cases.body, own.a, ev.mesh.n)
     slow = error > _FALLS * before
-    last = hopeless(error, slow, floor, enough) | stuck(error, slow, ev.mesh.n, enough)
+    last = hopeless(error, slow, ev.floor, enough) | stuck(error, slow, ev.mesh.n, enough)
     done = np.flatnonzero(finite & (last | (error <= enough)))
     error[done] = np.maximum(error[done], area_error(ev, own.Ar_An, done))
     p, lam = np.full((2, len(error), len(x)), np.nan)
@@ -95,4 +96,4 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     # only where the equation is linear can there be tension
     q, w = ev.curve.q, ev.mesh.w
     tension = np.where(finite, np.maximum(-q, 0.0) @ np.abs(w) / np.abs(q @ w), 0.0)
-    return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, refined.state)
+    return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, ev.floor, refined.state)

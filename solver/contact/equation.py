@@ -91,6 +91,8 @@ class Evaluation:
     def gap(self):
         """Height (B, n) over a²/2 at which asperities hang over the surface that the others press down; else 0."""
         q = self.curve.q
+        if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # as in most batches, and quick to see
+            return np.zeros(q.shape)
         bare = (q >= 0) & (q < _NOTHING * q.max(axis=1, keepdims=True))
         return np.where(bare, np.maximum(self.F - self.Z * self.curve.g, 0.0), 0.0)
 
@@ -100,15 +102,21 @@ class Evaluation:
 
         Where asperities hang over the surface without pressure, none is asked for.
         """
-        F = np.where(self.gap > 0, 0.0, np.abs(self.F))
+        F = np.abs(self.F)
+        F[self.gap > 0] = 0.0
         return np.maximum(F.max(axis=1), np.abs(self.G))
+
+    @cached_property
+    def floor(self):
+        """Error (B,) that no estimate may go below: rounding, and the error of the operator itself."""
+        own = self.cases.body.error(np.exp(self.state.eta), self.mesh.n)
+        return np.maximum(4 * self.mesh.n * np.finfo(float).eps, own)
 
     @property
     def closed(self):
         """(B,) bool: the residual is no more than rounding and the error of the operator leave of it."""
-        a, body = np.exp(self.state.eta), self.cases.body
-        floor = np.maximum(_OF_OPERATOR * error_floor(body, a, self.mesh.n), _ROUNDING / body.softness(a))
-        return self.residual < np.maximum(_CLOSED, floor)
+        rounding = _ROUNDING / self.cases.body.softness(np.exp(self.state.eta))
+        return self.residual < np.maximum(_CLOSED, np.maximum(_OF_OPERATOR * self.floor, rounding))
 
     @property
     def lost(self):
@@ -185,8 +193,3 @@ def jacobian(ev):
     own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X
     return own / ev.X, dF_deta
-
-
-def error_floor(body, a, nodes):
-    """Error (B,) that no estimate may go below on `nodes` nodes: rounding, and the error of the operator itself."""
-    return np.maximum(4 * nodes * np.finfo(float).eps, body.error(a, nodes))

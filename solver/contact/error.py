@@ -10,7 +10,7 @@ import numpy as np
 
 from ..numerics.ladder import MARGIN, finer_mesh
 from . import newton
-from .equation import State, error_floor, evaluate, groups
+from .equation import State, evaluate, groups
 from .results import difference, interpolate, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. That ring has a real area of about λ at the node
@@ -58,7 +58,7 @@ def estimate(ev, found, refined):
     # a small share of the asperities at the first node: the ring in which they yield more than the body is not seen
     margin = np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
     error = margin * difference(found, refined.found)
-    return np.maximum(error, error_floor(ev.cases.body, found.a, ev.mesh.n))
+    return np.maximum(error, ev.floor)
 
 
 def area_error(ev, Ar_An, rows):

@@ -1,54 +1,54 @@
 """The tables of the layered operator: how much of them is kept, and that it does not matter to the numbers."""
 
-from collections import OrderedDict
-
 import numpy as np
 import pytest
 from solver_cases import difference, one
 
 from solver.body import tables as module
+from solver.body.wave_rule import FILM
+from solver.numerics.kept import Kept
 from solver.numerics.mesh import mesh
 
 
 @pytest.fixture
 def tables(monkeypatch):
     """No tables yet."""
-    monkeypatch.setattr(module, "_tables", OrderedDict())
-    return lambda: module._tables
+
+    def emptied(most):
+        monkeypatch.setattr(module, "_tables", Kept(most))
+        return module._tables
+
+    return emptied
 
 
-def size(tables):
-    return sum(array.nbytes for found in tables.values() for array in found if isinstance(array, np.ndarray))
+def test_no_more_than_400_megabytes_are_kept():
+    assert module._tables.most == 4e8
 
 
-def test_no_more_than_400_megabytes_are_kept(tables, monkeypatch):
-    """The oldest go, those that were used last stay. The arrays are not touched, and take no memory."""
-    none = np.empty(0)
-    big = module.Table(none, np.empty(20_000_000), none, none, none, none, None, None)
-    monkeypatch.setattr(module, "_table", lambda *key: big._replace(k=np.array(key[1:])))
-    grid, sizes = mesh(5), []
-    for octave in range(6):
-        module.table(grid, octave, 0)
-        module.table(grid, 0, 0)  # in use
-        sizes.append(size(tables()))
-    assert max(sizes) <= 4e8 and sizes[-1] > 2e8
-    assert [found.k[0] for found in tables().values()] == [5, 0]
+def test_what_tables_have_in_common_is_kept_once(tables):
+    """J0 and φ, for many cases and for few, loose or not; φ is also that of the waves."""
+    kept = tables(4e8)
+    first, *others = (module.table(mesh(8), 0, *kind) for kind in ((0, True), (0, False), (4, True)))
+    assert all(other.J is first.J and other.phi is first.phi for other in others)
+    whole = [v for table in (first, *others) for v in (table.edge, table.product, table.spread) if v is not None]
+    distinct = {id(v): v.nbytes for v in (first.k, first.J, first.phi, first.J_edge, *whole)}
+    assert kept.nbytes == sum(distinct.values())
 
 
-def test_a_table_larger_than_all_is_kept_alone(tables, monkeypatch):
-    monkeypatch.setattr(module, "_MOST_BYTES", 1.0)
-    first, again = (module.table(mesh(5), 0, 0) for _ in range(2))
-    assert first is again
-    assert module.table(mesh(5), 1, 0) is not first and len(tables()) == 1
+def test_a_film_has_the_convolution_of_many_or_of_few(tables):
+    tables(4e8)
+    many, few = (module.table(mesh(8), FILM, 0, kind).film[1] for kind in (True, False))
+    c = np.random.default_rng(0).random((2, many.table.shape[0]))
+    np.testing.assert_allclose(many.of(c), few.of(c), rtol=0, atol=1e-12 * np.abs(few.of(c)).max())
 
 
 def test_numbers_do_not_depend_on_what_is_kept(tables, monkeypatch):
     """Eight octaves of h/a, films, and tables too large to be kept whole; to the rounding of the operator."""
     case = {"a": 0.04, "h": 0.04 * 2.0 ** np.arange(-10.5, 6, 2), "n": 0.5, "base": "layered", "nodes": 12}
+    kept = tables(4e8)
     whole = one(**case)
-    assert len(tables()) > 7
-    monkeypatch.setattr(module, "_tables", OrderedDict())
-    monkeypatch.setattr(module, "_MOST_BYTES", 1.0)
+    assert len(kept.values()) > 7
+    kept = tables(1.0)
     monkeypatch.setattr(module, "_KEEP", 0)
     assert difference(one(**case), whole).max() < 1e-11
-    assert len(tables()) == 1
+    assert len(kept.values()) == 1

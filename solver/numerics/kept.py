@@ -1,0 +1,53 @@
+"""What takes long to make and is asked for again: the latest used of it is kept, up to a number of bytes."""
+
+from collections import Counter, OrderedDict
+from threading import Lock
+
+import numpy as np
+
+
+class Kept:
+    """Values by their keys, the latest used, whose arrays take at most `most` bytes; but one is always kept.
+
+    An array that several values share counts once. Threads may use it at the same time.
+    """
+
+    def __init__(self, most):
+        self.most, self.nbytes = most, 0
+        self._values, self._uses, self._lock = OrderedDict(), Counter(), Lock()
+
+    def get(self, key, make):
+        """The value of `key`; if it is not kept, that of ``make()``: an array, a tuple or list of values, or an object
+        with such a list of its `arrays`."""
+        with self._lock:
+            if key in self._values:
+                self._values.move_to_end(key)
+                return self._values[key]
+        made = make()
+        with self._lock:
+            if key not in self._values:  # else another thread has made it meanwhile
+                self._values[key] = made
+                self._count(made, 1)
+            while self.nbytes > self.most and len(self._values) > 1:
+                self._count(self._values.popitem(last=False)[1], -1)
+        return made
+
+    def values(self):
+        """All that are kept, the latest used last."""
+        with self._lock:
+            return list(self._values.values())
+
+    def _count(self, value, uses):
+        for array in _arrays(value):
+            before = self._uses[id(array)]
+            self._uses[id(array)] += uses
+            if not before or not before + uses:
+                self.nbytes += uses * array.nbytes
+
+
+def _arrays(value):
+    if isinstance(value, np.ndarray):
+        yield value
+    else:
+        for part in value if isinstance(value, (tuple, list)) else getattr(value, "arrays", ()):
+            yield from _arrays(part)

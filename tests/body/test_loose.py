@@ -1,0 +1,75 @@
+"""Loose operators: where they are taken, and that they cost no accuracy that was asked for."""
+
+import numpy as np
+from solver_cases import difference
+
+from solver import Problem, Status, solve
+from solver.body.layered import Layered
+from solver.numerics.mesh import mesh
+
+X = np.linspace(0, 1, 5)
+SIZE, RTOL = 1000, 1e-6
+
+
+def coatings(micro):
+    """Ordinary loads, and layers of every thickness and stiffness that a loose operator serves."""
+    random = np.random.default_rng(21)
+
+    def between(low, high):
+        return np.exp(random.uniform(np.log(low), np.log(high), SIZE))
+
+    return {
+        "P": between(1e-8, 1e-2),
+        "h": between(1e-3, 3),
+        "n": between(1e-3, 1e3),
+        "nu1": random.uniform(-0.5, 0.5, SIZE),
+        "bonding": random.choice(["bonded", "frictionless"], SIZE),
+        "Nbar": between(1e4, 1e7),
+        "Ra": between(1e-3, 1e-2),
+        "base": "layered",
+        "micro": micro,
+        "rtol": RTOL,
+    }
+
+
+def test_they_are_right_to_a_hundredth_of_rtol(monkeypatch):
+    """Against the same meshes with the operator right to rounding: within what `error` says of the operator, too."""
+    for micro in ("smooth", "disc_cell"):
+        case = coatings(micro)
+        loose = solve(Problem.of(**case), X)
+        with monkeypatch.context() as tight:
+            tight.setattr(Layered, "within", lambda body, rtol, a: body)
+            exact = solve(Problem.of(**case), X)
+        same = (loose.nodes == exact.nodes) & (exact.status == Status.CONVERGED)
+        assert np.array_equal(loose.status, exact.status) and same.mean() > 0.99
+        moved = difference(loose, exact)[same]
+        assert np.all(moved <= np.minimum(0.01 * RTOL, loose.error[same])) and moved.max() > 1e-3 * RTOL
+
+
+def layer(**given):
+    """One layer of h = 1 unless given."""
+    case = {"h": 1.0, "n": 0.5, "nu1": 0.3, "nu2": 0.3, "bonded": True, "m": 0.0} | given
+    return Layered(*(np.array([value]) for value in case.values()))
+
+
+def is_loose(rtol=RTOL, **given):
+    """Whether the operator is at a = 1, and how many values of L it takes."""
+    body = layer(**given).within(np.array([rtol]), np.ones(1))
+    (part,) = body.at(np.ones(1), mesh(5)).parts
+    return bool(body.loose[0]), part.L1.shape[1]
+
+
+def test_ordinary_layers_take_fewer_values_of_L():
+    assert is_loose() == (True, 36) and is_loose(n=100.0) == (True, 61)
+    assert is_loose(rtol=1e-9) == (False, 52) and is_loose(rtol=0.0, n=100.0) == (False, 90)
+
+
+def test_soft_layers_plates_and_films_do_not():
+    """Of a soft layer little is left of the half-space's term; the pressure under a plate can be a small difference."""
+    assert is_loose(rtol=1e-7) == (True, 36) and is_loose(rtol=1e-7, n=1e-4, h=0.01) == (False, 52)
+    assert is_loose(n=900.0) == (False, 90)
+    assert is_loose(rtol=0.1, n=1e4) == (False, 104) and is_loose(rtol=0.1, n=1e7) == (False, 104)
+    film, loose = layer(h=1e-3), layer(h=1e-3).within(np.ones(1), np.ones(1))
+    (part,), (other,) = (body.at(np.ones(1), mesh(5)).parts for body in (film, loose))
+    assert part.film is not None and np.array_equal(part.L1, other.L1)
+    assert loose.loose[0] and loose.error(np.ones(1), 5) == film.error(np.ones(1), 5)

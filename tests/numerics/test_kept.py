@@ -1,0 +1,53 @@
+"""What is kept of costly results: the latest used, within a number of bytes."""
+
+import numpy as np
+from numpy.testing import assert_array_equal
+
+from solver.numerics.kept import Kept
+
+
+def array(number, size=10):
+    return np.full(size, float(number))
+
+
+def test_the_oldest_go_and_those_in_use_stay():
+    kept, made = Kept(250.0), []
+
+    def get(number):
+        return kept.get(number, lambda: made.append(number) or array(number))
+
+    for number in range(5):  # of 80 bytes each
+        assert_array_equal(get(number), array(number))
+        assert_array_equal(get(0), array(0))
+    assert made == [0, 1, 2, 3, 4] and kept.nbytes == 240
+    assert [value[0] for value in kept.values()] == [3, 4, 0]
+    get(1)
+    assert made[-1] == 1 and [value[0] for value in kept.values()] == [4, 0, 1]
+
+
+def test_one_that_is_larger_than_all_is_kept_alone():
+    kept = Kept(1.0)
+    first = kept.get("first", lambda: array(1))
+    assert kept.get("first", lambda: array(2)) is first
+    kept.get("second", lambda: array(2))
+    assert len(kept.values()) == 1 and kept.nbytes == 80
+
+
+def test_what_several_share_counts_once_until_the_last_has_gone():
+    kept, shared = Kept(1000.0), array(0)
+    for number in range(3):
+        kept.get(number, lambda number=number: (shared, [array(number)], None, "text"))
+    assert kept.nbytes == 80 * 4
+    kept.get("large", lambda: array(9, 116))  # 928 bytes: all of the others go
+    assert kept.nbytes == 928
+    kept.get("again", lambda: (shared, shared))
+    assert len(kept.values()) == 1 and kept.nbytes == 80
+
+
+def test_an_object_says_what_its_arrays_are():
+    class Whole:
+        arrays = (array(1), [array(2)])
+
+    kept = Kept(1000.0)
+    kept.get("whole", Whole)
+    assert kept.nbytes == 160

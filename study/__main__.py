@@ -4,7 +4,7 @@ point | list | check | run | retry | status | verify | clean | plot | table | tr
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (list, check, status, --dry-run).
+that do nothing but answer (point, list, check, status, --dry-run).
 """
 
 import argparse
@@ -63,7 +63,8 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--dry-run", action="store_true", help="say what it would cost, compute a sample only")
     sub = command("computing", "retry", "compute cases of some status again", "FILE")
     add_engine(sub)
-    sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
+    again = sub.add_argument("--status", required=True, action="append", metavar="NAME", help="such as iteration_limit")
+    again.completer = partial(proposed, "--status")
     sub = command("computing", "status", "say what has been computed", "FILE")
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
     text = "compare results with their checksums: exit code 1 for what is damaged or has none"

@@ -8,6 +8,7 @@ from solver import Status
 from .data import derived
 from .data.flags import broken, decode
 from .physical.bodies import BODIES
+from .physical.bounds import absurd
 from .physical.inputs import is_rigid, used_inputs
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
@@ -142,12 +143,12 @@ def _result(case: xr.Dataset, name: str) -> str:
 
 def _sentences(case: xr.Dataset) -> list[str]:
     """How well the case is solved, by which model, and which assumptions it violates."""
-    status = case["status"]
-    word, used = decode(status).item(), decode(case["model_used"]).item()
+    word, used = decode(case["status"]).item(), decode(case["model_used"]).item()
     if word == "converged":
         found = [f"Solved: the numbers are within a relative {float(case['error']):.1g} of the model's solution."]
     else:
-        meaning = Status(int(status)).meaning if int(status) in list(Status) else "the case has not been computed"
+        known = {one.name.lower(): one.meaning for one in Status}
+        meaning = known.get(word, "the case has not been computed")
         found = [f"NOT SOLVED ({word}): {meaning}."]
     model = MODELS.get(used)
     if model:
@@ -164,13 +165,15 @@ def _sentences(case: xr.Dataset) -> list[str]:
 
 
 def doubts(contact: xr.Dataset) -> list[str]:
-    """A sentence for each assumption of the model that some cases violate, and for an Ra that looks like a height."""
+    """A sentence for each assumption of the model that some cases violate, and for inputs that nothing real has."""
     v = contact.variables  # arithmetic of DataArrays takes longer than solving a contact
     found = []
     for word, where in broken(v["validity"]).items():
         of_all = f"{where.sum()} of {where.size} cases: " if where.size > 1 else ""
         found += [of_all + BROKEN[word]] if where.any() else []
     if {"Ra", "Nbar"} <= set(contact.coords) and (~np.isin(v["micro"].values, smooth_laws())).any():
-        sharp = looks_like_iso_ra((v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values)
+        sharp = looks_like_iso_ra(
+            (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values, si="units" in v["Ra"].attrs
+        )
         found += [sharp] if sharp else []
-    return found
+    return found + absurd(contact)

@@ -17,6 +17,7 @@ from .in_words import doubts
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
+from .scene.materials import Material
 from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
 from .spec.grid import shown
@@ -63,9 +64,9 @@ class Parameters(TypedDict, total=False):
     E2: Value
     E_punch: Value
     nu_punch: Value
-    punch: str
-    layer: str
-    body: str
+    punch: str | Material | Many
+    layer: str | Material | Many
+    body: str | Material | Many
     scheme: Literal["newton", "picard"] | Many
     k: Value
     rtol: Value
@@ -108,7 +109,7 @@ def solve(
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative
-    punch, layer, body : names of materials (docs/materials.md) in place of their moduli and Poisson ratios
+    punch, layer, body : materials, or names of some (docs/materials.md), in place of their moduli and Poisson ratios
     nu_punch : Poisson ratio of the punch, 0.3 if not given
     scheme, k : how it is solved, and the relaxation of "picard"
     rtol : wanted relative error
@@ -128,7 +129,8 @@ def solve(
     xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
     is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
     spreads: one standard deviation, to first order. Numerical settings of one value are attributes. `study.summary`
-    says it in words. A warning tells of physical cases that violate an assumption of the model.
+    says it in words. A warning tells of physical cases that violate an assumption of the model, or
+    that have inputs of which the unit must be wrong.
 
     Raises
     ------
@@ -149,6 +151,8 @@ def solve(
     scene = read_scene(parameters, cases)
     about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
+        if cases is not None and not (rows and len(rows) == len(cases)):
+            raise StudyError(["cases must be a list of dictionaries, at least one"])
         definition = complete_scene(draft, scene, [], about, most=LARGE)
     else:
         if cases is not None:

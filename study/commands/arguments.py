@@ -3,6 +3,7 @@
 import argparse
 import os
 import sys
+from functools import partial
 from pathlib import Path
 
 from ..terminal import on_one_line, say
@@ -43,9 +44,17 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
 def add_curves(sub: argparse.ArgumentParser) -> None:
     """Options of `plot` to draw curves of the results of a study, or of a results file, instead of a known figure."""
     group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
-    group.add_argument("--x", metavar="QUANTITY", help="abscissa, such as P, or a")
-    group.add_argument("--y", metavar="QUANTITY", help="ordinate, such as p_max; also An, spots, p_peak, E_eff ...")
-    group.add_argument("--hue", metavar="AXIS", default="", help="a curve for each of its values, such as n, or label")
+    drawn = [
+        group.add_argument("--x", metavar="QUANTITY", help="abscissa, such as P, or a"),
+        group.add_argument(
+            "--y", metavar="QUANTITY", help="ordinate, such as p_max; also An, spots, p_peak, E_eff ..."
+        ),
+        group.add_argument(
+            "--hue", metavar="AXIS", default="", help="a curve for each of its values, such as n, or label"
+        ),
+    ]
+    for option in drawn:
+        option.completer = partial(proposed, "--x")
     group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
 
 
@@ -87,7 +96,7 @@ def study_file(text: str) -> Path:
 
 
 def proposed(command: str, prefix: str, **_) -> list[str]:
-    """Completions of a word of a command: names of studies, figures, tables or parameters that begin with `prefix`."""
+    """Completions of a word of a command or option: names of studies, figures ... that begin with `prefix`."""
     if command == "point":
         from ..physical.bodies import BODIES
         from ..physical.names import SCENE
@@ -99,8 +108,19 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         figures = [*catalogue.FIGURES, *catalogue.SCHEMES, *known_studies()]
         known = ["all", *(figures if command == "plot" else catalogue.TABLES)]
+    elif command == "--x":
+        from ..data.derived import QUANTITIES
+        from ..physical.names import SCENE
+        from ..spec.vocabulary import VOCABULARY
+
+        known = [*VOCABULARY, *SCENE, *QUANTITIES]
+    elif command == "--status":
+        from ..data.dataset import status_words
+
+        known = list(status_words().values())
     else:
         files = [*Path().glob("*.toml"), *STUDIES.glob("*.toml")]
+        files += Path("results").glob("*.nc") if command == "verify" else ()
         known = [*known_studies(), *(path.as_posix() for path in sorted(files))]
     return [name for name in known if name.startswith(prefix)]
 

@@ -13,7 +13,7 @@ from ..figures.style import style
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..terminal import answer
-from .arguments import study_file
+from .arguments import known_studies, study_file
 from .computing import completed
 
 
@@ -27,7 +27,13 @@ def plot(options, name: str) -> int:
     """Draw a figure, or curves of results, and say which files it is in."""
     if options.x or options.y or options.hue or options.where:
         return _curves(options, name)
-    return _write(options, name, catalogue.FIGURES, catalogue.draw)
+    try:
+        return _write(options, name, catalogue.FIGURES, catalogue.draw)
+    except StudyError:
+        if name in catalogue.FIGURES or name not in known_studies():
+            raise
+        text = f"{name} is a study, not a figure: give --x and --y to draw curves of it, such as --x P --y a"
+        raise StudyError([text]) from None
 
 
 def _curves(options, name: str) -> int:

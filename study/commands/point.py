@@ -27,8 +27,8 @@ def point(options, given: list[str]) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it
         found = solve(**parameters, x=2, profiles=False)
-    answer(json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found))
-    return 0 if int(found["status"]) == 0 else 1
+    text = json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found)
+    return answer(text) or (0 if int(found["status"]) == 0 else 1)
 
 
 def parameters_of(given: list[str]) -> dict[str, float | str]:
@@ -41,6 +41,7 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
             errors.append(f'{error}, such as R="5 mm"')
             continue
         errors += [f"{name} is given twice"] * (name in found)
+        errors += [f"{name} says nothing of one contact: leave it out"] * (name in solve.__kwdefaults__)
         found[name] = value
     if errors:
         raise StudyError(errors)

@@ -30,7 +30,7 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
         if flags.name not in known:
             raise ValueError(f"{flags.name or 'the array'} is none of {', '.join(known)}")
         attributes = known[flags.name]()
-    words, values = attributes["flag_meanings"].split(), flags.values.astype(int)
+    words, values = attributes["flag_meanings"].split(), whole(flags.values, attributes)
     if "flag_masks" in attributes:
         masks = np.atleast_1d(attributes["flag_masks"]).tolist()
         present = np.unique(values).tolist()
@@ -46,4 +46,17 @@ def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
     """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
     attributes = validity.attrs
     masks = zip(np.atleast_1d(attributes["flag_masks"]).tolist(), attributes["flag_meanings"].split(), strict=True)
-    return {name: (validity.values & mask) != 0 for mask, name in masks}
+    values = whole(validity.values, attributes)
+    return {name: (values & mask) != 0 for mask, name in masks}
+
+
+def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
+    """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, NaN where no case is left.
+
+    There the status is that of a case that was not run, and all else is 0.
+    """
+    if flags.dtype.kind in "iu":
+        return flags
+    words = attributes["flag_meanings"].split()
+    absent = np.atleast_1d(attributes["flag_values"])[words.index("not_run")] if "not_run" in words else 0
+    return np.where(np.isfinite(flags), flags, absent).astype(int)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from ..physical.inputs import all_inputs, used_inputs
+from ..physical.inputs import all_inputs, is_rigid, used_inputs
 from ..physical.names import SCENE
 from ..scene import quantities
 from ..scene.quantities import READABLE, readable
@@ -56,9 +56,11 @@ def axis_label(name: str, array: xr.DataArray) -> str:
     unit, _ = multiple(array)
     if unit:
         return f"{symbol(name)}, {unit}"
-    if not array.attrs.get("scale") or not plain_symbol(name):
+    scale = array.attrs.get("scale")
+    if not scale or not plain_symbol(name):
         return symbol(name)
-    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, ('E_2^*', 'R'), TIMES)}$"
+    units = ("E_1^*" if "E1*" in scale else "E_2^*", "R")  # E1* is the unit on a rigid base
+    return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, units, TIMES)}$"
 
 
 def value_text(name: str, array: xr.DataArray, value) -> str:
@@ -82,9 +84,12 @@ def written(value: float) -> str:
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     """What is stated above a figure: `value_text` of each input that has one value in all the datasets.
 
-    Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials.
+    Inputs that no case uses are left out, and so are axes, which the figure shows, and names of models and materials. A
+    rigid base, which has no modulus, is stated in words.
     """
-    datasets, found = list(datasets), []
+    datasets = list(datasets)
+    contacts = [dataset for dataset in datasets if "base" in dataset.coords]
+    found = ["rigid base"] * (bool(contacts) and all(is_rigid(dataset, "base") for dataset in contacts))
     of_some = {name for dataset in datasets for name in used_inputs(dataset)}
     for name in all_inputs():
         values = _values(datasets, name)

@@ -53,6 +53,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     """What `plot` draws on a `new` figure, and the numbers that it shows: (Figure, Columns)."""
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
     hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
+    check_roles(found, x, y, hue)
     pair = xr.broadcast(found[x], found[y])
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
     if hue and hue not in dims:
@@ -97,6 +98,21 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
     return dataset
 
 
+def check_roles(found: xr.Dataset, x: str, y: str, hue: str) -> None:
+    """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or as abscissa and hue."""
+    errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(found[name])]
+    if y in found.dims:
+        errors.append(f"y = {y} is an axis of these results: it may be x or the hue")
+    if x == hue:
+        errors.append(f"x and hue are both {x}")
+    if errors:
+        raise StudyError(errors)
+
+
+def is_text(array: xr.DataArray) -> bool:
+    return array.dtype.kind in "UO"
+
+
 def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
     """The dataset at the wanted values of its axes. Raises StudyError for a value that is not there."""
     for name, value in where.items():
@@ -105,13 +121,14 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
             raise StudyError([f"{name} is no axis of these results{suggest(name, axes)}"])
         values = dataset[name].values
         (dim,), unit = dataset[name].dims, dataset[name].attrs.get("units", "1")
-        if values.dtype.kind in "UO":
+        if is_text(dataset[name]):
             fits = values == str(value)
         else:
             fits = np.isclose(values, number(name, value, unit), rtol=1e-6, atol=0)
         if not fits.any():
             listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in values[:20])
-            raise StudyError([f"{name} = {value} is not there; there are {listed}{' ...' * (len(values) > 20)}"])
+            more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
+            raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
         dataset = dataset.isel({dim: int(np.argmax(fits))})
     return dataset
 
@@ -190,6 +207,9 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, found[x]))
         axes.label_outer()
+        if grid.num1 + grid.get_gridspec().ncols >= len(panels):  # there is no panel below it
+            axes.set_xlabel(axis_label(x, found[x]))
+            axes.tick_params(labelbottom=True)
     figure.suptitle(wrapped(stated([found]), 21 * figure.get_figwidth()), fontsize=7)
     handles, title = [], ""
     if hue:

@@ -128,12 +128,14 @@ def columns(parts: list[tuple]) -> Columns:
 )
 def loads(rigid: xr.Dataset) -> list[tuple]:
     """Formula, interface, ν, source of the constants, the ranges of LEVELS, errors at SHOWN_AT."""
+    from scipy.interpolate import CubicSpline
+
     rows = []
     for formula in formulas.LOADS:
         for nu in formula.nu:
             x, error = load_error(formula, rigid, nu)
             ranges = [range_of(x, error, level, formula.thin) for level in LEVELS]
-            shown = np.interp(np.log(SHOWN_AT), np.log(x), error)
+            shown = CubicSpline(np.log(x), error)(np.log(SHOWN_AT))
             any_nu = not formula.bonded and len(formula.nu) == 1 and not is_short(formula, False)
             interface = "bonded" if formula.bonded else "frictionless"
             case = (formula.name, interface, "any" if any_nu else f"{nu:g}", formula.read)

@@ -45,10 +45,10 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
 
 
 def _material(body: str, name: Any) -> tuple[str, Quantity, Quantity]:
-    """Name, E and ν of a material. Raises LookupError for a name that is not in the table."""
+    """Name, E and ν of a material, or of a name. Raises LookupError for a name that is not in the table."""
     if body in _MAY_BE_RIGID and name in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3)
-    if not isinstance(name, str):
+    if not isinstance(name, (str, materials.Material)):
         raise LookupError(f'{name} is no name of a material, such as "steel 52100"')
-    found = materials.get(name)
+    found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)

@@ -9,13 +9,18 @@ from solver.parameters import allowed as within
 from solver.parameters import ends
 
 from ..data.units import with_unit
-from ..scene.quantities import multiple, quantity, unit_in
+from ..scene.quantities import multiple, quantity, readable, unit_in
 from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY, allowed
 from ..terminal import on_one_line
 from .names import SCENE, QuantityList, unit_of
 from .scene import Scene
 
+#: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
+#: 10 Pa, diamond 1.2 TPa; the sharpest tips have some nm, and layers are not thinner than an atom.
+_REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
+_REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
+_REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
 LONGEST_SHOWN = 60  # characters of a value in a message
 #: Ratios of moduli, and the modulus from which each follows.
 _RATIOS = (("n", "E1"), ("m", "E_punch"))
@@ -38,6 +43,18 @@ def beyond_bounds(scene: Scene, given: dict) -> list[str]:
             entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
             messages.append(f"{entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
     return messages
+
+
+def absurd(contacts: xr.Dataset) -> list[str]:
+    """A sentence for each input in SI units that no body has. Their contacts are solved all the same."""
+    found = []
+    for name, (low, high, words) in _REAL.items():
+        if name not in contacts.variables or contacts.variables[name].attrs.get("units") != unit_of(name):
+            continue
+        values = contacts.variables[name].values
+        outside = values[((values < low) | (values > high)) & np.isfinite(values)]
+        found += [f"{name} = {readable(float(one), unit_of(name))}: {words}; is its unit right?" for one in outside[:1]]
+    return found
 
 
 def value_text(given: Any) -> str:
@@ -70,8 +87,11 @@ def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
     interval = f"{entry.own.interval[0]}{low}, {high}{entry.own.interval[-1]}"
-    scale = entry.scale.replace("E2*", "E1*") if np.isinf(_at(scene.given["E2"], place)) else entry.scale
-    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}"
+    modulus = "E1*" if np.isinf(_at(scene.given["E2"], place)) else "E2*"
+    scale = entry.scale.replace("E2*", modulus)
+    units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
+    here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
+    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
     return f"{called} = {value_text(text)}: {moved}{bounds}"
 
 

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import numpy as np
 import xarray as xr
 from xarray.indexes import PandasIndex
 
@@ -10,27 +11,48 @@ from ..spec.vocabulary import VOCABULARY
 from .names import SCENE, si, unit_of
 
 
-class UnitIndex(PandasIndex):
-    """An index of SI numbers in which `sel(h="3 um")`, and slices of such texts, find 3e-6."""
+class _AsPandasIndex(type):
+    """The class of UnitIndex, which counts as equal to PandasIndex.
+
+    xarray aligns two arrays only if their indexes have equal classes. Without this, results could not be reindexed, nor
+    subtracted from measured values that are known at some of their loads.
+    """
+
+    def __eq__(cls, other: Any) -> bool:
+        return other is cls or other is PandasIndex
+
+    def __hash__(cls) -> int:
+        return hash(PandasIndex)
+
+
+class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
+    """An index of SI numbers in which `sel(h="3 um")`, and slices and lists of such texts, find 3e-6."""
 
     def sel(self, labels: dict, method=None, tolerance=None):
         """As that of other indexes of xarray. Raises ValueError for a text without a unit, or of something else."""
         name, label = next(iter(labels.items()))
 
         def number(one: Any) -> Any:
-            return si(name, one).value if isinstance(one, str) or has_unit(one) else one
+            text = isinstance(one, str) or has_unit(one)
+            return si(name, one).value if text and _known(name) else one
 
         if isinstance(label, slice):
             label = slice(number(label.start), number(label.stop), label.step)
+        elif getattr(label, "dtype", None) is not None and label.dtype.kind in "OTU":  # an array of texts
+            numbers = np.reshape([number(one) for one in np.asarray(label).ravel().tolist()], label.shape)
+            label = numbers if isinstance(label, np.ndarray) else label.copy(data=numbers)
         else:
             label = [number(one) for one in label] if isinstance(label, (list, tuple)) else number(label)
-        return super().sel({name: label}, method=method, tolerance=tolerance)
+        return super().sel({name: label}, method=method, tolerance=number(tolerance))
 
 
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
     for name in dataset.dims:
-        known = name in SCENE or name in VOCABULARY
-        if known and dataset[name].attrs.get("units", "1") == unit_of(name) != "1":
+        if _known(name) and dataset[name].attrs.get("units", "1") == unit_of(name) != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset
+
+
+def _known(name: Any) -> bool:
+    return name in SCENE or name in VOCABULARY

@@ -103,9 +103,13 @@ def _add(scene: Scene, name: str, given: Any) -> None:
             value, spread = found.value, found.spread
     if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
         raise ValueError(f"{name} = {value_text(given)}: must not be 0")
-    low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, ""))
-    if not np.all((np.asarray(value) > low) & (np.asarray(value) <= high)):
-        raise ValueError(f"{name} = {value_text(given)}: {limits}")
+    low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
+    outside = np.argwhere(~((np.asarray(value) > low) & (np.asarray(value) <= high)))
+    if len(outside):
+        text = f"{name} = {value_text(given)}"
+        if isinstance(given, xr.DataArray):
+            text = f"{name}{outside[0].tolist()} = {given.values[tuple(outside[0])]:g} {given.attrs.get('units', '1')}"
+        raise ValueError(f"{text.removesuffix(' 1')}: {limits}")
     if np.any(np.asarray(spread) > 0):
         reach = STEP * np.asarray(spread)
         if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
@@ -123,7 +127,7 @@ def _check_distinct(name: str, values: list) -> None:
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:
     """The quantities in a list, an array or a single value."""
-    given = given.tolist() if isinstance(given, np.ndarray) else given
+    given = given.tolist() if hasattr(given, "tolist") and np.ndim(given) == 1 else given  # of numpy or pandas
     given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
     if not isinstance(given, (list, tuple, range)):
         return si(name, given)
@@ -135,7 +139,7 @@ def _quantities(name: str, given: Any) -> QuantityList | Quantity:
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     """SI values of a DataArray, by its attribute `units`."""
-    if unit == "1":
+    if unit == "1" and given.attrs.get("units", "") in ("", "1"):
         return given.drop_attrs()
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')

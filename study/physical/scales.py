@@ -14,6 +14,9 @@ from ..spec.vocabulary import VOCABULARY
 from .names import SCENE
 from .scene import Scene
 
+#: Poisson ratio of a body of which none is given; of layer and half-space it is the default of the solver.
+POISSON = 0.3
+
 
 def make_dimensionless(scene: Scene) -> None:
     """Add to a scene what follows from its SI values: effective radius, unit of moduli, parameters of the solver."""
@@ -24,6 +27,7 @@ def make_dimensionless(scene: Scene) -> None:
     if "E1" in given:
         scene.parameters["n"] = layer / body
     if "E_punch" in given:
+        given.setdefault("nu_punch", POISSON)  # results say which it was
         base = over_dimensions(scene.parameters.get("base", "layered"), "base")
         surface = _where(base == "half_space", body, layer)
         scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
@@ -46,7 +50,7 @@ def _where(condition: Any, yes: Any, no: Any) -> Any:
 
 
 def _reduced(given: dict, name: str, nu: str) -> Any:
-    return reduced_modulus(given[name], given.get(nu, 0.3))
+    return reduced_modulus(given[name], given.get(nu, POISSON))
 
 
 def over_dimensions(given: Any, name: str) -> Any:

@@ -117,13 +117,16 @@ def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
 def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
     """A range with its ends as numbers in the SI `unit`; messages and {} for ends that it cannot have."""
     try:
-        ends = {end: quantity(f"{key}: {end}", raw[end], unit).value for end in ("start", "stop") if end in raw}
+        read = {end: quantity(f"{key}: {end}", raw[end], unit) for end in ("start", "stop") if end in raw}
     except ValueError as error:
         errors.append(str(error))
         return {}
+    unsure = [end for end, one in read.items() if one.spread]
+    errors += [f"{key}: {end} = {shown(raw[end])}: a range has no spread, a list of values may" for end in unsure]
+    ends = {end: one.value for end, one in read.items()}
     wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
     errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
-    return {} if wrong else raw | ends
+    return {} if wrong or unsure else raw | ends
 
 
 def _sampled(table: Any, errors: list[str]) -> dict[str, CaseValues | QuantityList]:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import summits
-from .scan import FEWEST, Scan
+from .scan import FEWEST, Scan, number
 
 #: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
 RESOLVED = 5
@@ -128,7 +128,7 @@ def _filtered(scan: Scan, form: str | float, cutoff: float | None) -> tuple[np.n
     z = summits.without_form(scan.z, scan.steps, form)
     if cutoff is None:
         said += "; no low-pass, so the shortest waves are those of the instrument and the step"
-    elif not summits.SHORTEST * max(scan.steps) <= cutoff < math.inf:
+    elif not summits.SHORTEST * max(scan.steps) <= number(f"{scan.name}: cutoff", cutoff, "m") < math.inf:
         least = summits.SHORTEST * max(scan.steps)
         raise ValueError(f"{scan.name}: cutoff = {cutoff} m; it must be finite and at least three steps, {least:.4g} m")
     else:

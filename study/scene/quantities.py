@@ -26,10 +26,14 @@ READABLE = {
 LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there
 _SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
+_UNIT_OR_SPREAD = re.compile(rf"[^\W\d_]|[%°]|{_SPREAD.pattern}")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
+#: What pint would read as another number, without a word: a comma, of which it takes no notice ("5,0 mm" were 50 mm), a
+#: second decimal point, and a number that it multiplies by the one before ("5 500 um", "5 1/2 in", "210(5) GPa").
+_AMBIGUOUS = re.compile(r"[,']|\.\d*\.|\d[eE][-+]?\d+\.|\d\s*\([\d\s.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]")
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
 
@@ -43,10 +47,10 @@ class Quantity:
 
 
 def has_unit(given: Any) -> bool:
-    """Whether something is a quantity of pint, or a text that begins with a number and goes on behind it."""
+    """Whether something is a quantity of pint, or a text of a number and, behind it, a unit or a spread."""
     if isinstance(given, str):
         number = _NUMBER.match(given.strip())
-        return bool(number) and number.end() < len(given.strip())
+        return bool(number) and bool(_UNIT_OR_SPREAD.search(given.strip(), number.end()))
     return hasattr(given, "magnitude") and hasattr(given, "to")
 
 
@@ -95,6 +99,9 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     head, *spread = _SPREAD.split(text)
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
         raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": {wanted}')
+    if _AMBIGUOUS.search(text):
+        said = on_one_line(text, LONGEST)
+        raise ValueError(f'{name} = "{said}": write one number, with a decimal point and without gaps: {wanted}')
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
@@ -105,7 +112,7 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
         return Quantity(value, abs(value) * float(number[0]) / 100)
     common = spread[0][number.end() :]
     head = head if has_unit(head) else head + common
-    return Quantity(_si(name, head, unit, wanted), abs(_si(name, spread[0], unit, wanted)))
+    return Quantity(_si(name, head, unit, wanted), abs(_si(f"the spread of {name}", spread[0], unit, wanted)))
 
 
 @lru_cache(maxsize=4096)  # reading a text takes half a millisecond

@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from .measured import Roughness, measure
+from .quantities import readable
 from .scan import Scan, height_map, profile
 from .scan_files import read
 
@@ -73,19 +74,22 @@ def cap_radius(height, width):
 
 
 def _positive(name: str, value):
-    """The value, a list as an array. Raises ValueError if not all of it is positive and finite."""
+    """The value, a list as an array. Raises ValueError if it is text, or not all of it is positive and finite."""
     value = np.asarray(value) if isinstance(value, list | tuple) else value
+    if value is None or np.asarray(value).dtype.kind in "OSU" and not hasattr(value, "magnitude"):
+        raise ValueError(f"{name} = {value!r}: must be a number, all lengths in one unit, or a quantity of pint")
     if not (np.all(value > 0) and np.all(np.isfinite(value))):
         raise ValueError(f"{name} = {value}: must be > 0 and finite")
     return value
 
 
-def looks_like_iso_ra(Ra, Nbar) -> str | None:
+def looks_like_iso_ra(Ra, Nbar, *, si=False) -> str | None:
     """A warning if Ra is too small to be the radius of asperities so dense, perhaps an ISO roughness; None otherwise.
 
     Parameters
     ----------
     Ra, Nbar : in units of one length, or in R; arrays are compared with each other, the sharpest is named
+    si : whether they are in m and 1/m², so that the warning has readable units
 
     The test is Ra √Nbar < 0.1 (see `SHARPEST`). A sparse design of small half-spheres may have it and be right.
     """
@@ -94,8 +98,9 @@ def looks_like_iso_ra(Ra, Nbar) -> str | None:
         return None
     i = np.unravel_index(np.nanargmin(sharpness), sharpness.shape)
     Ra, Nbar = (float(np.broadcast_to(value, sharpness.shape)[i]) for value in (Ra, Nbar))
+    radius, density = (readable(Ra, "m"), readable(Nbar, "1/m^2")) if si else (f"{Ra:.4g}", f"{Nbar:.4g}")
     return (
-        f"Ra = {Ra:.4g} is small for Nbar = {Nbar:.4g}: the asperities are {1 / math.sqrt(Nbar) / Ra:.3g} radii apart, "
+        f"Ra = {radius} is small for Nbar = {density}: the asperities are {1 / math.sqrt(Nbar) / Ra:.3g} radii apart, "
         f"and even as half-spheres they cover {100 * math.pi * Ra**2 * Nbar:.2g} % of the area. Ra is the radius of an "
         "asperity here, often 1 to 1000 µm; the roughness Ra of ISO 21920 (ISO 4287) is a mean height, often 0.01 to "
         "10 µm. study.roughness.cap_radius gives the radius from height and width, study.roughness.measure from a scan."

@@ -1,5 +1,6 @@
 """A measured surface: heights on a uniform grid, in metres. What cannot be a measured surface is refused."""
 
+import numbers
 from dataclasses import dataclass
 
 import numpy as np
@@ -54,7 +55,7 @@ def profile(z, *, x=None, dx=None, unit="m", height_unit=None, name="the profile
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
     step = dx if x is None else _step(np.asarray(x, dtype=float), np.shape(z), name)
-    return _checked(z, (step,), unit, height_unit, name)
+    return _checked(z, (number(f"{name}: dx", step, unit),), unit, height_unit, name)
 
 
 def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") -> Scan:
@@ -70,7 +71,9 @@ def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") ->
     ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
         positive, an unknown unit, or heights so large that their unit must be another
     """
-    return _checked(z, (dx if dy is None else dy, dx), unit, height_unit, name)
+    dx = number(f"{name}: dx", dx, unit)
+    rows = dx if dy is None else number(f"{name}: dy", dy, unit)
+    return _checked(z, (rows, dx), unit, height_unit, name)
 
 
 def metres(unit: str, name: str) -> float:
@@ -78,6 +81,13 @@ def metres(unit: str, name: str) -> float:
     if unit not in UNITS:
         raise ValueError(f"{name}: the unit {unit!r} is unknown; allowed are {', '.join(UNITS)}")
     return UNITS[unit]
+
+
+def number(name: str, value, unit: str) -> float:
+    """A length that was given as a number in `unit`. Raises ValueError for a text, "2 um", or anything else."""
+    if isinstance(value, numbers.Real) and not isinstance(value, bool):
+        return value
+    raise ValueError(f"{name} = {value!r}: must be a number, in {unit}")
 
 
 def _step(x: np.ndarray, shape: tuple, name: str) -> float:

@@ -1,10 +1,11 @@
 """Scans from files: text and CSV, .npy, and the formats of instruments by the package SurfaceTopography."""
 
+import re
 from pathlib import Path
 
 import numpy as np
 
-from .scan import FEWEST, Scan, height_map, metres, profile
+from .scan import FEWEST, UNITS, Scan, height_map, metres, profile
 
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
 #: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken.
@@ -45,6 +46,7 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
             f"{path.name}: give unit, such as unit='um', and height_unit if heights have another: units are not read "
             f"from text and .npy{said}"
         )
+    _as_headed(heading, {"unit": unit, "height_unit": height_unit or unit}, path.name)
     units = {"unit": unit, "height_unit": height_unit, "name": path.name}
     if columns is not None:
         table = _picked(table, columns, path.name)
@@ -56,13 +58,24 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
             raise ValueError(f"{path.name}: a map of {table.shape[0]} × {n} heights: give dx (and dy), their distance")
         return height_map(table, dx=dx, dy=dy, **units)
     if n > 2 or (n == 2) == (dx is not None) or dy is not None:
-        given = "".join(f" with {name} = {value:g}" for name, value in (("dx", dx), ("dy", dy)) if value is not None)
+        given = "".join(f" with {name} = {value}" for name, value in (("dx", dx), ("dy", dy)) if value is not None)
         raise ValueError(
             f"{path.name}: {table.shape[0]} rows of {n} column(s){given}; allowed are "
             f"two columns (x, z), one column (z) with dx, or {FEWEST} columns and more (a map) with dx and dy. "
-            "Choose among others with columns=(0, 2)."
+            "Choose among others with columns=(0, 2). A comma cannot separate columns and decimals."
         )
     return profile(table[:, -1], x=table[:, 0] if n == 2 else None, dx=dx, **units)
+
+
+def _as_headed(heading: str, given: dict[str, str], name: str) -> None:
+    """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some."""
+    said = [word for word in re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", heading) if word in UNITS]
+    for argument, unit in given.items():
+        if said and metres(unit, name) not in [UNITS[word] for word in said]:
+            raise ValueError(
+                f'{name}: {argument} is {unit}, but the heading has {" and ".join(said)}: "{heading[:80]}". Give unit '
+                "and height_unit as the heading has them, or take its units out of it."
+            )
 
 
 def _picked(table: np.ndarray, columns: tuple, name: str) -> np.ndarray:
@@ -134,8 +147,9 @@ def _instrument(path: Path, unit: str | None, more: list[str]) -> Scan:
         from SurfaceTopography import read_topography
     except ImportError as error:
         raise ImportError(
-            f"{path.name}: {path.suffix} is the format of an instrument, which the package SurfaceTopography reads: "
-            "pip install 'roughcoat[topography]'. Without it, export the scan as text, CSV or .npy."
+            f"{path.name}: {path.suffix} is neither text ({', '.join(TEXT[:-1])}) nor .npy. The package "
+            "SurfaceTopography reads formats of instruments: pip install 'roughcoat[topography]'. Otherwise export "
+            "the scan as text, CSV or .npy."
         ) from error
     if more:
         raise ValueError(f"{path.name}: the format states its lengths itself; leave out {', '.join(more)}")

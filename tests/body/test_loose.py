@@ -69,7 +69,17 @@ def test_soft_layers_plates_and_films_do_not():
     assert is_loose(rtol=1e-7) == (True, 36) and is_loose(rtol=1e-7, n=1e-4, h=0.01) == (False, 52)
     assert is_loose(n=900.0) == (False, 90)
     assert is_loose(rtol=0.1, n=1e4) == (False, 104) and is_loose(rtol=0.1, n=1e7) == (False, 104)
-    film, loose = layer(h=1e-3), layer(h=1e-3).within(np.ones(1), np.ones(1))
-    (part,), (other,) = (body.at(np.ones(1), mesh(5)).parts for body in (film, loose))
+    film, one = layer(h=1e-3, n=1e5), np.ones(1)
+    assert not film.within(one, one).loose[0]
+    # one that has become a film on the way to its radius
+    loose = film._replace(loose=one > 0)
+    (part,), (other,) = (body.at(one, mesh(5)).parts for body in (film, loose))
     assert part.film is not None and np.array_equal(part.L1, other.L1)
-    assert loose.loose[0] and loose.error(np.ones(1), 5) == film.error(np.ones(1), 5)
+    assert loose.error(one, 5) == film.error(one, 5)
+
+
+def test_a_stiff_film_that_is_none_at_its_radius():
+    """At the radius that is guessed it is a film, of which the class of stiffness is another."""
+    body = layer(h=1e-3, n=1e5).within(np.ones(1), np.ones(1))
+    (part,) = body.at(np.full(1, 0.1), mesh(5)).parts
+    assert part.film is None and part.L1.shape[1] == 104

@@ -10,7 +10,7 @@ import pytest
 from conftest import ROOT
 from test_cli import GOOD, studies  # noqa: F401
 
-from study.__main__ import main
+from study.__main__ import main, parser
 from study.commands.arguments import proposed
 
 pytestmark = pytest.mark.usefixtures("studies")
@@ -45,11 +45,23 @@ def test_a_file_of_the_user_called_like_our_package_is_not_taken_for_it():
         assert done.returncode == 0, done.stderr
 
 
+def command_options(top, command: str) -> dict:
+    """Name of an option of a command -> the option."""
+    (commands,) = [one for one in top._actions if one.dest == "command"]
+    return {one.option_strings[-1]: one for one in commands.choices[command]._actions if one.option_strings}
+
+
 def test_a_shell_completes_names(monkeypatch):
     assert proposed("run", "go") == ["good"] and proposed("run", "stu") == ["studies/good.toml"]
     assert proposed("status", "main") == ["main_case"]
     assert {"fig01", "fig03", "fig03_layered"} <= set(proposed("plot", "fig0"))
     assert proposed("table", "table") == ["table1", "table1_lattice"]
+    Path("results").mkdir(exist_ok=True)
+    Path("results/other.nc").touch()
+    assert proposed("verify", "results/o") == ["results/other.nc"] and proposed("status", "results/o") == []
+    options = command_options(parser(), "plot")
+    assert all({"p_max", "p_mean", "p_peak"} <= set(options[name].completer("p_")) for name in ("--x", "--y", "--hue"))
+    assert command_options(parser(), "retry")["--status"].completer("iter") == ["iteration_limit"]
     assert proposed("point", "E") == ["E1=", "E2=", "E_punch="] and proposed("point", "pu") == ["punch="]
     asked = []
     fake = SimpleNamespace(autocomplete=lambda commands: asked.append(commands.prog))

@@ -57,6 +57,7 @@ def said(capsys) -> set[str]:
 # The command, and whether its answer is all that it is for.
 COMMANDS = [
     ("list studies", True),
+    ("point P=1e-5 base=half_space micro=smooth", True),
     ("check good other", True),
     ("status good other", True),
     ("run good other", False),

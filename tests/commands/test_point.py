@@ -69,6 +69,11 @@ def test_materials_by_name_bring_their_spreads(capsys):
         (["P"], ['"P": must be NAME=VALUE, such as R="5 mm"']),
         (["P=", "=3"], ['"P=": must be NAME=VALUE, such as R="5 mm"', '"=3": must be NAME=VALUE, such as R="5 mm"']),
         (["P=1e-5", "P=2e-5"], ["P is given twice"]),
+        (["P=1e-5", "x=5"], ["x says nothing of one contact: leave it out"]),
+        *(
+            (["P=1e-5", f"{name}=3"], [f"{name} says nothing of one contact: leave it out"])
+            for name in ("profiles", "cases", "title", "workers")
+        ),
         (["body=steel 52100", "E2=210 GPa"], ["body and E2 are both given: E2 follows from body"]),
         (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"?']),
         (["P=1e-5", "mirco=smooth"], ['solve: "mirco" is not a parameter; did you mean "micro"?']),

@@ -108,6 +108,10 @@ def test_labels_of_cases_and_gaps_of_failed_ones():
         (("P", "pmax", ""), '"pmax" is not in these results; did you mean "p_max"?'),
         (("P", "a", "h"), "hue = h is no axis of a; its axes: P, n, bonding"),
         (("h", "a", "n"), "x = h has one value only; axes: P, bonding"),
+        (("P", "n", ""), "y = n is an axis of these results: it may be x or the hue"),
+        (("P", "a", "P"), "x and hue are both P"),
+        (("bonding", "a", ""), "bonding has texts: they are not drawn, but may be the hue"),
+        (("P", "base", ""), "base has texts: they are not drawn, but may be the hue"),
     ],
 )
 def test_what_is_not_there(found, wanted, message):
@@ -129,6 +133,23 @@ def test_values_that_are_not_there(found, where, message):
     with pytest.raises(StudyError) as caught:
         shown(found, "P", "a", **where)
     assert str(caught.value).startswith(message)
+
+
+def test_values_that_are_not_there_have_their_unit(physical):
+    with pytest.raises(StudyError, match="^h = 3 um is not there; there are 2e-06, 5e-06 m$"):
+        shown(physical, "P", "a", h="3 um")
+
+
+def test_every_lowest_panel_has_its_abscissa():
+    """The last row may be shorter than the others: the panel above a gap is the lowest of its column."""
+    found = study.solve(P=[1e-6, 1e-5], h=[0.01, 0.02, 0.03, 0.04, 0.05], n=0.5, micro="smooth", x=2)
+    figure, _ = shown(found, "P", "a")
+    figure.draw_without_rendering()
+    panels = figure.axes[:5]
+    assert [bool(axes.get_xlabel()) for axes in panels] == [False, False, True, True, True]
+    assert [any(one.label1.get_visible() for one in axes.xaxis.get_major_ticks()) for axes in panels] == [
+        False, False, True, True, True
+    ]  # fmt: skip
 
 
 def test_too_many_panels():
@@ -154,6 +175,7 @@ def test_the_command_and_the_methods(tmp_path, monkeypatch, capsys):
     for command, message in (
         ("plot mine --x P", "curves of results need both --x and --y, such as --x P --y p_max"),
         ("plot none.nc --x P --y a", "none.nc: does not exist"),
+        ("plot mine", "mine is a study, not a figure: give --x and --y to draw curves of it, such as --x P --y a"),
     ):
         assert main(command.split()) == 2
         assert capsys.readouterr().err.splitlines()[-1] == message
@@ -183,3 +205,9 @@ def test_only_what_is_used_is_stated():
         "$h/R$ = 0.02", "$n$ = 0.5", "frictionless interface", "$\\bar N\\,R^2$ = 250000", "$R_a/R$ = 0.004",
         "$B$ = 0.1 $R_a/E_1^{*\\beta}$", "$\\beta$ = 0.5"
     ]  # fmt: skip
+
+
+def test_a_rigid_base_is_stated():
+    gel = study.solve(P=1e-5, h=0.02, n=0, micro="smooth", x=2)
+    assert stated([gel]) == ["rigid base", "$P/(E_1^*\\,R^2)$ = $10^{-5}$", "$h/R$ = 0.02", "frictionless interface"]
+    assert "rigid base" not in stated([gel, study.solve(P=1e-5, h=0.02, n=0.5, micro="smooth", x=2)])

@@ -55,6 +55,25 @@ def test_limits_of_the_estimate(nu1, nu2, bonded):
     assert 1 + large.a == pytest.approx((1 + large.P) ** -0.25, rel=1e-4)
 
 
+def test_materials_beyond_the_fit():
+    """The line fitted to x0 is negative here. The model error is a number all the same, from a quarter of the true one
+    to five times it; where that is above 1, it says that no digit is right."""
+    loose = [(n, 0.3, "frictionless") for n in (1.34, 1.5, 3.0, 20.0)]
+    bonded = [(n, nu1, "bonded") for n, nu1 in ((0.0, 0.46), (0.0, 0.49), (0.01, 0.47), (0.1, 0.48))]
+    h_a = np.geomspace(0.01, 5, 19)
+    n, nu1, bonding = (np.repeat(values, len(h_a)) for values in zip(*loose, *bonded, strict=True))
+    layer = {"n": n, "nu1": nu1, "bonding": bonding, "micro": "smooth", "rtol": 1e-5}
+    layer["h"] = np.tile(0.01 * h_a, len(loose + bonded))
+    exact = solve(Problem.of(a=0.01, base="layered", **layer))
+    for control in ("P", "a", "D"):
+        thin = solve(Problem.of(**{control: getattr(exact, control)}, base="thin_layer", **layer))
+        assert (thin.status == 0).all()
+        true = np.max([abs(getattr(thin, name) / getattr(exact, name) - 1) for name in ("a", "P", "D", "p0")], axis=0)
+        ratio = (thin.model_error / true)[(true > 1e-3) & (true < 1)]
+        assert (ratio >= 0.23).all() and (ratio <= 5).all()
+        assert (thin.model_error[true >= 1] > 0.2).all()
+
+
 def test_nothing_is_estimated_where_the_thin_layer_does_not_apply():
     assert np.isnan(thin_layer_error(0.1, [0.5, 2.0], 0.5, 0.5, True).P).all()
     assert np.isnan(edge_shift([1.5, 0.4], [0.3, 0.45], 0.3, True)).all()

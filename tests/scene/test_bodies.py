@@ -31,6 +31,15 @@ def test_a_name_stands_for_both_numbers_and_their_spreads():
     assert "punch of steel 52100, E_punch = 207.0 ± 3.0 GPa" in text and "layer of PTFE, E1 = 490 ± 50 MPa" in text
 
 
+def test_a_material_of_the_user(tmp_path):
+    text = '["my coating"]\nE = 490e6\nnu = 0.46\nE_spread = 50e6\nnu_spread = 0.02'
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    mine = materials.read(tmp_path / "mine.toml")["my coating"]
+    found = study.solve(**COATED | {"layer": [mine, "PTFE"]}, P="10 N", x=2)
+    assert found.layer.values.tolist() == ["my coating", "PTFE"]
+    assert found.a[0] == found.a[1] and found.a_spread[0] == found.a_spread[1], "PTFE has these numbers"
+
+
 def test_several_materials_are_one_axis():
     names = ["PTFE", "PEEK", "PMMA"]
     found = study.solve(**COATED | {"layer": names, "body": ["rigid", "glass"]}, P="10 N", x=2)

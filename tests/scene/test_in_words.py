@@ -1,6 +1,7 @@
 """A contact in words: every number of the text is that of the dataset, and every doubt is said."""
 
 import re
+import warnings
 
 import numpy as np
 import pytest
@@ -66,6 +67,51 @@ def test_grids_are_written_out_and_long_ones_are_cut():
     assert "--- and 5 more cases" in study.summary(long)
     with pytest.raises(ValueError, match="this dataset is not one of contacts: it has no status"):
         study.summary(long.drop_vars("status"))
+
+
+def test_cases_that_xarray_took_out_are_not_there():
+    """docs/studies.md shows `contacts.where(contacts.validity == 0)`, which makes all flags floats."""
+    found = quiet(**COATED, P=["1 N", "1 MN"], x=2)
+    kept = found.where(found.validity == 0)
+    assert str(study.summary(kept.isel(P=0))) == study.summary(found.isel(P=0))
+    for gone in (kept.isel(P=1), found.reindex(P=[3.0]).isel(P=0)):
+        text = study.summary(gone)
+        assert "NOT SOLVED (not_run): the case has not been computed." in text and "a      = unknown" in text
+        assert "Model" not in text and study.decode(gone.validity).item() == ""
+    between = found.isel(P=[0, 0]).assign_coords(P=[1.0, 2.0]).interp(P=1.5)
+    assert "Model: the exact layered half-space, without" in study.summary(between)
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            {"E2": "210 mPa", "E1": "200 mPa", "P": "1 pN"},
+            "E1 = 0.2 Pa: materials have 1 Pa to 2 TPa; is its unit right?",
+        ),
+        ({"E2": ["210 GPa", "210 TPa"]}, "E2 = 2.1e+05 GPa: materials have"),
+        ({"R": "5 Mm", "h": "1 m"}, "R = 5e+06 m: radii of bodies are 0.1 nm to 1 km; is"),
+        ({"h": "2 pm"}, "h = 0.002 nm: layers are 0.05 nm to 1 km thick; is"),
+        (
+            {"micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "40 nm"},
+            "Ra = 40 nm is small for Nbar = 1 1/µm²: the asperities",
+        ),
+    ],
+)
+def test_slips_of_a_prefix_are_noticed(change, sentence):
+    """mPa for MPa, Mm for mm: the right kind of unit, and a contact that can be solved."""
+    with pytest.warns(UserWarning) as warned:
+        found = study.solve(**COATED | {"P": "10 N", "x": 2} | change)
+    assert sentence in str(warned[0].message)
+    assert f"Beware: {sentence}" in study.summary(found)
+
+
+def test_no_real_system_is_absurd():
+    softest = {"R": "2.5 um", "E1": "20 Pa", "nu1": 0.5, "E2": "rigid", "h": "2 um", "D": "5 nm", "bonding": "bonded"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        study.solve(**softest, E_punch="1.2 TPa", micro="smooth", x=2)
+        study.solve(R="6 m", E1="1 MPa", E2="210 GPa", h="1 m", P="1 N", micro="smooth", x=2)
 
 
 def test_every_flag_and_model_has_its_words():

@@ -130,6 +130,16 @@ def test_spreads_of_hertz():
     assert found.P == 10.0 and "moved input" not in found.dims
 
 
+def of_rows(values: list, units: str) -> xr.DataArray:
+    return xr.DataArray(values, dims="row", attrs={"units": units})
+
+
+def test_series_of_pandas_and_percent():
+    pandas = pytest.importorskip("pandas")
+    found = quiet(**COATED | {"nu2": of_rows([30.0], "percent")}, P=pandas.Series(["1 N", "10 N"]), x=2)
+    assert found.P.values.tolist() == [1.0, 10.0] and found.nu2.values.tolist() == [0.3]
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [
@@ -150,8 +160,13 @@ def test_spreads_of_hertz():
         ({"nu1": "0.6"}, r"nu1 = 0.6: must be in \(-1, 0.5\]"),
         ({"E2": "-2 GPa"}, "E2 = -2 GPa: must be > 0"),
         ({"hh": "2 um"}, '"hh" is not a parameter; did you mean "h"'),
-        ({"R": "5 km", "h": "2 nm"}, r"^h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R$"),
+        ({"R": "5 km", "h": "2 nm"}, r"^h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R, R = 5000 m$"),
         ({"h": xr.DataArray([1e-6], dims="film")}, 'the DataArray has no attribute "units"; a length needs one'),
+        ({"P": of_rows([1.0, np.nan], "N")}, r"^P\[1\] = nan N: must be a number$"),
+        ({"E2": of_rows([1.0, -2.0], "GPa")}, r"^E2\[1\] = -2 GPa: must be > 0$"),
+        ({"nu2": of_rows([0.3], "N")}, 'nu2 = "1 N" is a force: must be a number without a unit'),
+        ({"nu2": of_rows([0.2, 0.7], "1")}, r"^nu2\[1\] = 0.7: must be in"),
+        *(({"cases": rows}, "^cases must be a list of dictionaries, at least one$") for rows in ([], "x", {}, [3])),
     ],
 )
 def test_slips_are_named(change, message):
@@ -170,3 +185,10 @@ def test_what_is_beyond_the_model_is_said_once():
         warnings.simplefilter("error")
         study.solve(**COATED, P="10 N", x=2)
         study.solve(P=1e-2, n=1e-3, h=1e-3, micro="smooth", x=2)  # dimensionless: `validity` says it
+
+
+def test_the_poisson_ratio_of_a_punch_of_which_none_is_given_is_in_the_results():
+    given = COATED | {"E_punch": "210 GPa", "P": "10 N", "x": 2}
+    found, said = quiet(**given), quiet(**given, nu_punch=0.3)
+    assert found.nu_punch == 0.3 and found.a == said.a
+    assert study.summary(found) == study.summary(said)

@@ -65,6 +65,7 @@ def test_spreads(sign):
         ([1], "m", "must be a length"),
         ("1 " + "m*" * 100 + "m", "m", "must be a length"),
         ("9**9**9**9 m", "m", "no unit is called like this"),
+        ("5 mm ± 0.1", "m", 'the spread of h = "0.1" has no unit: must be a length'),
     ],
 )
 def test_what_is_refused(given, unit, message):
@@ -72,7 +73,44 @@ def test_what_is_refused(given, unit, message):
         quantity("h", given, unit)
 
 
+@pytest.mark.parametrize(
+    "number",
+    ["5,0", "5 500", "1'000", "5 1/2", "210(5)", "210 (5)", "1.5.2", "1e3.5", "5 .5", "5 mm 3", "3 ft 2", "4 ± 0,2"],
+)
+@pytest.mark.parametrize("unit", ["um", ""])
+def test_a_number_that_could_be_read_in_two_ways_is_refused(number, unit):
+    """pint drops commas and multiplies numbers that stand side by side: it reads 50, 2500, 5/2, 1050, 0.3."""
+    message = f'h = "{number} {unit}'.rstrip() + '": write one number, with a decimal point and without gaps: must be'
+    with pytest.raises(ValueError, match=re.escape(message)):
+        quantity("h", f"{number} {unit}", "m" if unit else "1")
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "5×10³ µm",
+        "5·10^3 um",
+        "5 * 10**3 um",
+        "10 mm / 2",
+        "10/2 mm",
+        "4 mm + 1e3 um",
+        "5 (mm)",
+        "5\u00a0mm",
+        "5_000 um",
+    ],
+)
+def test_what_is_computed(text):
+    assert quantity("h", text, "m") == Quantity(5e-3)
+
+
+def test_densities_are_no_two_numbers():
+    for text in ("2 1/um^2", "2 1 / um^2", "2 /um^2", "2 um^ -2", "2 per um^2", "2e6 1/mm/mm", "2×10^6 1/mm²"):
+        assert quantity("Nbar", text, "1/m^2") == Quantity(2e12)
+
+
 def test_what_has_a_unit():
+    assert has_unit("0.3 ± 0.02") and has_unit("30 %") and has_unit("5,0 mm")
+    assert not any(map(has_unit, ("0,02", "1 000", "0.3, 0.4", "1_000")))
     assert all(has_unit(text) for text in ("3 um", "3um", " -2.5e3 N", "200 ± 10 GPa"))
     assert not any(has_unit(given) for given in ("3", "disc_cell", "", 3, 0.5, None, [3], "layered", "1e5"))
 

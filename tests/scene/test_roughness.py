@@ -73,6 +73,9 @@ def test_radius_of_a_cap():
         (lambda: roughness.area_fraction(0.95, 1.0), r"fraction = 0.95: circles that do not overlap .* 0.9069"),
         (lambda: roughness.area_fraction(0.5, -1.0), r"base_radius = -1.0: must be > 0"),
         (lambda: roughness.cap_radius(1.1, 2.0), r"height = 1.1 on a base of width = 2.0: .* half as high as wide"),
+        (lambda: roughness.square_lattice("20 um"), "pitch = '20 um': must be a number, all lengths in one unit"),
+        (lambda: roughness.area_fraction("30 %", 1.0), "fraction = '30 %': must be a number"),
+        (lambda: roughness.cap_radius(None, 2.0), "height = None: must be a number"),
         (lambda: roughness.cap_radius(math.inf, 2.0), r"height = inf: must be > 0 and finite"),
     ],
 )

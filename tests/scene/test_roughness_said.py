@@ -59,3 +59,28 @@ def test_an_iso_ra_is_known_by_its_size():
 
 def test_the_page_prints_what_stands_there(tmp_path):
     check_examples("docs/roughness.md", tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("heading", "columns", "given", "message"),
+    [
+        ("", 1, {"dx": "0.5 um"}, "dx = '0.5 um': must be a number, in um"),
+        ("", 20, {"dx": 1, "dy": "2"}, "dy = '2': must be a number, in um"),
+        ("", 2, {"dx": "1 um"}, r"20 rows of 2 column\(s\) with dx = 1 um; .* A comma cannot separate columns and"),
+        ("x [mm]; z (nm)", 2, {}, 'unit is um, but the heading has mm and nm: "x .mm.; z .nm.". Give'),
+        ("z [um]", 1, {"dx": 1, "height_unit": "nm"}, "height_unit is nm, but the heading has um"),
+    ],
+)
+def test_units_of_a_scan_are_those_of_its_heading(tmp_path, heading, columns, given, message):
+    """And a distance is a number: its unit is given once, for all."""
+    rows = "\n".join(";".join(["0.5"] * columns) for _ in range(20))
+    (tmp_path / "a.csv").write_text(f"{heading}\n{rows}\n", encoding="utf-8")
+    with pytest.raises(ValueError, match=f"^a.csv: {message}"):
+        roughness.read(tmp_path / "a.csv", **{"unit": "um"} | given)
+
+
+def test_a_heading_with_more_units_than_are_read(tmp_path):
+    rows = "\n".join(f"{i / 2};{i % 3};7" for i in range(20))
+    (tmp_path / "a.csv").write_text(f"x [um]; z [nm]; gain [V]\n{rows}\n", encoding="utf-8")
+    scan = roughness.read(tmp_path / "a.csv", unit="µm", height_unit="nm", columns=(0, 1))
+    assert scan.steps == (pytest.approx(5e-7),) and scan.z.max() == 2e-9

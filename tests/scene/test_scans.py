@@ -173,6 +173,7 @@ def test_bad_arrays(call, message):
         (Z, {"form": float("nan")}, "form = nan m: a sphere must be larger"),
         (Z, {"cutoff": 1.4}, "cutoff = 1.4 m; it must be finite and at least three steps, 1.5 m"),
         (Z, {"cutoff": float("inf")}, "cutoff = inf m; it must be finite"),
+        (Z, {"cutoff": "2 um"}, "cutoff = '2 um': must be a number, in m"),
         (Z, {"cutoff": 2.0}, "14 points are left by a cutoff of 2 m, .* at least 16"),
         (0.1 * X + 3, {}, "nothing is left of the heights: plane taken off"),
         (X**2 / 100, {"method": "summits"}, "no summits: none of 20 points is higher than all around it"),
@@ -225,7 +226,7 @@ def test_instruments(monkeypatch):
 def test_a_missing_extra_is_named(monkeypatch):
     monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
     with pytest.raises(
-        ImportError, match=r"a.gwy: .gwy is the format of an instrument.*'roughcoat\[topography\]'.*CSV"
+        ImportError, match=r"a.gwy: .gwy is neither text .*.csv.* nor .npy.*'roughcoat\[topography\]'.*CSV"
     ):
         roughness.read("a.gwy")
 

@@ -165,6 +165,7 @@ def test_float32_and_partial_results(tmp_path, monkeypatch):
         ('stop = "100 N"', 'stop = "100 MPa"', 'P: stop = "100 MPa" is a pressure'),
         ('start = "1 N", ', "", "P: start = nothing: must be a finite number"),
         ('start = "1 N"', 'start = "-1 mN"', 'P: start = "-1 mN": must be > 0 for spacing log'),
+        ('start = "1 N"', 'start = "1 ± 0.1 N"', 'P: start = "1 ± 0.1 N": a range has no spread, a list of values may'),
         ("x = 3", "x = 3\nspreads = 1", r"\[output\] spreads = 1: must be true or false"),
         ('"5 mm"', '["5 mm"]', r"\[model\] R has several values: these belong in \[axes\]"),
         ("[axes]", '[axes]\nR = ["5 mm"]', r"R is given twice: in \[model\] and in \[axes\]"),

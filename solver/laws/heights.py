@@ -170,7 +170,7 @@ def law(name, density, field=1.0, **known):
     parts = {key: partial(part, density, field) for key, part in parts.items()}
     own = ({} if density.of is None else {"sigma": SIGMA}) | ({density.of: CUT} if isinstance(density.of, str) else {})
     known = {"error": ERROR} | known
-    return Law(name=name, parameters=disc_cell.PARAMETERS | own, rise=1.1, **parts, **known)
+    return Law(name=name, parameters=disc_cell.PARAMETERS | own, rise=1.1, corners=True, **parts, **known)
 
 
 def histogram(name, z, share, version):

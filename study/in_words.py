@@ -38,8 +38,8 @@ BROKEN = {
     "h): they feel the body below, and the asperities' part is only roughly right.",
     "n_not_below_one": "The layer is not softer than the body (n >= 1), which the paper's thin layer assumes. Take "
     'base = "layered".',
-    "spots_merging": f"The contact spots merge (λ(0) > {derived.MERGING:g}): the disc cell overestimates what the "
-    "asperities yield by 10 % or more.",
+    "spots_merging": f"The contact spots merge (λ(0) > {derived.MERGING:g}): the micro law, which spreads the pressure "
+    "around a spot evenly, overestimates what the asperities yield by 10 % or more.",
     "strain_not_small": f"The strain is not small (a > {derived.STEEP:g} R, or the layer gives way by more than "
     f"{derived.COMPRESSED:.0%}): linear elasticity is only roughly right.",
     "asperity_strain_not_small": f"The strain under the asperities is not small (b > {derived.STEEP_SPOT:g} Ra): most "

@@ -14,6 +14,7 @@ from solver.body.springs import layer_modulus
 from solver.laws import LAWS
 
 from ..spec.vocabulary import VOCABULARY, attributes
+from .units import physical_attributes
 
 FEW_SPOTS = 100.0
 """The model spreads the asperities evenly: with fewer spots than this in the nominal area, N̄πa², they are not many."""
@@ -148,8 +149,11 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
-    profile p; NaN for a law that is not registered.
+    profile p; NaN for a law that is not registered. Raises ValueError for results with units, whose parameters of the
+    law are not those that it was solved with.
     """
+    if _has_units(dataset):
+        raise ValueError("p_peak is derived from dimensionless results, not from those with units")
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
@@ -209,11 +213,13 @@ def _given(values, name: str):
 
 
 def named(array: xr.DataArray, name: str) -> xr.DataArray:
-    """The array with a name of the vocabulary and its attributes. Raises ValueError if it is not dimensionless."""
-    if any(coordinate.attrs.get("units", "1") != "1" for coordinate in array.coords.values()):
-        raise ValueError(
-            f"{name} is derived from dimensionless datasets: derive first, then convert with study.to_physical"
-        )
+    """The array with a name of the vocabulary and its attributes, in SI units where its coordinates have units."""
     array = array.rename(name)
     array.attrs = attributes(name, rigid="n" in array.coords and bool((array.coords["n"] == 0).any()))
+    if _has_units(array) and VOCABULARY[name].powers != (0, 0):
+        array.attrs = physical_attributes(name, array.attrs)
     return array
+
+
+def _has_units(found: xr.Dataset | xr.DataArray) -> bool:
+    return any(coordinate.attrs.get("units", "1") != "1" for coordinate in found.coords.values())

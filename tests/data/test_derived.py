@@ -142,10 +142,32 @@ def test_error_of_the_thin_layer():
 
 
 @pytest.mark.parametrize("at", [{}, {"P": 0}], ids=["an axis", "one load"])
-def test_derived_quantities_refuse_physical_units(at):
-    smooth = study.solve(P=[1e-6, 2e-6], micro="smooth", base="half_space", x=3).isel(at)
-    with pytest.raises(ValueError, match="p_mean is derived from dimensionless datasets: derive first, then convert"):
-        derived.mean_pressure(study.to_physical(smooth, R=0.01, E2_star=1e11))
+def test_quantities_of_results_with_units_have_units(at):
+    """The same whether they are derived before the conversion or after it; the unit is that of the vocabulary."""
+    found = study.solve(P=[1e-6, 2e-6], Nbar=250000, Ra=0.004, h=0.02, n=0.5, x=3).isel(at)
+    with_units = study.to_physical(found, R=0.01, E2_star=1e11)
+    for name, unit in (("An", "m^2"), ("p_mean", "Pa"), ("E_eff", "Pa"), ("b0", "m"), ("spots", None)):
+        formula = derived.QUANTITIES[name]
+        before, after = formula(found), formula(with_units)
+        factor = {"m^2": 1e-4, "Pa": 1e11, "m": 0.01, None: 1.0}[unit]
+        np.testing.assert_allclose(after, before * factor, rtol=1e-13, atol=0)
+        assert after.attrs.get("units") == unit and after.attrs["symbol"] == before.attrs["symbol"]
+        assert "E2*" not in str(after.attrs)
+
+
+def test_the_modulus_that_a_bead_feels_on_a_gel():
+    """Of a thick gel that of the gel, on a thin one more: E_eff in Pa of a call with units."""
+    gel = {"R": "5 um", "E2": np.inf, "E1": "5 kPa", "nu1": 0.5, "P": "1 nN", "micro": "smooth", "bonding": "bonded"}
+    found = study.solve(**gel, h=["2 um", "5 mm"], x=3)
+    modulus = derived.effective_modulus(found)
+    assert modulus.attrs["units"] == "Pa" and modulus[0] > 1.5 * modulus[1]
+    assert float(modulus[1]) == pytest.approx(5e3 / (1 - 0.5**2), rel=1e-3)
+
+
+def test_the_largest_pressure_of_a_profile_with_units_has_a_message():
+    found = study.solve(P=1e-6, micro="smooth", base="half_space", x=3)
+    with pytest.raises(ValueError, match="p_peak is derived from dimensionless results, not from those with units"):
+        derived.peak_pressure(study.to_physical(found, R=0.01, E2_star=1e11))
 
 
 def test_the_exact_layer_is_the_default_and_has_no_assumption_of_thinness():

@@ -29,15 +29,15 @@ _THIN = 0.02
 #: step on any mesh, and for an entry of the matrix in that step. They are processor times of lone cases over that of an
 #: entry of a half-space's matrix, to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (5.0, 2.0), (4000.0, 600.0), (0.5, 0.1)
-#: A loose operator is right to this part of rtol. What it leaves out may count so many times in a solution: 2.2 times
-#: was seen in 24,000 random cases, tests/body/test_loose.py has some of them.
+#: A loose operator is right to this part of rtol. What it leaves out may count up to so many times in a solution: more
+#: than once in random cases, and less often than this (tests/body/test_loose.py).
 _OF_RTOL, _COUNTS = 0.01, 3.0
 
 
 class Layered(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
-    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, m = E1*/E3*, and whether the operator is
-    loose (None: nowhere), which takes half as many values of L.
+    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, and m = E1*/E3*. `loose`, bool (B,) or
+    None where none is: whether the operator is formed of fewer values of L (:meth:`within`).
 
     The punch yields as a half-space of E3* does, so that the kernel is L + m. In units of both surfaces, E of
     1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m), and its L - 1 is (L - 1)/(1 + m).
@@ -78,7 +78,7 @@ class Layered(NamedTuple):
         """The body with an operator that is loose where it is still right to a hundredth of rtol (B,), for contacts of
         about the radius a."""
         every = self._replace(loose=np.ones(len(a), dtype=bool))
-        may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not, and have no class that depends on n alone
+        may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not: their class may change with the radius
         return self._replace(loose=may_be & (every.error(a, 1) <= _OF_RTOL * rtol))
 
     def at(self, a, mesh, near=None):

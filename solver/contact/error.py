@@ -23,9 +23,8 @@ _RISEN = 0.05
 _BLIND = 3.0
 #: Where λ in the centre is above this, λ may rise sharply inside the contact, and Ar/An is compared with another rule.
 _SATURATED = 0.5
-#: By how many nodes the rules that Ar/An is compared with are finer, and those for a law with corners: there two rules
-#: may agree by chance. Of 3600 random contacts with random heights 59 had an error above the estimate from one rule, 4
-#: from three (tests/contact/test_error_bars.py has some).
+#: By how many nodes the rule that Ar/An is compared with is finer; and the rules for a law with corners, of which one
+#: may agree with the mesh by chance (tests/contact/test_error_bars.py has such contacts).
 _FINER, _CORNERED = (5,), (3, 5, 8)
 
 

@@ -146,8 +146,8 @@ def largest_error(control, h_a, n, nu1, nu2, bonded):
     -------
     array, >= 0
         NaN where the thin-layer equation does not apply. For true errors from 0.001 to 1 of a smooth sphere, 0.23 to
-        4.7 times the true one, most often 1 to 2 times. Under asperities it is too large, a hundred times and more
-        where these yield more than the layer.
+        5 times the true one (tests/models/test_thin_layer_error.py and test_auto.py), most often 1 to 2 times. Under
+        asperities it is too large, a hundred times and more where these yield more than the layer.
 
     Notes
     -----

@@ -39,9 +39,11 @@ class Kept:
 
     def _count(self, value, uses):
         for array in _arrays(value):
-            before = self._uses[id(array)]
-            self._uses[id(array)] += uses
-            if not before or not before + uses:
+            before, now = self._uses[id(array)], self._uses[id(array)] + uses
+            self._uses[id(array)] = now
+            if not now:
+                del self._uses[id(array)]  # another array may get this id
+            if not before or not now:
                 self.nbytes += uses * array.nbytes
 
 

@@ -149,11 +149,11 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
-    profile p; NaN for a law that is not registered. Raises ValueError for results with units, whose parameters of the
-    law are not those that it was solved with.
+    profile p; NaN for a law that is not registered. Raises ValueError for results with units: the laws take their
+    parameters in R and E2*.
     """
     if _has_units(dataset):
-        raise ValueError("p_peak is derived from dimensionless results, not from those with units")
+        raise ValueError("p_peak is derived from dimensionless results only: solve with lengths in R and moduli in E2*")
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)

@@ -108,8 +108,9 @@ def _add(scene: Scene, name: str, given: Any) -> None:
     if len(outside):
         text = f"{name} = {value_text(given)}"
         if isinstance(given, xr.DataArray):
-            text = f"{name}{outside[0].tolist()} = {given.values[tuple(outside[0])]:g} {given.attrs.get('units', '1')}"
-        raise ValueError(f"{text.removesuffix(' 1')}: {limits}")
+            place, unit = outside[0].tolist(), given.attrs.get("units", "1")
+            text = f"{name}{place} = {given.values[tuple(place)]:g}" + f" {unit}" * (unit != "1")
+        raise ValueError(f"{text}: {limits}")
     if np.any(np.asarray(spread) > 0):
         reach = STEP * np.asarray(spread)
         if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):

@@ -14,8 +14,8 @@ from ..spec.vocabulary import VOCABULARY
 from .names import SCENE
 from .scene import Scene
 
-#: Poisson ratio of a body of which none is given; of layer and half-space it is the default of the solver.
-POISSON = 0.3
+#: Poisson ratio of a punch of which none is given: as of the other bodies.
+_POISSON = VOCABULARY["nu1"].own.default
 
 
 def make_dimensionless(scene: Scene) -> None:
@@ -27,7 +27,7 @@ def make_dimensionless(scene: Scene) -> None:
     if "E1" in given:
         scene.parameters["n"] = layer / body
     if "E_punch" in given:
-        given.setdefault("nu_punch", POISSON)  # results say which it was
+        given.setdefault("nu_punch", _POISSON)  # results say which it was
         base = over_dimensions(scene.parameters.get("base", "layered"), "base")
         surface = _where(base == "half_space", body, layer)
         scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
@@ -50,7 +50,7 @@ def _where(condition: Any, yes: Any, no: Any) -> Any:
 
 
 def _reduced(given: dict, name: str, nu: str) -> Any:
-    return reduced_modulus(given[name], given.get(nu, POISSON))
+    return reduced_modulus(given[name], given.get(nu, _POISSON))
 
 
 def over_dimensions(given: Any, name: str) -> Any:

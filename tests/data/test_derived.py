@@ -166,7 +166,7 @@ def test_the_modulus_that_a_bead_feels_on_a_gel():
 
 def test_the_largest_pressure_of_a_profile_with_units_has_a_message():
     found = study.solve(P=1e-6, micro="smooth", base="half_space", x=3)
-    with pytest.raises(ValueError, match="p_peak is derived from dimensionless results, not from those with units"):
+    with pytest.raises(ValueError, match="p_peak is derived from dimensionless results only: solve with lengths in R"):
         derived.peak_pressure(study.to_physical(found, R=0.01, E2_star=1e11))
 
 

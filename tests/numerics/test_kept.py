@@ -42,6 +42,7 @@ def test_what_several_share_counts_once_until_the_last_has_gone():
     assert kept.nbytes == 928
     kept.get("again", lambda: (shared, shared))
     assert len(kept.values()) == 1 and kept.nbytes == 80
+    assert kept._uses == {id(shared): 2}, "of arrays that have gone nothing is left, however many there were"
 
 
 def test_an_object_says_what_its_arrays_are():

@@ -166,6 +166,7 @@ def test_series_of_pandas_and_percent():
         ({"E2": of_rows([1.0, -2.0], "GPa")}, r"^E2\[1\] = -2 GPa: must be > 0$"),
         ({"nu2": of_rows([0.3], "N")}, 'nu2 = "1 N" is a force: must be a number without a unit'),
         ({"nu2": of_rows([0.2, 0.7], "1")}, r"^nu2\[1\] = 0.7: must be in"),
+        ({"nu2": 1}, r"^nu2 = 1: must be in \(-1, 0.5\]$"),
         *(({"cases": rows}, "^cases must be a list of dictionaries, at least one$") for rows in ([], "x", {}, [3])),
     ],
 )

@@ -17,10 +17,22 @@ def tidy(store: Store, known: Inventory | None = None) -> str:
     rest = _rest(store)
     if rest:
         return f"{store.folder} keeps {_counted(rest, known)} that are not in it, `clean` removes them"
-    store.lock.unlink(missing_ok=True)
-    with suppress(OSError):  # the folder is gone, or another run has come
-        store.folder.rmdir()
+    _remove(store, [store.folder])
     return ""
+
+
+def withdraw(store: Store, made: list[Path]) -> None:
+    """Remove the folders that a refused run has `made`, unless something is in them or another run goes on there."""
+    with suppress(OSError), held(store.lock, wait=False) as alone:
+        if alone and not _rest(store):
+            _remove(store, made)
+
+
+def _remove(store: Store, folders: list[Path]) -> None:
+    store.lock.unlink(missing_ok=True)
+    with suppress(OSError):  # a folder is gone, or another run has come
+        for folder in folders:
+            folder.rmdir()
 
 
 def clean(store: Store, done: bool) -> list[str]:

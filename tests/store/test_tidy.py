@@ -1,13 +1,17 @@
 """Blocks are removed when the results file holds all that is in them; the rest is said, kept, removed by `clean`."""
 
 import pytest
-from line_study import load, store_block
+import xarray as xr
+from line_study import leftovers, load, store_block
 from same import assert_same_numbers
 
+import study
 from study.__main__ import main
 from study.store.block_file import Damaged, read_block
 from study.store.blocks import Store, gather, inventory
 from study.store.lock import held
+from study.store.tidy import withdraw
+from study.work import plan
 
 FEWER = {"P = {start = 1e-6, stop = 1e-4, num = 23}": "P = [1e-6, 1e-4]"}
 
@@ -76,6 +80,29 @@ def test_clean_waits_for_no_run_and_disturbs_none(file):
     with held(lock), pytest.raises(ValueError, match="a run of this study is going on"):
         opened.clean()
     assert path.exists()
+
+
+@pytest.mark.usefixtures("read_in_a_fork")
+def test_a_run_that_is_refused_leaves_nothing(file, monkeypatch):
+    """Neither the folder of the blocks nor that of the results, and it takes nothing from another run."""
+    opened = load(file)
+    with monkeypatch.context() as patched:
+        patched.setattr(plan, "LARGE", 10)
+        with pytest.raises(study.StudyError, match="--yes computes them"):
+            opened.run()
+    with pytest.raises(study.StudyError, match="--scheduler nowhere"):
+        opened.run(scheduler="nowhere")
+    assert not opened.results.exists()
+    opened.results.mkdir()
+    xr.Dataset({"a": 1.0}).to_netcdf(opened.results / "line.nc")
+    for part in ((1, 1), (1, 2)):
+        with pytest.raises(study.StudyError, match="of another program"):
+            opened.run(part=part)
+        assert leftovers(opened.results) == []
+    store = Store(opened.definition, opened.results)
+    with held(store.lock, shared=True):
+        withdraw(store, [store.folder])
+        assert leftovers(opened.results) == [".line.blocks", "lock"]
 
 
 def test_a_block_under_the_name_of_another_changes_no_number(file, tmp_path):

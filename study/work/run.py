@@ -151,8 +151,8 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
     return failures
 
 
-def dry_run(definition: Definition, results="results", *, workers: int | None = None, yes: bool = False) -> Estimate:
-    """What `run` would cost, and how many cases it would find computed. Writes nothing.
+def dry_run(definition: Definition, results="results", *, workers=None, yes=False, force=False) -> Estimate:
+    """What `run` would cost, how many cases it would find computed, and whether it would be refused. Writes nothing.
 
     Raises
     ------
@@ -164,8 +164,14 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, yes):
         return estimate(definition, workers)
-    known = inventory(order.store, earlier(definition, found).source)
-    return estimate(definition, workers, definition.grid.size - len(known.missing))
+    there = earlier(definition, found)
+    known = inventory(order.store, there.source, force=force)
+    cost = estimate(definition, workers, definition.grid.size - len(known.missing))
+    try:
+        check_replaceable(order.store, there, known.keys, force)
+    except StudyError as refused:
+        return replace(cost, refused=refused)
+    return cost
 
 
 def partial_dataset(definition: Definition, results) -> xr.Dataset:

@@ -4,7 +4,7 @@ from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition
 from ..spec.definition import Definition
 from ..spec.vocabulary import NOT_RUN
-from ..terminal import on_one_line
+from ..terminal import counted, on_one_line
 from ..work.cost import Estimate, describe
 from ..work.plan import Report
 
@@ -34,25 +34,26 @@ def count_lines(counts: dict[int, int]) -> list[str]:
 
 
 def cost_line(name: str, cost: Estimate) -> str:
-    return f"{name}: {cost.cases} cases, {cost.present} of them computed; the others: {describe(cost)}"
+    return f"{name}: {counted(cost.cases, 'case')}, {cost.present} of them computed; the others: {describe(cost)}"
 
 
 def failure_lines(report: Report, name: str) -> list[str]:
     lines = [f"{name}: block {block} failed: {reason}" for block, reason in sorted(report.failures.items())]
-    return [*lines, f"{name}: {len(lines)} blocks failed; the others are kept, the same command tries again"]
+    return [*lines, f"{name}: {counted(len(lines), 'block')} failed; the others are kept, the same command tries again"]
 
 
 def report_line(report: Report, name: str) -> str:
     """What a run without failed blocks did."""
     kept = f"\n{report.kept}" if report.kept else ""
     if not report.counts and not report.computed:
-        return f"{report.path} is up to date ({report.cases} cases), nothing to do{kept}"
+        return f"{report.path} is up to date ({counted(report.cases, 'case')}), nothing to do{kept}"
     if not report.complete:
         missing = report.counts.get(NOT_RUN, 0)
-        return f"{name}: {report.computed} cases computed now, {missing} of {report.cases} are missing: other parts"
+        now = counted(report.computed, "case")
+        return f"{name}: {now} computed now, {missing} of {report.cases} are missing: other parts"
     refused = {value: count for value, count in report.counts.items() if value in NO_SOLUTION}
     failed = {value: count for value, count in report.counts.items() if value and value not in NO_SOLUTION}
-    remarks = [f"{report.path}: {report.cases} cases", f"{report.computed} computed now"]
+    remarks = [f"{report.path}: {counted(report.cases, 'case')}", f"{report.computed} computed now"]
     if refused:
         remarks.append(f"{by_status(refused)}: no solution exists, which is no failure")
     if failed:

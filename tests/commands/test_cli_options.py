@@ -157,7 +157,7 @@ def test_check_says_what_is_in_a_file(studies, capsys):  # noqa: F811
         (studies / f"{name}.toml").write_text(text, encoding="utf-8")
     assert main(["check", "one", "two"]) == 0
     first, second = capsys.readouterr().out.splitlines()
-    assert first.startswith("one: 1 cases (one case), digest ")
+    assert first.startswith("one: 1 case (one case), digest ")
     assert second.startswith("two: 12 cases (h 2 x bonding 2 x P 3), digest ")
     assert len(first.rpartition(" ")[2]) == 16 and first[-16:] != second[-16:]
 

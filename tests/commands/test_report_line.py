@@ -39,6 +39,18 @@ def test_a_run_with_nothing_to_do_or_only_a_part_says_so():
     assert report_line(part, "a") == "a: 4 cases computed now, 3 of 9 are missing: other parts"
 
 
+def test_one_case_and_one_block_are_one():
+    done = Report(Path("results/a.nc"), 1, 0, {}, {}, complete=True)
+    assert report_line(done, "a") == "results/a.nc is up to date (1 case), nothing to do"
+    done = Report(Path("results/a.nc"), 1, 1, {}, {0: 1}, complete=True)
+    assert report_line(done, "a") == "results/a.nc: 1 case, 1 computed now"
+    part = Report(Path("results/a.nc"), 2, 1, {}, {0: 1, 127: 1}, complete=False)
+    assert report_line(part, "a").startswith("a: 1 case computed now, 1 of 2 ")
+    failed = Report(Path("results/a.nc"), 1, 0, {0: "full disk"}, {}, complete=False)
+    assert failure_lines(failed, "a")[-1].startswith("a: 1 block failed; ")
+    assert cost_line("a", Estimate(1, 0, 125.0, 5e8, 7e8, 1.4e9)).startswith("a: 1 case, 0 of them computed; ")
+
+
 def test_failed_blocks_stand_in_their_order():
     report = Report(Path("results/a.nc"), 9, 4, {10: "full disk", 2: "MemoryError"}, {}, complete=False)
     assert failure_lines(report, "a") == [

@@ -54,6 +54,8 @@ class Study:
     def status(self, yes: bool = False) -> dict:
         """State, cases, status -> number of cases, path of the results, what is wrong with them.
 
+        With spreads a case counts as often as it is solved; of complete results the statuses are counted once for each.
+
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
         "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. Attributes, coordinates
         and statuses are compared with their checksums here; `verify` compares all numbers. Cases count as computed if

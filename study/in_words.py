@@ -17,6 +17,8 @@ from .spec.vocabulary import CONTROLS, VOCABULARY
 
 MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
+#: What `error` is the largest error of.
+_JUDGED = tuple(name for name in SHOWN if name != "dP_dD")
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 MODELS = {
@@ -67,7 +69,8 @@ def summary(contact: xr.Dataset) -> Summary:
     -------
     Text: the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
     standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
-    inputs make of the quantity (`NAME_spread`).
+    inputs make of the quantity (`NAME_spread`). `error` and `model_error` are of the other six quantities; dP/dD is
+    taken to be as sure.
 
     Raises
     ------
@@ -100,7 +103,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:
         lines.append(f"  {VOCABULARY[name].long_name:{width}}  {VOCABULARY[name].symbol:6} = {_result(case, name)}")
-    return "\n".join([*lines, "", *_sentences(case)])
+    return "\n".join([*lines, "", *_sentences(case, [name for name in names if name in _JUDGED])])
 
 
 def _given(case: xr.Dataset, name: str) -> str:
@@ -141,11 +144,13 @@ def _result(case: xr.Dataset, name: str) -> str:
     return _text(case, name, value, float(np.sqrt(np.sum(np.square(parts)))))
 
 
-def _sentences(case: xr.Dataset) -> list[str]:
-    """How well the case is solved, by which model, and which assumptions it violates."""
+def _sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
+    """How well the case is solved, by which model, and which assumptions it violates. judged : those of `_JUDGED`."""
     word, used = decode(case["status"]).item(), decode(case["model_used"]).item()
     if word == "converged":
-        found = [f"Solved: the numbers are within a relative {float(case['error']):.1g} of the model's solution."]
+        *first, last = (VOCABULARY[name].symbol for name in judged)
+        within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
+        found = [f"Solved: {within} of the model's solution."]
     else:
         known = {one.name.lower(): one.meaning for one in Status}
         meaning = known.get(word, "the case has not been computed")

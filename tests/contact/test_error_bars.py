@@ -77,7 +77,10 @@ def test_heights_whose_meshes_agree_by_chance():
 
 @pytest.mark.parametrize("base", ["half_space", "thin_layer"])
 def test_random_heights(base):
-    """Of 150 contacts whose heights are distributed evenly, one may be above its error bar, and none above rtol."""
+    """Of 150 contacts whose heights are distributed evenly, one may be above its error bar, and none above rtol.
+
+    dP/dD is not in the error bar, as docs/model.md says: it may be up to ten times as far off.
+    """
     random = np.random.default_rng(1)
 
     def between(low, high):
@@ -90,3 +93,5 @@ def test_random_heights(base):
     both = (found.status == Status.CONVERGED) & (truth.status == Status.CONVERGED)
     moved = difference(found, truth)[both]
     assert both.mean() > 0.8 and np.sum(moved > (found.error + truth.error)[both]) <= 1 and np.all(moved <= 1.1e-5)
+    stiffness = np.abs(found.dP_dD / truth.dP_dD - 1)[both] / found.error[both]
+    assert stiffness.max() < 10

@@ -37,6 +37,14 @@ def test_the_model_error_is_in_the_plus_minus():
     assert f"contact it errs by about {100 * found.model_error.item():.2g} %" in text
 
 
+def test_solved_names_what_error_judges():
+    """The six of docs/model.md, of a smooth contact those that are shown, and never dP/dD."""
+    smooth = study.summary(study.solve(P=1e-5, base="half_space", micro="smooth", x=2))
+    assert re.search(r"^Solved: P, a, D and p\(0\) are within a relative \S+ of the model's solution\.$", smooth, re.M)
+    rough = study.summary(study.solve(P=1e-5, base="half_space", Nbar=250000, Ra=0.004, x=2))
+    assert "\nSolved: P, a, D, p(0), pmax and Ar/An are within a relative " in rough
+
+
 def test_an_elastic_punch_is_no_rigid_one():
     text = study.summary(quiet(**COATED, E_punch="210 GPa", nu_punch=0.3, P="10 N", x=2))
     assert "rigid" not in text and "E_punch = 210 GPa, nu_punch = 0.3" in text and " m = " not in text

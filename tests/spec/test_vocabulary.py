@@ -96,7 +96,7 @@ WORDS = words("""
     lam0    : λ(0)     :         : (11)     : relative contact area in the centre
     p       : p(r)     : E2*     : (3)      : nominal contact pressure
     lam     : λ(r)     :         : (11)     : relative contact area
-    error   :          :         :          : estimated relative error of the results
+    error   :          :         :          : estimated relative error of a, P, D, p(0), pmax and Ar/An
     model_error :      :         :          : estimated relative error of the model used, against the exact layered one
     residual :         :         :          : relative residual of the discrete equation
     An      : An       : R^2     :          : nominal contact area

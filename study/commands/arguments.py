@@ -90,7 +90,8 @@ def study_file(text: str) -> Path:
         if path.exists():
             return path
     paths = [path.as_posix() for folder in (given.parent, STUDIES) for path in sorted(folder.glob("*.toml"))]
-    known = paths if by_path else known_studies()
+    beside = Path(f"{text}.toml")  # whoever writes "mine" means it, and no study of a name that is like it
+    known = paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
     looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
     raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
 

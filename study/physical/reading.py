@@ -157,7 +157,8 @@ def _missing(parameters: dict) -> list[str]:
         messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
     if "E2" not in parameters:
         messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
-    layered = not isinstance(parameters.get("base"), str) or parameters["base"] != "half_space"
+    layers = {*VOCABULARY["base"].own.choices} - {"half_space"}  # of a word that is no base it is said later
+    layered = not isinstance(parameters.get("base"), str) or parameters["base"] in layers
     if layered and "E1" not in parameters and "n" not in parameters:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
     if "E1" in parameters and "n" in parameters:

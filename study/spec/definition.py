@@ -14,7 +14,7 @@ from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
 from .grid import MOVED, Grid, shown
 from .identity import digest_of
-from .toml_text import text_in
+from .toml_text import hint, text_in
 from .vocabulary import NUMERICS, finite, names, suggest
 
 POINTS = 33  # of a profile, when a study does not say it
@@ -106,7 +106,8 @@ def parsed(path) -> tuple[dict, str, str, str]:
         raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
     except ValueError as error:  # wrong TOML, wrong UTF-8
         reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
-        raise StudyError([f"{where}: is not valid TOML: {reason}"]) from None
+        more = hint(text, reason) if isinstance(error, tomllib.TOMLDecodeError) else ""
+        raise StudyError([f"{where}: is not valid TOML: {reason}{more}"]) from None
     return tables, path.stem, text, where
 
 

@@ -9,6 +9,9 @@ MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their 
 _PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 
+#: A value that begins with a word, or with a number and a word or ±; the e of "1e-6" is none.
+_NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)")
+
 
 def text_in(path: Path) -> str:
     """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and for keys of too many parts."""
@@ -23,3 +26,11 @@ def text_in(path: Path) -> str:
     if long:
         raise ValueError(f"a key has more than {MOST_PARTS} parts (at line {text.count(chr(10), 0, long.start()) + 1})")
     return text
+
+
+def hint(text: str, reason: str) -> str:
+    """The end of a message about a line of TOML, if it has a text without quotes; "" for another mistake."""
+    place = re.search(r"at line (\d+)", reason)
+    line = text.split("\n")[int(place[1]) - 1][:300] if place else ""
+    plain = "'" not in line and '"' not in line and _NO_QUOTES.search(line)
+    return '; texts stand in quotes, a number with its unit too: "5 mm"' if plain else ""

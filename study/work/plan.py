@@ -130,7 +130,8 @@ def check_writable(path: Path) -> None:
         with tempfile.TemporaryFile(dir=folder):  # a file without a name: nothing is left if the program is killed
             pass
     except OSError as error:
-        raise CannotWrite([f"{folder}: cannot be written: {error.strerror}"]) from None
+        reason = "is a file, not a folder" if isinstance(error, FileExistsError) else error.strerror
+        raise CannotWrite([f"{folder}: cannot be written: {reason}"]) from None
     except UnicodeEncodeError:  # Python has lone surrogates for bytes of a path that are not UTF-8
         wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
         raise StudyError([wrong]) from None

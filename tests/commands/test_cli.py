@@ -70,6 +70,13 @@ def test_a_study_that_is_not_there(studies, command, capsys):
     assert not Path("results").exists()
 
 
+def test_a_name_of_a_file_beside_the_studies_is_told_its_path(studies, capsys):
+    Path("main.toml").write_text(GOOD, encoding="utf-8")
+    assert main(["check", "main"]) == 2
+    said = 'main: not found (looked for main and studies/main.toml); did you mean "main.toml"?\n'
+    assert capsys.readouterr().err == said
+
+
 def test_where_there_are_no_studies_those_of_the_package_are_known_by_name(studies, monkeypatch, capsys):
     monkeypatch.chdir(studies)
     assert main(["status", "goood", "goood.toml"]) == 2

@@ -152,6 +152,7 @@ def test_series_of_pandas_and_percent():
         ({"R": None}, "R is missing: the radius of the punch"),
         ({"E2": None}, "E2 is missing: Young's modulus of the body"),
         ({"E1": None}, "E1 is missing: Young's modulus of the layer"),
+        ({"E1": None, "base": "halfspace"}, '^solve: base = "halfspace": must be one of "half_space", '),
         ({"n": 0.5}, "E1 and n are both given"),
         ({"E_punch": "1 GPa", "m": 0.5}, "E_punch and m are both given"),
         ({"nu_punch": 0.3}, "nu_punch is given without E_punch"),

@@ -122,6 +122,27 @@ def test_malformed_toml_names_file_and_place(tmp_path, content, reason):
         study_file.read(path)
 
 
+@pytest.mark.parametrize(
+    ("line", "hinted"),
+    [
+        ("E1 = 200 GPa", True),
+        ("h = [2 um, 4 um]", True),
+        ("E1 = 200 ± 10", True),
+        ("base = half_space", True),
+        ("P = {start = 1 N, stop = 2}", True),
+        ("P = 1e-6,", False),
+        ("P = 1e-6 2e-6", False),
+        ('E1 = "200 GPa', False),
+    ],
+)
+def test_texts_without_quotes_are_told_of_them(tmp_path, line, hinted):
+    path = tmp_path / "fig99.toml"
+    path.write_text(f"[model]\n{line}\n", encoding="utf-8")
+    with pytest.raises(study.StudyError, match="is not valid TOML") as caught:
+        study_file.read(path)
+    assert str(caught.value).endswith('; texts stand in quotes, a number with its unit too: "5 mm"') == hinted
+
+
 def test_missing_file(tmp_path):
     with pytest.raises(study.StudyError, match="none.toml: cannot be read: No such file"):
         study_file.read(tmp_path / "none.toml")

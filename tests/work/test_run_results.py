@@ -57,7 +57,7 @@ def test_a_file_that_is_no_result_is_kept(file, content):
 
 def test_unwritable_folder_is_found_before_computing(file, computed):
     (file.parent / "results").write_text("in the way", encoding="utf-8")
-    with pytest.raises(study.StudyError, match="results: cannot be written: File exists"):
+    with pytest.raises(study.StudyError, match="results: cannot be written: is a file, not a folder"):
         load(file).run()
     assert computed == []
 

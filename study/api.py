@@ -42,15 +42,19 @@ class Study:
         """Compute what is missing and write the results file; options as of `study.work.plan.Order`."""
         return run(self.definition, self.results, command=command_line(), **options)
 
-    def dry_run(self, workers: int | None = None, yes: bool = False) -> Estimate:
-        """What `run` would cost, and how many cases it would find computed. Computes a sample, writes nothing.
+    def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
+        """What `run` would cost, how many cases it would find computed, and with which error it would end, if any.
+
+        Computes a sample, writes nothing.
 
         Raises StudyError for a very large study of which something is on disk, unless `yes`: looking takes memory.
         """
-        return dry_run(self.definition, self.results, workers=workers, yes=yes)
+        return dry_run(self.definition, self.results, workers=workers, yes=yes, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """State, cases, status -> number of cases, path of the results, what is wrong with them.
+
+        With spreads a case counts as often as it is solved; of complete results the statuses are counted once for each.
 
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
         "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. Attributes, coordinates

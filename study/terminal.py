@@ -21,6 +21,11 @@ def _written_out(found: re.Match) -> str:
     return found[0].encode("unicode_escape").decode()
 
 
+def counted(number: int, what: str) -> str:
+    """ "1 case", "3 cases"."""
+    return f"{number} {what}{'s' * (number != 1)}"
+
+
 def say(text: str, stream: TextIO | None) -> OSError | None:
     """Write a line and flush it. Returns the error if that fails: the reader has left, say, or the disk is full.
 

@@ -39,8 +39,18 @@ def run(options, file: str) -> int:
     """Compute what is missing, or say what that would cost."""
     study = _opened(options, file)
     if options.dry_run:
-        return answer(cost_line(study.definition.name, study.dry_run(options.workers, options.yes)))
+        return _dry_run(study, options)
     return _compute(study, options, part=options.part, force=options.force)
+
+
+def _dry_run(study: Study, options) -> int:
+    """Say what a run would cost, and that it would be refused; the exit code is then that of the run."""
+    name, cost = study.definition.name, study.dry_run(options.workers, options.yes, options.force)
+    code = answer(cost_line(name, cost))
+    if cost.refused is None:
+        return code
+    say(f"{name}: `run` would be refused: {cost.refused}", sys.stderr)
+    return max(code, cost.refused.code)
 
 
 def retry(options, file: str) -> int:

@@ -53,7 +53,8 @@ def _curves(options, name: str) -> int:
         figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
     stem = f"{Path(name).stem}_{options.y}"
     title = f"{Path(name).stem}: {options.y} against {options.x}"
-    return answer(*catalogue.save(Path(options.folder) / stem, figure, columns, title))
+    answer(*catalogue.save(Path(options.folder) / stem, figure, columns, title))
+    return 0
 
 
 def table(options, name: str) -> int:

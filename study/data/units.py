@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..scene.quantities import has_unit, quantity
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 
 PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical units
@@ -21,6 +22,31 @@ def factor(name: str, R: float, E2_star: float) -> float:
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{word} = {value}: must be > 0 and finite")
     return with_unit(1.0, VOCABULARY[name].powers, E2_star, R)
+
+
+def _si(name: str, given: Any, unit: str) -> Any:
+    """What was given, with texts such as "5 mm", and quantities of pint, as numbers in the SI `unit`.
+
+    Raises ValueError for a text without a unit, or of something else, and for a spread: the results would not have it.
+    """
+    if isinstance(given, (list, tuple)):
+        return [_si(name, one, unit) for one in given]
+    if not (isinstance(given, str) or has_unit(given)):
+        return given
+    found = quantity(name, given, unit)
+    if found.spread:
+        raise ValueError(f'{name} = "{given}": must have no spread here; study.solve takes spreads, with R and E2')
+    return found.value
+
+
+def _scales(R: Any, E2_star: Any) -> dict[str, float]:
+    """R in m and E2_star in Pa, each from one number, text or quantity of pint."""
+    found = {}
+    for name, given, unit in (("R", R, "m"), ("E2_star", E2_star, "Pa")):
+        value = _si(name, given, unit)
+        one_number = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf"
+        found[name] = float(value) if one_number else quantity(name, given, unit).value
+    return found
 
 
 def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
@@ -43,17 +69,20 @@ def physical_attributes(name: str, given: dict) -> dict:
     return kept | {"long_name": entry.long_name, "units": entry.unit}
 
 
-def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
+def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
     """The dataset in SI units, each named by the attribute `units`; `study.readable` gives µm, mN, MPa.
 
     Parameters
     ----------
-    R : radius of the punch, m; E2_star : reduced modulus E2/(1 - ν2²) of the half-space, Pa; E1* on a rigid base
+    R : radius of the punch: m, or a text such as "5 mm", or a quantity of pint
+    E2_star : reduced modulus E2/(1 - ν2²) of the half-space, E1* on a rigid base: Pa, or "230 GPa"
 
     Raises
     ------
-    ValueError : the dataset is physical already, or holds pressures in E1* (a micro-law study)
+    ValueError : the dataset is physical already, or holds pressures in E1* (a micro-law study); R is no length, or
+        E2_star no pressure
     """
+    scales = _scales(R, E2_star)
     if PHYSICAL_SCALE in dataset.attrs:
         raise ValueError(f"the dataset is in physical units already: {dataset.attrs[PHYSICAL_SCALE]}")
     if "status" not in dataset and any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
@@ -63,31 +92,32 @@ def to_physical(dataset: xr.Dataset, *, R: float, E2_star: float) -> xr.Dataset:
         if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):
             attributes = physical_attributes(name, array.attrs)
             fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
-            changed[name] = array.dims, array.data * factor(name, R, E2_star), attributes, fill
+            changed[name] = array.dims, array.data * factor(name, **scales), attributes, fill
     physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})
     physical = physical.assign({name: made for name, made in changed.items() if name in dataset.data_vars})
-    return physical.assign_attrs({PHYSICAL_SCALE: f"R = {R!r} m, E2* = {E2_star!r} Pa"})
+    return physical.assign_attrs({PHYSICAL_SCALE: f"R = {scales['R']!r} m, E2* = {scales['E2_star']!r} Pa"})
 
 
-def from_physical(*, R: float, E2_star: float, **parameters) -> dict:
+def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:
     """Dimensionless parameters for `study.solve` from physical ones, in the units that `to_physical` gives.
 
     Parameters
     ----------
-    R : m; E2_star : Pa; P : N; a, D, h, Ra : m; Nbar : 1/m²; everything else is a pure number or text and passes
-        unchanged
+    R : m; E2_star : Pa; P : N; a, D, h, Ra : m; Nbar : 1/m²; or texts with a unit, such as "5 mm", or quantities of
+        pint. Everything else is a pure number or text and passes unchanged
 
     Returns
     -------
     dict with the same names, scalars, arrays or DataArrays as given
     """
-    found = {}
+    found, scales = {}, _scales(R, E2_star)
     for name, given in parameters.items():
         if name not in PARAMETERS:
             raise ValueError(f'"{name}" is not a parameter{suggest(name, PARAMETERS)}')
         if VOCABULARY[name].powers == (0, 0):
             found[name] = given
         else:
-            array = given if isinstance(given, xr.DataArray) or np.isscalar(given) else np.asarray(given)
-            found[name] = array / factor(name, R, E2_star)
+            value = _si(name, given, VOCABULARY[name].unit)
+            array = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
+            found[name] = array / factor(name, **scales)
     return found

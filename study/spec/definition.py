@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ..terminal import on_one_line
+from ..terminal import counted, on_one_line
 from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
 from .grid import MOVED, Grid, shown
@@ -69,8 +69,13 @@ class Definition:
     def cases(self) -> str:
         """Number of cases and axes in words: "12 cases (h 2 x P 6)", "60 cases (h 2 x P 6, each 5 times for ±)"."""
         dims = " x ".join(f"{name} {size}" for name, size in self.in_results(self.grid.sizes).items()) or "one case"
-        moved = f", each {self.grid.sizes[MOVED]} times for ±" if MOVED in self.grid.sizes else ""
-        return f"{self.grid.size} cases ({dims}{moved})"
+        moved = f", each {self.times} times for ±" if self.times > 1 else ""
+        return f"{counted(self.grid.size, 'case')} ({dims}{moved})"
+
+    @property
+    def times(self) -> int:
+        """How often a case of the results is solved: once, and twice more for each of its inputs with a spread."""
+        return self.grid.sizes.get(MOVED, 1)
 
     @property
     def numbers(self) -> int:

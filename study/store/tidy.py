@@ -4,6 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..spec.definition import StudyError
+from ..terminal import counted
 from .blocks import Inventory, Store, inventory, remove_litter
 from .lock import held
 
@@ -16,11 +17,25 @@ def tidy(store: Store, known: Inventory | None = None) -> str:
     remove_litter(store)
     rest = _rest(store)
     if rest:
-        return f"{store.folder} keeps {_counted(rest, known)} that are not in it, `clean` removes them"
-    store.lock.unlink(missing_ok=True)
-    with suppress(OSError):  # the folder is gone, or another run has come
-        store.folder.rmdir()
+        blocks = sum(path in known.blocks for path in rest)
+        what = f"; `clean` removes the block{'s' * (blocks > 1)}" if blocks else ""
+        return f"{store.folder} keeps what is not in it: {_counted(rest, known)}{what}"
+    _remove(store, [store.folder])
     return ""
+
+
+def withdraw(store: Store, made: list[Path]) -> None:
+    """Remove the folders that a refused run has `made`, unless something is in them or another run goes on there."""
+    with suppress(OSError), held(store.lock, wait=False) as alone:
+        if alone and not _rest(store):
+            _remove(store, made)
+
+
+def _remove(store: Store, folders: list[Path]) -> None:
+    store.lock.unlink(missing_ok=True)
+    with suppress(OSError):  # a folder is gone, or another run has come
+        for folder in folders:
+            folder.rmdir()
 
 
 def clean(store: Store, done: bool) -> list[str]:
@@ -54,9 +69,12 @@ def _counted(paths: list[Path], known: Inventory) -> str:
     """ "3 blocks of 15 cases, 1 damaged block, 2 other files"."""
     cases = [known.blocks[path] for path in paths if path in known.blocks]
     whole = [number for number in cases if number >= 0]
-    parts = [(len(whole), "block", f" of {sum(whole)} cases"), (len(cases) - len(whole), "damaged block", "")]
+    parts = [
+        (len(whole), "block", f" of {counted(sum(whole), 'case')}"),
+        (len(cases) - len(whole), "damaged block", ""),
+    ]
     parts.append((len(paths) - len(cases), "other file", ""))
-    return ", ".join(f"{number} {what}{'s' * (number > 1)}{more}" for number, what, more in parts if number)
+    return ", ".join(f"{counted(number, what)}{more}" for number, what, more in parts if number)
 
 
 def _rest(store: Store) -> list[Path]:

@@ -8,7 +8,7 @@ import numpy as np
 from solver.numerics.ladder import LADDER, STACK
 
 from ..data.dataset import not_run
-from ..spec.definition import Definition
+from ..spec.definition import Definition, StudyError
 from ..store.writer import AT_ONCE
 from .cases import compute, parcel
 from .progress import duration
@@ -36,6 +36,7 @@ class Estimate:
     cases : of the study; present : those on disk; seconds : for the others
     memory : bytes at most; size : bytes of the results
     disk : bytes at most of the results and the blocks together, before a run removes its blocks
+    refused : the error with which `run` would end, because of the results file that is there
     """
 
     cases: int
@@ -44,6 +45,7 @@ class Estimate:
     memory: float
     size: float
     disk: float
+    refused: StudyError | None = None
 
 
 def estimate(definition: Definition, workers: int | None = None, present: int = 0) -> Estimate:

@@ -13,11 +13,11 @@ from ..data.dataset import NO_SOLUTION, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..physical.scene import dataset_of
-from ..spec.definition import Definition
+from ..spec.definition import Definition, StudyError
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.earlier import check_replaceable, earlier
 from ..store.lock import held
-from ..store.tidy import tidy
+from ..store.tidy import tidy, withdraw
 from ..store.writer import writing
 from ..terminal import say
 from .cases import Failure, blocks_of, guarded, parcel
@@ -35,7 +35,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     Raises
     ------
     StudyError : the folder cannot be written, or holds results that would be lost, or no scheduler answers; nothing has
-        been computed then.
+        been computed or written then.
     OSError : writing failed later (a full disk), or the scheduler is lost; blocks written so far stay and are used by
         the next run.
     """
@@ -45,14 +45,19 @@ def run(definition: Definition, results="results", **options) -> Report:
         if order.store.folder.exists():  # a run was killed before it removed its blocks, or other blocks are there
             return _finish_if_last(order, order.report())
         return order.report()
-    check_writable(order.path)
     check_size(order)
+    made = [folder for folder in (order.store.folder, order.results) if not folder.exists()]
+    check_writable(order.path)
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
             if stamp(order.path) != seen:  # the run for which this one has waited has written it
                 found = look(order.store)
             report = _compute(order, found)
         return _finish_if_last(order, report) if order.shared else report
+    except StudyError:
+        if made:
+            withdraw(order.store, made)
+        raise
     except FileNotFoundError:
         if order.done(look(order.store)):  # on a file system without locks another run has ended and removed the blocks
             return order.report()
@@ -146,8 +151,8 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
     return failures
 
 
-def dry_run(definition: Definition, results="results", *, workers: int | None = None, yes: bool = False) -> Estimate:
-    """What `run` would cost, and how many cases it would find computed. Writes nothing.
+def dry_run(definition: Definition, results="results", *, workers=None, yes=False, force=False) -> Estimate:
+    """What `run` would cost, how many cases it would find computed, and whether it would be refused. Writes nothing.
 
     Raises
     ------
@@ -159,8 +164,14 @@ def dry_run(definition: Definition, results="results", *, workers: int | None = 
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, yes):
         return estimate(definition, workers)
-    known = inventory(order.store, earlier(definition, found).source)
-    return estimate(definition, workers, definition.grid.size - len(known.missing))
+    there = earlier(definition, found)
+    known = inventory(order.store, there.source, force=force)
+    cost = estimate(definition, workers, definition.grid.size - len(known.missing))
+    try:
+        check_replaceable(order.store, there, known.keys, force)
+    except StudyError as refused:
+        return replace(cost, refused=refused)
+    return cost
 
 
 def partial_dataset(definition: Definition, results) -> xr.Dataset:

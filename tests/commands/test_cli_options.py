@@ -5,6 +5,7 @@ import sys
 from pathlib import Path
 
 import pytest
+import xarray as xr
 from test_cli import GOOD, studies  # noqa: F401
 
 from study import api, catalogue
@@ -68,8 +69,29 @@ def test_dry_run_is_told_the_workers_and_computes_nothing(asked, monkeypatch, ca
     seen, real = [], api.Study.dry_run
     monkeypatch.setattr(api.Study, "dry_run", lambda self, *given: seen.append(given) or real(self, *given))
     assert main(["run", "good", "--dry-run", "--workers", "7"]) == 0
-    assert seen == [(7, False)] and asked == [] and tree() == []
+    assert seen == [(7, False, False)] and asked == [] and tree() == []
     assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; ")
+
+
+@pytest.mark.usefixtures("read_in_a_fork")
+@pytest.mark.parametrize("whose", ["another program", "another definition"])
+def test_dry_run_says_that_run_would_be_refused(studies, whose, capsys):  # noqa: F811
+    """With the message and the exit code of `run`, behind the cost."""
+    Path("results").mkdir()
+    if whose == "another program":
+        xr.Dataset({"a": 1.0}).to_netcdf("results/good.nc")
+    else:
+        main(["run", "good"])
+        (studies / "good.toml").write_text(GOOD.replace("2e-6", "2.5e-6"), encoding="utf-8")
+    capsys.readouterr()
+    code, refusal = main(["run", "good"]), capsys.readouterr().err
+    assert whose in refusal and code
+    assert main(["run", "good", "--dry-run"]) == code
+    cost, said = capsys.readouterr()
+    assert cost.startswith("good: 3 cases, ") and said == f"good: `run` would be refused: {refusal}"
+    forced = whose == "another definition"
+    assert (main(["run", "good", "--dry-run", "--force"]) == 0) == forced
+    assert (capsys.readouterr().err == "") == forced
 
 
 @pytest.mark.parametrize(("options", "level"), [([], logging.WARNING), (["-v"], logging.DEBUG)])
@@ -135,7 +157,7 @@ def test_check_says_what_is_in_a_file(studies, capsys):  # noqa: F811
         (studies / f"{name}.toml").write_text(text, encoding="utf-8")
     assert main(["check", "one", "two"]) == 0
     first, second = capsys.readouterr().out.splitlines()
-    assert first.startswith("one: 1 cases (one case), digest ")
+    assert first.startswith("one: 1 case (one case), digest ")
     assert second.startswith("two: 12 cases (h 2 x bonding 2 x P 3), digest ")
     assert len(first.rpartition(" ")[2]) == 16 and first[-16:] != second[-16:]
 

@@ -95,6 +95,19 @@ def test_every_command_does_its_work_without_stdout(studies, lost, command, answ
         assert [load(studies / f"{name}.toml").status()["state"] for name in ("good", "other")] == ["done", "done"]
 
 
+def test_curves_are_drawn_though_nobody_hears_where(monkeypatch, capsys, studies):  # noqa: F811
+    """As known figures are: what `plot` is for is the files."""
+    from study import catalogue
+
+    done = []
+    monkeypatch.setattr(catalogue, "save", lambda stem, *_: done.append(stem.name) or [stem])
+    with full() as out, monkeypatch.context() as patched:
+        patched.setattr(sys, "stdout", out)
+        code = main(["plot", "good", "--run", "--x", "P", "--y", "a"])
+    assert (code, done) == (0, ["good_a"])
+    assert said(capsys) == {"standard output cannot be written: No space left on device"}
+
+
 @pytest.mark.parametrize("lost", [without_a_reader, full, closed])
 def test_every_command_says_what_is_wrong_to_nobody(studies, lost, monkeypatch, capsys):  # noqa: F811
     (studies / "bad.toml").write_text("[", encoding="utf-8")

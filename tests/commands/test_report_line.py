@@ -39,6 +39,18 @@ def test_a_run_with_nothing_to_do_or_only_a_part_says_so():
     assert report_line(part, "a") == "a: 4 cases computed now, 3 of 9 are missing: other parts"
 
 
+def test_one_case_and_one_block_are_one():
+    done = Report(Path("results/a.nc"), 1, 0, {}, {}, complete=True)
+    assert report_line(done, "a") == "results/a.nc is up to date (1 case), nothing to do"
+    done = Report(Path("results/a.nc"), 1, 1, {}, {0: 1}, complete=True)
+    assert report_line(done, "a") == "results/a.nc: 1 case, 1 computed now"
+    part = Report(Path("results/a.nc"), 2, 1, {}, {0: 1, 127: 1}, complete=False)
+    assert report_line(part, "a").startswith("a: 1 case computed now, 1 of 2 ")
+    failed = Report(Path("results/a.nc"), 1, 0, {0: "full disk"}, {}, complete=False)
+    assert failure_lines(failed, "a")[-1].startswith("a: 1 block failed; ")
+    assert cost_line("a", Estimate(1, 0, 125.0, 5e8, 7e8, 1.4e9)).startswith("a: 1 case, 0 of them computed; ")
+
+
 def test_failed_blocks_stand_in_their_order():
     report = Report(Path("results/a.nc"), 9, 4, {10: "full disk", 2: "MemoryError"}, {}, complete=False)
     assert failure_lines(report, "a") == [
@@ -49,7 +61,7 @@ def test_failed_blocks_stand_in_their_order():
 
 
 def test_the_state_of_a_study_counts_what_is_done():
-    definition = SimpleNamespace(name="fig04", title="Loads")
+    definition = SimpleNamespace(name="fig04", title="Loads", times=1)
     state = {"cases": 2000, "counts": {0: 480, 1: 20, 127: 1500}, "state": "partial", "path": "r.nc", "reason": ""}
     assert state_line(definition, state) == "fig04                2000 cases  partial (500 of 2000 cases)  Loads"
     assert state_line(definition, state | {"state": "done"}) == "fig04                2000 cases  done  Loads"
@@ -58,6 +70,16 @@ def test_the_state_of_a_study_counts_what_is_done():
         "fig04                2000 cases  damaged  Loads",
         "    results/fig04.nc: is damaged: a",
     ]
+
+
+def test_the_state_of_a_study_with_spreads_says_how_often_a_case_is_solved():
+    """`cases` counts every solution, the statuses in a results file those of the inputs as they were given."""
+    definition = SimpleNamespace(name="film", title="Films", times=5)
+    state = {"cases": 30, "counts": {0: 6}, "state": "done", "path": "r.nc", "reason": ""}
+    assert state_line(definition, state) == "film                   30 cases (6, each 5 times for ±)  done  Films"
+    new = state | {"state": "partial", "counts": {0: 10, 127: 20}}
+    assert "30 cases (6, each 5 times for ±)  partial (10 of 30 cases)  Films" in state_line(definition, new)
+    assert "        5 cases (1, each 5 times for ±)  " in state_line(definition, state | {"cases": 5})
 
 
 def test_the_cost_of_a_study_counts_what_is_computed():

@@ -114,6 +114,43 @@ def test_both_ways_to_physical_units_agree():
     assert study.readable(converted).h.attrs["units"] == "µm"
 
 
+def test_texts_and_quantities_of_pint_are_read_as_solve_reads_them():
+    pint = pytest.importorskip("pint")
+    smooth = study.solve(P=1e-6, h=0.02, n=0.5, micro="smooth")
+    expected = study.to_physical(smooth, **SCALE)
+    for R, modulus in (("5 mm", "200 GPa"), (pint.Quantity(0.5, "cm"), pint.Quantity(200, "GPa")), (5e-3, "2e5 MPa")):
+        assert study.to_physical(smooth, R=R, E2_star=modulus).identical(expected)
+        given = {"P": 10.0, "h": [1e-4, 2e-4], "n": 0.5, "micro": "smooth"}
+        texts = given | {"P": "10 N", "h": ["0.1 mm", pint.Quantity(2e-4, "m")]}
+        plain, read = study.from_physical(**SCALE, **given), study.from_physical(R=R, E2_star=modulus, **texts)
+        assert read.pop("h").tolist() == plain.pop("h").tolist() and read == plain
+
+
+def test_scales_that_are_no_length_and_no_pressure():
+    pytest.importorskip("pint")
+    smooth = study.solve(P=1e-6, micro="smooth", base="half_space")
+    length, pressure = 'must be a length, such as "2 mm"', 'must be a pressure, such as "2 MPa"'
+    for name, given, said in (
+        ("R", "5 GPa", f'R = "5 GPa" is a pressure: {length}'),
+        ("R", "5", f'R = "5" has no unit: {length}'),
+        ("R", "5 ± 1 mm", 'R = "5 ± 1 mm": must have no spread here; study.solve takes spreads, with R and E2'),
+        ("R", None, f"R = None: {length}"),
+        ("R", [5e-3], f"R = [0.005]: {length}"),
+        ("R", "-5 mm", "R = -0.005: must be > 0 and finite"),
+        ("E2_star", "5 mm", f'E2_star = "5 mm" is a length: {pressure}'),
+        ("E2_star", True, f"E2_star = True: {pressure}"),
+    ):
+        for call in (
+            lambda **scale: study.to_physical(smooth, **scale),
+            lambda **scale: study.from_physical(**scale, P=1),
+        ):
+            with pytest.raises(ValueError) as caught:
+                call(**SCALE | {name: given})
+            assert str(caught.value) == said
+    with pytest.raises(ValueError, match='P = "10 mm" is a length: must be a force'):
+        study.from_physical(**SCALE, P="10 mm")
+
+
 def test_reduced_modulus():
     assert study.reduced_modulus(210e9, 0.3) == pytest.approx(230.769230769e9, rel=1e-11)
 

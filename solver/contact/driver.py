@@ -66,22 +66,26 @@ def newton_steps(nodes):
     return np.maximum(_FEWEST, (_STEPS * share).astype(int))
 
 
-def steps_within(cases, a, nodes):
-    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes, within the budget of a case."""
-    return np.minimum(newton_steps(nodes), BUDGET // cases.body.work(a, nodes)[1]).astype(int)
+def steps_within(cases, a, nodes, budget):
+    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes: with the last of them the
+    budget (B,) is spent."""
+    left = np.where(budget > 0, budget // cases.body.work(a, nodes)[1] + 1, 0)
+    return np.minimum(newton_steps(nodes), left).astype(int)
 
 
-def solve_on(start, limit=0):
+def solve_on(start, limit=0, budget=BUDGET):
     """:class:`Iterated` of Newton's method from the equation at its `start`, by the radius where that fails.
 
-    limit : most steps; 0: those of the method.
+    limit : most steps; 0: those of the method. budget : float, or (B,), what is left of that of the case.
     """
     cases, grid = start.cases, start.mesh
-    found = _newton(start, np.minimum(limit or newton.LIMIT, steps_within(cases, np.exp(start.state.eta), grid.n)))
+    most = steps_within(cases, np.exp(start.state.eta), grid.n, budget)
+    found = _newton(start, np.minimum(limit or newton.LIMIT, most))
     failed = np.flatnonzero(~found.closed)
     if limit or not len(failed):
         return found
-    again, rest = _by_radius(cases.take(failed), grid), np.flatnonzero(found.closed)
+    rest = np.flatnonzero(found.closed)
+    again = _by_radius(cases.take(failed), grid, (most - found.count)[failed])
     parts, places = ([found.at.take(rest)], [rest]) if len(rest) else ([], [])
     at = again.at.join(cases, [*parts, again.at], [*places, failed])
     closed, count = found.closed.copy(), found.count.copy()
@@ -94,17 +98,17 @@ def _newton(start, limit=newton.LIMIT):
     return iterate(start.cases, start, newton.step, limit)
 
 
-def _by_radius(cases, grid):
-    """:class:`Iterated` of cases by a search for their radius; at each the iteration starts from the smooth contact.
+def _by_radius(cases, grid, most):
+    """:class:`Iterated` of cases by a search for their radius, in at most so many steps (B,) at all radii together; at
+    each the iteration starts from the smooth contact.
 
     The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
     """
     spent, radius = np.zeros(len(cases.value), int), guess_radius(cases)
-    most = steps_within(cases, radius, grid.n)
 
     def at_radius(eta, index):
         fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
-        found = _newton(smooth_start(fixed, grid))
+        found = _newton(smooth_start(fixed, grid), np.minimum(newton.LIMIT, (most - spent)[index]))
         spent[index] += found.count
         return found
 
@@ -119,5 +123,5 @@ def _by_radius(cases, grid):
     found = at_radius(eta, np.arange(len(eta)))
     if cases.control == "a":
         return Iterated(replace(found.at, cases=cases), found.closed, spent)
-    found = _newton(replace(found.at, cases=cases))
+    found = _newton(replace(found.at, cases=cases), np.minimum(newton.LIMIT, most - spent))
     return Iterated(found.at, found.closed, spent + found.count)

@@ -51,7 +51,7 @@ def solve_on_panels(case, rtol, budget, at=None):
         work += case.body.work(radius, grid.n)[0][0]
         if work > budget:
             break
-        found = solve_on(evaluate(case, State(y, found.at.state.eta), grid, found.at.operator))
+        found = solve_on(evaluate(case, State(y, found.at.state.eta), grid, found.at.operator), budget=budget - work)
         work += found.count[0] * case.body.work(radius, grid.n)[1][0]
     return found._replace(count=count + found.count), work
 
@@ -65,9 +65,10 @@ def _first(case, rtol, budget):
         count = found.count
         if found.closed[0]:
             grid, start = found.at.mesh, found.at.state
-    found = solve_on(evaluate(case, start or first_guess(case, grid), grid))
     operator, step = case.body.work(guess_radius(case), grid.n)
-    return found._replace(count=count + found.count), work + operator[0] + found.count[0] * step[0]
+    work += operator[0]
+    found = solve_on(evaluate(case, start or first_guess(case, grid), grid), budget=budget - work)
+    return found._replace(count=count + found.count), work + found.count[0] * step[0]
 
 
 def resolve(ev, rtol):

@@ -6,7 +6,7 @@ import numpy as np
 
 from ..scene import materials
 from ..scene.quantities import Quantity
-from ..spec.grid import twins
+from ..spec.grid import shown, twins
 from .names import RIGID_TEXTS, CaseValues, QuantityList
 
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
@@ -29,7 +29,8 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
         several = isinstance(given, (list, tuple))
         try:
             values = given if several else [given]
-            known = {text: _material(body, one) for text, one in {str(one): one for one in values}.items()}
+            known = {str(one): one for one in map(_checked, values)}
+            known = {text: _material(body, one) for text, one in known.items()}
         except LookupError as error:
             errors.append(f"{body}: {error.args[0]}")
             found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing
@@ -44,11 +45,16 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
     return found, names
 
 
-def _material(body: str, name: Any) -> tuple[str, Quantity, Quantity]:
+def _checked(name: Any) -> str | materials.Material:
+    """The same name or material. Raises LookupError for anything else."""
+    if not isinstance(name, (str, materials.Material)):
+        raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
+    return name
+
+
+def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity, Quantity]:
     """Name, E and ν of a material, or of a name. Raises LookupError for a name that is not in the table."""
     if body in _MAY_BE_RIGID and name in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3)
-    if not isinstance(name, (str, materials.Material)):
-        raise LookupError(f'{name} is no name of a material, such as "steel 52100"')
     found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)

@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import FIRST_COMPLETED, CancelledError, Future, ThreadPoolExecutor, wait
+from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
@@ -70,10 +70,27 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
             raise Lost from None
         return AHEAD * max(1, min(threads, workers or threads))
 
+    def submit(function: Callable, task: object) -> Future:
+        found = Future()
+        client.submit(function, task, pure=False).add_done_callback(partial(_hand_over, found))
+        return found
+
     try:
-        yield Engine(client.get_executor(pure=False).submit, width)
+        yield Engine(submit, width)
     finally:
         client.close(timeout=1)
+
+
+def _hand_over(found: Future, computed) -> None:
+    """Give `found` the result of a future of dask, or the exception.
+
+    Dask's own executor reads the state of the future once more when it has the result. If the worker is lost in
+    between, it takes the result for an exception, and a block that has been computed fails.
+    """
+    try:
+        found.set_result(computed.result())
+    except BaseException as error:
+        found.set_exception(Lost() if computed.cancelled() else error)
 
 
 def available_workers() -> int:
@@ -102,7 +119,7 @@ def _next(pending: dict[Future, int]) -> tuple[int, object]:
     number = pending.pop(future)
     try:
         return number, future.result()
-    except CancelledError:
-        raise Lost from None
+    except Lost:
+        raise
     except Exception as error:  # of the cluster: a block has killed its workers, say
         return number, Failure(f"{type(error).__name__}: {error}", "")

@@ -78,9 +78,9 @@ def meshes(monkeypatch):
     """Nodes and panels of each mesh on which Newton's method was run."""
     found, plain = [], adaptive.solve_on
 
-    def watched(start, *arguments):
+    def watched(start, *arguments, **options):
         found.append((start.mesh.n, len(start.mesh.breaks) - 1))
-        return plain(start, *arguments)
+        return plain(start, *arguments, **options)
 
     for module in (adaptive, panels):
         monkeypatch.setattr(module, "solve_on", watched)
@@ -123,6 +123,28 @@ def test_a_case_without_budget_is_not_said_to_lift_off(monkeypatch):
     assert solve(plate, X).status[0] == Status.LIFT_OFF
     monkeypatch.setattr(adaptive, "BUDGET", 1)
     assert solve(plate, X).status[0] == Status.BUDGET_SPENT
+
+
+@pytest.mark.parametrize("given", [{"a": 0.1}, {"P": 1e-3}])
+def test_a_search_for_the_radius_takes_what_is_left_of_the_budget(monkeypatch, given):
+    """Newton fails on purpose wherever there are panels, so that the radius is searched for."""
+    plain, work = driver.iterate, []
+
+    def failing(cases, start, *arguments):
+        found = plain(cases, start, *arguments)
+        if len(start.mesh.breaks) > 2:
+            work.append(found.count[0] * cases.body.work(np.ones(1), start.mesh.n)[1][0])
+            found = found._replace(closed=np.zeros(1, bool))
+        return found
+
+    monkeypatch.setattr(driver, "iterate", failing)
+    case, totals = {name: value[0] for name, value in CORNER.items() if name != "a"} | given, []
+    for budget in (1e6, 6000):
+        work.clear()
+        monkeypatch.setattr(adaptive, "BUDGET", budget)
+        assert solve(Problem.of(**case, base="thin_layer", rtol=1e-9), X).status[0] != Status.CONVERGED
+        totals.append(sum(work))
+    assert totals[0] > 6000 and 0 < totals[1] <= 6000 - 60**2  # work of the first panels, on 60 nodes
 
 
 def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):

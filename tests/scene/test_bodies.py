@@ -77,6 +77,7 @@ def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
         ({"layer": "unobtainium"}, '^layer: "unobtainium" is no material; did you mean[^\n]*$'),
         ({"layer": "rigid"}, 'layer: "rigid" is no material'),
         ({"body": 5.0}, "body: 5.0 is no name of a material"),
+        ({"punch": ["steel", 1 << 20_000]}, "^punch: a number of more than 4300 digits is no name of a material"),
         ({"E1": "1 GPa"}, "layer and E1 are both given: E1 follows from layer"),
         ({"nu2": 0.3}, "body and nu2 are both given"),
         ({"m": 0.5}, "punch and m are both given"),

@@ -9,7 +9,6 @@ import shutil
 import socket
 import subprocess
 import sys
-from concurrent.futures import Executor, Future
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -246,13 +245,17 @@ def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path
     assert_ends_well(opened, undisturbed, BLOCK)
 
 
-def test_blocks_that_a_lost_scheduler_has_cancelled_are_not_failures():
-    class Gone(Executor):
-        def submit(self, *_):
-            future = Future()
-            future.cancel()
-            future.set_running_or_notify_cancel()
-            return future
+def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch):
+    options = {"n_workers": 1, "processes": False, "dashboard_address": None}
+    with distributed.LocalCluster(**options) as local, distributed.Client(local, set_as_default=False) as client:
+        gather = client._gather
 
-    with pytest.raises(engines.Lost, match="the scheduler is gone"):
-        list(engines.as_they_come(engines.Engine(Gone().submit, lambda: 2), len, ["", ""]))
+        async def lost(futures, *arguments, **more):
+            found = await gather(futures, *arguments, **more)
+            futures[0]._state.lose()
+            return found
+
+        monkeypatch.setattr(client, "_gather", lost)
+        monkeypatch.setattr(engines, "connected", lambda *_: client)
+        with engines.engine(None, client.scheduler.address) as found:
+            assert list(engines.as_they_come(found, str.split, ["one two"])) == [(0, ["one", "two"])]

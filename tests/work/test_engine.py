@@ -3,7 +3,7 @@
 import os
 import sys
 import threading
-from concurrent.futures import Executor, Future
+from concurrent.futures import CancelledError, Executor, Future
 from types import SimpleNamespace
 
 import numpy as np
@@ -74,6 +74,24 @@ def test_processors_that_may_be_used(monkeypatch):
         assert available_workers() == expected
 
 
+class Computed:
+    """A future of dask that ends at once; None for a task: the scheduler is gone."""
+
+    def __init__(self, function, task):
+        self.function, self.task = function, task
+
+    def add_done_callback(self, called):
+        called(self)
+
+    def cancelled(self):
+        return self.task is None
+
+    def result(self):
+        if self.cancelled():
+            raise CancelledError("the scheduler is gone")
+        return self.function(self.task)
+
+
 @pytest.fixture
 def client(monkeypatch):
     """A cluster of two machines with 2 and 3 threads; what is done to it is in `done`."""
@@ -90,9 +108,9 @@ def client(monkeypatch):
                 raise OSError("closed")
             return self.threads
 
-        def get_executor(self, pure):
+        def submit(self, function, task, pure):
             assert pure is False, "the same block twice is computed twice"
-            return AtOnce()
+            return Computed(function, task)
 
         def close(self, timeout):
             done.append("closed")
@@ -120,6 +138,15 @@ def test_workers_bound_the_threads_of_a_cluster(client):
     for count, expected in ((3, 3), (9, 5)):
         with engine(count, "tcp://127.0.0.1:1") as found:
             assert found.width() == AHEAD * expected
+
+
+def test_what_comes_of_the_blocks_of_a_cluster(client):
+    """A result; a block that raises fails alone; blocks that a lost scheduler has cancelled have not failed."""
+    with engine(None, "tcp://127.0.0.1:1") as found:
+        (_, number), (_, failure) = as_they_come(found, float, ["2.5", "many"])
+        assert number == 2.5 and failure.message == "ValueError: could not convert string to float: 'many'"
+        with pytest.raises(Lost, match="^the scheduler is gone$"):
+            list(as_they_come(found, float, [None]))
 
 
 def test_a_cluster_needs_its_package(monkeypatch):

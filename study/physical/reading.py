@@ -60,7 +60,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
             try:
                 _add(scene, name, given)
             except ValueError as error:
-                errors.append(str(error))
+                errors.append(f"{error}{_material(name, given)}")
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, CaseValues) else given
     errors += _missing(parameters)
@@ -74,6 +74,13 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     if errors:
         raise StudyError(errors)
     return scene
+
+
+def _material(name: str, given: Any) -> str:
+    """The end of a message about a modulus that is given as a word; "" for all else."""
+    body = next((body for body, (modulus, _, _) in BODIES.items() if modulus == name), "")
+    word = isinstance(given, str) and given[:1].isalpha()
+    return f"; a material is given as {body}, in place of {name}" if body and word else ""
 
 
 def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:

@@ -160,6 +160,8 @@ def test_series_of_pandas_and_percent():
         ({"P": [1, "2 N"]}, r"P\[0\] = 1 has no unit"),
         ({"nu1": "0.6"}, r"nu1 = 0.6: must be in \(-1, 0.5\]"),
         ({"E2": "-2 GPa"}, "E2 = -2 GPa: must be > 0"),
+        ({"E2": "steel 52100"}, 'must be a pressure, such as "2 MPa"; a material is given as body, in place of E2$'),
+        ({"E1": "2 mm"}, 'E1 = "2 mm" is a length: must be a pressure, such as "2 MPa"$'),
         ({"hh": "2 um"}, '"hh" is not a parameter; did you mean "h"'),
         ({"R": "5 km", "h": "2 nm"}, r"^h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R, R = 5000 m$"),
         ({"h": xr.DataArray([1e-6], dims="film")}, 'the DataArray has no attribute "units"; a length needs one'),

@@ -4,13 +4,13 @@
 PYTHON ?= python3
 # The studies of this repository. They may replace their own results of an older version; a study of yours may not.
 STUDIES := reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings \
-  literature literature_coatings spot_density_lattice \
+  literature literature_coatings literature_rough spot_density_lattice \
   extremes extremes_layered picard_domain \
   dlc_on_steel tin_on_steel ptfe_lining polymer_film_on_glass rubber_on_metal gel_on_glass
 # What `make clean` removes of figures/ and tables/.
 DRAWN := fig?? fig??_layered fig??_lattice validity validity_load coatings extremes picard_domain tradeoff literature
 WRITTEN := table1 table1_lattice paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error \
-  literature literature_coatings literature_decided
+  literature literature_coatings literature_decided literature_rough
 # Kernels of OpenBLAS for `make kernels`: one that every x86-64 processor runs. On another, all that it runs:
 # make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
 KERNELS ?= Nehalem
@@ -63,7 +63,7 @@ tradeoff: figures/tradeoff.pdf $(READY) ## error against time of every way to so
 picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
 
 literature: figures/literature.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
-	$(RUN) table --run literature literature_coatings literature_decided
+	$(RUN) table --run literature literature_coatings literature_decided literature_rough
 	@cp figures/literature.png docs/
 	$(RUN).literature.page docs/literature.md
 

@@ -58,6 +58,21 @@ def best_alpha(x, n, exact, nu) -> tuple[np.ndarray, np.ndarray]:
     return tried[best], errors[best, np.arange(len(n))]
 
 
+def over_smooth(rough: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """α, μ, and p(0) and effective radius over those of Hertz, (cases,) each, of contacts with random heights.
+
+    The effective radius is (3π/4) ∫ r p dr/∫ p dr, which is a for a smooth sphere.
+    """
+    from scipy.interpolate import CubicSpline
+
+    P, sigma, x, p = (rough[name].values for name in ("P", "sigma", "x", "p"))
+    smooth = np.cbrt(0.75 * P)
+    alpha, mu = sigma / smooth**2, 8 / 3 * rough["Nbar"].values * sigma * np.sqrt(2 * rough["Ra"].values)
+    moments = [CubicSpline(x, weight * p, axis=-1).integrate(0, 1) for weight in (x, np.ones_like(x))]
+    radius = 3 * np.pi / 4 * rough["a"].values * moments[0] / moments[1]
+    return alpha, mu, rough["p0"].values / (2 * smooth / np.pi), radius / smooth
+
+
 def safe_range(x: np.ndarray, error: np.ndarray, level: float, *, last: bool = False) -> tuple[float, float]:
     """Smallest and largest x of the stretch where |error| <= level that begins at the first x, or ends at the last.
 

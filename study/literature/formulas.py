@@ -174,3 +174,18 @@ STIFFNESSES = {
     "Bec et al. 2006": (bec, NIMS),
 }
 """Name -> (x, n, ν) -> E_eff/E2* on a bonded layer, and where its constants were read."""
+
+GREENWOOD_TRIPP = {
+    1: {3.257: (0.193197, 2.419815), 0.4124: (0.583876, 1.357522), 0.05: (0.875087, 1.082385)},
+    4: {
+        3.257: (0.226972, 2.237666), 1.168: (0.438338, 1.592014), 0.4124: (0.679046, 1.257591),
+        0.1953: (0.809638, 1.137882), 0.0682: (0.915206, 1.057283), 0.05: (0.933418, 1.044423),
+        0.0255: (0.960352, 1.025894),
+    },
+    17: {
+        3.257: (0.258153, 2.100776), 0.4124: (0.740702, 1.201232), 0.05: (0.956541, 1.029619),
+        0.0255: (0.975817, 1.016277),
+    },
+}  # fmt: skip
+"""μ -> α -> p(0) and effective radius over those of Hertz, of the equations of Greenwood and Tripp (1967):
+tests/references/make_greenwood_tripp.py solves them."""

@@ -12,6 +12,7 @@ from .compared import (
     coefficients,
     kappa,
     load_error,
+    over_smooth,
     range_of,
     stiffness,
     stiffness_errors,
@@ -203,3 +204,31 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     slope = (exact[near] - 1) / (n[near] - 1)
     rows.append(("slope of the stiffness at n = 1, a/h near 1", "Gao", share[middle], slope[middle]))
     return [(*row, row[2] / row[3] - 1) for row in rows]
+
+
+@table(
+    "literature_rough",
+    "literature_rough",
+    caption="""A sphere with asperities of normal heights: pressure in the middle and effective radius over those of
+    Hertz, by Greenwood and Tripp (1967), who leave out that asperities press down their neighbours, and with it.""",
+    columns="""
+    alpha | g | $\\alpha$
+    mu | g | $\\mu$
+    Ra/R | g | $R_a/R$
+    lambda(0) | .2g | $\\lambda(0)$
+    p(0), Greenwood and Tripp | .4f | $p(0)$, Greenwood and Tripp
+    with neighbours | .4f
+    off by | +.1%
+    radius, Greenwood and Tripp | .4f
+    with neighbours | .4f
+    off by | +.1%""",
+)
+def rough_spheres(rough: xr.Dataset) -> list[tuple]:
+    """α, μ, Ra, λ(0); then p(0) and the effective radius, over those of Hertz: as published, exact, the difference."""
+    rows = []
+    values = zip(*over_smooth(rough), rough["Ra"].values, rough["lam0"].values, strict=True)
+    for alpha, mu, p0, radius, Ra, covered in values:
+        alpha, mu = float(f"{alpha:.4g}"), round(mu)
+        said = formulas.GREENWOOD_TRIPP[mu][alpha]
+        rows.append((alpha, mu, Ra, covered, said[0], p0, said[0] / p0 - 1, said[1], radius, said[1] / radius - 1))
+    return rows

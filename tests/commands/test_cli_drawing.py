@@ -102,5 +102,5 @@ def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
     assert drawn == [*sorted([*paper, *layered, *ours]), "captions"]
     drawn.clear()
     assert main(["table", "all"]) == 0
-    literature = ["literature", "literature_coatings", "literature_decided"]
+    literature = ["literature", "literature_coatings", "literature_decided", "literature_rough"]
     assert drawn == [*literature, "paper_numbers", "table1", "table1_lattice", "validity"]

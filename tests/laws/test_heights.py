@@ -12,6 +12,7 @@ from solver_cases import difference
 import study
 from solver import Problem, laws, solve
 from solver.laws import disc_cell, heights, spread
+from study.literature.formulas import GREENWOOD_TRIPP
 
 LAW = heights.LAW
 CASE = {"Nbar": 250_000.0, "Ra": 0.004, "h": 0.02, "n": 0.5}
@@ -116,20 +117,10 @@ def test_derivatives_inverses_and_edge(spread):
         assert_allclose(gamma * few[0] ** beta, 1e-8, rtol=1e-4)
 
 
-#: μ -> spread over a²/R of Hertz, p(0) and a_eff over those of Hertz (tests/references/make_greenwood_tripp.py).
-GREENWOOD_TRIPP = {
-    4: np.array([
-        [3.257, 0.226972, 2.237666], [1.168, 0.438338, 1.592014], [0.4124, 0.679046, 1.257591],
-        [0.1953, 0.809638, 1.137882], [0.0682, 0.915206, 1.057283], [0.0255, 0.960352, 1.025894],
-    ]),
-    17: np.array([[3.257, 0.258153, 2.100776], [0.4124, 0.740702, 1.201232], [0.0255, 0.975817, 1.016277]]),
-}  # fmt: skip
-
-
-@pytest.mark.parametrize(("mu", "at_four"), [(4, 5e-3), (17, 1.3e-2)])
+@pytest.mark.parametrize(("mu", "at_four"), [(1, 5e-3), (4, 5e-3), (17, 1.3e-2)])
 def test_without_a_field_it_is_greenwood_and_tripp(mu, at_four):
     """p(0) and a_eff; μ = (8/3) Nbar σ sqrt(2 R Ra). The cut moves them by 5e-4 at most at 5 σ, by more at 4 σ."""
-    alpha, p0, a_eff = GREENWOOD_TRIPP[mu].T
+    alpha, (p0, a_eff) = np.array(list(GREENWOOD_TRIPP[mu])), np.array(list(GREENWOOD_TRIPP[mu].values())).T
     free = laws.register(heights.law("free_heights", heights.NORMAL, field=0.0, version="1"))
     a, Ra = 0.01, 1e-6
     sigma = alpha * a**2

@@ -141,6 +141,21 @@ def test_the_numbers_on_the_page_are_those_of_the_solver(contacts):
         assert_allclose(shown, compared.load_error(one, contacts, nu)[1], rtol=0, atol=6e-5)
 
 
+def test_greenwood_and_tripp_are_right_where_spots_are_far_apart(results):
+    """And Greenwood, Johnson and Matsubara where μ is not small; the page has the same numbers."""
+    rows = TABLES["literature_rough"].rows(opened(results / "literature_rough.nc"))
+    covered, p0, radius = np.array([[row[3], row[6], row[9]] for row in rows]).T
+    assert np.all(p0 < 0) and np.all(radius > 0), "who leaves the neighbours out has too soft a surface"
+    sparse = covered < 0.01
+    assert np.abs(p0[sparse]).max() < 0.012 and np.abs(radius[sparse]).max() < 0.006
+    assert np.abs(p0[~sparse]).max() > 0.1 and np.abs(radius[~sparse]).max() > 0.05
+    lower = {row[1]: 1 - row[4] for row in rows if row[0] == 0.05}
+    assert max(lower[4], lower[17]) < 0.07 and round(lower[1], 2) == 0.12
+    written = [row for row in cells(pages.read("docs/literature.md")) if len(row) == len(rows[0]) and row[0] != "alpha"]
+    shown = np.array([[float(cell.rstrip("%")) / (100 if "%" in cell else 1) for cell in row] for row in written])
+    assert_allclose(shown, np.array(rows), rtol=0.04, atol=6e-4)
+
+
 def test_what_is_decided_is_drawn_from_the_results(results):
     rigid_base, coated = (opened(results / f"{name}.nc") for name in ("literature", "literature_coatings"))
     for row in TABLES["literature_decided"].rows(rigid_base, coated):

@@ -1,14 +1,19 @@
 """Print p(0) and a_eff of rough spheres as Greenwood and Tripp (1967) have them, over those of Hertz.
 
-python tests/references/make_greenwood_tripp.py: for each μ and α = σ R/a_H², on two meshes; tests/laws/test_heights.py
-has the numbers. Nothing of the solver is used: p*(ρ) = μ F(d* + ρ² + w*), F(h) = ∫ (z - h)^(3/2) φ(z) dz over z > h,
-lengths in sqrt(2 R σ), heights in σ, pressures in E* sqrt(σ/(8 R)), and w* = (2/π) ∫ p* t/(ρ + t) K(4 ρ t/(ρ + t)²) dt.
+python tests/references/make_greenwood_tripp.py: for each μ and α = σ R/a_H², on two meshes. They stand in
+study/literature/formulas.py. Nothing of the solver is used: p*(ρ) = μ F(d* + ρ² + w*), F(h) = ∫ (z - h)^(3/2) φ(z) dz
+over z > h, lengths in sqrt(2 R σ), heights in σ, pressures in E* sqrt(σ/(8 R)), and
+w* = (2/π) ∫ p* t/(ρ + t) K(4 ρ t/(ρ + t)²) dt.
 """
 
 import numpy as np
 from scipy.special import ellipkm1
 
-GIVEN = {4: (3.257, 1.168, 0.4124, 0.1953, 0.0682, 0.0255), 17: (3.257, 0.4124, 0.0255)}
+GIVEN = {
+    1: (3.257, 0.4124, 0.05),
+    4: (3.257, 1.168, 0.4124, 0.1953, 0.0682, 0.05, 0.0255),
+    17: (3.257, 0.4124, 0.05, 0.0255),
+}
 #: Gap in σ at which the pressure is left out: F is 1e-12 there.
 FAR = 6.6
 

@@ -55,23 +55,36 @@ def pieces(s, breaks, order, near=None, rough=None):
             there &= near
         is_far = ahead >= length
         level = np.where(is_far, -1, panels_towards(start if rough is None else np.where(rough, 0.0, start), length))
-        kinds = 2 * level + (ahead < 0)
+        kinds, side = 2 * level + (ahead < 0), _Side(s, low, length, sign, start, far_end)
         for kind in np.unique(kinds[there]).tolist():
             one, (row, panel) = kind // 2, np.nonzero(there & (kinds == kind))
             rule = gauss_legendre(12 + order // 2) if one < 0 else log_rule(14 + order // 2, rough is not None, one)
             many = max(1, _TOGETHER // (len(rule[0]) * order))
             for at in range(0, len(row), many):
                 pairs = row[at : at + many], panel[at : at + many]
-                yield _piece(s, low, length, sign, start, far_end, kind % 2, *pairs, *rule)
+                yield _piece(side, pairs, rule, kind % 2)
 
 
-def _piece(s, low, length, sign, start, far_end, inside, row, panel, distance, weight):
-    """The :class:`Piece` of the pairs `row`, `panel`, the targets inside their panels or not, for a rule on [0, 1]."""
-    begin, whole = start[row, panel, None], length[panel, None]
-    reach = far_end[row, panel, None] - begin
+class _Side(NamedTuple):
+    """What of p panels lies on one side of m targets s, ahead of them where `sign` is +1: the panels begin at `low` and
+    have this `length`, (p,) each; `start` and `end` (m, p) are the distances from a target to the part of a panel."""
+
+    s: np.ndarray
+    low: np.ndarray
+    length: np.ndarray
+    sign: int
+    start: np.ndarray
+    end: np.ndarray
+
+
+def _piece(side, pairs, rule, inside):
+    """The :class:`Piece` of `pairs` (targets, panels), the targets inside their panels or not, for a rule on [0, 1]."""
+    (row, panel), (distance, weight), sign = pairs, rule, side.sign
+    begin = side.start[row, panel, None]
+    reach = side.end[row, panel, None] - begin
     gap = begin + reach * distance
     if inside:
-        local = ((s[row] - low[panel])[:, None] + sign * gap) / whole
+        local = ((side.s[row] - side.low[panel])[:, None] + sign * gap) / side.length[panel, None]
     else:
         local = (distance if sign > 0 else 1 - distance)[None]
     return Piece(row, panel, sign, gap, reach * weight, local)

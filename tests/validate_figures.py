@@ -104,7 +104,7 @@ def _spheres(found: xr.Dataset, panel) -> None:
         r, law = 1e3 * one["r"].values, 100 * one["law_mean"]
         _resolved(panel, r, 100 * one["mean"].values, 200 * one["unsure"].values, f"C{i}")
         panel.plot(r, law.sel(law="heights").values, color=f"C{i}", linewidth=1, label=name)
-    panel.plot(r, law.sel(law="one height").values, "k:", linewidth=1, label="one height")
+    panel.plot(r, law.sel(law="one height").values, color="0.6", linestyle="-", linewidth=1, label="one height")
     panel.set(xlabel="$1000\\,r/R$", ylabel="mean pressure, $100\\,p/E^*$", ylim=(0, None))
     panel.legend(fontsize=6.5)
 

@@ -10,10 +10,11 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 from conjugate_gradients import pressed
+from influence import Layer
 from rough_sphere import OUTSIDE, Punch, asperities, cell_means, real_area, resolved, width
 from scipy import fft
 from scipy.special import ndtr, ndtri
-from validate_cases import RA, TOLERANCE, kept, richardson
+from validate_cases import RA, TOLERANCE, given, kept, richardson
 
 import study
 from solver.laws import LAWS
@@ -34,8 +35,8 @@ ONES = {"Nbar": 1.0, "Ra": 1.0}
 
 
 class Sphere(NamedTuple):
-    """A sphere on a half-space under the load P; σ = spread A*. Cells a side, an odd number, and elements a side of a
-    cell on each mesh."""
+    """A sphere on a half-space, or on a layer, under the load P; σ = spread A*. Cells a side, an odd number, and
+    elements a side of a cell on each mesh."""
 
     name: str
     micro: str
@@ -44,6 +45,7 @@ class Sphere(NamedTuple):
     P: float = 2e-5
     pitch: float = 0.0027
     counts: tuple[int, ...] = (8, 16)
+    layer: Layer | None = None
 
     @property
     def sigma(self) -> float:
@@ -54,6 +56,7 @@ class Sphere(NamedTuple):
 SPHERES = (
     Sphere("normal, σ = 0.05 A*", "normal_heights", 0.05, 27),
     Sphere("normal, σ = 0.2 A*", "normal_heights", 0.2, 33),
+    Sphere("normal, σ = 0.2 A*, the paper's layer", "normal_heights", 0.2, 33, P=1e-5, layer=Layer(0.02, 0.5)),
     Sphere("uniform, σ = 0.2 A*", "uniform_heights", 0.2, 29),
 )
 
@@ -77,7 +80,7 @@ def sphere(case: Sphere, draw: int) -> dict[str, np.ndarray]:
     rows, start = [], None
     for count in case.counts:
         half, points = case.cells * case.pitch / 2, case.cells * count
-        one = resolved(punch, case.P, half, points, start=start, tolerance=TOLERANCE)
+        one = resolved(punch, case.P, half, points, case.layer, start, TOLERANCE)
         across = np.hypot(one.middle[:, None], one.middle[None, :])
         rows.append([one.D, width(across, one.p, 1.0), real_area(one), one.p.max()])
         start = np.kron(one.p, np.ones((2, 2)))
@@ -114,7 +117,8 @@ def compared(case: Sphere, folder: Path) -> xr.Dataset:
     """All that is shown of a sphere: over the laws, that of its heights, and those of one height at their mean."""
     values, r, mean = draws(case, folder)
     laws = [case.micro, "disc_cell"]
-    asked = {"P": case.P, "base": "half_space", "Nbar": case.pitch**-2, "Ra": RA, "x": 401, "rtol": 1e-5}
+    asked = {"P": case.P, "Nbar": case.pitch**-2, "Ra": RA, "x": 401, "rtol": 1e-5}
+    asked |= given(case.layer) | {"base": "layered" if case.layer else "half_space"}
     own = {"sigma": case.sigma} | ({"cut": CUT} if case.micro == "normal_heights" else {})
     two = [study.solve(**asked, micro=law, **(own if law == case.micro else {})).load() for law in laws]
     x = two[0]["x"].values

@@ -77,16 +77,16 @@ too large where it is large, δA/A is
 ![Thin layers, and random heights](validate_limits.png)
 
 (a) Two scales against spheres on a layer that becomes thinner. (b) What A errs on a cell: points resolved, lines to the
-first order. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines the mean field; dotted
+first order. (c) Mean pressure of rings of cells: points resolved, ± two standard errors, lines the mean field; grey
 the disc cell of one height. (d) Depth of the mean plane of periodic cells: points resolved, ± two standard errors.
 
 ## Random heights
 
-Summits on a square lattice of the pitch 0.0027, on a half-space, {draws} draws each; A* = 1/(π N̄ Ra), and normal
-heights are cut at {cut:g} σ. The depth is that of the mean plane of the summits, D - cσ of the law. "Scatter" is the
-standard deviation of one draw, ± the standard error of the mean. "One height" is `disc_cell`: what leaving the heights
-out says. Rings: the largest difference of the mean pressure of {rings} rings of equally many cells, over p(0), ± the
-largest standard error.
+Summits on a square lattice of the pitch 0.0027, {draws} draws each, on a half-space and on the paper's layer, n = 0.5
+without friction; A* = 1/(π N̄ Ra), and normal heights are cut at {cut:g} σ. The depth is that of the mean plane of the
+summits, D - cσ of the law. "Scatter" is the standard deviation of one draw, ± the standard error of the mean. "One
+height" is `disc_cell`: what leaving the heights out says. Rings: the largest difference of the mean pressure of {rings}
+rings of equally many cells, over p(0), ± the largest standard error.
 
 {heights}
 

@@ -217,11 +217,11 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     Ra/R | g | $R_a/R$
     lambda(0) | .2g | $\\lambda(0)$
     p(0), Greenwood and Tripp | .4f | $p(0)$, Greenwood and Tripp
-    with neighbours | .4f
-    off by | +.1%
+    p(0), with neighbours | .4f | $p(0)$, with neighbours
+    p(0) off by | +.1% | $p(0)$ off by
     radius, Greenwood and Tripp | .4f
-    with neighbours | .4f
-    off by | +.1%""",
+    radius, with neighbours | .4f
+    radius off by | +.1%""",
 )
 def rough_spheres(rough: xr.Dataset) -> list[tuple]:
     """α, μ, Ra, λ(0); then p(0) and the effective radius, over those of Hertz: as published, exact, the difference."""

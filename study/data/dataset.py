@@ -53,12 +53,13 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     """`parts` of any of the arrays, even none, without `validity` and the names of flags."""
     grid = definition.grid
     rigid = bool(on_rigid_base(grid).any())  # if one layer is on a rigid base, all are
-    known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate"))}
+    values = grid.values | grid.labels
+    known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
     for name in ("B", "beta") if grid.fitted else ():
         known[name]["comment"] = COMMENT
     coordinates = {
         name: xr.Variable(dims, array, known.get(name, {}))
-        for name, (dims, array) in (grid.values | grid.labels).items()
+        for name, (dims, array) in values.items()
     }
     coordinates["x"] = xr.Variable(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)

@@ -52,8 +52,10 @@ def absurd(contacts: xr.Dataset) -> list[str]:
         if name not in contacts.variables or contacts.variables[name].attrs.get("units") != unit_of(name):
             continue
         values = contacts.variables[name].values
-        outside = values[((values < low) | (values > high)) & np.isfinite(values)]
-        found += [f"{name} = {readable(float(one), unit_of(name))}: {words}; is its unit right?" for one in outside[:1]]
+        outside = ((values < low) | (values > high)) & np.isfinite(values)
+        if outside.any():
+            one = readable(float(values[outside][0]), unit_of(name))
+            found.append(f"{name} = {one}: {words}; is its unit right?")
     return found
 
 
@@ -65,7 +67,8 @@ def value_text(given: Any) -> str:
 def _first_outside(scene: Scene, name: str) -> list[Place]:
     """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
     values = scene.parameters[name]
-    outside = np.argwhere(~within(VOCABULARY[name].own, np.asarray(values)))[:1].tolist()
+    inside = within(VOCABULARY[name].own, np.asarray(values))
+    outside = [] if inside.all() else np.argwhere(~inside)[:1].tolist()  # argwhere takes as long as all else here
     return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
 
 

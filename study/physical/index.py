@@ -49,7 +49,7 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
     for name in dataset.dims:
-        if _known(name) and dataset[name].attrs.get("units", "1") == unit_of(name) != "1":
+        if name in dataset.variables and _known(name) and dataset.variables[name].attrs.get("units") == unit_of(name) != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset
 

@@ -108,19 +108,19 @@ def _add(scene: Scene, name: str, given: Any) -> None:
                 _check_distinct(name, value.values.tolist())
         else:
             value, spread = found.value, found.spread
-    if name in ("R1", "R2") and np.any(np.asarray(value) == 0):
+    if name in ("R1", "R2") and np.any(value == 0):
         raise ValueError(f"{name} = {value_text(given)}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
-    outside = np.argwhere(~((np.asarray(value) > low) & (np.asarray(value) <= high)))
-    if len(outside):
+    inside = (value > low) & (value <= high)
+    if not np.all(inside):
         text = f"{name} = {value_text(given)}"
         if isinstance(given, xr.DataArray):
-            place, unit = outside[0].tolist(), given.attrs.get("units", "1")
+            place, unit = np.argwhere(~inside.values)[0].tolist(), given.attrs.get("units", "1")
             text = f"{name}{place} = {given.values[tuple(place)]:g}" + f" {unit}" * (unit != "1")
         raise ValueError(f"{text}: {limits}")
-    if np.any(np.asarray(spread) > 0):
-        reach = STEP * np.asarray(spread)
-        if not np.all((np.asarray(value) - reach > low) & (np.asarray(value) + reach <= high)):
+    if np.any(spread > 0):
+        reach = STEP * spread
+        if not np.all((value - reach > low) & (value + reach <= high)):
             text = f"with its spread it {limits}; at the limit itself give no spread"
             raise ValueError(f"{name} = {value_text(given)}: {text}")
         scene.spreads[name] = spread

@@ -81,33 +81,24 @@ class Scene:
             if MOVED in found.dims:
                 results |= _spread(name, found)
                 found = found.isel({MOVED: 0})
-            (coords if name in parts.coords else results)[name] = self._renamed(found)
-        results = {name: self._renamed(variable) for name, variable in results.items()}
-        coords |= {name: self._coordinate(name, value) for name, value in self.given.items()}
+            (coords if name in parts.coords else results)[name] = found
+        coords |= {name: _coordinate(name, value) for name, value in self.given.items()}
         for name, value in self.spreads.items():
-            coords[f"{name}_spread"] = self._coordinate(name, value, f"standard deviation of {name}, as given")
+            coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
         for body, (dim, texts) in self.names.items():
             values = texts if dim else texts[0]
             coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
         if self.labels:
             coords["label"] = xr.Variable("case", self.labels)
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
-        return searchable(Parts(results, coords, attributes).dataset())
+        return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
 
-    def _coordinate(self, name: str, value: Any, long_name: str = "") -> xr.Variable:
-        """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
-        variable = _variable(value)
-        variable = variable.isel({MOVED: 0}) if MOVED in variable.dims else variable
-        words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
-        attributes = {"long_name": long_name or words} | _units(unit_of(name))
-        return self._renamed(xr.Variable(variable.dims, variable.data, attributes))
-
-    def _renamed(self, variable: xr.Variable) -> xr.Variable:
-        """The variable over the dimensions that the results have."""
+    def _renamed(self, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
+        """The variables over the dimensions that the results have."""
         if not self.dims:
-            return variable
-        dims = [self.dims.get(dim, dim) for dim in variable.dims]
-        return xr.Variable(dims, variable.data, variable.attrs, variable.encoding)
+            return variables
+        dims = {name: [self.dims.get(dim, dim) for dim in variable.dims] for name, variable in variables.items()}
+        return {name: xr.Variable(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
 
 
 def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
@@ -115,8 +106,16 @@ def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
     return definition.scene.results(parts) if definition.scene else parts.dataset()
 
 
-def _variable(value: Any) -> xr.Variable:
-    return value.variable if isinstance(value, xr.DataArray) else xr.Variable((), value)
+def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
+    """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
+    words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
+    found = _variable(value, {"long_name": long_name or words} | _units(unit_of(name)))
+    return found.isel({MOVED: 0}) if MOVED in found.dims else found
+
+
+def _variable(value: Any, attributes: dict | None = None) -> xr.Variable:
+    dims, data = (value.dims, value.data) if isinstance(value, xr.DataArray) else ((), value)
+    return xr.Variable(dims, data, attributes)
 
 
 def _units(unit: str) -> dict[str, str]:
@@ -126,16 +125,15 @@ def _units(unit: str) -> dict[str, str]:
 
 def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
-    powers = VOCABULARY[name].powers
+    powers, dims = VOCABULARY[name].powers, variable.dims
     if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
-        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
+        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*dims, ...)
+        dims, data = found.dims, found.data
     else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
-        found = xr.Variable(variable.dims, with_unit(variable.data, powers, unit, R))
-    if found.dtype != variable.dtype:  # astype takes time even where it changes nothing
-        found = found.astype(variable.dtype)
-    found.attrs = physical_attributes(name, variable.attrs)
-    found.encoding = variable.encoding
-    return found
+        data = with_unit(variable.data, powers, unit, R)
+    if data.dtype != variable.dtype:  # astype takes time even where it changes nothing
+        data = data.astype(variable.dtype)
+    return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 
 def _spread(name: str, variable: xr.Variable) -> dict[str, xr.Variable]:

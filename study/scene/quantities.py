@@ -146,7 +146,8 @@ def _size(word: str, unit: str) -> Decimal | None:
         found = registry.Quantity(word).to(_pint_name(unit)).magnitude
     except Exception:  # pint then reads the whole text, and the message says what is wrong
         return None
-    return found if isinstance(found, Decimal) and unit != "1" else None
+    # it is the integer 1 for the SI unit itself
+    return Decimal(found) if isinstance(found, (int, Decimal)) and unit != "1" else None
 
 
 def _shown(given: Any) -> str:

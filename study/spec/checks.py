@@ -16,7 +16,8 @@ def missing_parameters(grid: Grid) -> list[str]:
         selector, words = VOCABULARY[name].own.needed_by
         if VOCABULARY[name].own.default is not None or (name in CONTROLS and name not in grid.values):
             continue
-        gaps = np.isnan(along(grid, name)) & cases_with(name, partial(along, grid))
+        gaps = np.isnan(along(grid, name))
+        gaps = gaps & cases_with(name, partial(along, grid)) if gaps.any() else gaps
         if gaps.any():
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")] if name in grid.values else ""
             found = [shown(word) for word in words if word in along(grid, selector)]

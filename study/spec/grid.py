@@ -49,7 +49,8 @@ def along(grid: Grid, name: str) -> np.ndarray:
     """
     default = VOCABULARY[name].own.default
     dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
-    array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
+    if len(dims) > 1:
+        array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
 
 

@@ -4,6 +4,7 @@ import difflib
 import math
 import numbers
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -44,20 +45,20 @@ class Entry:
     @property
     def own(self) -> Parameter:
         """The row of a parameter in the solver's table: bounds, choices, default, which cases need it."""
-        known = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name, Parameter())
+        known = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
         return known._replace(interval=self.interval) if self.interval else known
 
-    @property
+    @cached_property
     def unit(self) -> str:
         """The SI unit of the physical quantity."""
         return si_unit(self.powers)
 
-    @property
+    @cached_property
     def ratio(self) -> str:
         """The symbol over its scale, as on the axis of a plot: "h/R", "P/(E2* R^2)"; empty without a symbol."""
         return over_scale(self.symbol, self.powers) if self.symbol else ""
 
-    @property
+    @cached_property
     def scale(self) -> str:
         """The scale in words, such as "E2* R^2"; empty for a pure number."""
         parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]

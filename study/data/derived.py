@@ -97,6 +97,8 @@ def validity_attributes() -> dict:
 
 def _along(dims: tuple, variable: xr.Variable):
     """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
+    if variable.dims == dims:
+        return variable.data
     own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
     return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
 

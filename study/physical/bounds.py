@@ -47,11 +47,11 @@ def beyond_bounds(scene: Scene, given: dict) -> list[str]:
 
 def absurd(contacts: xr.Dataset) -> list[str]:
     """A sentence for each input in SI units that no body has. Their contacts are solved all the same."""
-    found = []
+    found, variables = [], contacts.variables
     for name, (low, high, words) in _REAL.items():
-        if name not in contacts.variables or contacts.variables[name].attrs.get("units") != unit_of(name):
+        if name not in variables or variables[name].attrs.get("units") != unit_of(name):
             continue
-        values = contacts.variables[name].values
+        values = variables[name].values
         outside = ((values < low) | (values > high)) & np.isfinite(values)
         if outside.any():
             one = readable(float(values[outside][0]), unit_of(name))

@@ -48,8 +48,8 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
-    for name in dataset.dims:
-        if name in dataset.variables and _known(name) and dataset.variables[name].attrs.get("units") == unit_of(name) != "1":
+    for name, variable in dataset.variables.items():
+        if variable.dims == (name,) and _known(name) and variable.attrs.get("units") == unit_of(name) != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset
 

@@ -108,23 +108,28 @@ def _add(scene: Scene, name: str, given: Any) -> None:
                 _check_distinct(name, value.values.tolist())
         else:
             value, spread = found.value, found.spread
-    if name in ("R1", "R2") and np.any(value == 0):
+    if name in ("R1", "R2") and not _all(value != 0):
         raise ValueError(f"{name} = {value_text(given)}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
     inside = (value > low) & (value <= high)
-    if not np.all(inside):
+    if not _all(inside):
         text = f"{name} = {value_text(given)}"
         if isinstance(given, xr.DataArray):
             place, unit = np.argwhere(~inside.values)[0].tolist(), given.attrs.get("units", "1")
             text = f"{name}{place} = {given.values[tuple(place)]:g}" + f" {unit}" * (unit != "1")
         raise ValueError(f"{text}: {limits}")
-    if np.any(spread > 0):
+    if not _all(spread == 0):
         reach = STEP * spread
-        if not np.all((value - reach > low) & (value + reach <= high)):
+        if not _all((value - reach > low) & (value + reach <= high)):
             text = f"with its spread it {limits}; at the limit itself give no spread"
             raise ValueError(f"{name} = {value_text(given)}: {text}")
         scene.spreads[name] = spread
     scene.given[name] = value
+
+
+def _all(where: Any) -> bool:
+    """Whether all of a labelled array, or the one there is, are true: `np.all`, which takes long of a single number."""
+    return where if isinstance(where, bool) else bool(np.all(where))
 
 
 def _check_distinct(name: str, values: list) -> None:
@@ -184,10 +189,12 @@ def _impossible(scene: Scene) -> list[str]:
         R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
         messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
     rigid = np.isinf(given["E2"])
+    if not np.any(rigid):
+        return messages
     if np.any(rigid & (over_dimensions(scene.parameters.get("base", "layered"), "base") == "half_space")):
         swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
         messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
-    if np.any(rigid) and "n" in scene.parameters:
+    if "n" in scene.parameters:
         messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
     return messages
 

@@ -63,10 +63,7 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
     for name in ("B", "beta") if grid.fitted else ():
         known[name]["comment"] = COMMENT
-    coordinates = {
-        name: xr.Variable(dims, array, known.get(name, {}))
-        for name, (dims, array) in values.items()
-    }
+    coordinates = {name: xr.Variable(dims, array, known.get(name, {})) for name, (dims, array) in values.items()}
     coordinates["x"] = xr.Variable(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)
     variables = {

@@ -19,7 +19,7 @@ from pathlib import Path
 from .commands import ending
 from .commands.arguments import Parser, Version, add_curves, add_engine, folder, part, proposed
 from .commands.ending import INTERRUPTED
-from .terminal import empty_buffers, open_closed_streams, say
+from .terminal import empty_buffers, open_closed_streams, program, say
 
 # The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
 # without it each worker process would have a thread for each processor.
@@ -32,8 +32,7 @@ KEPT = "; finished blocks are kept, the same command goes on from there"
 
 def parser() -> argparse.ArgumentParser:
     """All subcommands and their options."""
-    name = "roughcoat" if Path(sys.argv[0]).name.startswith("roughcoat") else "python -m study"
-    top = Parser(prog=name, description="Parameter studies of rough coated contacts.")
+    top = Parser(prog=program(), description="Parameter studies of rough coated contacts.")
     top.add_argument("-v", "--verbose", action="store_true", help="show the log")
     top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")

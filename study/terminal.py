@@ -26,6 +26,11 @@ def counted(number: int, what: str) -> str:
     return f"{number} {what}{'s' * (number != 1)}"
 
 
+def program() -> str:
+    """What a user types to start this program: "roughcoat" if it was started so."""
+    return "roughcoat" if os.path.basename(sys.argv[0]).startswith("roughcoat") else "python -m study"
+
+
 def say(text: str, stream: TextIO | None) -> OSError | None:
     """Write a line and flush it. Returns the error if that fails: the reader has left, say, or the disk is full.
 

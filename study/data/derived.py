@@ -14,7 +14,7 @@ from solver.body.springs import layer_modulus
 from solver.laws import LAWS
 
 from ..spec.vocabulary import VOCABULARY, attributes
-from .units import physical_attributes
+from .units import physical_attributes, reduced_modulus, without_unit
 
 FEW_SPOTS = 100.0
 """The model spreads the asperities evenly: with fewer spots than this in the nominal area, N̄πa², they are not many."""
@@ -151,19 +151,32 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
-    profile p; NaN for a law that is not registered. Raises ValueError for results with units: the laws take their
-    parameters in R and E2*.
+    profile p; NaN for a law that is not registered. Raises ValueError for results with units that have not R and E2 in
+    SI units: the laws take their parameters in R and E2*.
     """
-    if _has_units(dataset):
-        raise ValueError("p_peak is derived from dimensionless results only: solve with lengths in R and moduli in E2*")
+    unit, R = _scales(dataset)
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
-        given = [_given(dataset, name) for name in law.parameters]
-        spots = xr.apply_ufunc(_largest(law), dataset["p"], E1, *given, dask="parallelized", output_dtypes=[float])
+        given = [without_unit(_given(dataset, name), VOCABULARY[name].powers, unit, R) for name in law.parameters]
+        p = dataset["p"] / unit
+        spots = xr.apply_ufunc(_largest(law), p, E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
-    return found.max("x")
+    return unit * found.max("x")
+
+
+def _scales(dataset: xr.Dataset) -> tuple:
+    """The modulus and the radius that are 1 for the solver, in SI units: E2*, E1* on a rigid base, and R."""
+    if not _has_units(dataset):
+        return 1.0, 1.0
+    wanted = {"R": "m", "E2": "Pa", "p": "Pa"}
+    if any(name not in dataset or dataset[name].attrs.get("units") != unit for name, unit in wanted.items()):
+        raise ValueError("p_peak needs R, E2 and p in SI units, as study.solve gives them, or all without units")
+    unit = reduced_modulus(dataset["E2"], dataset["nu2"])
+    if np.isinf(unit).any():
+        unit = xr.where(np.isinf(unit), reduced_modulus(dataset["E1"], dataset["nu1"]), unit)
+    return unit, dataset["R"]
 
 
 def _largest(law):

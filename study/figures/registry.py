@@ -15,6 +15,7 @@ import xarray as xr
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.vocabulary import suggest
+from ..terminal import program
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
 Columns = dict[str, np.ndarray]
@@ -107,7 +108,7 @@ def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Da
     """The datasets that a figure or table needs, in their order. Raises StudyError if a study has no results yet."""
     paths = {study: Path(results) / f"{study}.nc" for study in entry(name, known).studies}
     missing = [
-        f"{path}: does not exist, {name} needs it; make it with: python -m study {command_of(study)}"
+        f"{path}: does not exist, {name} needs it; make it with: {program()} {command_of(study)}"
         for study, path in paths.items()
         if not path.exists()
     ]

@@ -29,8 +29,7 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
         several = isinstance(given, (list, tuple))
         try:
             values = given if several else [given]
-            known = {str(one): one for one in map(_checked, values)}
-            known = {text: _material(body, one) for text, one in known.items()}
+            known = {str(one): _material(body, _checked(one)) for one in values}
         except LookupError as error:
             errors.append(f"{body}: {error.args[0]}")
             found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing
@@ -46,7 +45,9 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
 
 
 def _checked(name: Any) -> str | materials.Material:
-    """The same name or material. Raises LookupError for anything else."""
+    """The same name or material; "inf" of the number. Raises LookupError for anything else."""
+    if isinstance(name, float) and name == np.inf:
+        return "inf"
     if not isinstance(name, (str, materials.Material)):
         raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
     return name

@@ -1,6 +1,7 @@
 """Figures and tables from the command line: folders, what is computed for them, what is up to date."""
 
 import os
+import sys
 from pathlib import Path
 
 import pytest
@@ -47,6 +48,13 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     study = "reference_load" if command == "table" else "spot_density"
     assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
     assert missing[0].endswith(f"make it with: python -m study run {study}")
+
+
+def test_the_command_to_type_is_the_one_that_was_started(monkeypatch, capsys):
+    """From a wheel, `python` may be another one, which has no `study`."""
+    monkeypatch.setattr(sys, "argv", ["/anywhere/bin/roughcoat", "plot", "fig10"])
+    assert main(["plot", "fig10"]) == 2
+    assert capsys.readouterr().err.endswith("make it with: roughcoat run spot_density\n")
 
 
 def test_run_computes_the_studies_that_are_needed_once_and_skips_what_is_up_to_date(monkeypatch, capsys):

@@ -164,10 +164,39 @@ def test_the_modulus_that_a_bead_feels_on_a_gel():
     assert float(modulus[1]) == pytest.approx(5e3 / (1 - 0.5**2), rel=1e-3)
 
 
-def test_the_largest_pressure_of_a_profile_with_units_has_a_message():
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
+def test_the_largest_pressure_of_results_with_units_is_that_of_the_same_contact_without():
+    """On an elastic and on a rigid base, of two axes, with the law that is fitted too."""
+    hard = {"R": "5 mm", "E1": "400 GPa", "h": ["2 um", "20 um"], "P": "20 N", "Nbar": "0.1 1/um^2", "Ra": "5 um"}
+    for more in ({"E2": ["3 GPa", "210 GPa"], "nu2": 0.2}, {"E2": "rigid", "E_punch": "3 GPa"}):
+        for micro in ("disc_cell", "power_law", "smooth"):
+            found = study.solve(**hard, **more, micro=micro, x=9)
+            peak = derived.peak_pressure(found)
+            E2 = found.E2 / (1 - found.nu2**2)
+            unit = E2.where(np.isfinite(E2), found.E1 / (1 - found.nu1**2))
+            given = {
+                "h": found.h / found.R,
+                "n": found.n,
+                "m": found.m,
+                "nu2": found.nu2,
+                "P": found.P / unit / found.R**2,
+            }
+            if micro != "smooth":
+                given |= {"Nbar": found.Nbar * found.R**2, "Ra": found.Ra / found.R}
+            given = {name: one.drop_vars(one.coords).drop_attrs() for name, one in given.items()}
+            plain = study.solve(**given, micro=micro, x=9)
+            expected = derived.peak_pressure(plain) * unit.drop_vars(unit.coords)
+            np.testing.assert_allclose(*xr.broadcast(peak.drop_vars(peak.coords), expected), rtol=1e-9, atol=0)
+            assert peak.attrs["units"] == "Pa" and (peak > 0.99 * found.p_max).all()
+
+
+def test_the_largest_pressure_has_a_message_where_the_modulus_is_not_known():
     found = study.solve(P=1e-6, micro="smooth", base="half_space", x=3)
-    with pytest.raises(ValueError, match="p_peak is derived from dimensionless results only: solve with lengths in R"):
+    with pytest.raises(ValueError, match="p_peak needs R, E2 and p in SI units, as study.solve gives them"):
         derived.peak_pressure(study.to_physical(found, R=0.01, E2_star=1e11))
+    found = study.solve(P="1 N", R="1 mm", E2="1 GPa", micro="smooth", base="half_space", x=3)
+    with pytest.raises(ValueError, match="p_peak needs"):
+        derived.peak_pressure(study.readable(found))
 
 
 def test_the_exact_layer_is_the_default_and_has_no_assumption_of_thinness():

@@ -35,6 +35,8 @@ def test_a_rigid_base_is_the_limit_of_stiff_ones():
 @pytest.mark.parametrize("word", ["rigid", "inf", "infinite", np.inf])
 def test_words_for_rigid(word):
     assert np.isinf(quiet(**FILM, E2=word, P="1 nN").E2)
+    found = quiet(**FILM, body=word, P="1 nN")
+    assert np.isinf(found.E2) and found.body == "rigid"
 
 
 def test_rigid_bases_among_others_and_rigid_punches():

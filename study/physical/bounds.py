@@ -41,7 +41,8 @@ def beyond_bounds(scene: Scene, given: dict) -> list[str]:
     for ratio, modulus in _RATIOS:
         for place in _first_outside(scene, ratio) if modulus in scene.given else ():
             entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
-            messages.append(f"{entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
+            understood = f"{modulus} = {readable(_at(scene.given[modulus], place), 'Pa')}"
+            messages.append(f"{understood}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
     return messages
 
 

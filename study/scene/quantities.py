@@ -31,9 +31,13 @@ _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
-#: What pint would read as another number, without a word: a comma, of which it takes no notice ("5,0 mm" were 50 mm), a
-#: second decimal point, and a number that it multiplies by the one before ("5 500 um", "5 1/2 in", "210(5) GPa").
-_AMBIGUOUS = re.compile(r"[,']|\.\d*\.|\d[eE][-+]?\d+\.|\d\s*\([\d\s.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]")
+#: What pint would read as another number, without a word: signs that it does not know, which it drops or takes for a
+#: product ("5,0 mm" were 50 mm, "200–220 GPa" 44 TPa), a second decimal point, a number that it multiplies by the one
+#: before ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
+_AMBIGUOUS = re.compile(
+    r"[^\w\s.+\-*/^()·×%°±⁻]|[¼-¾⅐-⅞]|\.\d*\.|\d[eE][-+]?\d+\.|[\w)]\s*\(\s*[-+]?[\d.]|\)\s*[\d.]"
+    r"|(?<!\+)/\s*-\s*[\d.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]"
+)
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
 
@@ -107,10 +111,13 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     number = _NUMBER.match(spread[0])
     if not number:
         raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind ± must be a number')
-    if spread[0].endswith("%"):
-        value = _si(name, head, unit, wanted)
-        return Quantity(value, abs(value) * float(number[0]) / 100)
     common = spread[0][number.end() :]
+    if common.lstrip().startswith("%"):  # "200 GPa ± 5 %", or "200 ± 5 % GPa", in which pint would read GPa/100
+        common = common.replace("%", "", 1).rstrip()
+        if common and (has_unit(head) or "%" in common):
+            raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind % may only stand the unit of the number')
+        value = _si(name, head + common, unit, wanted)
+        return Quantity(value, abs(value) * float(number[0]) / 100)
     head = head if has_unit(head) else head + common
     return Quantity(_si(name, head, unit, wanted), abs(_si(f"the spread of {name}", spread[0], unit, wanted)))
 

@@ -42,6 +42,7 @@ def test_spreads(sign):
     assert quantity("E1", f"200 {sign} 10 GPa", "Pa") == Quantity(2e11, 1e10)
     assert quantity("E1", f"200 GPa {sign} 10 GPa", "Pa") == Quantity(2e11, 1e10)
     assert quantity("E1", f"200 GPa {sign} 5 %", "Pa") == Quantity(2e11, 1e10)
+    assert quantity("E1", f"200 {sign} 5 % GPa", "Pa") == Quantity(2e11, 1e10)
     assert quantity("h", f"2 um {sign} 100 nm", "m") == Quantity(2e-6, 1e-7)
     assert quantity("nu1", f"0.3 {sign} 0.02", "1") == Quantity(0.3, 0.02)
 
@@ -66,6 +67,9 @@ def test_spreads(sign):
         ("1 " + "m*" * 100 + "m", "m", "must be a length"),
         ("9**9**9**9 m", "m", "no unit is called like this"),
         ("5 mm ± 0.1", "m", 'the spread of h = "0.1" has no unit: must be a length'),
+        ("5 mm ± 2 % mm", "m", "behind % may only stand the unit of the number"),
+        ("5 ± 2 %% mm", "m", "behind % may only stand the unit of the number"),
+        ("5 ± 2 %", "m", 'h = "5" has no unit: must be a length'),
     ],
 )
 def test_what_is_refused(given, unit, message):
@@ -75,11 +79,27 @@ def test_what_is_refused(given, unit, message):
 
 @pytest.mark.parametrize(
     "number",
-    ["5,0", "5 500", "1'000", "5 1/2", "210(5)", "210 (5)", "1.5.2", "1e3.5", "5 .5", "5 mm 3", "3 ft 2", "4 ± 0,2"],
+    ["5,0", "5 500", "1'000", "5 1/2", "210(5)", "210 (5)", "1.5.2", "1e3.5", "5 .5", "5 mm 3", "3 ft 2", "4 ± 0,2"]
+    + [
+        "5 mm (3)",
+        "5 mm(+3)",
+        "5 (mm)3",
+        "5 mm [3]",
+        "5|3",
+        "5;3",
+        "5:3",
+        "5 mm ~3",
+        "5–7",
+        "5 – 7",
+        "5−7",
+        "2½",
+        "5 mm +3/-2",
+    ],
 )
 @pytest.mark.parametrize("unit", ["um", ""])
 def test_a_number_that_could_be_read_in_two_ways_is_refused(number, unit):
-    """pint drops commas and multiplies numbers that stand side by side: it reads 50, 2500, 5/2, 1050, 0.3."""
+    """pint drops commas and multiplies numbers that stand side by side: it reads 50, 2500, 5/2, 1050, 0.3; it
+    takes most signs that it does not know for a product: it reads the range 5–7 as 35."""
     message = f'h = "{number} {unit}'.rstrip() + '": write one number, with a decimal point and without gaps: must be'
     with pytest.raises(ValueError, match=re.escape(message)):
         quantity("h", f"{number} {unit}", "m" if unit else "1")

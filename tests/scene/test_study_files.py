@@ -182,7 +182,7 @@ def test_float32_and_partial_results(tmp_path, monkeypatch):
         ('"2 um"', '"2e-9 um"', r"h\[0\] = 2e-9 um: must be in \[5e-09, 5e\+09\] um, which is"),
         ('"20 um"]', '"2000 nm"]', r"h\[0\] and h\[1\] are both 2e-06 m: values of an axis must differ"),
         ('"5 mm"', f"0x{'f' * 4000}", "R = a number of more than 4300 digits has no unit"),
-        ('"5 mm"', '"5 m\\u001b[31mm"', r'R = "5 m\\x1b\[31mm": no unit is called like this'),
+        ('"5 mm"', '"5 m\\u001b[31mm"', r'R = "5 m\\x1b\[31mm": write one number'),
         ("[output]", "[cases]\nh = 1\n[output]", r"cases must be \[\[cases\]\] tables"),
         ("nu1 = 0.25", f"nu1 = 0x{'f' * 4000}", "nu1 = .* must be finite"),
         ("[axes]", "[axes]\nk = 1", "k = 1: must be a list or {start, stop, num, spacing}"),

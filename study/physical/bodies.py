@@ -29,7 +29,8 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
         several = isinstance(given, (list, tuple))
         try:
             values = given if several else [given]
-            known = {str(one): _material(body, one) for one in map(_checked, values)}
+            known = {str(one): one for one in map(_checked, values)}
+            known = {text: _material(body, one) for text, one in known.items()}
         except LookupError as error:
             errors.append(f"{body}: {error.args[0]}")
             found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing

@@ -40,7 +40,7 @@ def refusal(**change) -> str:
         ({"P": "-1 N", "h": "-1 um"}, "(?s)^h = -1 um.*\nP = -1 N"),
         ({"P": "-1 N", "E2": "rigid"}, r"which is \[1e-24, 1e3\] E1\* R\^2, E1\* = 230.77 GPa and R = 5 mm$"),
         ({"E1": "200 mPa"}, "^E1 = 0.2 Pa: ratio of .* layer and half-space: n = 9.524e-13: must be 0 or in"),
-        ({"E_punch": "1e-9 Pa"}, r"^E_punch = 1e-09 Pa: ratio of .* layer and punch, 0: rigid: m = .* must be in \[0, "),
+        ({"E_punch": "1e-9 Pa"}, r"^E_punch = 1e-09 Pa: ratio of .* layer and punch, 0: rigid: m = .*: must be in"),
     ],
 )  # fmt: skip
 def test_the_message_has_the_unit_that_was_given(change, message):

@@ -80,21 +80,8 @@ def test_what_is_refused(given, unit, message):
 @pytest.mark.parametrize(
     "number",
     ["5,0", "5 500", "1'000", "5 1/2", "210(5)", "210 (5)", "1.5.2", "1e3.5", "5 .5", "5 mm 3", "3 ft 2", "4 ± 0,2"]
-    + [
-        "5 mm (3)",
-        "5 mm(+3)",
-        "5 (mm)3",
-        "5 mm [3]",
-        "5|3",
-        "5;3",
-        "5:3",
-        "5 mm ~3",
-        "5–7",
-        "5 – 7",
-        "5−7",
-        "2½",
-        "5 mm +3/-2",
-    ],
+    + ["5 mm (3)", "5 mm(+3)", "5 (mm)3", "5 mm [3]", "5|3", "5;3", "5:3", "5 mm ~3", "5–7", "5 – 7", "5−7"]
+    + ["2½", "5 mm +3/-2"],
 )
 @pytest.mark.parametrize("unit", ["um", ""])
 def test_a_number_that_could_be_read_in_two_ways_is_refused(number, unit):

@@ -76,10 +76,11 @@ def low_pass(z: np.ndarray, steps: tuple, cutoff: float) -> np.ndarray:
     s(x) = exp(-π (x/(α λc))²)/(α λc), α = √(ln 2/π); along each axis. The border is 0.75 cutoffs wide.
     """
     for axis, step in enumerate(steps):
-        reach = math.ceil(REACH * cutoff / step)
+        reach = math.ceil(min(REACH * cutoff / step, z.shape[axis]))
+        left = np.arange(reach, max(z.shape[axis] - reach, reach))
         sigma = ALPHA * cutoff / math.sqrt(2 * math.pi) / step
-        z = gaussian_filter1d(z, sigma, axis=axis, radius=reach)
-        z = z.take(range(reach, max(z.shape[axis] - reach, reach)), axis=axis)
+        # a window longer than the scan leaves nothing, and takes hours where the unit of the cutoff is mistaken
+        z = (gaussian_filter1d(z, sigma, axis=axis, radius=reach) if left.size else z).take(left, axis=axis)
     return z
 
 

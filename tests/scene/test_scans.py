@@ -174,6 +174,8 @@ def test_bad_arrays(call, message):
         (Z, {"cutoff": 1.4}, "cutoff = 1.4 m; it must be finite and at least three steps, 1.5 m"),
         (Z, {"cutoff": float("inf")}, "cutoff = inf m; it must be finite"),
         (Z, {"cutoff": "2 um"}, "cutoff = '2 um': must be a number, in m"),
+        (Z, {"cutoff": 2e9}, r"0( × 0)? points are left by a cutoff of 2e\+09 m"),
+        (Z, {"cutoff": 1e308}, r"0( × 0)? points are left by a cutoff of 1e\+308 m"),
         (Z, {"cutoff": 2.0}, "14 points are left by a cutoff of 2 m, .* at least 16"),
         (0.1 * X + 3, {}, "nothing is left of the heights: plane taken off"),
         (X**2 / 100, {"method": "summits"}, "no summits: none of 20 points is higher than all around it"),

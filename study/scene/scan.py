@@ -111,7 +111,8 @@ def _step(x: np.ndarray, shape: tuple, name: str) -> float:
 def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str) -> Scan:
     """The scan in metres. Raises ValueError for heights or distances that no scan has."""
     try:
-        z = np.asarray(z, dtype=float)
+        # asarray alone would take the heights under a mask for heights
+        z = np.ma.filled(z.astype(float), np.nan) if np.ma.isMaskedArray(z) else np.asarray(z, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: the heights are not an array of numbers: {error}") from error
     if z.ndim != len(steps):

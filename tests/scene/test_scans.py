@@ -243,3 +243,10 @@ def test_the_real_extra(tmp_path):
     (tmp_path / "a.opd").write_bytes(b"nothing of the kind")
     with pytest.raises(ValueError, match="a.opd: SurfaceTopography cannot read it"):
         roughness.read(tmp_path / "a.opd")
+
+
+def test_heights_under_a_mask_are_no_heights():
+    z = np.random.default_rng(0).normal(size=(32, 32))
+    z[3, 4] = 9e9
+    with pytest.raises(ValueError, match="1 of 1024 heights are not numbers .NaN., the first in row 4, column 5"):
+        roughness.height_map(np.ma.masked_greater(z, 1e9), dx=1, unit="um")

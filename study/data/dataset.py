@@ -36,14 +36,8 @@ class Parts(NamedTuple):
     attributes: dict
 
     def dataset(self) -> xr.Dataset:
-        """The dataset of these parts: `xr.Dataset(*self)`, which checks and copies all that, in a sixth of its time."""
-        variables, indexes = self.variables | self.coords, {}
-        for name, own in self.coords.items():
-            if own.dims == (name,):
-                indexes[name] = xr.indexes.PandasIndex.from_variables({name: own}, options={})
-                variables |= indexes[name].create_variables({name: own})
-        made = xr.Dataset._construct_direct(variables, set(self.coords), attrs=self.attributes, indexes=indexes)
-        return without_fill_values(made)
+        """The dataset of these parts."""
+        return without_fill_values(xr.Dataset(*self))
 
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:

@@ -7,7 +7,6 @@ import pytest
 import xarray as xr
 
 import study
-from study.data.dataset import Parts
 from study.files import access, results_file
 from study.spec.vocabulary import NOT_RUN, PARAMETERS, attributes
 
@@ -120,25 +119,3 @@ def test_vocabulary_names_every_parameter_of_the_solver():
     from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
     assert set(CONTROL) | (set(OF_THE_SOLVER) - {"R", "E2"}) == set(PARAMETERS)
-
-
-@pytest.mark.parametrize("axes", [{}, {"P": [1e-5, 2e-5], "bonding": ["frictionless", "bonded"]}, {"cases": CASES}])
-def test_the_dataset_is_the_one_that_xarray_makes_of_its_parts(axes, monkeypatch):
-    made = {}
-
-    def kept(parts):
-        made["plainly"] = xr.Dataset(*parts)
-        return direct(parts)
-
-    direct = Parts.dataset
-    monkeypatch.setattr(Parts, "dataset", kept)
-    one = {} if "cases" in axes else {"P": 1e-5, "h": 0.02, "n": 0.5, "Nbar": 250000, "Ra": 0.004}
-    found = study.solve(**one | axes, x=5)
-    xr.testing.assert_identical(found, made["plainly"])
-    assert {name: type(found.variables[name]) for name in found.variables} == {
-        name: type(variable) for name, variable in made["plainly"].variables.items()
-    }
-    for name, index in made["plainly"].xindexes.items():
-        assert found.xindexes[name].equals(index)
-        assert found.xindexes[name].index.dtype == index.index.dtype
-    assert set(found.xindexes) == set(made["plainly"].xindexes)

@@ -11,11 +11,12 @@ What is left out is of the order cut⁻² of the effect. Inside the contact the 
 nothing of it remains. It is linear in c, so that it is tabulated like the rest.
 """
 
-from dataclasses import dataclass
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.polynomial.chebyshev import chebval, chebvander
 from scipy.sparse import csc_array
 from scipy.special import erfc, spherical_jn
 
@@ -73,55 +74,68 @@ def transform(f, level, p):
 
 
 class Share(NamedTuple):
-    """What some pairs of a point and a panel (r,) have of a convolution, at g points of their rules: octave (r, g) of τ
-    and Chebyshev basis (r, g, _TAU) there, what c counts for (r, g), and in each column of the panel, (r or 1, g,
-    order)."""
+    """What some pairs of a point and a panel (r,) have of a convolution, at g points of their rules: what c counts for
+    (r, g), and in each column of the panel, (r or 1, g, order)."""
 
     row: np.ndarray
     panel: np.ndarray
-    octave: np.ndarray
-    basis: np.ndarray
     weight: np.ndarray
     columns: np.ndarray
 
 
-@dataclass(frozen=True, eq=False)
-class Convolution:
+class Convolution(NamedTuple):
     """The convolution at m points, as a matrix, of anything that is linear in c.
 
-    `shape` is (m, p, order), of p panels; `shares` are all the :class:`Share` that are not nought.
+    `shape` is (m, p, order), of p panels; `shares` are all the :class:`Share` that are not nought. Of the N points of
+    all their rules, octave by octave, `place` (N,) says where they stand in the shares one after the other, and `local`
+    (N,) where in their octave, from -1 to 1; `ends` are the ends of the octaves in both.
     """
 
     shape: tuple
     shares: list
+    place: np.ndarray
+    local: np.ndarray
+    ends: list
 
     @property
     def arrays(self):
         """All its arrays."""
-        return self.shares
+        return [self.place, self.local, *self.shares]
 
     def of(self, c):
         """The matrices (b, m, n) for c (b, T)."""
         size = len(c), self.shape[0], self.shape[1] * self.shape[2]
-        out, by_octave = np.zeros((len(c), *self.shape)), c.reshape(len(c), -1, _TAU)
-        for row, panel, octave, basis, weight, columns in self.shares:
-            for one, nodes in zip(out, by_octave, strict=True):
-                values = weight * np.einsum("rgt,rgt->rg", nodes[octave], basis)
-                one[row, panel] += against(values, columns)
+        out, values = np.zeros((len(c), *self.shape)), np.empty((len(c), len(self.place)))
+        series = _series() @ c.reshape(len(c), -1, _TAU, 1)
+        for octave, (low, high) in enumerate(pairwise(self.ends)):
+            values[:, self.place[low:high]] = chebval(self.local[low:high], series[:, octave, :, 0].T)
+        for share, rows in self._parts():
+            for one, value in zip(out, values[:, rows], strict=True):
+                one[share.row, share.panel] += against(share.weight * value.reshape(share.weight.shape), share.columns)
         return out.reshape(size)
 
     def whole(self):
         """The same as a :class:`Whole`."""
         m, panels, order = self.shape
-        out = np.zeros((len(waves()[1]), m, panels, order))
-        for row, panel, octave, basis, weight, columns in self.shares:
-            pair = np.arange(len(row))[:, None] * (len(out) // _TAU)
-            place = ((pair + octave) * _TAU)[..., None] + np.arange(_TAU)
-            ends = np.arange(octave.size + 1) * _TAU
-            spread = csc_array((basis.ravel(), place.ravel(), ends), shape=(len(row) * len(out), octave.size))
-            own = spread @ (weight[..., None] * columns).reshape(octave.size, order)
-            out[:, row, panel] += own.reshape(len(row), len(out), order).transpose(1, 0, 2)
-        return Whole((m, panels * order), out.reshape(len(out), -1))
+        count, first = len(waves()[1]), np.repeat(np.arange(len(self.ends) - 1) * _TAU, np.diff(self.ends))
+        back = np.argsort(self.place)
+        first, basis = first[back], (chebvander(self.local, _TAU - 1) @ _series())[back]
+        out = np.zeros((count, m, panels, order))
+        for (row, panel, weight, columns), rows in self._parts():
+            pair = np.arange(len(row)).repeat(weight.shape[1]) * count
+            place = (pair + first[rows])[:, None] + np.arange(_TAU)
+            shape, ends = (len(row) * count, weight.size), np.arange(weight.size + 1) * _TAU
+            spread = csc_array((basis[rows].ravel(), place.ravel(), ends), shape=shape)
+            own = spread @ (weight[..., None] * columns).reshape(weight.size, order)
+            out[:, row, panel] += own.reshape(len(row), count, order).transpose(1, 0, 2)
+        return Whole((m, panels * order), out.reshape(count, -1))
+
+    def _parts(self):
+        """Pairs of a share and its points (slice) in those of all."""
+        end = 0
+        for share in self.shares:
+            begin, end = end, end + share.weight.size
+            yield share, slice(begin, end)
 
 
 class Whole(NamedTuple):
@@ -145,7 +159,7 @@ def convolution(grid, points, cut):
     low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
     s = points[:, None]
     nearest = np.clip(s, low, high)
-    farthest, shares = np.where(s - low > high - s, low, high), []
+    farthest, shares, taus = np.where(s - low > high - s, low, high), [], []
     within, rough = _tau(s, nearest, nearest - s, cut) < REACH, _tau(s, farthest, farthest - s, cut) > _SMOOTH
     for piece in pieces(points, grid.breaks, grid.order, within, rough):
         s = points[piece.row, None]
@@ -156,10 +170,10 @@ def convolution(grid, points, cut):
         other = np.sqrt((1 - point) * (1 + point))
         values = weight * point / np.sqrt(other * np.sqrt((1 - s) * (1 + s)))  # of ∫ · sqrt(x'/x) dx'
         values, tau = np.where(tau < REACH, values, 0.0), np.where(tau < REACH, tau, 1.0)
-        octave, basis = _interpolation(tau)
         columns = piece._replace(local=piece.local[:, felt]).basis(radau_nodes(grid.order))
-        shares.append(Share(piece.row, piece.panel, octave, basis, values, columns))
-    return Convolution((len(points), len(low), grid.order), shares)
+        shares.append(Share(piece.row, piece.panel, values, columns))
+        taus.append(tau.ravel())
+    return Convolution((len(points), len(low), grid.order), shares, *_in_octaves(np.concatenate([[], *taus])))
 
 
 def _tau(s, point, shift, cut):
@@ -171,18 +185,19 @@ def _chebyshev_nodes():
     return (1 - np.cos(np.pi * (np.arange(_TAU) + 0.5) / _TAU)) / 2
 
 
-def _octave(tau):
-    """Octave of τ > 0, 0 the one that begins at 0."""
-    return np.maximum(np.floor(np.log2(tau)).astype(int) + _OCTAVES + 1, 0)
-
-
-def _interpolation(tau):
-    """Octave (...) of each τ (...), and the Chebyshev basis there (..., _TAU)."""
-    octave = _octave(tau)
-    stop = 2.0 ** (octave - _OCTAVES)
+def _in_octaves(tau):
+    """Of τ > 0 (N,), octave by octave: their places (N,), where in their octave they are, from -1 to 1 (N,), and the
+    ends of the octaves. The first octave begins at 0."""
+    octave = np.maximum(np.floor(np.log2(tau)) + (_OCTAVES + 1), 0).astype(np.int8)
+    place = np.argsort(octave, kind="stable")
+    octave = octave[place]
+    stop = 2.0 ** (octave.astype(float) - _OCTAVES)
     start = np.where(octave == 0, 0.0, stop / 2)
-    terms = ((tau - start) / (stop - start))[..., None] - _chebyshev_nodes()  # in place from here on
-    terms[terms == 0] = 1e-300
-    np.divide((-1.0) ** np.arange(_TAU) * np.sin(np.pi * (np.arange(_TAU) + 0.5) / _TAU), terms, out=terms)
-    terms /= terms.sum(axis=-1, keepdims=True)
-    return octave, terms
+    ends = np.searchsorted(octave, np.arange(len(waves()[1]) // _TAU + 1)).tolist()
+    return place, 2 * (tau[place] - start) / (stop - start) - 1, ends
+
+
+@lru_cache(maxsize=1)
+def _series():
+    """The matrix (_TAU, _TAU) from values at the nodes of an octave to the coefficients of its Chebyshev series."""
+    return np.linalg.inv(chebvander(2 * _chebyshev_nodes() - 1, _TAU - 1))

@@ -20,7 +20,7 @@ FILMS = Layered(*(np.array([v]) for v in (1e-4, 1e3, 0.3, 0.3, False, 0.0)))
 
 @pytest.fixture
 def counted(monkeypatch):
-    """Numbers of J0 and of interpolations of c so far, with no tables kept from before."""
+    """Numbers of J0 and of points where c is wanted so far, with no tables kept from before."""
     found = {"j0": 0, "c": 0}
 
     def watch(module, name, key):
@@ -33,7 +33,7 @@ def counted(monkeypatch):
         monkeypatch.setattr(module, name, counting)
 
     watch(tables, "j0", "j0")
-    watch(film, "_interpolation", "c")
+    watch(film, "_in_octaves", "c")
     monkeypatch.setattr(tables, "_tables", Kept(4e8))
     tables._moments.cache_clear()
     return found

@@ -24,7 +24,7 @@ def false_position(evaluate, start, tolerance, steps=80):
     low, g_low = _outwards(evaluate, start, -1)
     high, g_high = _outwards(evaluate, start, +1)
     x, g = high.copy(), g_high.copy()
-    active = np.flatnonzero(np.isfinite(g_low + g_high))
+    active, was_below = np.flatnonzero(np.isfinite(g_low + g_high)), np.full(len(start), np.nan)
     for _ in range(steps):
         if not len(active):
             break
@@ -33,7 +33,9 @@ def false_position(evaluate, start, tolerance, steps=80):
         x[active] = np.where((guess > lo) & (guess < hi), guess, 0.5 * (lo + hi))
         g[active] = value = evaluate(x[active], active)
         below = value < 0
-        g_high[active], g_low[active] = np.where(below, 0.5 * gh, value), np.where(below, value, 0.5 * gl)
+        share = np.where(below == was_below[active], 0.5, 1.0)  # of an end that stays for the second time
+        g_high[active], g_low[active] = np.where(below, share * gh, value), np.where(below, value, share * gl)
+        was_below[active] = below
         low[active], high[active] = np.where(below, x[active], lo), np.where(below, hi, x[active])
         near = tolerance[active]
         done = (np.abs(value) < near) | (high[active] - low[active] < near) | np.isnan(value)

@@ -20,9 +20,9 @@ from .start import guess_radius
 
 #: Most successive approximations at one radius.
 LIMIT = 1000
-#: Most successive approximations of one case, at all radii but the last: ten radii, each to its limit: some 7 s
-#: of a slow law on one processor.
-APPROXIMATIONS = 10_000
+#: Most successive approximations of one case, at all radii but the last: four radii, each to its limit: about 1 s
+#: on one processor.
+APPROXIMATIONS = 4_000
 #: The load has settled when one more approximation changes it by less than this.
 _SETTLED = 1e-2
 _TINY = np.finfo(float).tiny

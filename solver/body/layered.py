@@ -25,10 +25,10 @@ from .wave_rule import CUT, FILM, LOOSE, place_of
 
 #: Layers thinner than this times the radius are nearly thin layers.
 _THIN = 0.02
-#: Work of a lone case, of films and of thicker layers: for an entry of the matrix on a mesh of its own, for a Newton
-#: step on any mesh, and for an entry of the matrix in that step. They are processor times of lone cases over that of an
-#: entry of a half-space's matrix, to a factor of two: BUDGET needs no more.
-_MESH, _STEP, _ENTRY = (5.0, 2.0), (4000.0, 600.0), (0.5, 0.1)
+#: Work of a lone case, of films and of thicker layers: on a mesh of its own, for a node of films and for an entry of the
+#: matrix of others; for a Newton step on any mesh, and for an entry of the matrix in that step. They are processor times
+#: of lone cases over that of an entry of a half-space's matrix, to a factor of two: BUDGET needs no more.
+_MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 #: A loose operator is right to this part of rtol. What it leaves out may count up to so many times in a solution: more
 #: than once in random cases, and less often than this (tests/body/test_loose.py).
 _OF_RTOL, _COUNTS = 0.01, 3.0
@@ -111,7 +111,7 @@ class Layered(NamedTuple):
         """Work (B,) of an operator on a mesh of its own, and of a step."""
         film = place_of(self, a)[0] == FILM
         mesh, least, entry = (np.where(film, *two) for two in (_MESH, _STEP, _ENTRY))
-        return mesh * nodes**2, least + entry * nodes**2
+        return mesh * np.where(film, nodes, nodes**2), least + entry * nodes**2
 
     def order(self, a):
         """Permutation (B,) that puts cases with one table together: fewer, larger matrix products."""

@@ -47,10 +47,12 @@ def solve_on_panels(case, rtol, budget, at=None):
         breaks, y = resolve(found.at, goal)
         if breaks == found.at.mesh.breaks:
             continue
-        grid = panel_mesh(ORDER, breaks)
-        work += case.body.work(radius, grid.n)[0][0]
-        if work > budget:
+        nodes = ORDER * (len(breaks) - 1)
+        made, judged = (case.body.work(radius, n)[0][0] for n in (nodes, nodes + nodes // 3))
+        if work + made + judged > budget:  # the error of this solution can still be told
+            work = np.inf
             break
+        work, grid = work + made, panel_mesh(ORDER, breaks)
         found = solve_on(evaluate(case, State(y, found.at.state.eta), grid, found.at.operator), budget=budget - work)
         work += found.count[0] * case.body.work(radius, grid.n)[1][0]
     return found._replace(count=count + found.count), work

@@ -8,7 +8,7 @@ from ..solution import Solution
 from ..status import Status
 from . import newton
 from .equation import State
-from .error import area_error, estimate, refine
+from .error import completed, estimate, refine
 from .results import profiles, quantities
 
 #: Where the error of a case is below this, p(0) < 0 is no error of the mesh.
@@ -73,7 +73,8 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     ``Status.DIVERGED`` and NaN.
     """
     ev, closed, count = iterated
-    own, refined = quantities(ev), refine(ev)
+    own = quantities(ev)
+    refined = refine(ev, own)
     error = estimate(ev, own, refined)
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     enough = np.where(closed, enough, np.inf)
@@ -84,7 +85,7 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     slow = error > _FALLS * before
     last = hopeless(error, slow, ev.floor, enough) | stuck(error, slow, ev.mesh.n, enough)
     done = np.flatnonzero(finite & (last | (error <= enough)))
-    error[done] = np.maximum(error[done], area_error(ev, own.Ar_An, done))
+    own.Ar_An[done], error[done] = completed(ev, own.Ar_An, error, done)
     p, lam = np.full((2, len(error), len(x)), np.nan)
     p[done], lam[done] = profiles(ev, x, done)
     gap = ev.gap.max(axis=1) > _GAP

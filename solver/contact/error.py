@@ -9,9 +9,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics.ladder import MARGIN, finer_mesh
+from ..numerics.mesh import gauss_rule
 from . import newton
 from .equation import State, evaluate, groups
-from .results import difference, interpolate, quantities
+from .results import cornered, difference, interpolate, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. That ring has a real area of about λ at the node
 #: times the area of the ring. The error of Ar/An was seen to reach 3 times this area; it is taken to be 8 times.
@@ -23,9 +24,11 @@ _RISEN = 0.05
 _BLIND = 3.0
 #: Where λ in the centre is above this, λ may rise sharply inside the contact, and Ar/An is compared with another rule.
 _SATURATED = 0.5
-#: By how many nodes the rule that Ar/An is compared with is finer; and the rules for a law with corners, of which one
-#: may agree with the mesh by chance (tests/contact/test_error_bars.py has such contacts).
-_FINER, _CORNERED = (5,), (3, 5, 8)
+#: By how many nodes the rule that Ar/An is compared with is finer.
+_FINER = 5
+#: Two meshes may agree by chance on a law with corners. What a mesh misses of the load between its nodes tells, and so
+#: that this does not vanish by chance either, this part of the largest that it misses of a ring.
+_CHANCE = 1 / 2
 
 
 class Refined(NamedTuple):
@@ -36,12 +39,20 @@ class Refined(NamedTuple):
     dP_dD: np.ndarray
 
 
-def refine(ev):
-    """:class:`Refined` of the equation at a solution."""
-    fine = finer_mesh(ev.mesh)
-    start = evaluate(ev.cases, State(interpolate(ev, fine.s, 1e-8), ev.state.eta), fine, ev.operator)
+def refine(ev, own):
+    """:class:`Refined` of the equation at a solution with the quantities `own`.
+
+    Of a law with corners Ar/An is what it is there, and what the step changes on the finer mesh: the nodes of the two
+    meshes see the corners differently, which is no error of :func:`~.results.cornered`.
+    """
+    fine, corners = finer_mesh(ev.mesh), ev.cases.law.law.corners
+    y = interpolate(ev, fine.s, 1e-10 if corners else 1e-8)
+    start = evaluate(ev.cases, State(y, ev.state.eta), fine, ev.operator)
     state, dq_deta = newton.advance(start)
-    found = quantities(nearby(start, state))
+    found, law = quantities(nearby(start, state)), ev.cases.law
+    if corners:
+        before = 2 * (law.area(start.state.y, start.curve.q) @ fine.w)
+        found = found._replace(Ar_An=own.Ar_An + found.Ar_An - before)
     return Refined(state, found, newton.stiffness(start, dq_deta, found.P, found.D))
 
 
@@ -56,7 +67,7 @@ def nearby(ev, state, curve=None):
 
 
 def estimate(ev, found, refined):
-    """Estimated relative error (B,) of a solution with the quantities `found`. :func:`area_error` is not in it."""
+    """Estimated relative error (B,) of a solution with the quantities `found`. :func:`completed` has the rest."""
     share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.mesh.s[0] ** 2
     # a small share of the asperities at the first node: the ring in which they yield more than the body is not seen
     margin = np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
@@ -64,23 +75,28 @@ def estimate(ev, found, refined):
     return np.maximum(error, ev.floor)
 
 
-def area_error(ev, Ar_An, rows):
-    """Relative error (b,) of Ar/An (B,) that both meshes may have alike, of the cases `rows` (b,).
+def completed(ev, Ar_An, error, rows):
+    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with what both meshes may have alike.
 
-    Near the edge it is an upper bound, where λ has risen before the first node. Where the asperities saturate in the
-    centre, and of laws with corners, it is the largest difference to quadratures with other nodes.
+    Ar_An, error : (B,), of the nodes, and of :func:`estimate`.
+
+    Near the edge the error of Ar/An is an upper bound, where λ has risen before the first node. Where the asperities
+    saturate in the centre, it is the difference to a quadrature with other nodes. A law with corners has a quadrature
+    of its own.
     """
-    law, mesh = ev.cases.law, ev.mesh
-    if not law.rough:
-        return 0.0
-    ends = law.area(ev.state.y[:, [0, -1]], ev.curve.q[:, [0, -1]])
-    error = np.where(ends[:, 0] > _RISEN, _UNSEEN * mesh.s[0] ** 2 / 2 * ends[:, 0] / Ar_An, 0.0)
-    sharp = rows[law.law.corners | (ends[rows, 1] > _SATURATED)]
+    law, mesh, area, error = ev.cases.law.take(rows), ev.mesh, Ar_An[rows], error[rows]
+    if not law.rough or not len(rows):
+        return area, error
+    if law.law.corners:
+        own = cornered(ev, rows)
+        error = error + MARGIN * own.missed + _CHANCE * own.largest
+        return own.Ar_An, np.maximum(error, MARGIN * own.error)
+    ends = law.area(ev.state.y[rows][:, [0, -1]], ev.curve.q[rows][:, [0, -1]])
+    ring = np.where(ends[:, 0] > _RISEN, _UNSEEN * mesh.s[0] ** 2 / 2 * ends[:, 0] / area, 0.0)
+    error, sharp = np.maximum(error, ring), np.flatnonzero(ends[:, 1] > _SATURATED)
     if len(sharp):
-        law = law.take(sharp)
-        for more in _CORNERED if law.law.corners else _FINER:
-            s, w = mesh.rule(mesh.order + more)
-            y = interpolate(ev, s, rows=sharp)
-            area = law.area(y, law.evaluate(y).q) @ (2 * w * s)
-            error[sharp] = np.maximum(error[sharp], MARGIN * np.abs(area / Ar_An[sharp] - 1))
-    return error[rows]
+        s, w = gauss_rule(mesh.order + _FINER, mesh.breaks)
+        y, law = interpolate(ev, s, rows=rows[sharp]), law.take(sharp)
+        other = law.area(y, law.evaluate(y).q) @ (2 * w * s)
+        error[sharp] = np.maximum(error[sharp], MARGIN * np.abs(other / area[sharp] - 1))
+    return area, error

@@ -62,7 +62,7 @@ class Law:
     error : largest relative error of A, λ and p_max themselves, of a law that comes from a table; part of `model_error`
     least, most : smallest and largest p/E that it knows: a contact with a p(0) below it, or a pressure above it, gets
         no numbers
-    corners : whether λ has corners, as where the lowest summits touch; Ar/An is then compared with more rules
+    corners : whether λ has corners, as where the lowest summits touch; Ar/An then has a quadrature of its own
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
     rise : how fast the number of nodes that a case wants grows with the share of the asperities in the displacement of
         the centre: 0.5 of power laws, 1.1 of a law that saturates, as random cases have it. The error is not left to it

@@ -71,11 +71,6 @@ class Mesh:
         """Number of nodes of a panel."""
         return self.n // (len(self.breaks) - 1)
 
-    def rule(self, order):
-        """Gauss rule of ∫₀¹ · ds with `order` points on each panel: points and weights (m,)."""
-        points, weights = gauss_legendre(order)
-        return on_panels(points, self.breaks), (np.diff(self.breaks)[:, None] * weights).ravel()
-
     def basis(self, points):
         """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others."""
         return piecewise_lagrange(self.s, points, self.breaks)
@@ -116,6 +111,12 @@ def _build(order, breaks):
 def on_panels(points, breaks):
     """Points (m,) of [0, 1] repeated on each of the p panels: (p m,)."""
     return (np.array(breaks[:-1])[:, None] + np.diff(breaks)[:, None] * points).ravel()
+
+
+def gauss_rule(order, breaks):
+    """Gauss rule of ∫₀¹ · ds with `order` points between any two of the `breaks`: points and weights (m,)."""
+    points, weights = gauss_legendre(order)
+    return on_panels(points, breaks), (np.diff(breaks)[:, None] * weights).ravel()
 
 
 def piecewise_lagrange(nodes, points, breaks=WHOLE):

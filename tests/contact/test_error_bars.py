@@ -44,6 +44,12 @@ CASES = {
          "h": 3.5544e-7, "n": 1.269864e-5, "B": 0.280858, "beta": 0.555622},
         22, 10,
     ),
+    # λ of random heights rises between two nodes, where not even the finer quadrature of a law with corners sees it
+    "between the nodes": (
+        {"base": "thin_layer", "micro": "uniform_heights", "P": 1.3728048e-3, "Ra": 1.94177594e-4,
+         "Nbar": 1136044024.77, "h": 1.40857027e-3, "n": 2.1332974e-3, "sigma": 2.0811159e-7},
+        12, 10,
+    ),
 }  # fmt: skip
 
 
@@ -65,19 +71,39 @@ def test_no_error_bar_is_below_rounding(base, law):
     assert s.error[0] >= 4 * max(1, s.nodes[0]) * np.finfo(float).eps
 
 
-def test_heights_whose_meshes_agree_by_chance():
-    """λ of random heights has corners. Of this contact two meshes had Ar/An alike to 1e-6, and both were 2e-5 off."""
-    case = {"P": 6.195836375918099e-6, "Nbar": 977371.0564470354, "Ra": 0.010543863273300348, "h": 0.02, "n": 0.5}
-    case |= {"base": "half_space", "micro": "uniform_heights", "sigma": 0.00017628600215910273}
-    rtol = np.array([1e-3, 1e-4, 1e-5, 3e-6, 1e-6])
-    found, truth = (solve(Problem.of(**case, rtol=goal), np.linspace(0, 1, 5)) for goal in (rtol, np.full(5, 1e-8)))
+#: Contacts of random heights, of whose λ and p two meshes see the corners alike by chance; and their rtol.
+CORNERED = {
+    "area, two meshes": (
+        {"base": "half_space", "P": 6.195836375918099e-6, "Nbar": 977371.0564470354, "Ra": 0.010543863273300348,
+         "sigma": 0.00017628600215910273},
+        [1e-3, 1e-4, 1e-5, 3e-6, 1e-6],
+    ),
+    # quadratures with 3, 5 and 8 nodes more are nearer to that of the nodes than the truth is
+    "area, three rules": (
+        {"base": "layered", "P": 9.318307247100464e-7, "Nbar": 5442170.055867723, "Ra": 0.001105238586010475,
+         "sigma": 1.7244714687806453e-6, "h": 0.05430429526692228, "n": 0.14327188449872888},
+        [1e-4, 1e-5, 1e-6],
+    ),
+    "load": (
+        {"base": "thin_layer", "P": 4.6977522565753204e-7, "Nbar": 41862.91161039142, "Ra": 0.003244160321175156,
+         "sigma": 1.078241924987229e-5, "h": 0.012895490610331217, "n": 0.806973508365141},
+        [1e-4, 1e-5, 1e-6],
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize(("case", "rtol"), CORNERED.values(), ids=CORNERED)
+def test_heights_whose_meshes_agree_by_chance(case, rtol):
+    """The truth: the same contact at rtol 1e-8."""
+    case = MAIN | {"micro": "uniform_heights"} | case
+    found, truth = (solve(Problem.of(**case, rtol=goal)) for goal in (np.array(rtol), np.full(len(rtol), 1e-8)))
     assert np.all(found.status == Status.CONVERGED)
-    assert np.all(difference(found, truth) <= found.error)
+    assert np.all(difference(found, truth) <= found.error + truth.error)
 
 
 @pytest.mark.parametrize("base", ["half_space", "thin_layer"])
 def test_random_heights(base):
-    """Of 150 contacts whose heights are distributed evenly, one may be above its error bar, and none above rtol.
+    """Of 150 contacts whose heights are distributed evenly, none is above its error bar.
 
     dP/dD is not in the error bar, as docs/model.md says: it may be up to ten times as far off.
     """
@@ -92,6 +118,6 @@ def test_random_heights(base):
     found, truth = (solve(Problem.of(**case, rtol=rtol), np.linspace(0, 1, 5)) for rtol in (1e-5, 1e-6))
     both = (found.status == Status.CONVERGED) & (truth.status == Status.CONVERGED)
     moved = difference(found, truth)[both]
-    assert both.mean() > 0.8 and np.sum(moved > (found.error + truth.error)[both]) <= 1 and np.all(moved <= 1.1e-5)
+    assert both.mean() > 0.8 and np.all(moved <= (found.error + truth.error)[both])
     stiffness = np.abs(found.dP_dD / truth.dP_dD - 1)[both] / found.error[both]
     assert stiffness.max() < 10

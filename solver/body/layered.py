@@ -25,9 +25,9 @@ from .wave_rule import CUT, FILM, LOOSE, place_of
 
 #: Layers thinner than this times the radius are nearly thin layers.
 _THIN = 0.02
-#: Work of a lone case, of films and of thicker layers: on a mesh of its own, for a node of films and for an entry of the
-#: matrix of others; for a Newton step on any mesh, and for an entry of the matrix in that step. They are processor times
-#: of lone cases over that of an entry of a half-space's matrix, to a factor of two: BUDGET needs no more.
+#: Work of a lone case, of films and of thicker layers: on a mesh of its own, for a node of films and for an entry of
+#: the matrix of others; for a Newton step on any mesh, and for an entry of the matrix in that step. They are processor
+#: times of lone cases over that of an entry of a half-space's matrix, to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 #: A loose operator is right to this part of rtol. What it leaves out may count up to so many times in a solution: more
 #: than once in random cases, and less often than this (tests/body/test_loose.py).

@@ -32,8 +32,14 @@ STUDIES = {
     "twelve": CONTACT.format(model="", axes="P = [1e-6, 2e-6, 4e-6]\nrtol = [1e-3, 1e-4, 1e-5, 1e-6]", block=5),
     "many": CONTACT.format(model="", axes="P = {start = 1e-6, stop = 1e-4, num = 2400}", block=400)
     + "[output]\nprofiles = ['lam']\nx = 3\n",
-    "law": '[model]\nmicro = "square_lattice"\nbase = "thin_layer"\nh = 0.02\nn = 0.5\nRa = 0.004\nNbar = 250000\n[axes]\n'
-    + "P = {start = 1e-6, stop = 1e-4, num = 30}\n[numerics]\nblock = 10\n[output]\nx = 5\n",
+    "law": CONTACT.replace("smooth", "square_lattice")
+    .replace("half_space", "thin_layer")
+    .format(
+        model="h = 0.02\nn = 0.5\nRa = 0.004\nNbar = 250000",
+        axes="P = {start = 1e-6, stop = 1e-4, num = 30}",
+        block=10,
+    )
+    + "[output]\nx = 5\n",
     "scalars": CONTACT.format(model="", axes="P = {start = 1e-6, stop = 1e-4, num = 30}", block=10)
     + "[output]\nprofiles = false\n",
 }

@@ -1,14 +1,14 @@
 """Films far thinner than the contact: the part of the layered operator that only the edge of the contact feels.
 
-With n' = L(cut η/2) times the half-space taken out, η = h/a, the rest L(kη) - n' is split by a smooth step χ: what lies
-below k = cut (in 1/a) is summed as for any layer; beyond, the Bessel functions are plane waves, and the kernel a
-convolution:
+The half-space times n' = L(cut η/2), η = h/a, is taken out. The rest, L(kη) - n', is split by a smooth step χ. What
+lies below k = cut (in 1/a) is summed as for any layer; beyond, the Bessel functions are plane waves, and the kernel is
+a convolution:
 
     ∫ (L(kη) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(cut |x - x'|)/sqrt(x x'),
     c(τ) = (1/π) ∫ (L(κ cut η) - n')(1 - χ) cos(κτ) dκ/κ.
 
 What is left out is of the order cut⁻² of the effect. Inside the contact the convolution sees a smooth pressure, and
-nothing of it remains. It is linear in c, so that it is tabulated like the rest.
+nothing of it remains. The convolution is linear in c, so that it is tabulated like the rest.
 """
 
 from functools import lru_cache
@@ -28,18 +28,19 @@ _OCTAVES = 24
 #: Nodes in each half-octave of κ and in each octave of τ: under a film n times stiffer than its base, what is wrong in
 #: c comes back in the pressure more than n times as large.
 _KAPPA, _TAU = 14, 20
+#: Steepness of χ: it is within erfc(_STEP)/2, below 1e-6, of 1 at κ = 1/4 and of 0 at κ = 1.
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
-#: Up to this τ c is smooth, but at 0; beyond it swings as the step has it, and is cut off at REACH: there fewer points
-#: than inside a panel are too few (tests/body/test_work.py).
+#: Up to this τ c is smooth, except at 0. Beyond, it swings with the period of the step, and it ends at REACH: a panel
+#: there needs as many points as one that contains the target (tests/body/test_work.py).
 _SMOOTH = 12.0
 #: From so many cases on their matrices are products with one table.
 MANY = 8
 
 
 def step(kappa):
-    """χ(κ): 1 below κ = 1/4, 0 above κ = 1."""
+    """χ(κ): 1 below κ = 1/4, 0 above κ = 1, to 1e-6."""
     return erfc(_STEP * (np.log2(np.maximum(kappa, 1e-9)) + 1)) / 2
 
 
@@ -74,8 +75,8 @@ def transform(f, level, p):
 
 
 class Share(NamedTuple):
-    """What some pairs of a point and a panel (r,) have of a convolution, at g points of their rules: what c counts for
-    (r, g), and in each column of the panel, (r or 1, g, order)."""
+    """The part of a convolution of r pairs of a point and a panel, `row` and `panel` (r,). At the g points of the rule
+    of each pair: the `weight` of c (r, g), and the basis of the panel, `columns` (r or 1, g, order)."""
 
     row: np.ndarray
     panel: np.ndarray
@@ -84,11 +85,11 @@ class Share(NamedTuple):
 
 
 class Convolution(NamedTuple):
-    """The convolution at m points, as a matrix, of anything that is linear in c.
+    """The convolution at m points: a matrix, as a linear function of c.
 
-    `shape` is (m, p, order), of p panels; `shares` are all the :class:`Share` that are not nought. Of the N points of
-    all their rules, octave by octave, `place` (N,) says where they stand in the shares one after the other, and `local`
-    (N,) where in their octave, from -1 to 1; `ends` are the ends of the octaves in both.
+    `shape` is (m, p, order), of p panels; `shares` are all :class:`Share` that are not zero. The N points of all their
+    rules are sorted by octaves of τ: `place` (N,) is the place of each among the points of all shares, `local` (N,)
+    where it is in its octave, from -1 to 1; `ends` are the ends of the octaves in both.
     """
 
     shape: tuple
@@ -131,7 +132,7 @@ class Convolution(NamedTuple):
         return Whole((m, panels * order), out.reshape(count, -1))
 
     def _parts(self):
-        """Pairs of a share and its points (slice) in those of all."""
+        """Pairs of a share and the slice of its points among those of all shares."""
         end = 0
         for share in self.shares:
             begin, end = end, end + share.weight.size
@@ -153,8 +154,8 @@ class Whole(NamedTuple):
 def convolution(grid, points, cut):
     """The :class:`Convolution` at `points` (m,) in s, for the basis of a mesh.
 
-    Panel by panel: a rule that runs across the ends of panels is good for smooth pressures only, and what it makes of
-    the others leaves the discrete equation of a stiff film with pressures that are not there.
+    Panel by panel: a rule that runs across the ends of panels is right for smooth pressures only. What it makes of
+    others would let the discrete equation of a stiff film have false solutions.
     """
     low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
     s = points[:, None]

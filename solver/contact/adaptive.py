@@ -18,8 +18,8 @@ from .equation import evaluate
 from .panels import solve_on_panels
 from .start import approach, first_guess, guess_radius, nodes_wanted
 
-#: Panels are halved until the last coefficients on each are small. The error may still be above rtol: then more are
-#: halved, with this times rtol.
+#: Panels are halved until the last coefficients on each are small against rtol. If the error is still above rtol, they
+#: are halved again, until the coefficients are small against this times rtol.
 _FINER = 0.03
 
 
@@ -57,7 +57,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol)) & free & (limit == 0)
     opened = np.flatnonzero(opened & ~spent)
     ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in opened]
-    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)  # no panels say that it lifts off
+    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)  # spent: no panels can confirm it
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 
@@ -81,7 +81,7 @@ def _hopeless(found, rtol):
 def _ended(solution, missed, lifted, spent):
     """The solution with its final status.
 
-    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : (B,) bool, the budget is
+    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : (B,) bool, the budget is spent
     """
     status = np.where(missed, np.where(spent, Status.BUDGET_SPENT, Status.TOLERANCE_NOT_MET), solution.status)
     over = (status == Status.ITERATION_LIMIT) & (spent | (solution.iterations >= newton_steps(solution.nodes)))
@@ -90,8 +90,9 @@ def _ended(solution, missed, lifted, spent):
 
 
 def _on_panels(case, before, rtol, x, left):
-    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better; left:
-    of its budget.
+    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better.
+
+    left : what is left of its budget.
 
     Tension and gaps count only if they are there on finer panels too: panels that are too coarse show some as well.
     """
@@ -108,7 +109,7 @@ def _on_panels(case, before, rtol, x, left):
         if at is not None and iterated.at.mesh == at.mesh:
             break  # no finer panels than those before
         at = iterated.at
-        found = answer(iterated, x, before=0.0)  # on finer panels it will hardly fall
+        found = answer(iterated, x, before=0.0)  # so `slow` is True: finer panels hardly lower the error
         left -= case.body.work(found.solution.a, finer_mesh(at.mesh).n)[0][0]
         lifted = (found.gap | found.lifted) & (not resolved)
         if lifted[0]:

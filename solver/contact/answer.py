@@ -15,10 +15,10 @@ from .results import profiles, quantities
 _SURE = 0.1
 #: A gap higher than this times a²/2, and tension of more than this part of the load, are no rounding.
 _GAP, _TENSION = 1e-9, 1e-9
-#: A case is stuck where its error is above this part of that on the mesh before, on a mesh of so many nodes or more,
-#: and above this times rtol: two meshes of the ladder are left, and halving it on each is far from a hundredth.
+#: A case is stuck where its error is above _FALLS of that on the mesh before, on a mesh of _LATE nodes or more, and
+#: above _FAR times rtol: two finer meshes are left, and halving the error on each does not make it 100 times smaller.
 _FALLS, _LATE, _FAR = 0.5, 48, 100.0
-#: Where the error does not fall, and is below this times that of the operator, it is what the operator leaves.
+#: An error that does not fall, and is below this times the error of the operator, comes from the operator.
 _NOISE = 30.0
 
 

@@ -20,7 +20,8 @@ BUDGET = 1_500_000
 
 
 class Iterated(NamedTuple):
-    """Where an iteration has arrived (what its steps made), and whether it has closed and its steps: (B,) each."""
+    """The end of an iteration: `at`, the batch after the last step of each case; `closed` (B,) bool, whether the case
+    has closed; `count` (B,), how many steps it took."""
 
     at: Any
     closed: np.ndarray
@@ -61,14 +62,14 @@ def iterate(cases, start, step, limit):
 
 
 def newton_steps(nodes):
-    """Most Newton steps (...) of a case on a mesh of `nodes` (...): its budget there."""
+    """Most Newton steps that a case may take on a mesh of `nodes` nodes; of the shape of `nodes`."""
     share = np.minimum(1.0, (_NODES / np.maximum(nodes, 1)) ** 2)
     return np.maximum(_FEWEST, (_STEPS * share).astype(int))
 
 
 def steps_within(cases, a, nodes, budget):
-    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes: with the last of them the
-    budget (B,) is spent."""
+    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes, where `budget` (B,) is left to
+    each: the last step may spend more than that."""
     left = np.where(budget > 0, budget // cases.body.work(a, nodes)[1] + 1, 0)
     return np.minimum(newton_steps(nodes), left).astype(int)
 
@@ -99,10 +100,10 @@ def _newton(start, limit=newton.LIMIT):
 
 
 def _by_radius(cases, grid, most):
-    """:class:`Iterated` of cases by a search for their radius, in at most so many steps (B,) at all radii together; at
-    each the iteration starts from the smooth contact.
+    """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together.
 
-    The load under a very stiff film hardly depends on the radius: Newton on both leaves the branch.
+    At each radius the iteration starts from the smooth contact. The load under a very stiff film hardly depends on the
+    radius: Newton on both leaves the branch.
     """
     spent, radius = np.zeros(len(cases.value), int), guess_radius(cases)
 
@@ -114,7 +115,7 @@ def _by_radius(cases, grid, most):
 
     def control_at(eta, index):
         found = at_radius(eta, index)
-        known = found.closed & (spent[index] < most[index])  # else its budget is spent
+        known = found.closed & (spent[index] < most[index])  # NaN ends the search where the budget is spent
         return np.where(known, replace(found.at, cases=cases.take(index)).G, np.nan)
 
     eta = np.log(radius)

@@ -100,7 +100,7 @@ class Evaluation:
     def residual(self):
         """Largest residual of a case (B,), relative to the right-hand side (s² <= 1) and to the controlled value.
 
-        Where asperities hang over the surface without pressure, none is asked for.
+        Where asperities hang over the surface without pressure, the equation need not hold.
         """
         F = np.abs(self.F)
         F[self.gap > 0] = 0.0
@@ -188,8 +188,8 @@ def control_gradient(control, ev):
 
 
 def jacobian(ev):
-    """dF/dq at fixed η, X (K + diag(d)), as d (B, n), and dF/dη at fixed q, over X (B, n). In q, not y: the operator is
-    linear in it."""
+    """d (B, n), where dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n), at fixed q. By q, not by y: the
+    operator is linear in q."""
     own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X
     return own / ev.X, dF_deta

@@ -26,8 +26,9 @@ _BLIND = 3.0
 _SATURATED = 0.5
 #: By how many nodes the rule that Ar/An is compared with is finer.
 _FINER = 5
-#: Two meshes may agree by chance on a law with corners. What a mesh misses of the load between its nodes tells, and so
-#: that this does not vanish by chance either, this part of the largest that it misses of a ring.
+#: On a law with corners two meshes may agree by chance. So the error also counts what the mesh misses of the load
+#: between its nodes. The misses of rings may cancel in that: so this part of the largest, of any ring from the edge
+#: inward, is counted as well.
 _CHANCE = 1 / 2
 
 
@@ -42,7 +43,7 @@ class Refined(NamedTuple):
 def refine(ev, own):
     """:class:`Refined` of the equation at a solution with the quantities `own`.
 
-    Of a law with corners Ar/An is what it is there, and what the step changes on the finer mesh: the nodes of the two
+    Of a law with corners Ar/An is that of `own` and what the step changes of it on the finer mesh: the nodes of the two
     meshes see the corners differently, which is no error of :func:`~.results.cornered`.
     """
     fine, corners = finer_mesh(ev.mesh), ev.cases.law.law.corners
@@ -67,7 +68,7 @@ def nearby(ev, state, curve=None):
 
 
 def estimate(ev, found, refined):
-    """Estimated relative error (B,) of a solution with the quantities `found`. :func:`completed` has the rest."""
+    """Estimated relative error (B,) of a solution with the quantities `found`, by the two meshes alone."""
     share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.mesh.s[0] ** 2
     # a small share of the asperities at the first node: the ring in which they yield more than the body is not seen
     margin = np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
@@ -76,9 +77,9 @@ def estimate(ev, found, refined):
 
 
 def completed(ev, Ar_An, error, rows):
-    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with what both meshes may have alike.
+    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with what both meshes may miss alike.
 
-    Ar_An, error : (B,), of the nodes, and of :func:`estimate`.
+    Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`.
 
     Near the edge the error of Ar/An is an upper bound, where λ has risen before the first node. Where the asperities
     saturate in the centre, it is the difference to a quadrature with other nodes. A law with corners has a quadrature

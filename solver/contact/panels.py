@@ -49,7 +49,7 @@ def solve_on_panels(case, rtol, budget, at=None):
             continue
         nodes = ORDER * (len(breaks) - 1)
         made, judged = (case.body.work(radius, n)[0][0] for n in (nodes, nodes + nodes // 3))
-        if work + made + judged > budget:  # the error of this solution can still be told
+        if work + made + judged > budget:  # what is left pays for the error of the solution so far
             work = np.inf
             break
         work, grid = work + made, panel_mesh(ORDER, breaks)
@@ -59,8 +59,8 @@ def solve_on_panels(case, rtol, budget, at=None):
 
 
 def _first(case, rtol, budget):
-    """:class:`.driver.Iterated` of one case on its first panels, and the work: those of a body that is nearly the same
-    and far cheaper, where there is one."""
+    """:class:`.driver.Iterated` of one case on its first panels, and the work. If there is a body that is nearly the
+    same and far cheaper, the first panels are those that resolve the contact with it."""
     alike, start, grid, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
     if alike is not None:
         found, work = solve_on_panels(case._replace(body=alike), rtol, budget)

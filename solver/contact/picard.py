@@ -20,8 +20,7 @@ from .start import guess_radius
 
 #: Most successive approximations at one radius.
 LIMIT = 1000
-#: Most successive approximations of one case, at all radii but the last: four radii, each to its limit: about 1 s
-#: on one processor.
+#: Most successive approximations of one case, at all radii but the last: enough for four radii that reach LIMIT.
 APPROXIMATIONS = 4_000
 #: The load has settled when one more approximation changes it by less than this.
 _SETTLED = 1e-2
@@ -128,7 +127,7 @@ def approximate(cases, eta, mesh, k, rtol, limit):
 
 
 def _next(now, half):
-    """The approximation after `now`; that after `half` of all keeps the change before it."""
+    """The approximation after `now`; after `half` of all approximations it keeps the change so far as `earlier`."""
     q, k, cases = now.q, now.k, now.cases
     K, w = now.operator.K, now.operator.mesh.w
     Kq = np.matmul(K, q[..., None])[..., 0]

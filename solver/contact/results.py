@@ -8,10 +8,10 @@ import numpy as np
 from ..numerics.mesh import gauss_rule
 from ..numerics.quadrature import gauss_legendre, lagrange
 
-#: Newton steps between the nodes; a few do but near full contact.
+#: Most Newton steps between the nodes. A few are enough, except near full contact.
 _STEPS = 40
-#: Of a law with corners: Gauss points on a piece between two nodes to which y is interpolated, and those at which λ is
-#: looked up; and the relative `tolerance` of y there.
+#: For a law with corners: Gauss points between two nodes, first those to which y is interpolated, then those at which
+#: λ is looked up; and the relative `tolerance` of y there.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
 
 
@@ -86,8 +86,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
     interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
     asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
-    nothing it is q_L. Newton, from a two-term guess times what it misses at the nodes, until the next step would be
-    below the relative `tolerance`. Of the cases `rows` alone, if given.
+    nothing it is q_L. Newton's method solves it, from a guess of two terms times what that misses at the nodes, until
+    the next step would be below the relative `tolerance`. Of the cases `rows` alone, if given.
     """
     between = _between(ev.mesh, np.ascontiguousarray(s, dtype=float).tobytes())
     Kq = ev.operator.between(ev.curve.q, between.s, ev.curve.q @ between.H.T)[rows]
@@ -95,7 +95,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     q, g = ev.curve.q[rows], ev.curve.g[rows]
     stiff = X * between.kappa
     q_L = q @ between.L.T
-    # positive, but by no more than κ q_L is: under a stiff film that is small
+    # The right-hand side is kept positive, but far below κ q_L, which is small under a stiff film.
     least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * between.s**2, 1e-9 * between.s**2)
     right = np.maximum(between.s**2 - X * Kq + stiff * q_L, least)
     linear, node_linear = stiff + Y, X * between.node_kappa + Y
@@ -120,8 +120,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
 
 
 class Cornered(NamedTuple):
-    """Of a law with corners, (b,) each: Ar/An, its relative error, and the part of the load that the polynomial through
-    the nodes misses between them: in all, and of any ring from the edge inward the largest."""
+    """What :func:`cornered` finds, (b,) each: Ar/An and its relative error; `missed`, the part of the load that the
+    polynomial through the nodes misses between them; `largest`, the most that it misses from the edge to any radius."""
 
     Ar_An: np.ndarray
     error: np.ndarray
@@ -130,11 +130,11 @@ class Cornered(NamedTuple):
 
 
 def cornered(ev, rows):
-    """:class:`Cornered` of the cases `rows` (b,).
+    """:class:`Cornered` of the cases `rows` (b,), of a law with corners.
 
-    A quadrature errs where λ has a corner by the cube of the distance of its points, and the nodes are too few for
-    that. y is interpolated to more points, and from these as a polynomial, piece by piece, to twice as many,
-    where λ is looked up. The error is a small part of the difference of the two quadratures.
+    Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too few.
+    So y is interpolated to more points, and from these by a polynomial between each two nodes to twice as many, where
+    λ is looked up. The error is taken to be the difference of the two quadratures, of which it is a small part.
     """
     law, pieces = ev.cases.law.take(rows), (0.0, *ev.mesh.s.tolist())
     (s, w), (fine_s, fine_w) = gauss_rule(_FEW, pieces), gauss_rule(_MANY, pieces)

@@ -15,7 +15,7 @@ _STEPS = 2
 
 
 def guess_radius(cases):
-    """Contact radius (B,): the given one; or from the load or depth as if each term of the equation were alone."""
+    """Contact radius (B,): the given one; or a guess from the load or depth, with each term of the equation alone."""
     if cases.control == "a":
         return cases.value
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local

@@ -22,9 +22,10 @@ RANGE = (0.05, 20.0)  # of a/h
     size=(TWO_COLUMNS, 7.2),
     panels=(3, 2),
     caption="""Coatings from soft (blue) to hard (red) under loads from 1e-14 to 1e-3 E2* R², film-dominated contacts
-    to the left, substrate-dominated ones to the right; frictionless and bonded. E_eff is (dP/dD)/(2a). Curves
-    of the rough punch begin where there are 100 spots; pale: another assumption of the model does not hold
-    (spots merge, or the strain is not small).""",
+    to the left, substrate-dominated ones to the right; frictionless and bonded. E_eff is (dP/dD)/(2a); the largest real
+    pressure is over that under the same load without a coating. Curves of the rough punch begin where there are 100
+    spots and end at the largest load; pale: another assumption of the model does not hold (spots merge, or the strain
+    is not small).""",
 )
 def master_curves(panels, found: xr.Dataset) -> Columns:
     """Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two

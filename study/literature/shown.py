@@ -66,7 +66,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
         for formula in formulas.LOADS:
             if formula.bonded == bonded and (nu in formula.nu or formula.nu == (nu,) or is_short(formula, bonded)):
                 x, error = load_error(formula, rigid, nu)
-                words = formula.name.replace("general", f"for nu = {nu:g}")
+                words = formula.name.replace("general", f"general, nu = {nu:g}")
                 axes.plot(x, np.abs(error), label=greek(words), **look(formula.name))
                 parts.append((panel, x, error))
         axes.set(xlabel="$a/h$", xlim=(0.01, 20), title=title)

@@ -10,8 +10,7 @@ from . import newton
 from .start import guess_radius, smooth_start
 
 #: A case may take _STEPS Newton steps on a mesh of up to _NODES nodes, and fewer on finer ones, where a step takes
-#: longer, but at least _FEWEST. Random cases within the bounds of the parameters took at most 230, where they searched
-#: for their radius.
+#: longer, but at least _FEWEST. Random cases that searched for their radius took up to a few hundred.
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
 #: that are made for it alone. It is not counted in seconds, so that it is the same on every machine; on a slow one a

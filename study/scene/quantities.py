@@ -29,8 +29,9 @@ _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _UNIT_OR_SPREAD = re.compile(rf"[^\W\d_]|[%°]|{_SPREAD.pattern}")
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
-#: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit.
-_PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
+#: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1
+#: of "1/um^2" must not be a digit of the number: "2.1/um^2" were "2." times 1/um^2.
+_PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:(?<![\d.])1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
 #: What pint would read as another number, without a word: signs that it does not know, which it drops or takes for a
 #: product ("5,0 mm" were 50 mm, "200–220 GPa" 44 TPa), a second decimal point, a number that it multiplies by the one
 #: before ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
@@ -38,6 +39,8 @@ _AMBIGUOUS = re.compile(
     r"[^\w\s.+\-*/^()·×%°±⁻]|[¼-¾⅐-⅞]|\.\d*\.|\d[eE][-+]?\d+\.|[\w)]\s*\(\s*[-+]?[\d.]|\)\s*[\d.]"
     r"|(?<!\+)/\s*-\s*[\d.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]"
 )
+#: The minus sign of printed texts where it can be no dash of a range: before the number, or in an exponent.
+_MINUS = re.compile(r"^−|(?<=\d[eE])−|(?<=\^)−")
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
 _POWER = re.compile(r"(?<![\d.A-Za-z])([A-Za-zµ]+)(-?[23])(?![\w.])")
 
@@ -89,7 +92,7 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
         except OverflowError as error:
             raise ValueError(f"{name} = {_shown(given)}: must be finite") from error
     if isinstance(given, str):
-        return _from_text(name, given.strip(), unit, wanted)
+        return _from_text(name, _MINUS.sub("-", given.strip()), unit, wanted)
     if not has_unit(given):
         raise ValueError(f"{name} = {_shown(given)}: {wanted}")
     try:
@@ -116,8 +119,14 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
         common = common.replace("%", "", 1).rstrip()
         if common and (has_unit(head) or "%" in common):
             raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind % may only stand the unit of the number')
+        if "%" in head:  # "30 % ± 2 %" could be ± 0.02 and ± 0.006
+            said = on_one_line(text, LONGEST)
+            raise ValueError(f'{name} = "{said}": write the spread as a number, as in "0.3 ± 0.02"')
         value = _si(name, head + common, unit, wanted)
-        return Quantity(value, abs(value) * float(number[0]) / 100)
+        spread = abs(value * float(number[0])) / 100
+        if not math.isfinite(spread):
+            raise ValueError(f"the spread of {name} = {number[0]} %: must be finite")
+        return Quantity(value, spread)
     head = head if has_unit(head) else head + common
     return Quantity(_si(name, head, unit, wanted), abs(_si(f"the spread of {name}", spread[0], unit, wanted)))
 

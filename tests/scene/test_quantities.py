@@ -20,6 +20,14 @@ from study.scene.quantities import READABLE, Quantity, has_unit, quantity, reada
         ("210 GPa", "Pa", 2.1e11),
         ("2.5e11 1/m^2", "1/m^2", 2.5e11),
         ("100 mm⁻²", "1/m^2", 1e8),
+        ("2.1/um^2", "1/m^2", 2.1e12),
+        ("0.1/um^2", "1/m^2", 1e11),
+        ("11/um^2", "1/m^2", 1.1e13),
+        ("1/um^2", "1/m^2", 1e12),
+        ("-5 mm", "m", -5e-3),
+        ("−5 mm", "m", -5e-3),
+        ("1.5e−3 m", "m", 1.5e-3),
+        ("100 mm^−2", "1/m^2", 1e8),
         ("100 1/mm²", "1/m^2", 1e8),
         ("1e2 1/mm2", "1/m^2", 1e8),
         ("1e2 mm-2", "1/m^2", 1e8),
@@ -43,8 +51,10 @@ def test_spreads(sign):
     assert quantity("E1", f"200 GPa {sign} 10 GPa", "Pa") == Quantity(2e11, 1e10)
     assert quantity("E1", f"200 GPa {sign} 5 %", "Pa") == Quantity(2e11, 1e10)
     assert quantity("E1", f"200 {sign} 5 % GPa", "Pa") == Quantity(2e11, 1e10)
+    assert quantity("E1", f"200 GPa {sign} -5 %", "Pa") == Quantity(2e11, 1e10)
     assert quantity("h", f"2 um {sign} 100 nm", "m") == Quantity(2e-6, 1e-7)
     assert quantity("nu1", f"0.3 {sign} 0.02", "1") == Quantity(0.3, 0.02)
+    assert quantity("Nbar", f"2{sign}0.1/um^2", "1/m^2") == Quantity(2e12, 1e11)
 
 
 @pytest.mark.parametrize(
@@ -70,6 +80,8 @@ def test_spreads(sign):
         ("5 mm ± 2 % mm", "m", "behind % may only stand the unit of the number"),
         ("5 ± 2 %% mm", "m", "behind % may only stand the unit of the number"),
         ("5 ± 2 %", "m", 'h = "5" has no unit: must be a length'),
+        ("5 mm ± 1e999 %", "m", "must be finite"),
+        ("30 % ± 2 %", "1", 'write the spread as a number, as in "0.3 ± 0.02"'),
     ],
 )
 def test_what_is_refused(given, unit, message):

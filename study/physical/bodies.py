@@ -29,6 +29,8 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
         several = isinstance(given, (list, tuple))
         try:
             values = given if several else [given]
+            if not len(values):
+                raise LookupError("must have at least one material")
             known = {str(one): one for one in map(_checked, values)}
             known = {text: _material(body, one) for text, one in known.items()}
         except LookupError as error:

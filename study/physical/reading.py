@@ -51,6 +51,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)
     parameters, scene.names = with_materials(parameters, errors)
+    parameters = _alike(parameters, scene.names, errors)
     for name, given in parameters.items():
         if name == "label" and isinstance(given, CaseValues):
             scene.labels = list(map(str, given))
@@ -92,6 +93,34 @@ def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
         else:
             found[name] = CaseValues([row[name] for row in rows])
     return found | {name: given for name, given in parameters.items() if name not in found}
+
+
+def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
+    """The parameters, without the coordinates of DataArrays along dimensions that are called like an input.
+
+    Messages where two of them disagree on a dimension: the arithmetic of xarray would leave out the cases that one of
+    them does not have, or take those of one in the order of the other.
+    """
+    arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
+    along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
+    taken = {MOVED, *SCENE, *BODIES} - along_itself - {body for body, (dim, _) in bodies.items() if dim == body}
+    labels = {name: (name, arrays[name].values) for name in along_itself if name not in arrays[name].coords}
+    lengths = {}
+    for name, given in arrays.items():
+        errors += [f'{name}: a dimension cannot be called "{dim}" here' for dim in given.dims if dim in taken]
+        for dim, length in given.sizes.items():
+            other, expected = lengths.setdefault(dim, (name, length))
+            if length != expected:
+                errors.append(f"{name} has {length} values along {dim}, {other} has {expected}")
+            elif dim in given.coords:
+                other, known = labels.setdefault(dim, (name, given[dim].values))
+                if not np.array_equal(known, given[dim].values):
+                    errors.append(f"{name} has other values of {dim}, or in another order, than {other}")
+    inputs = [*SCENE, *PARAMETERS]
+    return parameters | {
+        name: given.drop_vars([dim for dim in given.dims if dim in given.coords and dim in inputs])
+        for name, given in arrays.items()
+    }
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:
@@ -152,6 +181,9 @@ def _quantities(name: str, given: Any) -> QuantityList | Quantity:
 
 def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     """SI values of a DataArray, by its attribute `units`."""
+    if given.dtype.kind not in "iuf":
+        raise ValueError(f"{name}: a DataArray must hold numbers; texts with units may be a list")
+    given = given.astype(float)  # 210 GPa of float16 would be infinite in Pa
     if unit == "1" and given.attrs.get("units", "") in ("", "1"):
         return given.drop_attrs()
     if "units" not in given.attrs:

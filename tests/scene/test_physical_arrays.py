@@ -1,0 +1,51 @@
+"""DataArrays with units: their coordinates decide which numbers belong together, and none is reordered unseen."""
+
+import re
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import study
+
+pytest.importorskip("pint")
+BALL = {"E2": "210 GPa", "base": "half_space", "micro": "smooth", "x": 2, "workers": 1}
+
+
+def of(values, units: str, dim: str = "ball", labels=None) -> xr.DataArray:
+    return xr.DataArray(values, {dim: labels} if labels else None, dim, attrs={"units": units})
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        # the loads were taken in the order of R, and shown in their own: a was that of other balls
+        ({"R": of([1, 2], "mm", labels=[0, 1]), "P": of([3, 4], "N", labels=[1, 0])}, "P has other values of ball, or"),
+        ({"R": of([1, 2], "mm", labels=[0, 1]), "P": of([3, 4], "N", labels=[1, 2])}, "P has other values of ball, or"),
+        ({"R": of([1, 2], "mm"), "P": of([3, 4, 5], "N")}, "P has 3 values along ball, R has 2"),
+        ({"R": ["1 mm", "2 mm"], "P": of([3, 4], "N", "R")}, 'P: a dimension cannot be called "R" here'),
+        ({"R": "1 mm", "P": of([3, 4], "N", "moved input")}, 'P: a dimension cannot be called "moved input" here'),
+        ({"R": "1 mm", "P": of(["3", "4"], "N")}, "P: a DataArray must hold numbers"),
+        ({"R": "1 mm", "P": of([True, True], "N")}, "P: a DataArray must hold numbers"),
+        ({"R": "1 mm", "P": "1 N", "nu2": xr.DataArray(["0.3"], dims="q")}, "nu2: a DataArray must hold numbers"),
+        ({"R": "1 mm", "P": "1 N", "punch": []}, "punch: must have at least one material"),
+    ],
+)
+def test_what_is_refused(given, message):
+    with pytest.raises(study.StudyError, match=f"^{re.escape(message)}"):
+        study.solve(**BALL | given)
+
+
+def test_arrays_over_an_input_are_taken_together():
+    """As those of earlier results are: their coordinate h is in m, and was compared with h/R."""
+    h = of([5.0, 9.0], "um", "h", [5.0, 9.0])
+    found = study.solve(
+        **BALL | {"base": "layered", "R": "1 mm", "E1": "9 GPa", "h": h, "P": of([1, 2], "N", "h", [5, 9])}
+    )
+    assert found.a.dims == ("h",) and found.P.values.tolist() == [1, 2]
+
+
+def test_short_floats_do_not_overflow():
+    """210 GPa of float16 became an infinite modulus in Pa, a rigid body."""
+    found = study.solve(**BALL | {"R": "1 mm", "P": "1 N", "E2": of(np.array([210], np.float16), "GPa")})
+    assert found.E2.values.tolist() == [210e9]

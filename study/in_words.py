@@ -79,7 +79,11 @@ def summary(contact: xr.Dataset) -> Summary:
     missing = [name for name in ("status", "model_used", "validity", *SHOWN) if name not in contact]
     if missing:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
+    bare = [name for name in ("status", "model_used", "validity") if "flag_meanings" not in contact[name].attrs]
+    if bare:
+        raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
     dims = list(contact["status"].dims)
+    contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     if not dims:
         return Summary(_summary_of_case(contact))
     cases = contact.stack({"one": dims}, create_index=False)

@@ -119,7 +119,7 @@ def _filtered(scan: Scan, form: str | float, cutoff: float | None) -> tuple[np.n
     """The heights without form and short waves, and what was done, in words."""
     if form in ("mean", "plane"):
         said = f"{form} taken off"
-    elif not isinstance(form, numbers.Real):
+    elif not isinstance(form, numbers.Real) or isinstance(form, bool):
         raise ValueError(f'{scan.name}: form = {form!r}; allowed are "mean", "plane" and the radius of a sphere in m')
     elif not abs(form) > math.hypot(*scan.sizes):
         raise ValueError(f"{scan.name}: form = {form} m: a sphere must be larger than the scan, {scan.sizes} m")

@@ -54,9 +54,10 @@ def area_fraction(fraction, base_radius):
 
     In 1/[base_radius]². Geometry. Circles cover at most π/(2√3) = 0.907 without overlap; more is refused.
     """
-    if not np.all(np.asarray(_positive("fraction", fraction)) <= DENSEST):
+    fraction, base_radius = _positive("fraction", fraction), _positive("base_radius", base_radius)
+    if not np.all(fraction <= DENSEST):
         raise ValueError(f"fraction = {fraction}: circles that do not overlap cover at most {DENSEST:.4f} of a plane")
-    return fraction / (math.pi * _positive("base_radius", base_radius) ** 2)
+    return fraction / (math.pi * base_radius**2)
 
 
 def cap_radius(height, width):
@@ -65,7 +66,8 @@ def cap_radius(height, width):
     width is the diameter of its base. Geometry: Pythagoras on Ra, Ra - height and width/2. A cap is at most a
     half-sphere, so height may be at most width/2; a taller bump has sides that no cap has, and is refused.
     """
-    if not np.all(_positive("height", height) <= _positive("width", width) / 2):
+    height, width = _positive("height", height), _positive("width", width)
+    if not np.all(height <= width / 2):
         raise ValueError(
             f"height = {height} on a base of width = {width}: a spherical cap is at most half as high as wide. "
             "For a taller bump give the radius of its tip as Ra."
@@ -76,6 +78,8 @@ def cap_radius(height, width):
 def _positive(name: str, value):
     """The value, a list as an array. Raises ValueError if it is text, or not all of it is positive and finite."""
     value = np.asarray(value) if isinstance(value, list | tuple) else value
+    if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iu":
+        value = value.astype(float)  # squares of whole numbers of 32 bits overflow from 46,341 on
     if value is None or np.asarray(value).dtype.kind in "OSU" and not hasattr(value, "magnitude"):
         raise ValueError(f"{name} = {value!r}: must be a number, all lengths in one unit, or a quantity of pint")
     if not (np.all(value > 0) and np.all(np.isfinite(value))):

@@ -54,7 +54,7 @@ def profile(z, *, x=None, dx=None, unit="m", height_unit=None, name="the profile
     """
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
-    step = dx if x is None else _step(np.asarray(x, dtype=float), np.shape(z), name)
+    step = dx if x is None else _step(np.asarray(_in_unit(f"{name}: x", x, unit), dtype=float), np.shape(z), name)
     return _checked(z, (number(f"{name}: dx", step, unit),), unit, height_unit, name)
 
 
@@ -90,6 +90,18 @@ def number(name: str, value, unit: str) -> float:
     raise ValueError(f"{name} = {value!r}: must be a number, in {unit}")
 
 
+def _in_unit(name: str, values, unit: str):
+    """The values. Raises ValueError for quantities of pint, and for a DataArray with another unit than `unit`.
+
+    Their numbers alone would be taken, of a unit that they do not have.
+    """
+    own = values.attrs.get("units", unit) if hasattr(values, "attrs") else unit
+    if hasattr(values, "magnitude") or (own != unit and UNITS.get(own) != UNITS.get(unit)):
+        own = values.units if hasattr(values, "magnitude") else own
+        raise ValueError(f"{name} is in {own}, but must be numbers in {unit}: give the numbers, and their unit")
+    return values
+
+
 def _step(x: np.ndarray, shape: tuple, name: str) -> float:
     """Distance of the points of a uniform grid. Raises ValueError for positions that are not uniform."""
     if x.shape != shape or x.ndim != 1 or x.size < 2:
@@ -110,6 +122,8 @@ def _step(x: np.ndarray, shape: tuple, name: str) -> float:
 
 def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str) -> Scan:
     """The scan in metres. Raises ValueError for heights or distances that no scan has."""
+    z = _in_unit(f"{name}: z", z, height_unit or unit)
+    z = z.transpose("y", "x") if set(getattr(z, "dims", ())) == {"x", "y"} else z  # of xarray
     try:
         # asarray alone would take the heights under a mask for heights
         z = np.ma.filled(z.astype(float), np.nan) if np.ma.isMaskedArray(z) else np.asarray(z, dtype=float)

@@ -79,8 +79,8 @@ def _as_headed(heading: str, given: dict[str, str], name: str) -> None:
 
 
 def _picked(table: np.ndarray, columns: tuple, name: str) -> np.ndarray:
-    columns = tuple(columns)
-    if len(columns) not in (1, 2) or not all(0 <= i < table.shape[1] for i in columns):
+    columns = tuple(columns) if isinstance(columns, (list, tuple)) else (columns,)
+    if len(columns) not in (1, 2) or not all(type(i) is int and 0 <= i < table.shape[1] for i in columns):
         raise ValueError(
             f"{name}: columns = {columns}, but the file has the columns 0 to {table.shape[1] - 1}; allowed are two of "
             "them, for x and z, or one, for z"

@@ -155,6 +155,13 @@ def test_reduced_modulus():
     assert study.reduced_modulus(210e9, 0.3) == pytest.approx(230.769230769e9, rel=1e-11)
 
 
+def test_a_part_of_physical_results_is_not_converted_twice():
+    """It has no attributes of the dataset; metres were taken for radii."""
+    given = {"R": "5 mm", "E2": "210 GPa", "base": "half_space", "micro": "smooth", "P": "1 N"}
+    with pytest.raises(ValueError, match="in physical units already: a has units = 'm'"):
+        study.to_physical(study.solve(**given, x=2).a.to_dataset().reset_coords(drop=True), R="5 mm", E2_star="1 GPa")
+
+
 def test_wrong_calls():
     smooth = study.solve(P=1e-6, micro="smooth", base="half_space")
     with pytest.raises(ValueError, match="in physical units already: R = 0.005 m"):

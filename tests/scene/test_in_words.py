@@ -147,3 +147,11 @@ def test_the_micro_law_and_its_own_error():
 
 def test_a_parameter_that_no_case_has_is_no_coordinate():
     assert "cut" not in study.solve(P=1e-5, h=0.02, n=0.5, Nbar=250_000, Ra=0.004, x=2).coords
+
+
+def test_stacked_cases_and_lost_attributes():
+    """A MultiIndex was a TypeError, and lost attributes a KeyError."""
+    grid = quiet(**COATED, P=["1 N", "10 N"], x=2)
+    assert "P      = 10 N" in study.summary(grid.assign_coords(nu1=grid.nu1).stack(case=["P"]))
+    with pytest.raises(ValueError, match="status has lost its attributes"):
+        study.summary(grid.drop_attrs())

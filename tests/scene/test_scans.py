@@ -104,6 +104,8 @@ def test_positions_written_with_few_digits_are_uniform():
         ("a.csv", lines(X, X, Z), {}, r"20 rows of 3 column\(s\); .* columns=\(0, 2\)"),
         ("a.csv", lines(X, Z), {"columns": (0, 2)}, r"columns = \(0, 2\), but the file has the columns 0 to 1"),
         ("a.csv", lines(X, Z), {"columns": (0, 1, 0)}, "allowed are two of them, for x and z, or one"),
+        ("a.csv", lines(X, Z), {"columns": "xz"}, "allowed are two of them, for x and z, or one"),
+        ("a.csv", lines(X, Z), {"columns": (0, 1.0)}, "allowed are two of them, for x and z, or one"),
         ("a.csv", lines(*TABLE.T), {}, r"a map of 17 × 19 heights: give dx \(and dy\)"),
         ("a.csv", lines(X[:15], Z[:15]), {}, "15 heights; at least 16 in each direction"),
         ("a.csv", lines(*TABLE[:9].T), {"dx": 1}, "9 × 19 heights; at least 16 in each direction"),

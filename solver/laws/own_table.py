@@ -54,7 +54,8 @@ def read(name):
 @lru_cache(maxsize=16)
 def _of_text(name, text):
     """The law of a table: a study asks several times for it, and the fits take 30 ms."""
-    if "share" in text.partition("\n")[0]:
+    heading = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
+    if "share" in map(str.strip, heading.split(",")):
         return _histogram(name, **_columns(text, HEIGHTS, 2))
     columns = _columns(text, COLUMNS, _FEWEST)
     _check(**columns)

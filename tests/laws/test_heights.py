@@ -202,7 +202,7 @@ def test_a_histogram(tmp_path):
     given = CASE | {"P": [1e-6, 1e-5], "base": "half_space", "rtol": 1e-5}
     width = 0.4 * A_STAR
     two = tmp_path / "even.csv"
-    two.write_text(f"z,share\n{-width / 4},3\n{width / 4},3\n")
+    two.write_text(f"# heights of a map\nz, share\n{-width / 4},3\n{width / 4},3\n")
     found = solve(Problem.of(**given, micro=f"table:{two}"))
     even = solve(Problem.of(**given, micro="uniform_heights", sigma=width / (2 * np.sqrt(3))))
     assert (found.status == 0).all() and difference(found, even).max() < 2e-5

@@ -59,7 +59,11 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra; 128 1/sqrt(N̄) > PITCH_OVER_LAYER h on
     a layer of any kind. A case without numbers (see `status`) only gets the masks that need none. int32 over the
     dimensions of `status`.
+
+    Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
     """
+    if _has_units(dataset):
+        raise ValueError("validity follows from results without units; those with units hold it: dataset.validity")
     found = validity_of(dataset.variables)
     flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
     flags.attrs = found.attrs
@@ -109,6 +113,10 @@ def quantity(name: str) -> Callable:
     def register(formula: Callable) -> Callable:
         @wraps(formula)
         def computed(dataset: xr.Dataset) -> xr.DataArray:
+            for own, variable in dataset.variables.items():
+                unit = variable.attrs.get("units", "1")
+                if own in VOCABULARY and unit not in ("1", VOCABULARY[own].unit):  # of study.readable
+                    raise ValueError(f"{own} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name)
 
         QUANTITIES[name] = computed

@@ -29,6 +29,11 @@ def _si(name: str, given: Any, unit: str) -> Any:
 
     Raises ValueError for a text without a unit, or of something else, and for a spread: the results would not have it.
     """
+    if isinstance(given, xr.DataArray):
+        size = quantity(name, f"1 {given.attrs['units']}", unit).value if "units" in given.attrs else 1.0
+        return given.drop_attrs(deep=False) * size
+    if hasattr(given, "tolist") and np.ndim(given) and np.asarray(given).dtype.kind in "OUT":  # texts
+        given = given.tolist()
     if isinstance(given, (list, tuple)):
         return [_si(name, one, unit) for one in given]
     if not (isinstance(given, str) or has_unit(given)):

@@ -162,6 +162,19 @@ def test_a_part_of_physical_results_is_not_converted_twice():
         study.to_physical(study.solve(**given, x=2).a.to_dataset().reset_coords(drop=True), R="5 mm", E2_star="1 GPa")
 
 
+def test_arrays_with_units_are_read_as_solve_reads_them():
+    """1 mN was taken for 1 N, and R = 10 mm for 10 m."""
+    scale = {"R": xr.DataArray(10.0, attrs={"units": "mm"}), "E2_star": "230 GPa"}
+    loads = xr.DataArray([1.0, 2.0], dims="P", attrs={"units": "mN"})
+    expected = [1e-3 / (230e9 * 1e-4), 2e-3 / (230e9 * 1e-4)]
+    for P in (loads, np.array(["1 mN", "2 mN"])):
+        found = study.from_physical(**scale, P=P)["P"]
+        np.testing.assert_allclose(found, expected, rtol=1e-15, atol=0)  # a few roundings
+    assert study.solve(**study.from_physical(**scale, P=loads), base="half_space", micro="smooth", x=2).a.dims == ("P",)
+    with pytest.raises(ValueError, match='P = "1 mm" is a length'):
+        study.from_physical(**scale, P=loads.assign_attrs(units="mm"))
+
+
 def test_wrong_calls():
     smooth = study.solve(P=1e-6, micro="smooth", base="half_space")
     with pytest.raises(ValueError, match="in physical units already: R = 0.005 m"):

@@ -12,6 +12,7 @@ from ..figures.lines import drawn
 from ..figures.style import style
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
+from ..spec.grid import twins
 from ..terminal import answer
 from .arguments import known_studies, study_file
 from .computing import completed
@@ -40,6 +41,8 @@ def _curves(options, name: str) -> int:
     """Draw one quantity of the results of a study, or of a file, against another."""
     if not (options.x and options.y):
         raise StudyError(["curves of results need both --x and --y, such as --x P --y p_max"])
+    for i, _ in twins([axis for axis, _ in options.where]):
+        raise StudyError([f"--where {options.where[i][0]} is given twice"])
     if Path(name).suffix == ".nc":
         if not Path(name).exists():
             raise StudyError([f"{name}: does not exist"])

@@ -96,16 +96,20 @@ def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
 
 
 def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
-    """The parameters, without the coordinates of DataArrays along dimensions that are called like an input.
+    """The parameters; DataArrays over an input that is one itself are without the coordinates along it.
 
     Messages where two of them disagree on a dimension: the arithmetic of xarray would leave out the cases that one of
     them does not have, or take those of one in the order of the other.
     """
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
-    taken = {MOVED, *SCENE, *BODIES} - along_itself - {body for body, (dim, _) in bodies.items() if dim == body}
+    materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
+    taken = {MOVED, *SCENE, *BODIES} - along_itself - set(materials)
     labels = {name: (name, arrays[name].values) for name in along_itself if name not in arrays[name].coords}
-    lengths = {}
+    labels |= materials
+    lists = {name: given for name, given in parameters.items() if type(given) in (list, tuple, range, CaseValues)}
+    lengths = {"case" if type(given) is CaseValues else name: (name, len(given)) for name, given in lists.items()}
+    lengths |= {body: (body, len(texts)) for body, (_, texts) in materials.items()}
     for name, given in arrays.items():
         errors += [f'{name}: a dimension cannot be called "{dim}" here' for dim in given.dims if dim in taken]
         for dim, length in given.sizes.items():
@@ -116,9 +120,8 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
                 other, known = labels.setdefault(dim, (name, given[dim].values))
                 if not np.array_equal(known, given[dim].values):
                     errors.append(f"{name} has other values of {dim}, or in another order, than {other}")
-    inputs = [*SCENE, *PARAMETERS]
     return parameters | {
-        name: given.drop_vars([dim for dim in given.dims if dim in given.coords and dim in inputs])
+        name: given.drop_vars([dim for dim in given.dims if dim in given.coords and dim in along_itself])
         for name, given in arrays.items()
     }
 

@@ -23,6 +23,14 @@ def of(values, units: str, dim: str = "ball", labels=None) -> xr.DataArray:
         ({"R": of([1, 2], "mm", labels=[0, 1]), "P": of([3, 4], "N", labels=[1, 0])}, "P has other values of ball, or"),
         ({"R": of([1, 2], "mm", labels=[0, 1]), "P": of([3, 4], "N", labels=[1, 2])}, "P has other values of ball, or"),
         ({"R": of([1, 2], "mm"), "P": of([3, 4, 5], "N")}, "P has 3 values along ball, R has 2"),
+        ({"R": "1 mm", "nu2": [0.1, 0.2], "P": of([3, 4, 5], "N", "nu2")}, "P has 3 values along nu2, nu2 has 2"),
+        ({"R": "1 mm", "nu2": [0.1, 0.2], "P": of([3, 4], "N", "nu2", [0.2, 0.1])}, "solve: P has other values of nu2"),
+        ({"cases": [{"R": "1 mm"}] * 2, "P": of([3, 4, 5], "N", "case")}, "P has 3 values along case, R has 2"),
+        # the load of copper was that of PTFE
+        (
+            {"R": "1 mm", "punch": ["PTFE", "copper"], "P": of([3, 4], "N", "punch", ["copper", "PTFE"])},
+            "P has other values of punch, or in another order, than punch",
+        ),
         ({"R": ["1 mm", "2 mm"], "P": of([3, 4], "N", "R")}, 'P: a dimension cannot be called "R" here'),
         ({"R": "1 mm", "P": of([3, 4], "N", "moved input")}, 'P: a dimension cannot be called "moved input" here'),
         ({"R": "1 mm", "P": of(["3", "4"], "N")}, "P: a DataArray must hold numbers"),

@@ -79,7 +79,9 @@ def _columns(text, names, fewest):
     heading = [word.strip() for word in rows[0]] if rows else []
     missing = [name for name in names if heading.count(name) != 1]
     if missing:
-        raise ValueError(f"column {missing[0]}: the heading must have it once, with {', '.join(names)}")
+        raise ValueError(
+            f"column {missing[0]}: the heading must have it once, with {', '.join(names)}, separated by commas"
+        )
     if len(rows) <= fewest:
         raise ValueError(f"has {len(rows) - 1} rows: must have at least {fewest}")
     return {name: np.array([_number(name, i, row, heading) for i, row in enumerate(rows[1:], 1)]) for name in names}

@@ -175,6 +175,7 @@ def test_the_command_and_the_methods(tmp_path, monkeypatch, capsys):
     for command, message in (
         ("plot mine --x P", "curves of results need both --x and --y, such as --x P --y p_max"),
         ("plot none.nc --x P --y a", "none.nc: does not exist"),
+        ("plot mine --x P --y a --where h=0.01 --where h=0.02", "--where h is given twice"),
         ("plot mine", "mine is a study, not a figure: give --x and --y to draw curves of it, such as --x P --y a"),
     ):
         assert main(command.split()) == 2

@@ -102,8 +102,8 @@ def test_the_edge_goes_on_as_the_first_rows(table):
 
 
 WRONG = {
-    "": "column p: the heading must have it once, with p, A, lam, p_max",
-    "p,A,lam\n": "column p_max: the heading must have it once, with p, A, lam, p_max",
+    "": "column p: the heading must have it once, with p, A, lam, p_max, separated by commas",
+    "p,A,lam\n": "column p_max: the heading must have it once, with p, A, lam, p_max, separated by commas",
     HEAD + "1,1,1,2\n": "has 1 rows: must have at least 5",
     "\n".join([HEAD, *ROWS[:3], "0.004,4,0.04", ROWS[4]]): "row 4: has 3 cells, the heading 4",
     "\n".join([HEAD, *ROWS[:3], "0.004,four,0.04,0.4", ROWS[4]]): 'column A, row 4: "four": must be a finite number',

@@ -54,7 +54,10 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
     hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
     check_roles(found, x, y, hue)
+    found = found.squeeze([dim for dim, size in found.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(found[x], found[y])
+    if "validity" in found and not {*found["validity"].dims} <= {*pair[1].dims}:
+        found = found.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
     if hue and hue not in dims:
         raise StudyError([f"hue = {hue} is no axis of {y}; its axes: {', '.join(dims)}"])
@@ -124,12 +127,17 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
         if is_text(dataset[name]):
             fits = values == str(value)
         else:
-            fits = np.isclose(values, number(name, value, unit), rtol=1e-6, atol=0)
+            wanted = number(name, value, unit)
+            near, exact = np.isclose(values, wanted, rtol=1e-6, atol=0), values == wanted
+            fits = exact if exact.any() else near
         if not fits.any():
             listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in values[:20])
             more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
             raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
-        dataset = dataset.isel({dim: int(np.argmax(fits))})
+        index = np.flatnonzero(fits)  # several of [[cases]] may have the value, and keep their numbers
+        if dim not in dataset.coords:
+            dataset = dataset.assign_coords({dim: np.arange(len(fits))})
+        dataset = dataset.isel({dim: index if name != dim or len(index) > 1 else index[0]})
     return dataset
 
 
@@ -176,7 +184,8 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             for name, array in one.coords.items()
             if name in whole.dims and not array.ndim
         }
-        parts.append(fixed | {x: across, y: up} | spread | {"valid": valid.astype(int)})
+        known = {"valid": valid.astype(int)} if "validity" in one else {}
+        parts.append(fixed | {x: across, y: up} | spread | known)
     return parts
 
 

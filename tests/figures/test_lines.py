@@ -140,6 +140,32 @@ def test_values_that_are_not_there_have_their_unit(physical):
         shown(physical, "P", "a", h="3 um")
 
 
+def test_where_takes_the_value_itself_rather_than_one_within_rounding_of_it():
+    near = study.solve(P=AXES["P"], n=[0.3, 0.30000015], **ROUGH, x=2)
+    _, columns = shown(near, "P", "a", n=0.30000015)
+    np.testing.assert_array_equal(columns["a"], near.a.sel(n=0.30000015))
+
+
+def test_where_takes_all_cases_that_have_the_value():
+    """It took the first of them without a word."""
+    rows = {"n": ("case", [0.3, 0.5, 0.5]), "bonding": ("case", ["bonded", "bonded", "frictionless"])}
+    rows = {name: xr.DataArray(values, dims=dim) for name, (dim, values) in rows.items()}
+    three = study.solve(P=AXES["P"], **rows, **ROUGH, x=2)
+    figure, columns = shown(three, "P", "a", n=0.5)
+    assert [axes.get_title() for axes in figure.axes] == ["case 1", "case 2"]
+    np.testing.assert_array_equal(columns["a"], three.a.transpose("case", "P").values[1:].ravel())
+    _, columns = shown(three, "P", "a", n=0.5, bonding="frictionless")
+    np.testing.assert_array_equal(columns["a"], three.a.isel(case=2))
+
+
+def test_axes_of_one_value_and_inputs_over_fewer_axes_than_the_results(found):
+    one = study.solve(P=AXES["P"], n=[0.2], **ROUGH, x=2)
+    np.testing.assert_array_equal(shown(one, "P", "a")[1]["a"], one.a.sel(n=0.2))
+    _, columns = shown(found.assign_coords(E1=("n", [1.0, 2.0])), "P", "E1", "n")
+    assert list(columns) == ["n", "P", "E1"], "validity is of bonding too, which a point does not have"
+    np.testing.assert_array_equal(columns["E1"], [1, 1, 1, 2, 2, 2])
+
+
 def test_every_lowest_panel_has_its_abscissa():
     """The last row may be shorter than the others: the panel above a gap is the lowest of its column."""
     found = study.solve(P=[1e-6, 1e-5], h=[0.01, 0.02, 0.03, 0.04, 0.05], n=0.5, micro="smooth", x=2)

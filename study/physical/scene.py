@@ -79,7 +79,7 @@ class Scene:
             known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
             found = _in_si(name, variable, self.unit, self.R) if known else variable
             if MOVED in found.dims:
-                results |= _spread(name, found)
+                results |= _spread(name, found, parts.variables["model_used"])
                 found = found.isel({MOVED: 0})
             (coords if name in parts.coords else results)[name] = found
         coords |= {name: _coordinate(name, value) for name, value in self.given.items()}
@@ -136,15 +136,24 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 
-def _spread(name: str, variable: xr.Variable) -> dict[str, xr.Variable]:
+def _spread(name: str, variable: xr.Variable, used: xr.Variable) -> dict[str, xr.Variable]:
     """{"NAME_spread": standard deviation of a result}, {} for a result that gets none.
 
     It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs.
+
+    used : `model_used`. The base auto may change its model between up and down: the step between two models is no
+        derivative, and the difference is then taken of the two of up, as given and down that have one model.
     """
     if VOCABULARY[name].role not in ("control", "result", "profile") or name in _WITHOUT_SPREAD:
         return {}
-    up, down = (variable.isel({MOVED: slice(first, None, 2)}) for first in (1, 2))
-    spread = np.sqrt((((up - down) / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
+    (given, up, down), (own, plus, minus) = (
+        [v.isel({MOVED: part}) for part in (0, slice(1, None, 2), slice(2, None, 2))] for v in (variable, used)
+    )
+    change = up - down
+    if not (plus.data == minus.data).all():
+        of_one_side = (2 * (up - given)).where(plus == own, (2 * (given - down)).where(minus == own))
+        change = change.where((plus == minus) | change.isnull(), of_one_side)
+    spread = np.sqrt(((change / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
     long_name = f"standard deviation of {name}, from the spreads of the inputs"
     spread.attrs = {"long_name": long_name} | _units(unit_of(name))
     return {f"{name}_spread": spread}

@@ -130,6 +130,24 @@ def test_spreads_of_hertz():
     assert found.P == 10.0 and "moved input" not in found.dims
 
 
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
+def test_spreads_where_the_base_auto_changes_its_model():
+    """The step between two models was taken for a derivative: at the change the spread of a was 23 times too large."""
+    soft = {"R": "5 mm", "E1": "1 GPa", "E2": "200 GPa", "nu1": 0.3, "nu2": 0.3, "P": "1 N", "Nbar": "4 1/um^2"}
+    soft |= {"Ra": "2 um", "profiles": False}
+    auto = {"base": "auto", "accuracy": 0.05}
+    low, high = 3.0, 6.0  # um, of h: the thin layer, and the exact one
+    for _ in range(16):
+        h = (low * high) ** 0.5
+        thin = study.decode(study.solve(**soft, **auto, h=f"{h} um").model_used) == "thin_layer"
+        low, high = (h, high) if thin else (low, h)
+    assert 3.0 < low < high < 6.0
+    for h in (low, high):
+        found, exact = (study.solve(**soft, **base, h=f"{h} um ± 0.5 %") for base in (auto, {"base": "layered"}))
+        for name in ("a", "D", "p0", "p_max", "Ar_An"):  # the thin layer's own derivatives err by more than its numbers
+            assert float(found[f"{name}_spread"] / exact[f"{name}_spread"]) == pytest.approx(1, abs=0.1), name
+
+
 def of_rows(values: list, units: str) -> xr.DataArray:
     return xr.DataArray(values, dims="row", attrs={"units": units})
 

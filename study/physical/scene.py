@@ -79,7 +79,7 @@ class Scene:
             known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
             found = _in_si(name, variable, self.unit, self.R) if known else variable
             if MOVED in found.dims:
-                results |= _spread(name, found, parts.variables["model_used"])
+                results |= _spread(name, found, parts.variables.get("model_used"))
                 found = found.isel({MOVED: 0})
             (coords if name in parts.coords else results)[name] = found
         coords |= {name: _coordinate(name, value) for name, value in self.given.items()}
@@ -136,13 +136,13 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 
-def _spread(name: str, variable: xr.Variable, used: xr.Variable) -> dict[str, xr.Variable]:
+def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[str, xr.Variable]:
     """{"NAME_spread": standard deviation of a result}, {} for a result that gets none.
 
     It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs.
 
-    used : `model_used`. The base auto may change its model between up and down: the step between two models is no
-        derivative, and the difference is then taken of the two of up, as given and down that have one model.
+    used : `model_used`, None of coordinates alone. The base auto may change its model between up and down: the step
+        between two models is no derivative; the difference is then that of two of up, as given, down with one model.
     """
     if VOCABULARY[name].role not in ("control", "result", "profile") or name in _WITHOUT_SPREAD:
         return {}

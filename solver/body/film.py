@@ -98,11 +98,6 @@ class Convolution(NamedTuple):
     local: np.ndarray
     ends: list
 
-    @property
-    def arrays(self):
-        """All its arrays."""
-        return [self.place, self.local, *self.shares]
-
     def of(self, c):
         """The matrices (b, m, n) for c (b, T)."""
         size = len(c), self.shape[0], self.shape[1] * self.shape[2]

@@ -17,8 +17,7 @@ class Kept:
         self._values, self._uses, self._lock = OrderedDict(), Counter(), Lock()
 
     def get(self, key, make):
-        """The value of `key`; if it is not kept, that of ``make()``: an array, a tuple or list of values, or an object
-        with such a list of its `arrays`."""
+        """The value of `key`; if it is not kept, that of ``make()``: an array, or a tuple or list of such values."""
         with self._lock:
             if key in self._values:
                 self._values.move_to_end(key)
@@ -50,6 +49,6 @@ class Kept:
 def _arrays(value):
     if isinstance(value, np.ndarray):
         yield value
-    else:
-        for part in value if isinstance(value, (tuple, list)) else getattr(value, "arrays", ()):
+    elif isinstance(value, (tuple, list)):
+        for part in value:
             yield from _arrays(part)

@@ -95,9 +95,9 @@ def _in_unit(name: str, values, unit: str):
 
     Their numbers alone would be taken, of a unit that they do not have.
     """
-    own = values.attrs.get("units", unit) if hasattr(values, "attrs") else unit
-    if hasattr(values, "magnitude") or (own != unit and UNITS.get(own) != UNITS.get(unit)):
-        own = values.units if hasattr(values, "magnitude") else own
+    quantity = hasattr(values, "magnitude")
+    own = values.units if quantity else getattr(values, "attrs", {}).get("units", unit)
+    if quantity or (own != unit and UNITS.get(own) != UNITS.get(unit)):
         raise ValueError(f"{name} is in {own}, but must be numbers in {unit}: give the numbers, and their unit")
     return values
 

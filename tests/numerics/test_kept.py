@@ -43,12 +43,3 @@ def test_what_several_share_counts_once_until_the_last_has_gone():
     kept.get("again", lambda: (shared, shared))
     assert len(kept.values()) == 1 and kept.nbytes == 80
     assert kept._uses == {id(shared): 2}, "of arrays that have gone nothing is left, however many there were"
-
-
-def test_an_object_says_what_its_arrays_are():
-    class Whole:
-        arrays = (array(1), [array(2)])
-
-    kept = Kept(1000.0)
-    kept.get("whole", Whole)
-    assert kept.nbytes == 160

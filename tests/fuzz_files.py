@@ -10,6 +10,7 @@ import json
 import os
 import random
 import shutil
+import signal
 import sys
 import tempfile
 import traceback
@@ -45,6 +46,8 @@ STUDIES = {
 }
 #: Share of the flips after which a file without a whole seal is looked at in a process of its own, as users have it.
 THE_SLOW_WAY = 0.05
+#: Seconds after which a process that looks into them itself is ended: of a damaged file HDF5 may read on for ever.
+ENDLESS = 60
 OF_THE_RUN = ("history", "created", "command", "git_commit")
 
 
@@ -166,6 +169,7 @@ def apart(flip, example: Example, seed: float, seen: Counter, said: Path, slow: 
     if not child:
         counts, fault = Counter(), ""
         if not slow:
+            signal.alarm(ENDLESS)
             looked_at.examined_in_child = lambda path, columns, _: looked_at.examined(path, columns)
         try:
             flip(example, chance, counts)

@@ -110,7 +110,7 @@ def _by_radius(cases, grid, most):
     def at_radius(eta, index):
         fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
         found = _newton(smooth_start(fixed, grid), np.minimum(newton.LIMIT, (most - spent)[index]))
-        spent[index] += found.count
+        np.add.at(spent, index, found.count)
         return found
 
     def control_at(eta, index):

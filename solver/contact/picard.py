@@ -20,7 +20,7 @@ from .start import guess_radius
 
 #: Most successive approximations at one radius.
 LIMIT = 1000
-#: Most successive approximations of one case, at all radii but the last: enough for four radii that reach LIMIT.
+#: Most successive approximations of one case; those at the radius that exceeds it are finished. Four radii reach LIMIT.
 APPROXIMATIONS = 4_000
 #: The load has settled when one more approximation changes it by less than this.
 _SETTLED = 1e-2
@@ -84,21 +84,25 @@ def solve(cases, mesh, k, rtol, limit):
 
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
     """
-    eta, count = np.log(cases.value), np.zeros(len(cases.value), dtype=int)
-    limit = min(limit or LIMIT, APPROXIMATIONS)
+    size, limit = len(cases.value), min(limit or LIMIT, APPROXIMATIONS)
+    count, last = np.zeros(size, dtype=int), [()] * size  # of each case the latest approximations and radius
 
     def control_at(eta, index):
         part = cases.take(index)
         found = approximate(part, eta, mesh, k[index], rtol[index], limit)
-        count[index] += found.count
+        np.add.at(count, index, found.count)
+        for row, i in enumerate(index.tolist()):
+            last[i] = found.at.take([row]), eta[row]
         return np.where(count[index] < APPROXIMATIONS, _control(part, eta, found.at), np.nan)
 
-    if cases.control != "a":
-        eta = false_position(control_at, np.log(guess_radius(cases)), 0.1 * rtol)[0]
-    found = approximate(cases, eta, mesh, k, rtol, limit)
-    count = count + found.count
-    status = _status(found.at, np.abs(_control(cases, eta, found.at)), count >= APPROXIMATIONS)
-    y = np.maximum(cases.law.from_pressure(found.at.q), _TINY)
+    if cases.control == "a":
+        control_at(np.log(cases.value), np.arange(size))
+    else:
+        false_position(control_at, np.log(guess_radius(cases)), 0.1 * rtol)
+    eta = np.array([eta for _, eta in last])
+    at = last[0][0].join(cases, [at for at, _ in last], np.arange(size)[:, None])
+    status = _status(at, np.abs(_control(cases, eta, at)), count >= APPROXIMATIONS)
+    y = np.maximum(cases.law.from_pressure(at.q), _TINY)
     at = evaluate(cases, State(y, eta), mesh)
     return Iterated(at, status == Status.CONVERGED, count), status
 

@@ -16,7 +16,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 
-from .law import Curve, Law, inverse
+from .law import Curve, Law, inverse, of_positive
+
+#: Of a larger q, y is q to rounding.
+_LARGE = 1e30
+_TINY = np.finfo(float).tiny
 
 
 class Quantity(NamedTuple):
@@ -122,7 +126,7 @@ def law_of(table, **known):
     Its functions can be pickled.
     """
     functions = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge}
-    functions |= {"from_pressure": _from_pressure, "from_displacement": _from_displacement}
+    functions |= {"from_pressure": _from_pressure, "from_displacement": partial(_from_displacement, _inverse(table))}
     return Law(**{name: partial(function, table) for name, function in functions.items()}, **known)
 
 
@@ -146,10 +150,27 @@ def _edge(table, *own):
 
 def _from_pressure(table, q, *own):
     start = np.maximum(q, 0.0)
+    if table.s == 2:
+        return of_positive(q, _root(start))
     return inverse(lambda y: table.pressure(y)[1:], q, start ** (1 / (1 + table.s)) + start)
 
 
-def _from_displacement(table, g, *own):
+def _root(q):
+    """y >= 0 with y³ = q (1 + y)², by Cardano's formula, in which no terms cancel: to a few units of rounding."""
+    one = np.minimum(q, _LARGE)
+    t = np.cbrt(one * (0.5 + np.sqrt(0.25 + one / 27) + one / 3 * (1 + one / 9)))
+    return np.where(q > _LARGE, q, one / 3 + t + one * (one + 6) / (9 * np.maximum(t, _TINY)))
+
+
+def _inverse(table):
+    """ln(1/rest) of A, and ln y, at points of a curve (2, n), ascending: an inverse of A within 1e-3."""
+    t = np.append(np.geomspace(1e-6, 0.01, 40), np.linspace(0.01, 1, 400)[1:-1])
+    y = t / (1 - t)
+    rest = table.A.rest(t, table.pressure(y)[1], table.A.exponent(t)[0])
+    return np.log([1 / rest[rest > 0], y[rest > 0]])
+
+
+def _from_displacement(inverse_curve, table, g, *own):
     """By 1/rest, which is g itself without a limit, and grows to infinity where g comes near one."""
     A, g = table.A, np.asarray(g, dtype=float)
     odds = 1 / (1 / np.where(g < A.limit, g, np.nan) - 1 / A.limit)
@@ -159,4 +180,4 @@ def _from_displacement(table, g, *own):
         _, rest, slope = A.with_slope(t, q, dq)
         return 1 / rest, slope / rest
 
-    return inverse(value, odds, np.minimum(np.sqrt(np.maximum(odds, 0.0)), 3.0))
+    return inverse(value, odds, np.exp(np.interp(np.log(odds), *inverse_curve)))

@@ -9,8 +9,8 @@ def false_position(evaluate, start, tolerance, steps=80):
     Parameters
     ----------
     evaluate : callable
-        ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,); NaN where there is no value: that case is
-        given up.
+        ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), in which a case may be twice; NaN where there
+        is no value: that case is given up.
     start : (B,) float
         Where to begin; the bracket is ± 0.1, its ends moved outwards, doubling, until they enclose the root.
     tolerance : (B,) float
@@ -21,8 +21,7 @@ def false_position(evaluate, start, tolerance, steps=80):
     x, g : (B,) float
         The last x of each case, and the function there.
     """
-    low, g_low = _outwards(evaluate, start, -1)
-    high, g_high = _outwards(evaluate, start, +1)
+    (low, high), (g_low, g_high) = _outwards(evaluate, start)
     x, g = high.copy(), g_high.copy()
     active, was_below = np.flatnonzero(np.isfinite(g_low + g_high)), np.full(len(start), np.nan)
     for _ in range(steps):
@@ -43,15 +42,16 @@ def false_position(evaluate, start, tolerance, steps=80):
     return x, g
 
 
-def _outwards(evaluate, start, sign):
-    """An end of the bracket on the side `sign` of the start, and the function there."""
-    end, step = start + 0.1 * sign, np.full(len(start), 0.1)
-    g = evaluate(end, np.arange(len(start)))
+def _outwards(evaluate, start):
+    """Both ends (2, B) of a bracket around the start, and the function there (2, B)."""
+    index, sign = np.tile(np.arange(len(start)), 2), np.repeat([-1.0, 1.0], len(start))
+    end, step = start[index] + 0.1 * sign, np.full(len(index), 0.1)
+    g = evaluate(end, index)
     for _ in range(60):
         short = np.flatnonzero(sign * g < 0)
         if not len(short):
             break
         step[short] *= 2
-        end[short] += sign * step[short]
-        g[short] = evaluate(end[short], short)
-    return end, g
+        end[short] += sign[short] * step[short]
+        g[short] = evaluate(end[short], index[short])
+    return end.reshape(2, -1), g.reshape(2, -1)

@@ -3,7 +3,8 @@
     python tests/fuzz_solver.py [--cases 20000] [--seed 0] [--singles 0.1]
 
 Cases of every base, law, control, interface and scheme, from rtol 1e-12 to 0.1. They are drawn in groups and solved as
-batches; a random part of them once more, alone, and timed. What is wrong is printed with its case; the exit code is then 1.
+batches; a random part of them once more, alone, and timed. What is wrong is printed with its case; the exit code is
+then 1.
 """
 
 import argparse
@@ -139,7 +140,7 @@ def main(arguments=None):
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("--cases", type=int, default=20_000)
     parser.add_argument("--seed", type=int, default=0)
-    parser.add_argument("--singles", type=float, default=0.1, help="part of the cases that are solved once more and timed")
+    parser.add_argument("--singles", type=float, default=0.1, help="part of the cases solved once more, and timed")
     given = parser.parse_args(arguments)
     start = time.perf_counter()
     found, ended, times = fuzz(range(48 * -(-given.cases // 2400)), given.seed, given.singles)

@@ -15,7 +15,7 @@ from benchmark_work import load_axis
 from solver import solve
 from solver.contact import adaptive
 from solver.contact.equation import State, evaluate
-from solver.contact.start import approach, guess_radius
+from solver.contact.start import first_guess
 from solver.numerics.mesh import mesh
 from solver.scaling import as_cases, dimensionless
 
@@ -45,7 +45,7 @@ def saved() -> list[dict]:
 @contextmanager
 def started(known: dict, size: float | None = None):
     """Where the first mesh of a stack begins: as ever, which fills `known` with solutions, or `size` beside these."""
-    real, solve_on = adaptive.approach, adaptive.solve_on
+    real, solve_on = adaptive.first_guess, adaptive.solve_on
     random = np.random.default_rng(0)
 
     def key(cases, grid):
@@ -56,7 +56,7 @@ def started(known: dict, size: float | None = None):
         if size is None or state is None:
             return real(cases, grid, a)
         y = state.y * (1 + size * random.standard_normal((len(state.y), 1)))
-        return evaluate(cases, State(y, state.eta + size * random.standard_normal(len(state.eta))), grid)
+        return State(y, state.eta + size * random.standard_normal(len(state.eta)))
 
     def solved(begin, limit):
         found = solve_on(begin, limit)
@@ -64,11 +64,11 @@ def started(known: dict, size: float | None = None):
             known.setdefault(key(begin.cases, begin.mesh), found.at.state)
         return found
 
-    adaptive.approach, adaptive.solve_on = begun, solved
+    adaptive.first_guess, adaptive.solve_on = begun, solved
     try:
         yield
     finally:
-        adaptive.approach, adaptive.solve_on = real, solve_on
+        adaptive.first_guess, adaptive.solve_on = real, solve_on
 
 
 def predicted() -> list[dict]:
@@ -78,7 +78,7 @@ def predicted() -> list[dict]:
         for loads in LOADS:
             problem = dimensionless(load_axis(base, loads))
             cases, grid = as_cases(problem), mesh(NODES)
-            found = adaptive.solve_on(approach(cases, grid, guess_radius(cases)), 0).at.state.y
+            found = adaptive.solve_on(evaluate(cases, first_guess(cases, grid), grid), 0).at.state.y
             y, x = np.log(found).reshape(-1, loads, NODES), np.log(cases.value[:loads])
             cubic = [_missed(y, x, [k, k + 4, k + 8, k + 12], k + 6) for k in range(0, loads - 12, 4)]
             parabola = [_missed(y, x, [k, k + 1, k + 2], k + 3) for k in range(loads - 3)]

@@ -16,7 +16,7 @@ from .answer import Answer, answer, hopeless, stuck
 from .driver import BUDGET, newton_steps, solve_on
 from .equation import evaluate
 from .panels import solve_on_panels
-from .start import approach, first_guess, guess_radius, nodes_wanted
+from .start import first_guess, guess_radius, nodes_wanted
 
 #: Panels are halved until the last coefficients on each are small against rtol. If the error is still above rtol, they
 #: are halved again, until the coefficients are small against this times rtol.
@@ -34,11 +34,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
 
     def on_mesh(index, n, start):
         part, grid = cases.take(index), mesh(n)
-        if start is not None or limit or n < 8:
-            begin = evaluate(part, first_guess(part, grid, a[index]) if start is None else start, grid)
-        else:
-            begin = approach(part, grid, a[index])
-        iterated = solve_on(begin, limit)
+        begin = first_guess(part, grid, a[index]) if start is None else start
+        iterated = solve_on(evaluate(part, begin, grid), limit)
         work[index] += iterated.count * part.body.work(a[index], n)[1]
         goes_on = free[index] & (n < LADDER[-1]) & (work[index] <= BUDGET)
         found = answer(iterated, x, np.where(goes_on, rtol[index], np.inf), before[index])

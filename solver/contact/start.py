@@ -3,15 +3,11 @@
 import numpy as np
 
 from ..numerics.linalg import solve_stack
-from ..numerics.mesh import HERTZ, mesh
-from . import newton
+from ..numerics.mesh import HERTZ
 from .equation import State, evaluate, groups
-from .results import interpolate
 
 #: The first guess of the pressure is nowhere below this part of the largest.
 _LEAST = 1e-12
-#: Newton steps on a coarse mesh before the first one on the mesh of a case: batches on thin layers take 5 % less time.
-_STEPS = 2
 
 
 def guess_radius(cases):
@@ -64,15 +60,6 @@ def smooth_start(cases, grid):
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
     y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(s2 / Z)))
     return evaluate(cases, State(y, eta), grid, operator)
-
-
-def approach(cases, grid, a):
-    """The equation on a mesh after a few steps on a coarse one from the closed forms; a (B,): :func:`guess_radius`."""
-    coarse = mesh(5 if grid.n <= 12 else 8)
-    ev = evaluate(cases, first_guess(cases, coarse, a), coarse)
-    for _ in range(_STEPS):
-        ev = newton.step(ev)
-    return evaluate(cases, State(interpolate(ev, grid.s, 1e-2), ev.state.eta), grid, ev.operator)
 
 
 def nodes_wanted(cases, rtol, a):

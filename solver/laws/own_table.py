@@ -31,6 +31,11 @@ HEIGHTS, _MOST = ("z", "share"), 32
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
 #: A degree is as good as the best one if its distance is within this of it: higher ones follow the noise.
 _HARDLY = 1.5
+#: Largest exponent of A(p) over the rows: that of a contact is at most 1, noise has 5 %.
+_BENT = 1.05
+#: Of round summits A goes as p^(2/3), of flat ones as p; below this exponent, and where λ is below _LIGHT, λ rises
+#: faster than p_max, by all laws of this package (tests/laws/test_own_table.py).
+_ROUND, _LIGHT = 0.7, 0.5
 #: Exponents of the edge, A ~ p^β, that the curves can have.
 _BETA = (0.2, 1.5)
 
@@ -109,12 +114,21 @@ def _check(p, A, lam, p_max):
         ("lam", lam[1:] >= lam[:-1], 2, "must not be smaller than that of the row before"),
         ("lam", lam <= 1, 1, "must be at most 1"),
         ("p_max", p_max > p, 1, "must be larger than p"),
+        ("p_max", lam * p_max > (1 - _FAR) * p, 1, "must be at least p/lam, the mean over the spots"),
     )
     for name, kept, first, words in rules:
         if not kept.all():
             row = first + int(np.argmin(kept))
             value = {"p": p, "A": A, "lam": lam, "p_max": p_max}[name][row - 1]
             raise ValueError(f"column {name}, row {row}: {value:g}: {words}")
+    if np.median(np.log(A[1:] / A[0]) / np.log(p[1:] / p[0])) > _BENT:  # one wrong row is named below
+        raise ValueError(f"column A, rows 1 to {len(p)}: rises faster than p, but spots that grow give way less")
+    last = max(1, int(((p <= 10 * p[0]) & (lam < _LIGHT)).sum())) - 1
+    rise = {name: np.log(X[last] / X[0]) for name, X in (("p", p), ("A", A), ("lam", lam), ("p_max", p_max))}
+    if rise["lam"] < 0.75 * rise["p_max"] and rise["A"] < _ROUND * rise["p"]:
+        raise ValueError(
+            f"columns lam and p_max, rows 1 to {last + 1}: lam rises more slowly than p_max: are they exchanged?"
+        )
 
 
 def of_columns(name, p, A, lam, p_max):

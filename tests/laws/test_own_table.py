@@ -1,6 +1,7 @@
 """A table of one's own as the micro law: its curves, its range, its mistakes, and how a study uses it."""
 
 import pickle
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -114,6 +115,7 @@ WRONG = {
     "\n".join([HEAD, *ROWS[:3], "0.004,4,0.02,1", ROWS[4]]): "column lam, row 4: 0.02: must not be smaller than that",
     "\n".join([HEAD, *ROWS[:4], "0.005,5,1.05,0.5"]): "column lam, row 5: 1.05: must be at most 1",
     "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.004"]): "column p_max, row 5: 0.004: must be larger than p",
+    "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.09"]): "column p_max, row 5: 0.09: must be at least p/lam, the mean",
     "\n".join(
         [HEAD, *ROWS[:4], "0.005,50,0.05,0.5"]
     ): " % off a smooth curve through the other rows: at most 5 % are allowed",
@@ -127,6 +129,21 @@ def test_mistakes(table, text, expected):
         study.solve(P=1e-5, **CASE, micro=table(text))
     (message,) = error.value.messages
     assert message.startswith("solve: micro: mine.csv: ") and expected in message
+
+
+@pytest.mark.parametrize(("micro", "more"), [("disc_cell", {}), ("normal_heights", {"sigma": 1e-4, "cut": 3.0})])
+@pytest.mark.parametrize("density", [0.25, 1, 4, 100])
+@pytest.mark.parametrize("first", [1e-7, 1e-4])
+def test_exchanged_columns_are_refused(micro, more, density, first):
+    """Any two, with noise of 1 %; the columns in their places are taken."""
+    p, wave = np.geomspace(first, 0.2, 40), 1 + 0.01 * np.sin(37 * np.arange(40))
+    spots = laws.LAWS[micro].at(p, 1.0, Nbar=density / 0.004**2, Ra=0.004, **more)
+    columns = [p, spots.A, np.maximum.accumulate(np.minimum(spots.lam * wave, 1)), spots.p_max * wave]
+    own_table._check(*columns)
+    for i, j in combinations(range(4), 2):
+        order = {i: j, j: i}
+        with pytest.raises(ValueError, match="^columns? "):
+            own_table._check(*(columns[order.get(k, k)] for k in range(4)))
 
 
 def test_files_that_cannot_be_read(table):

@@ -166,7 +166,7 @@ def _range_values(raw: dict, key: str, errors: list[str]) -> list:
     check_range(raw, key, errors, ("start", "stop", "num", "spacing"))
     num = raw.get("num")
     if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
-        errors.append(f"{key}: num = {shown(num)}: must be a whole number in [2, {LONGEST_AXIS}]")
+        errors.append(f"{key}: {entry('num', raw)}: must be a whole number in [2, {LONGEST_AXIS}]")
     if len(errors) > before:
         return []
     make = np.geomspace if raw.get("spacing", "linear") == "log" else np.linspace
@@ -184,9 +184,8 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
     for end in ("start", "stop"):
         value = raw.get(end)
         if not finite(value) or (spacing == "log" and value <= 0):
-            errors.append(
-                f"{key}: {end} = {shown(value)}: must be a finite number{', > 0 for spacing log' * (spacing == 'log')}"
-            )
+            also = ", > 0 for spacing log" * (spacing == "log")
+            errors.append(f"{key}: {entry(end, raw)}: must be a finite number{also}")
     start, stop = raw.get("start"), raw.get("stop")
     if finite(start) and finite(stop) and not math.isfinite(float(stop) - float(start)):
         errors.append(f"{key}: from start = {shown(start)} to stop = {shown(stop)}: must be less than 1.8e308 apart")
@@ -202,10 +201,15 @@ def twins(values: list) -> list[tuple[int, int]]:
     return []
 
 
+def entry(name: str, table: dict) -> str:
+    """An entry of a table as a message quotes it: "num = 3", or "num is missing"."""
+    return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"
+
+
 def shown(value) -> str:
     """A value as a message quotes it, at most 60 characters."""
     try:
-        text = "nothing" if value is None else f'"{value}"' if isinstance(value, str) else str(value)
+        text = f'"{value}"' if isinstance(value, str) else str(value)
     except ValueError:  # Python writes no whole number of more than 4300 digits
         text = "a number of more than 4300 digits"
     return on_one_line(text, 60)

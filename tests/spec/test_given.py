@@ -106,7 +106,7 @@ def test_nothing_is_a_value_only_where_gaps_are_allowed():
     errors = []
     assert np.isnan(as_array(VOCABULARY["h"].own, [None, 1.0], "h", errors, gaps=True)).tolist() == [True, False]
     as_array(VOCABULARY["h"].own, [None, 1.0], "h", errors)
-    assert errors == ["h[0] = nothing: must be a finite number, in [1e-12, 1e6]"]
+    assert errors == ["h[0] = None: must be a finite number, in [1e-12, 1e6]"]
 
 
 def test_long_values_are_cut_in_messages():

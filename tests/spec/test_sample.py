@@ -102,10 +102,10 @@ def test_ranges_without_overflow():
 
 # what is replaced in GOOD, by what, and the message that must appear
 BAD = [
-    ("size = 4000", "", "[sample] size = nothing: must be a whole number in [1, 1000000]"),
+    ("size = 4000", "", "[sample] size is missing: must be a whole number in [1, 1000000]"),
     ("size = 4000", "size = 0", "[sample] size = 0: must be a whole number in [1, 1000000]"),
     ("size = 4000", "size = true", "[sample] size = True: must be a whole number in [1, 1000000]"),
-    ("seed = 7", "", "[sample] seed = nothing: must be a whole number in [0, 4294967295]"),
+    ("seed = 7", "", "[sample] seed is missing: must be a whole number in [0, 4294967295]"),
     ("seed = 7", "seed = -1", "[sample] seed = -1: must be a whole number in [0, 4294967295]"),
     ("nu1 =", "nu3 =", '[sample] "nu3" is not a parameter; did you mean "nu'),
     ("n = [0.1, 0.5]", "micro = ['smooth']\nn = [0.1]", "micro is given twice: in [sample] and in [axes]"),
@@ -119,7 +119,7 @@ BAD = [
     ("stop = 0.5", "stop = 0.0", "[sample] nu1: stop = 0.0: must be > start"),
     ("stop = 0.5", "stop = 0.9", "[sample] nu1: stop = 0.9: must be in (-1, 0.5]"),
     ("start = 0,", "start = -1.5,", "[sample] nu1: start = -1.5: must be in (-1, 0.5]"),
-    ("start = 0,", "", "[sample] nu1: start = nothing: must be a finite number"),
+    ("start = 0,", "", "[sample] nu1: start is missing: must be a finite number"),
     ("start = 1e-12", "start = 0", "[sample] P: start = 0: must be a finite number, > 0 for spacing log"),
     ('stop = 0.1, spacing = "log" }\nN', 'stop = 0.1, spacing = "cubic" }\nN', '[sample] P: spacing = "cubic": must'),
     ('"Ra^2"', '"Rx^2"', '[sample] Nbar: over = "Rx^2": must be a power of a range of [sample]: P or Ra or nu1'),

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..scene.quantities import READABLE, Quantity, has_unit, quantity
 from ..spec.definition import StudyError
+from ..spec.given import label_slips
 from ..spec.grid import MOVED, shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
@@ -54,7 +55,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     parameters = _alike(parameters, scene.names, errors)
     for name, given in parameters.items():
         if name == "label" and isinstance(given, CaseValues):
-            scene.labels = list(map(str, given))
+            scene.labels = given
+            errors += label_slips(given)
         elif name not in SCENE and not is_parameter(name):
             errors.append(f"{shown(name)} is not a parameter{suggest(name, [*PARAMETERS, *SCENE, *BODIES])}")
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
@@ -65,7 +67,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, CaseValues) else given
     errors += _missing(parameters)
-    errors += [] if errors else _impossible(scene)
+    errors += [] if errors else _impossible(scene) + (_equal_cases(scene) if rows else [])
     if errors:
         raise StudyError(errors)
     scene.spreads = scene.spreads if spreads else {}
@@ -215,6 +217,14 @@ def _missing(parameters: dict) -> list[str]:
     if "nu_punch" in parameters and "E_punch" not in parameters:
         messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
     return messages
+
+
+def _equal_cases(scene: Scene) -> list[str]:
+    """A message for two of [[cases]] that are the same, in whatever units they are given."""
+    arrays = [v for table in (scene.given, scene.spreads, scene.parameters) for v in table.values()]
+    columns = [v.values.tolist() for v in arrays if isinstance(v, xr.DataArray) and v.dims == ("case",)]
+    columns += [texts for dim, texts in scene.names.values() if dim == "case"]
+    return [f"cases {i} and {j} are the same" for i, j in twins(list(zip(*columns, strict=True)))]
 
 
 def _impossible(scene: Scene) -> list[str]:

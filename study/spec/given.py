@@ -16,6 +16,21 @@ MOST_MESSAGES = 30  # that are shown for a study at a time
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
 
 
+def equal_values(name: str, values: list) -> list[str]:
+    """A message for two values of an axis that are the same, if there are some."""
+    return [
+        f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
+        for i, j in twins(values)
+    ]
+
+
+def label_slips(labels: list) -> list[str]:
+    """Messages for labels of [[cases]] that are no texts, or the same."""
+    if not all(isinstance(label, str) for label in labels):
+        return ["[[cases]] label: must be text"]
+    return equal_values("label", [label or i for i, label in enumerate(labels)])
+
+
 @dataclass
 class Draft:
     """Collects parameters; `finish` makes the Grid of them.
@@ -84,7 +99,9 @@ class Draft:
         self.number_cases(len(rows))
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
-                self._label_cases([row.get("label", "") for row in rows])
+                labels = [row.get("label", "") for row in rows]
+                self.errors += label_slips(labels)
+                self.labels["label"] = ("case",), np.array(labels, dtype=str)
             elif self._accept(name, "[[cases]]"):
                 default = VOCABULARY[name].own.default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
@@ -177,26 +194,13 @@ class Draft:
                 return np.empty(len(raw))
         array = as_array(VOCABULARY[name].own, raw, name, self.errors, gaps)
         if distinct and len(self.errors) == before:
-            self._distinct(name, array.tolist())
+            self.errors += equal_values(name, array.tolist())
         return array
-
-    def _distinct(self, name: str, values: list) -> None:
-        for i, j in twins(values):
-            self.errors.append(
-                f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
-            )
 
     def number_cases(self, count: int) -> None:
         """Make the dimension `case`."""
         self.sizes["case"] = count
         self.labels["case"] = ("case",), np.arange(count, dtype=np.int32)
-
-    def _label_cases(self, labels: list) -> None:
-        if not all(isinstance(label, str) for label in labels):
-            self.errors.append("[[cases]] label: must be text")
-            return
-        self._distinct("label", [label for label in labels if label])
-        self.labels["label"] = ("case",), np.array(labels, dtype=str)
 
     def _check_dimensions(self) -> None:
         """Messages for dimensions: names that are taken, sizes or coordinates on which two parameters disagree."""

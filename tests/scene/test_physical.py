@@ -1,5 +1,6 @@
 """Physical scenes: SI results are the dimensionless ones in other units, spreads are propagated, slips are named."""
 
+import re
 import warnings
 
 import numpy as np
@@ -73,6 +74,29 @@ def test_cases_with_units():
     np.testing.assert_allclose(found.a[0], quiet(**COATED, P="10 N", x=2).a, rtol=1e-12)
     with pytest.raises(study.StudyError, match="h must be given in every case, or once for all"):
         study.solve(cases=[rows[0], {"E1": "1 GPa", "label": "x"}], **common, P="10 N")
+
+
+@pytest.mark.parametrize(
+    ("rows", "message"),
+    [
+        ([{"h": "2 um"}, {"h": "3 um"}, {"h": "2000 nm"}], "cases 0 and 2 are the same"),
+        ([{"layer": "PTFE"}, {"layer": "PEEK"}, {"layer": "PTFE"}], "cases 0 and 2 are the same"),
+        ([{"h": "2 um", "label": "x"}, {"h": "3 um", "label": "x"}], 'label[0] and label[1] are both "x": values of'),
+        ([{"h": "2 um", "label": "x"}, {"h": "3 um", "label": 3}], "[[cases]] label: must be text"),
+    ],
+)
+def test_cases_that_cannot_be_told_apart(rows, message):
+    """As without units, whatever the units are."""
+    replaced = ("E1", "nu1") if "layer" in rows[0] else rows[0]
+    common = {name: value for name, value in COATED.items() if name not in replaced}
+    with pytest.raises(study.StudyError, match=re.escape(message)):
+        study.solve(cases=rows, **common, P="10 N")
+
+
+def test_cases_that_differ_in_a_spread_are_two():
+    rows = [{"E1": "200 ± 10 GPa"}, {"E1": "200 ± 20 GPa"}]
+    common = {name: value for name, value in COATED.items() if name != "E1"}
+    assert quiet(cases=rows, **common, P="10 N", x=2).sizes["case"] == 2
 
 
 def test_a_steel_ball_on_dlc_on_steel():

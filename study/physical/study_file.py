@@ -19,8 +19,8 @@ from ..spec.grid import axis_values, shown
 from ..spec.identity import digest_of_array
 from ..spec.sample import LIMITS, divisor, draw
 from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
-from .bodies import BODIES
-from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, unit_of
+from .bodies import BODIES, with_materials
+from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_of
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
@@ -88,7 +88,7 @@ def _sign_of_units(tables: dict) -> str:
 def _parameters(draft: Draft, given: dict) -> dict:
     """The parameters of [model], [axes] and [sample], ranges as lists of their values; messages go to the draft."""
     errors, model, axes = draft.errors, given["model"], given["axes"]
-    sample = _sampled(given["sample"], errors) if "sample" in given else {}
+    sample = _sampled(given["sample"], draft) if "sample" in given else {}
     if sample and "cases" in given:
         errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
     errors += [f"{name} is given twice: in [sample] and elsewhere" for name in sample if name in model or name in axes]
@@ -129,11 +129,13 @@ def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
     return {} if wrong or unsure else raw | ends
 
 
-def _sampled(table: Any, errors: list[str]) -> dict[str, CaseValues | QuantityList]:
+def _sampled(table: Any, draft: Draft) -> dict[str, CaseValues | QuantityList]:
     """What [sample] draws, over the dimension `case`: SI numbers from ranges, entries of lists as they stand there."""
-    drawn = table if isinstance(table, dict) else {}
+    drawn, errors = table if isinstance(table, dict) else {}, draft.errors
     before, known, in_si = len(errors), {}, dict(drawn)
     for name, raw in drawn.items():
+        if isinstance(raw, list):
+            _check_list(name, raw, draft)
         if name in BODIES:
             known[name] = Parameter(choices=("a material",))
         elif name in SCENE or name in VOCABULARY:
@@ -148,6 +150,20 @@ def _sampled(table: Any, errors: list[str]) -> dict[str, CaseValues | QuantityLi
         name: QuantityList(list(map(Quantity, values)), "case") if isinstance(drawn[name], dict) else CaseValues(values)
         for name, values in draw(in_si if drawn else table, known, errors).items()
     }
+
+
+def _check_list(name: str, raw: list, draft: Draft) -> None:
+    """Messages for values of a list of [sample], of which some may not be drawn."""
+    if name in BODIES:
+        with_materials({name: CaseValues(raw)}, draft.errors)
+    elif name in SCENE or (name in VOCABULARY and not VOCABULARY[name].own.choices):
+        for i, one in enumerate(raw):
+            try:
+                si(name, one, f"{name}[{i}]")
+            except ValueError as error:
+                draft.errors.append(str(error))
+    elif name in VOCABULARY:
+        draft.checked(name, raw)
 
 
 def _unit_of_range(name: str, raw: dict) -> str:

@@ -67,12 +67,12 @@ class Draft:
             if section and isinstance(raw, (list, dict)):
                 self.errors.append(f"{section} {name} has several values: these belong in [axes]")
             else:
-                self.values[name] = (), self._checked(name, [raw]).reshape(())
+                self.values[name] = (), self.checked(name, [raw]).reshape(())
 
     def axis(self, name: str, raw, section: str) -> None:
         """A dimension called like its parameter."""
         if self._accept(name, section):
-            array = self._checked(name, axis_values(raw, name, self.errors), distinct=True)
+            array = self.checked(name, axis_values(raw, name, self.errors), distinct=True)
             self.sizes[name], self.values[name] = len(array), ((name,), array)
 
     def of_any_form(self, name: str, given) -> None:
@@ -105,7 +105,7 @@ class Draft:
             elif self._accept(name, "[[cases]]"):
                 default = VOCABULARY[name].own.default
                 raw = [default if row.get(name) is None else row[name] for row in rows]
-                self.values[name] = ("case",), self._checked(name, raw, gaps=True)
+                self.values[name] = ("case",), self.checked(name, raw, gaps=True)
         if len(self.errors) == before:  # otherwise the values need not be comparable
             points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
             self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)]
@@ -118,9 +118,14 @@ class Draft:
             self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
             return
         own = {name: VOCABULARY[name].own for name in known if name not in LIMITS}
-        for name, values in draw(known if given else table, own, self.errors).items():
+        before = len(self.errors)
+        for name in own:
+            if isinstance(known[name], list):  # all of it, since some of its values may not be drawn
+                self.checked(name, known[name])
+        drawn = draw(known if given else table, own, self.errors)
+        for name, values in drawn.items() if len(self.errors) == before else ():
             self.number_cases(len(values))
-            self.values[name] = ("case",), self._checked(name, values)
+            self.values[name] = ("case",), self.checked(name, values)
 
     def array(self, name: str, given) -> None:
         """A DataArray: values over its own dimensions, which may be shared with other parameters."""
@@ -132,7 +137,7 @@ class Draft:
             if dim not in PARAMETERS and coordinate is not None:
                 self.labels.setdefault(dim, ((dim,), coordinate))
             self.claims.append((name, dim, size, coordinate))
-        flat = self._checked(name, given.values.ravel().tolist(), distinct=given.dims == (name,))
+        flat = self.checked(name, given.values.ravel().tolist(), distinct=given.dims == (name,))
         self.values[name] = tuple(map(str, given.dims)), flat.reshape(given.shape)
 
     def finish(self) -> Grid:
@@ -180,7 +185,7 @@ class Draft:
             return True
         return False
 
-    def _checked(self, name: str, raw: list, gaps: bool = False, distinct: bool = False) -> np.ndarray:
+    def checked(self, name: str, raw: list, gaps: bool = False, distinct: bool = False) -> np.ndarray:
         """The values as an array, with messages for those that are not allowed.
 
         gaps : None is allowed, and becomes NaN; distinct : values that are equal get a message

@@ -31,7 +31,7 @@ x = 3
 """
 
 
-DRAWN = "[sample]\nsize = 3\nseed = 1\n"
+DRAWN = "[sample]\nsize = 1\nseed = 7\n"  # draws the first value of each list
 
 
 def of(text: str, folder, name: str = "dlc") -> study.Study:
@@ -177,6 +177,11 @@ def test_float32_and_partial_results(tmp_path, monkeypatch):
         ("[output]", f'{DRAWN}Nbar = {{start = "1 m", stop = 2, over = "h"}}\n[output]', "Nbar: start .* is a length"),
         ("[output]", f"{DRAWN}nu2 = {{start = 0, stop = 2}}\n[output]", r"nu2: stop = 2.*: must be in \(-1, 0.5\]"),
         ("[output]", f"{DRAWN}body = {{start = 0, stop = 2}}\n[output]", r"body = .*: must be a list to choose from"),
+        ("[output]", f"{DRAWN}Ra = ['2 um', 2]\n[output]", r"Ra\[1\] = 2 has no unit: must be a length"),
+        ("[output]", f"{DRAWN}Ra = ['2 um', '2 GPa']\n[output]", r'Ra\[1\] = "2 GPa" is a pressure'),
+        ("[output]", f"{DRAWN}layer = ['PTFE', 'PTFF']\n[output]", 'layer: "PTFF" is no material; did you mean "PTFE"'),
+        ("[output]", f"{DRAWN}base = ['layered', 'none']\n[output]", r'base\[1\] = "none": must be one of'),
+        ("[output]", f"{DRAWN}nu2 = [0.3, '0.3 m']\n[output]", r'nu2\[1\] = "0.3 m" is a length: must be a number'),
         ("[output]", f"{DRAWN}nu9 = [0.1]\n[output]", r'\[sample\] "nu9" is not a parameter'),
         ("[output]", f"{DRAWN}nu2 = [0.1]\n[[cases]]\n[output]", "both make the dimension case"),
         ('"2 um"', '"2e-9 um"', r"h\[0\] = 2e-9 um: must be in \[5e-09, 5e\+09\] um, which is"),

@@ -113,7 +113,7 @@ BAD = [
     ("nu1 = {", "nodes = {", "[sample] nodes = {'start': 0, 'stop': 0.5}: must be a list to choose from"),
     ("nu1 = { start = 0, stop = 0.5 }", "nu1 = 0.3", "[sample] nu1 = 0.3: must be {start, stop, spacing, over} or a"),
     ("n = [0.1, 0.5]", "n = []", "[sample] n = []: must be {start, stop, spacing, over} or a list to choose from"),
-    ("n = [0.1, 0.5]", "n = [-1]", "n[0] = -1: must be 0 or in [1e-9, 1e9]"),
+    ("n = [0.1, 0.5]", "n = [-1]", "n = -1: must be 0 or in [1e-9, 1e9]"),
     ("n = [0.1, 0.5]", "n = [[1, 2], 0.5]", "n[0] = [1, 2]: must be a finite number, 0 or in [1e-9, 1e9]"),
     ("stop = 0.5", "stop = 0.5, num = 3", '[sample] nu1: "num" is not allowed; a range is {start, stop, spacing'),
     ("stop = 0.5", "stop = 0.0", "[sample] nu1: stop = 0.0: must be > start"),
@@ -140,4 +140,11 @@ def test_bad_samples(old, new, expected):
     messages = caught.value.messages
     assert all(message.startswith("mine.toml: ") for message in messages)
     assert any(expected in message for message in messages), messages
-    assert len(messages) == (4 if expected.startswith("n[0]") else 1), messages
+    assert len(messages) == 1, messages
+
+
+def test_a_value_that_is_not_drawn_is_checked_too():
+    text = GOOD.replace("size = 4000", "size = 1").replace("[0.1, 0.5]", "[0.1, 0.5, -1]")
+    with pytest.raises(StudyError, match=r"n\[2\] = -1: must be 0 or in"):
+        grid_of(text)
+    assert grid_of(text.replace(", -1]", "]")).sizes["case"] == 1

@@ -10,6 +10,7 @@ from .data.flags import broken, decode
 from .physical.bodies import BODIES
 from .physical.bounds import absurd
 from .physical.inputs import is_rigid, used_inputs
+from .physical.scene import ASSUMED
 from .scene.quantities import READABLE, readable
 from .scene.roughness import looks_like_iso_ra
 from .spec.laws import smooth_laws
@@ -115,11 +116,14 @@ def _given(case: xr.Dataset, name: str) -> str:
     if name not in case:
         return str(name)
     value = case[name].values[()]
+    assumed = " (assumed)" * (case[name].attrs.get("comment") == ASSUMED)
     if isinstance(value, (str, np.str_)):
-        return f"{name} of {value}" if name in BODIES else str(value).replace("_", " ")
+        return f"{name} of {value}" if name in BODIES else str(value).replace("_", " ") + assumed
     text = f"{name} = {_text(case, name, float(value), _spread(case, name))}"
     unit = " Ra/E1*^beta" if name == "B" else ""
-    return text + unit + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
+    return (
+        text + unit + assumed + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
+    )
 
 
 def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:

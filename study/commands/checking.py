@@ -4,6 +4,7 @@ import numpy as np
 
 from ..physical.study_file import read
 from ..spec.definition import Definition
+from ..spec.vocabulary import VOCABULARY
 from ..terminal import answer
 from .arguments import study_file
 
@@ -11,7 +12,15 @@ from .arguments import study_file
 def check(_, file: str) -> int:
     """Read a study file and say its size."""
     definition = read(study_file(file))
-    return answer(f"{file}: {definition.cases}, digest {definition.digest[:16]}", *law_lines(definition))
+    size = f"{file}: {definition.cases}, digest {definition.digest[:16]}"
+    return answer(size, *law_lines(definition), *assumed_lines(definition))
+
+
+def assumed_lines(definition: Definition) -> list[str]:
+    """A line about what a study with units does not give, though it counts; otherwise none."""
+    names = definition.scene.assumed if definition.scene else ()
+    texts = [f"{name} = {VOCABULARY[name if name in VOCABULARY else 'nu1'].own.default}" for name in names]
+    return ["    assumed, as not given: " + ", ".join(texts)] * bool(texts)
 
 
 def law_lines(definition: Definition) -> list[str]:

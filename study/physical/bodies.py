@@ -7,6 +7,7 @@ import numpy as np
 from ..scene import materials
 from ..scene.quantities import Quantity
 from ..spec.grid import shown, twins
+from ..spec.vocabulary import VOCABULARY
 from .names import RIGID_TEXTS, CaseValues, QuantityList
 
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
@@ -45,6 +46,21 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
             found[name] = QuantityList(list(column), dim) if several else column[0]
         names[body] = dim, list(texts)
     return found, names
+
+
+def layered(parameters: dict) -> bool:
+    """Whether some case may have a layer."""
+    layers = {*VOCABULARY["base"].own.choices} - {"half_space"}  # of a word that is no base it is said later
+    return not isinstance(parameters.get("base"), str) or parameters["base"] in layers
+
+
+def assumed(parameters: dict, given: dict) -> tuple[str, ...]:
+    """What is not given and has its default, though it counts: Poisson ratios of elastic bodies, interface of a layer.
+
+    given : the inputs in SI units
+    """
+    ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(given.get(E, np.inf)).all()]
+    return tuple(name for name in [*ratios, *layered(parameters) * ["bonding"]] if name not in parameters)
 
 
 def _checked(name: Any) -> str | materials.Material:

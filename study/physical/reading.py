@@ -15,7 +15,7 @@ from ..spec.given import label_slips
 from ..spec.grid import MOVED, shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from .bodies import BODIES, with_materials
+from .bodies import BODIES, assumed, layered, with_materials
 from .bounds import beyond_bounds, value_text
 from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of
 from .scales import make_dimensionless, over_dimensions
@@ -70,6 +70,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     errors += [] if errors else _impossible(scene) + (_equal_cases(scene) if rows else [])
     if errors:
         raise StudyError(errors)
+    scene.assumed = assumed(parameters, scene.given)
     scene.spreads = scene.spreads if spreads else {}
     _move(scene)
     make_dimensionless(scene)
@@ -206,9 +207,7 @@ def _missing(parameters: dict) -> list[str]:
         messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
     if "E2" not in parameters:
         messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
-    layers = {*VOCABULARY["base"].own.choices} - {"half_space"}  # of a word that is no base it is said later
-    layered = not isinstance(parameters.get("base"), str) or parameters["base"] in layers
-    if layered and "E1" not in parameters and "n" not in parameters:
+    if layered(parameters) and "E1" not in parameters and "n" not in parameters:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
     if "E1" in parameters and "n" in parameters:
         messages.append("E1 and n are both given: one follows from the other")

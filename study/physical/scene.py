@@ -17,6 +17,7 @@ from .names import SCENE, unit_of
 #: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
 #: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
 STEP = 0.1
+ASSUMED = "not given: the default"
 #: Results that get no spread.
 _WITHOUT_SPREAD = ("error", "model_error", "residual")
 
@@ -32,6 +33,7 @@ class Scene:
     dims : dimension while the cases are solved -> name of it in the results
     labels : of the dimension `case`
     names : punch, layer, body -> (dimension or "", names of materials along it)
+    assumed : interface and Poisson ratios that count and are not given, so that they have their defaults
     """
 
     given: dict = field(default_factory=dict)
@@ -39,6 +41,7 @@ class Scene:
     dims: dict = field(default_factory=dict)
     labels: list = field(default_factory=list)
     names: dict = field(default_factory=dict)
+    assumed: tuple = ()
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
     unit: Any = 1.0
@@ -90,6 +93,8 @@ class Scene:
             coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
         if self.labels:
             coords["label"] = xr.Variable("case", self.labels)
+        for name in self.assumed:
+            coords[name].attrs["comment"] = ASSUMED
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
         return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
 

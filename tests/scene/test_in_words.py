@@ -27,6 +27,17 @@ def test_a_physical_contact():
     assert "pmax" not in text and repr(text) == str(text)
 
 
+def test_what_was_not_given_is_said_where_it_counts():
+    given = {"R": "5 mm", "E1": "200 GPa", "h": "2 um", "micro": "smooth", "P": "1 N", "x": 2}
+    text = study.summary(quiet(**given, E2="210 GPa", E_punch="70 GPa"))
+    for name in ("nu1 = 0.3", "nu2 = 0.3", "nu_punch = 0.3", "frictionless"):
+        assert f"{name} (assumed)" in text
+    text = study.summary(quiet(**given, nu1=0.3, body="rigid", bonding="frictionless"))
+    assert "nu1 = 0.3, h = 2 µm, frictionless\n" in text and "assumed" not in text
+    half_space = study.summary(quiet(R="5 mm", E2="70 GPa", nu2=0.3, base="half_space", micro="smooth", P="1 N"))
+    assert "assumed" not in half_space
+
+
 def test_the_model_error_is_in_the_plus_minus():
     found = quiet(**COATED | {"base": "thin_layer"}, P="10 N", x=2)
     text = study.summary(found)

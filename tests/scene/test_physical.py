@@ -237,4 +237,4 @@ def test_the_poisson_ratio_of_a_punch_of_which_none_is_given_is_in_the_results()
     given = COATED | {"E_punch": "210 GPa", "P": "10 N", "x": 2}
     found, said = quiet(**given), quiet(**given, nu_punch=0.3)
     assert found.nu_punch == 0.3 and found.a == said.a
-    assert study.summary(found) == study.summary(said)
+    assert study.summary(found) == study.summary(said).replace("nu_punch = 0.3", "nu_punch = 0.3 (assumed)")

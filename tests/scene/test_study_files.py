@@ -157,6 +157,15 @@ def test_float32_and_partial_results(tmp_path, monkeypatch):
         np.testing.assert_allclose(found.a.sel(R=R, h="2 um", E2="210 GPa", P="10 N"), alone.a, rtol=1e-6)
 
 
+def test_check_says_what_is_assumed(tmp_path, capsys):
+    path = tmp_path / "mine.toml"
+    for text, words in ((TEXT, ""), (TEXT.replace("nu1 = 0.25\n", ""), "nu1 = 0.3, ")):
+        path.write_text(text, encoding="utf-8")
+        assert main(["check", str(path)]) == 0
+        said = f"    assumed, as not given: {words}nu2 = 0.3, bonding = frictionless"
+        assert capsys.readouterr().out.splitlines()[1:] == [said]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

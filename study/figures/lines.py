@@ -51,6 +51,8 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
 
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:
     """What `plot` draws on a `new` figure, and the numbers that it shows: (Figure, Columns)."""
+    bare = [dim for dim in dataset.dims if dim in (x, y, hue, *where) and dim not in dataset.coords]
+    dataset = dataset.assign_coords({dim: np.arange(dataset.sizes[dim]) for dim in bare})  # they are numbered
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
     hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
     check_roles(found, x, y, hue)
@@ -113,7 +115,7 @@ def check_roles(found: xr.Dataset, x: str, y: str, hue: str) -> None:
 
 
 def is_text(array: xr.DataArray) -> bool:
-    return array.dtype.kind in "UO"
+    return array.dtype.kind in "UOT"  # T: an index of texts that pandas has made
 
 
 def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:

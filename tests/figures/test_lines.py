@@ -3,6 +3,7 @@
 import warnings
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from drawn import frame, legend, lines
@@ -156,6 +157,20 @@ def test_where_takes_all_cases_that_have_the_value():
     np.testing.assert_array_equal(columns["a"], three.a.transpose("case", "P").values[1:].ravel())
     _, columns = shown(three, "P", "a", n=0.5, bonding="frictionless")
     np.testing.assert_array_equal(columns["a"], three.a.isel(case=2))
+
+
+def test_a_dimension_without_a_coordinate_is_numbered(found):
+    bare = found.isel(bonding=0).drop_vars("n")
+    figure, columns = shown(bare, "P", "a", "n")
+    assert list(legend(figure.legends[0]))[:2] == ["0", "1"] and set(columns["n"]) == {0, 1}
+    np.testing.assert_array_equal(shown(bare, "P", "a", n=1)[1]["a"], bare.a.isel(n=1))
+
+
+def test_texts_of_pandas_name_concatenated_results(physical):
+    joined = xr.concat([physical] * 2, pd.Index(["one", "two"], name="coating"), coords="minimal")
+    figure, columns = shown(joined, "P", "a", "coating", h="2 um")
+    assert list(legend(figure.legends[0]))[:2] == ["one", "two"] and columns["coating"].dtype.kind in "UO"
+    assert len(shown(joined, "P", "a", "h", coating="two")[1]["a"]) == 4
 
 
 def test_axes_of_one_value_and_inputs_over_fewer_axes_than_the_results(found):

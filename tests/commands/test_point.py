@@ -35,6 +35,14 @@ def test_a_contact_as_numbers(capsys):
     assert printed["error"] == found.error.item()
 
 
+def test_a_rigid_body_is_the_word_that_says_so(capsys):
+    """null is a result of a contact without a solution. What is printed can be given again."""
+    given = {"R": "5 mm", "E_punch": "rigid", "E1": "5 GPa", "h": "2 um", "E2": "rigid", "P": "1 N", "micro": "smooth"}
+    assert main(["point", "--json", *words(**given)]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["E2"] == printed["E_punch"] == "rigid" and printed["E1"]["value"] == 5e9
+
+
 def test_what_the_model_does_not_describe_is_said_and_is_no_traceback(capsys):
     assert main(["point", "--json", *words(P=1e-5, h=0.02, n=0.5, Nbar=25000, Ra=0.004)]) == 0
     assert json.loads(capsys.readouterr().out)["validity"] == ["few_spots"]

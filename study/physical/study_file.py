@@ -14,7 +14,7 @@ import numpy as np
 from ..scene.quantities import Quantity, has_unit, quantity
 from ..spec import definition
 from ..spec.definition import Definition, StudyError
-from ..spec.given import Draft
+from ..spec.given import Draft, one_control
 from ..spec.grid import axis_values, shown
 from ..spec.identity import digest_of_array
 from ..spec.sample import LIMITS, divisor, draw
@@ -24,6 +24,8 @@ from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
+ANY_VALUE = 0.3
+"""In place of a range with a mistake, while what else is wrong is looked for: all parameters may have it."""
 FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
 
 
@@ -42,21 +44,35 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     draft, given = definition.new_draft(tables, where)
     definition.add_numerics(draft, given)
     parameters = _parameters(draft, given)
-    if draft.errors:
+    if draft.errors and "sample" in given:  # what it draws would be missing
         raise definition.refusal(where, draft.errors)
-    spreads, dtype = (given["output"].get(key, default) for key, default in (("spreads", True), ("dtype", "")))
+    spreads, errors, scene = given["output"].get("spreads", True), draft.errors, None
     try:
-        if not isinstance(spreads, bool):
-            raise StudyError([f"[output] spreads = {shown(spreads)}: must be true or false"])
-        scene = read_scene(parameters, tables.get("cases"), spreads)
-        if scene.spreads and dtype == "float32":
-            problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
-            raise StudyError([f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}'])
+        scene = read_scene(parameters, tables.get("cases"), spreads is True)
     except StudyError as error:
         hint = f" ({sign} makes this a study with units)"
-        raise definition.refusal(where, [f"{m}{hint * ('has no unit' in m)}" for m in error.messages]) from None
+        errors += [f"{message}{hint * ('has no unit' in message)}" for message in error.messages]
+    if not isinstance(spreads, bool):
+        errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
+    if scene and scene.spreads and given["output"].get("dtype") == "float32":
+        problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
+        errors.append(f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}')
+    if errors:
+        _check_the_rest(draft, parameters, given)
+        raise definition.refusal(where, errors)
     made = complete(draft, scene, list(given["axes"]), (given, name, text, where))
     return replace(made, digest=_digest(made))
+
+
+def _check_the_rest(draft: Draft, parameters: dict, given: dict) -> None:
+    """Messages for what is read later only, so that all mistakes are named at once: words, and other sections."""
+    for name, value in parameters.items():
+        if name in VOCABULARY and VOCABULARY[name].own.choices:
+            draft.checked(name, value if isinstance(value, list) else [value])
+    rows = given["cases"] if isinstance(given.get("cases"), list) else []
+    names = [name for table in (parameters, *rows) if isinstance(table, dict) for name in table]
+    draft.errors += one_control(names)
+    definition.settings(given, draft.errors)
 
 
 def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options) -> Definition:
@@ -111,7 +127,7 @@ def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
         return axis_values(raw, name, errors)
     in_si = _in_si(raw, name, unit_of(name), errors)
     values = axis_values(in_si, name, errors) if in_si else []
-    return QuantityList([Quantity(value) for value in values], dim_of(name))
+    return QuantityList([Quantity(value) for value in values or [ANY_VALUE]], dim_of(name))
 
 
 def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:

@@ -154,18 +154,11 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
     tables : title and the sections [numerics] and [output] are read here
     most : how many numbers the results may hold
     """
-    errors, title = draft.errors, tables.get("title", "")
-    output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
-    grid = draft.finish()
-    x = profile_points(output["x"], errors)
-    if not isinstance(title, str):
-        errors.append(f"title = {shown(title)}: must be text")
+    errors, grid = draft.errors, draft.finish()
+    title, x, profiles, dtype = settings(tables, errors)
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    profiles, dtype = profile_names(output["profiles"], errors), output["dtype"]
-    if dtype not in DTYPES:
-        errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
     made = Definition(name, title, text, grid, x, profiles, dtype, block, "")
     if made.numbers > most:
         errors.append(
@@ -174,6 +167,21 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
     if errors:
         raise refusal(where, errors)
     return replace(made, digest=digest_of(made))
+
+
+def settings(tables: dict, errors: list[str]) -> tuple:
+    """Title, points and names of the profiles, and type of the numbers: of the title and the section [output]."""
+    title, output = (
+        tables.get("title", ""),
+        {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {}),
+    )
+    x = profile_points(output["x"], errors)
+    if not isinstance(title, str):
+        errors.append(f"title = {shown(title)}: must be text")
+    profiles, dtype = profile_names(output["profiles"], errors), output["dtype"]
+    if dtype not in DTYPES:
+        errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
+    return title, x, profiles, dtype
 
 
 def refusal(where: str, errors: list[str]) -> StudyError:

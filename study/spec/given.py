@@ -31,6 +31,12 @@ def label_slips(labels: list) -> list[str]:
     return equal_values("label", [label or i for i, label in enumerate(labels)])
 
 
+def one_control(names) -> list[str]:
+    """A message if the names of the parameters have none of P, a and D, or several."""
+    given = [name for name in CONTROLS if name in names]
+    return [f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}"] * (len(given) != 1)
+
+
 @dataclass
 class Draft:
     """Collects parameters; `finish` makes the Grid of them.
@@ -142,9 +148,7 @@ class Draft:
 
     def finish(self) -> Grid:
         """Fill in the defaults and check what concerns several parameters."""
-        given = [name for name in CONTROLS if name in self.sections]
-        if len(given) != 1:
-            self.errors.append(f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}")
+        self.errors += one_control(self.sections)
         self._check_dimensions()
         for name in PARAMETERS:
             own = VOCABULARY[name].own

@@ -166,6 +166,22 @@ def test_check_says_what_is_assumed(tmp_path, capsys):
         assert capsys.readouterr().out.splitlines()[1:] == [said]
 
 
+def test_all_mistakes_are_named_at_once(tmp_path):
+    """Of each part of the file, though its parts are read one after the other."""
+    wrong = {'"5 mm"': '"5 s"', "0.25": "0.6", '"210 GPa", "rigid"': '"210 GPa", 7', '"1 N"': '"1 m"', "x = 3": "x = 1"}
+    text = "titel = 1\n" + TEXT.replace("[axes]", 'bonding = "glued"\na = "1 um"\n[axes]') + "[numerics]\nrtol = 5\n"
+    for old, new in wrong.items():
+        text = text.replace(old, new, 1)
+    with pytest.raises(study.StudyError) as caught:
+        of(text, tmp_path)
+    said = [
+        message.removeprefix("dlc.toml: ").split(":")[0].split(" has no unit")[0] for message in caught.value.messages
+    ]
+    keys = ['"titel" is not a section; did you mean "title"?', "rtol = 5", "P", "E2[1] = 7", 'R = "5 s" is in second']
+    keys += ["nu1 = 0.6", 'bonding = "glued"', "exactly one of P, a, D must be given, not P and a", "x = 1"]
+    assert said == keys
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -22,6 +22,8 @@ SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
+#: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
+_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta")
 MODELS = {
     "half_space": "a half-space under the asperities",
     "smooth_half_space": "a half-space, without asperities",
@@ -101,9 +103,13 @@ def summary(contact: xr.Dataset) -> Summary:
 def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     """The text of one case; inputs along `dims` are not repeated."""
     rough = case["micro"].values not in smooth_laws()
-    inputs = [name for name in used_inputs(case) if name not in (*dims, *CONTROLS)]
+    used = used_inputs(case)
+    inputs = [name for name in used if name not in (*dims, *CONTROLS)]
     rigid = ["a rigid punch"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
-    lines = ["Given: " + ", ".join(rigid + [_given(case, name) for name in inputs]), ""]
+    unused = [name for name in _OPTIONAL if name in case and name not in (*used, *dims)]
+    unused = [name for name in unused if np.isfinite(case[name])]  # NaN: given for other cases
+    lines = ["Given: " + ", ".join(rigid + [_given(case, name) for name in inputs])]
+    lines += [f"Not used: {', '.join(_given(case, name) for name in unused)}"] * bool(unused) + [""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
     width = max(len(VOCABULARY[name].long_name) for name in names)
     for name in names:

@@ -38,6 +38,19 @@ def test_what_was_not_given_is_said_where_it_counts():
     assert "assumed" not in half_space
 
 
+def test_what_is_given_and_not_used_is_said():
+    rough = {"Nbar": "2 1/um^2", "Ra": "10 um", "sigma": "10 nm"}
+    text = study.summary(quiet(**COATED | rough, P="10 N", x=2))
+    assert "\nNot used: Nbar = 2 1/µm², Ra = 10 µm, sigma = 10 nm\n\n" in text
+    text = study.summary(quiet(**COATED | rough | {"micro": "disc_cell"}, P="10 N", x=2))
+    assert "Ra = 10 µm\nNot used: sigma = 10 nm\n\n" in text
+    text = study.summary(quiet(**COATED | {"base": "half_space"}, P="10 N", x=2))
+    assert "\nNot used: E1 = 200 GPa, h = 2 µm\n\n" in text
+    both = study.solve(P=1e-5, h=0.02, n=0.5, micro=["smooth", "power_law"], Nbar=250000, Ra=0.004, x=2)
+    said = [part.count("Not used") for part in study.summary(both).split("---")]
+    assert said == [0, 1, 0], "those of power_law are used, B and beta are fitted to them"
+
+
 def test_the_model_error_is_in_the_plus_minus():
     found = quiet(**COATED | {"base": "thin_layer"}, P="10 N", x=2)
     text = study.summary(found)
@@ -150,7 +163,7 @@ def test_the_micro_law_and_its_own_error():
         micro=["square_lattice", "normal_heights", "disc_cell"],
     )
     lattice, heights, disc = (study.summary(found.isel(micro=i)) for i in (0, 1, 2))
-    assert "frictionless, square lattice, Nbar" in lattice and "sigma" not in lattice
+    assert "frictionless, square lattice, Nbar" in lattice and "Not used: sigma" in lattice
     assert "the micro law itself errs by about 0.02 %" in lattice and "exact layered contact" not in lattice
     assert "sigma = 1e-06 R, cut = 4" in heights and "the micro law itself errs by about 0.02 %" in heights
     assert "itself errs" not in disc

@@ -41,7 +41,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
 
     Raises
     ------
-    StudyError : a name is not there, a value neither, or there are more than 12 panels
+    StudyError : it is no dataset, a name is not there, a value neither, or there are more than 12 panels
     """
     from matplotlib import pyplot
 
@@ -51,6 +51,8 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
 
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:
     """What `plot` draws on a `new` figure, and the numbers that it shows: (Figure, Columns)."""
+    if not isinstance(dataset, xr.Dataset):
+        raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
     bare = [dim for dim in dataset.dims if dim in (x, y, hue, *where) and dim not in dataset.coords]
     dataset = dataset.assign_coords({dim: np.arange(dataset.sizes[dim]) for dim in bare})  # they are numbered
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)

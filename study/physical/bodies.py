@@ -74,7 +74,7 @@ def _checked(name: Any) -> str | materials.Material:
 
 def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity, Quantity]:
     """Name, E and ν of a material, or of a name. Raises LookupError for a name that is not in the table."""
-    if body in _MAY_BE_RIGID and name in RIGID_TEXTS:
+    if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3)
     found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)

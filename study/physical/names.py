@@ -55,6 +55,6 @@ def si(name: str, given: Any, called: str = "") -> Quantity:
 
     Raises ValueError as `quantity` does.
     """
-    if name in RIGID and (given in RIGID_TEXTS if isinstance(given, str) else given == math.inf):
+    if name in RIGID and (given.lower() in RIGID_TEXTS if isinstance(given, str) else given == math.inf):
         return Quantity(math.inf)
     return quantity(called or name, given, unit_of(name))

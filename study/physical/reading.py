@@ -36,11 +36,12 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
-def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> Scene | None:
+def read(parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True) -> Scene | None:
     """The physical scene that the parameters of `study.solve` describe; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
     spreads : whether the results shall have spreads, for which inputs with spreads are moved
+    bounds : whether numbers beyond the bounds of the solver are refused
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
@@ -74,7 +75,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True) -> S
     scene.spreads = scene.spreads if spreads else {}
     _move(scene)
     make_dimensionless(scene)
-    errors = beyond_bounds(scene, parameters)
+    errors = beyond_bounds(scene, parameters) if bounds else []
     if errors:
         raise StudyError(errors)
     return scene

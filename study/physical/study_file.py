@@ -43,12 +43,13 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
 
     draft, given = definition.new_draft(tables, where)
     definition.add_numerics(draft, given)
+    before = len(draft.errors)
     parameters = _parameters(draft, given)
     if draft.errors and "sample" in given:  # what it draws would be missing
         raise definition.refusal(where, draft.errors)
     spreads, errors, scene = given["output"].get("spreads", True), draft.errors, None
     try:
-        scene = read_scene(parameters, tables.get("cases"), spreads is True)
+        scene = read_scene(parameters, tables.get("cases"), spreads is True, bounds=len(errors) == before)
     except StudyError as error:
         hint = f" ({sign} makes this a study with units)"
         errors += [f"{message}{hint * ('has no unit' in message)}" for message in error.messages]

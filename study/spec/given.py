@@ -83,7 +83,7 @@ class Draft:
 
     def of_any_form(self, name: str, given) -> None:
         """A parameter given in Python: a DataArray, a 1-D sequence or a scalar."""
-        if hasattr(given, "dims"):
+        if hasattr(given, "dims") and hasattr(given, "shape"):  # a Dataset has no shape
             self.array(name, given)
             return
         if hasattr(given, "tolist"):  # numpy and pandas
@@ -178,7 +178,8 @@ class Draft:
         """Whether the name is known and new; otherwise a message."""
         place = f"{section} " if section else ""
         if not is_parameter(name):
-            near = suggest(name, PARAMETERS) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
+            known = [*PARAMETERS, *["label"] * (section == "[[cases]]")]
+            near = suggest(name, known) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")

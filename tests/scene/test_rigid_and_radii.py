@@ -32,7 +32,7 @@ def test_a_rigid_base_is_the_limit_of_stiff_ones():
     assert "a rigid punch, a rigid base, R = 5 µm, E1 = 5 kPa" in text and "E2" not in text and "nu2" not in text
 
 
-@pytest.mark.parametrize("word", ["rigid", "inf", "infinite", np.inf])
+@pytest.mark.parametrize("word", ["rigid", "Rigid", "inf", "infinite", np.inf])
 def test_words_for_rigid(word):
     assert np.isinf(quiet(**FILM, E2=word, P="1 nN").E2)
     found = quiet(**FILM, body=word, P="1 nN")

@@ -182,6 +182,16 @@ def test_all_mistakes_are_named_at_once(tmp_path):
     assert said == keys
 
 
+def test_a_range_with_a_mistake_makes_no_second_message(tmp_path):
+    """Whatever its numbers would be in units of this radius."""
+    with pytest.raises(study.StudyError) as caught:
+        of(TEXT.replace('"5 mm"', '"1 nm"').replace("num = 3", "nu = 3"), tmp_path)
+    assert caught.value.messages == (
+        'dlc.toml: P: "nu" is not allowed; a range is {start, stop, num, spacing}',
+        "dlc.toml: P: num is missing: must be a whole number in [2, 1000000]",
+    )
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -130,6 +130,8 @@ def array(values, *dims, **coords):
         ({"P": range(10**12)}, "P is too long: at most 1000000 values are allowed"),
         ({"P": {"start": 1}}, "P = {'start': 1}: must be a finite number, in [1e-24, 1e3]"),
         ({"P": None}, "P = None: must be a finite number, in [1e-24, 1e3]"),
+        ({"P": xr.Dataset()}, "P = <xarray.Dataset> Size: 0B\\nDimensions:  ()\\nData variables:...: must be a finite"),
+        ({"cases": [{"P": 1e-5, "lable": "x"}]}, '[[cases]] "lable" is not a parameter; did you mean "label"?'),
         ({"P": 1 + 2j}, "P = (1+2j): must be a finite number, in [1e-24, 1e3]"),
         ({"P": np.bool_(True)}, "P = True: must be a finite number, in [1e-24, 1e3]"),
         ({"P": 1, "a": 2}, "exactly one of P, a, D must be given, not P and a"),

@@ -91,7 +91,8 @@ def study_file(text: str) -> Path:
             return path
     paths = [path.as_posix() for folder in (given.parent, STUDIES) for path in sorted(folder.glob("*.toml"))]
     beside = Path(f"{text}.toml")  # whoever writes "mine" means it, and no study of a name that is like it
-    known = paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
+    same = [path for path in paths if Path(path).name == given.name]
+    known = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
     looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
     raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
 

@@ -162,6 +162,8 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     profile p; NaN for a law that is not registered. Raises ValueError for results with units that have not R and E2 in
     SI units: the laws take their parameters in R and E2*.
     """
+    if "p" not in dataset:
+        raise ValueError("p_peak needs the profile p, which profiles = false leaves out")
     unit, R = _scales(dataset)
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series

@@ -91,6 +91,12 @@ def test_where_there_are_no_studies_those_of_the_package_are_known_by_name(studi
     assert main(["check", "main_case.toml"]) == 2
 
 
+def test_a_file_of_the_same_name_in_studies_is_meant(studies, capsys):
+    Path("god.toml").write_text("", encoding="utf-8")
+    assert main(["check", "good.toml"]) == 2
+    assert capsys.readouterr().err == 'good.toml: not found; did you mean "studies/good.toml"?\n'
+
+
 def test_a_path_goes_before_a_name(studies, capsys):
     Path("good").mkdir()
     assert main(["check", "good"]) == 2

@@ -192,6 +192,10 @@ def test_the_largest_pressure_of_results_with_units_is_that_of_the_same_contact_
 
 def test_the_largest_pressure_has_a_message_where_the_modulus_is_not_known():
     found = study.solve(P=1e-6, micro="smooth", base="half_space", x=3)
+    with pytest.raises(ValueError, match="p_peak needs the profile p, which profiles = false leaves out"):
+        derived.peak_pressure(found.drop_vars("p"))
+    with pytest.raises(ValueError, match="p_peak needs the profile p, which profiles = false leaves out"):
+        derived.peak_pressure(found.drop_vars("p"))
     with pytest.raises(ValueError, match="p_peak needs R, E2 and p in SI units, as study.solve gives them"):
         derived.peak_pressure(study.to_physical(found, R=0.01, E2_star=1e11))
     found = study.solve(P="1 N", R="1 mm", E2="1 GPa", micro="smooth", base="half_space", x=3)

@@ -26,7 +26,7 @@ READABLE = {
 LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there
 _SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
-_UNIT_OR_SPREAD = re.compile(rf"[^\W\d_]|[%°]|{_SPREAD.pattern}")
+_UNIT_OR_SPREAD = re.compile(rf"(?![eE][-+]?\d)[^\W\d_]|[%°]|{_SPREAD.pattern}")  # the e of "1,2e-5" is no unit
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1

@@ -129,7 +129,7 @@ def test_densities_are_no_two_numbers():
 
 def test_what_has_a_unit():
     assert has_unit("0.3 ± 0.02") and has_unit("30 %") and has_unit("5,0 mm")
-    assert not any(map(has_unit, ("0,02", "1 000", "0.3, 0.4", "1_000")))
+    assert not any(map(has_unit, ("0,02", "1 000", "0.3, 0.4", "1_000", "1e-5,2e-5")))
     assert all(has_unit(text) for text in ("3 um", "3um", " -2.5e3 N", "200 ± 10 GPa"))
     assert not any(has_unit(given) for given in ("3", "disc_cell", "", 3, 0.5, None, [3], "layered", "1e5"))
 

@@ -59,7 +59,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
             scene.labels = given
             errors += label_slips(given)
         elif name not in SCENE and not is_parameter(name):
-            errors.append(f"{shown(name)} is not a parameter{suggest(name, [*PARAMETERS, *SCENE, *BODIES])}")
+            known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * bool(rows)]
+            errors.append(f"{shown(name)} is not a parameter{suggest(name, known)}")
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)

@@ -17,15 +17,16 @@ from ..spec.definition import Definition, StudyError
 from ..spec.given import Draft, one_control
 from ..spec.grid import axis_values, shown
 from ..spec.identity import digest_of_array
+from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
-from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
+from ..spec.vocabulary import CONTROLS, NUMERICS, VOCABULARY, Parameter, si_unit
 from .bodies import BODIES, with_materials
 from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_of
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
 ANY_VALUE = 0.3
-"""In place of a range with a mistake, while what else is wrong is looked for: all parameters may have it."""
+"""In place of an axis with a mistake: all numbers may have it."""
 FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
 
 
@@ -72,7 +73,7 @@ def _check_the_rest(draft: Draft, parameters: dict, given: dict) -> None:
             draft.checked(name, value if isinstance(value, list) else [value])
     rows = given["cases"] if isinstance(given.get("cases"), list) else []
     names = [name for table in (parameters, *rows) if isinstance(table, dict) for name in table]
-    draft.errors += one_control(names)
+    draft.errors += one_control(names) if len({*CONTROLS} & {*names}) > 1 else []
     definition.settings(given, draft.errors)
 
 
@@ -124,11 +125,14 @@ def _parameters(draft: Draft, given: dict) -> dict:
 
 def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
     """The values of an axis. A range with units becomes SI values."""
-    if not isinstance(raw, dict) or not (name in SCENE or name in VOCABULARY) or unit_of(name) == "1":
-        return axis_values(raw, name, errors)
-    in_si = _in_si(raw, name, unit_of(name), errors)
-    values = axis_values(in_si, name, errors) if in_si else []
-    return QuantityList([Quantity(value) for value in values or [ANY_VALUE]], dim_of(name))
+    numeric = name in SCENE or (name in VOCABULARY and not VOCABULARY[name].own.choices)
+    with_unit = isinstance(raw, dict) and numeric and unit_of(name) != "1"
+    before = len(errors)
+    raw = _in_si(raw, name, unit_of(name), errors) if with_unit else raw
+    values = axis_values(raw, name, errors) if len(errors) == before else []
+    if not values:  # what else is wrong is looked for, without a second message about this
+        return QuantityList([Quantity(ANY_VALUE)], dim_of(name)) if numeric else "PTFE" if name in BODIES else []
+    return QuantityList([Quantity(value) for value in values], dim_of(name)) if with_unit else values
 
 
 def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
@@ -155,7 +159,7 @@ def _sampled(table: Any, draft: Draft) -> dict[str, CaseValues | QuantityList]:
             _check_list(name, raw, draft)
         if name in BODIES:
             known[name] = Parameter(choices=("a material",))
-        elif name in SCENE or name in VOCABULARY:
+        elif name in SCENE or is_parameter(name):
             known[name] = VOCABULARY[name].own if unit_of(name) == "1" and name in VOCABULARY else ANY_NUMBER
             if isinstance(raw, dict):
                 in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
@@ -173,13 +177,13 @@ def _check_list(name: str, raw: list, draft: Draft) -> None:
     """Messages for values of a list of [sample], of which some may not be drawn."""
     if name in BODIES:
         with_materials({name: CaseValues(raw)}, draft.errors)
-    elif name in SCENE or (name in VOCABULARY and not VOCABULARY[name].own.choices):
+    elif name in SCENE or (is_parameter(name) and not VOCABULARY[name].own.choices):
         for i, one in enumerate(raw):
             try:
                 si(name, one, f"{name}[{i}]")
             except ValueError as error:
                 draft.errors.append(str(error))
-    elif name in VOCABULARY:
+    elif is_parameter(name):
         draft.checked(name, raw)
 
 

@@ -59,6 +59,12 @@ EXACT = {"model_used": np.int8(Model.LAYERED), "model_error": 0.0}
         ({"a": 0.19, "h": 4.99e-4, "micro": "smooth"}, 0),
         ({"a": 0.19, "h": 4.99e-4, "lam0": 1e-4, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 0),
         ({"lam0": 0.2, "Ra": 1e-9, "micro": "smooth"}, 0),
+        ({"p_max": 0.16}, 64),
+        ({"p_max": 0.158}, 0),
+        ({"p_max": 0.16, "micro": "smooth"}, 0),
+        ({"p_max": 0.08, "m": 1.0}, 64),
+        ({"p_max": 0.31, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 0),
+        ({"p_max": 0.32, "base": "half_space", "model_used": np.int8(Model.HALF_SPACE)}, 64),
         ({"lam0": 0.401}, 16),
         ({"lam0": 0.399}, 0),
         ({"lam0": 1.0, "micro": "smooth"}, 0),
@@ -83,6 +89,14 @@ def test_validity(variables, expected):
     found = derived.validity(made(**variables))
     assert found.item() == expected
     assert found.dtype == np.int32
+
+
+def test_high_summits_that_carry_all_are_pressed_too_far():
+    """Their b(0) is the mean over all summits, of which most do not touch: it was small, and nothing was said."""
+    given = {"P": 1e-5, "h": 0.02, "n": 0.5, "Nbar": 1e8, "Ra": 4e-4, "micro": "normal_heights", "x": 2}
+    found = study.solve(**given, sigma=[1e-6, 0.2])
+    assert (found.validity & 64).values.tolist() == [0, 64]
+    assert found.p_max[1] > 0.32 * 0.5 and derived.spot_radius(found)[1] < 0.5 * 4e-4
 
 
 def test_validity_has_the_dimensions_of_status():

@@ -2,6 +2,7 @@
 
 import pickle
 from itertools import combinations
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -144,6 +145,15 @@ def test_exchanged_columns_are_refused(micro, more, density, first):
         order = {i: j, j: i}
         with pytest.raises(ValueError, match="^columns? "):
             own_table._check(*(columns[order.get(k, k)] for k in range(4)))
+
+
+def test_pressures_in_another_unit_are_beyond_validity(table):
+    """p and p_max a thousand times too large: the real pressure is above the modulus. There is no Ra to tell."""
+    read = own_table._columns((table(), Path("mine.csv").read_text(encoding="utf-8"))[1], own_table.COLUMNS, 5)
+    assert study.solve(P=1e-5, **CASE, micro="table:mine.csv").validity == 0
+    rows = zip(1e3 * read["p"], read["A"], read["lam"], 1e3 * read["p_max"], strict=True)
+    name = table(HEAD + "".join(",".join(map(str, row)) + "\n" for row in rows))
+    assert study.solve(P=1e-5, **CASE, micro=name).validity == 64
 
 
 def test_files_that_cannot_be_read(table):

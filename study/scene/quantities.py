@@ -146,6 +146,8 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
         raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
     if unit != "1" and found.dimensionless:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
+    if unit != "1" and "%" in text:  # "9 um %" were 0.09 um
+        raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
     if not found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
         raise ValueError(f'{name} = "{said}" is {_understood(found)}: {wanted}')
     value = float(found.to(_pint_name(unit)).magnitude)

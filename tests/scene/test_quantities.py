@@ -81,6 +81,8 @@ def test_spreads(sign):
         ("5 ± 2 %% mm", "m", "behind % may only stand the unit of the number"),
         ("5 ± 2 %", "m", 'h = "5" has no unit: must be a length'),
         ("5 mm ± 1e999 %", "m", "must be finite"),
+        ("9 um %", "m", 'h = "9 um %": % may only stand behind ±'),
+        ("9 um ± 5 um %", "m", 'the spread of h = "5 um %": % may only stand behind ±'),
         ("30 % ± 2 %", "1", 'write the spread as a number, as in "0.3 ± 0.02"'),
     ],
 )

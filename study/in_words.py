@@ -48,8 +48,7 @@ BROKEN = {
     "strain_not_small": f"The strain is not small (a > {derived.STEEP:g} R, or the layer gives way by more than "
     f"{derived.COMPRESSED:.0%}): linear elasticity is only roughly right.",
     "asperity_strain_not_small": f"The strain under the asperities is not small (b > {derived.STEEP_SPOT:g} Ra, or "
-    f"pmax > {2 / np.pi * derived.STEEP_SPOT:.2g} E1*): most materials"
-    " yield before that, and pmax is larger than any real pressure.",
+    "pmax as of such a spot): most materials yield before that, and pmax is larger than any real pressure.",
     "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "
     f"{derived.PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
 }

@@ -56,9 +56,9 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
     1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
     8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING, but on a lattice; 32
-    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra, or the p_max of that; 128 1/sqrt(N̄) >
-    PITCH_OVER_LAYER h on a layer of any kind. A case without numbers (see `status`) only gets the masks that need none.
-    int32 over the dimensions of `status`.
+    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra, or p_max as of such a spot; 128
+    1/sqrt(N̄) > PITCH_OVER_LAYER h on a layer of any kind. A case without numbers (see `status`) only gets the masks
+    that need none. int32 over the dimensions of `status`.
 
     Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
     """
@@ -77,7 +77,8 @@ def validity_of(variables: Mapping) -> xr.Variable:
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
-    steep = 2 / np.pi * STEEP_SPOT  # p_max/E1* of one asperity; b(0) of random heights is a mean, a table has no Ra
+    # Over E1*, no more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
+    peak = np.pi / 2 * (_given(v, "p_max") - v["p0"])
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
     thin = sum(v["model_used"] == value for value, word in models if word.endswith("thin_layer")) > 0
@@ -88,7 +89,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _smears(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
-        64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (_given(v, "p_max") > steep * E1)),
+        64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (peak > STEEP_SPOT * E1)),
         128: layered & rough & (_given(v, "Nbar") * (PITCH_OVER_LAYER * h) ** 2 < 1),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))

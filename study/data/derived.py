@@ -77,8 +77,8 @@ def validity_of(variables: Mapping) -> xr.Variable:
     layered, rough = v["base"] != "half_space", _rough(v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
-    # Over E1*, no more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
-    peak = np.pi / 2 * (_given(v, "p_max") - v["p0"])
+    # No more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
+    steep = np.pi / 2 * (_given(v, "p_max") - v["p0"]) / E1
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
     thin = sum(v["model_used"] == value for value, word in models if word.endswith("thin_layer")) > 0
@@ -89,7 +89,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _smears(v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
-        64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (peak > STEEP_SPOT * E1)),
+        64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (steep > STEEP_SPOT)),
         128: layered & rough & (_given(v, "Nbar") * (PITCH_OVER_LAYER * h) ** 2 < 1),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))

@@ -31,20 +31,14 @@ COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"),
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 
 
-@figure(
-    "extremes",
-    "extremes",
-    "extremes_layered",
-    size=(TWO_COLUMNS, 9.2),
-    panels=(5, 3),
-    caption="""Random cases far beyond any scene, drawn as studies/extremes.toml and extremes_layered.toml say. Rows: a
-    base and two of its parameters. Columns: every case as a point by its status; of the converged cases of
-    a cell the median of error over rtol, and the largest number of iterations.""",
-)
+@figure("extremes", "extremes", "extremes_layered", size=(TWO_COLUMNS, 9.2), panels=(5, 3))
 def maps(panels, *studies: xr.Dataset) -> Columns:
-    """Rows: a base and two of its parameters; columns: every case as a point, by its status; of the converged cases of
-    a cell the median error over rtol, and the largest number of iterations. The numbers are those of the cells that
-    hold cases."""
+    """Random cases far beyond any scene, drawn as studies/extremes.toml and extremes_layered.toml say. Rows: a base and
+    two of its parameters. Columns: every case as a point by its status; of the converged cases of a cell the median of
+    error over rtol, and the largest number of iterations.
+
+    The numbers are those of the cells that hold cases.
+    """
     cases, parts = pooled(studies), []
     for row, (base, x, y) in zip(panels, ROWS, strict=True):
         drawn = {name: values[cases["base"] == base] for name, values in cases.items()}
@@ -133,8 +127,6 @@ def legend(panels, images, present: np.ndarray) -> None:
     "extremes",
     "extremes",
     "extremes_layered",
-    caption="""Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not
-    apply, the punch lifts off), shares of the others, error over rtol and iterations of the converged ones.""",
     columns="""
     base
     law
@@ -151,9 +143,12 @@ def legend(panels, images, present: np.ndarray) -> None:
     max | .0f""",
 )
 def shares(*studies: xr.Dataset) -> list[tuple]:
-    """Rows of the table: for each base and law the cases, the shares that have no solution, and of the others those
-    that converged, missed rtol, failed otherwise; of the converged ones the median, 99.9 % and largest error over
-    rtol, and the median and largest number of iterations."""
+    """Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not apply, the
+    punch lifts off), shares of the others, error over rtol and iterations of the converged ones.
+
+    A row for each base and law. Of the cases that have a solution it tells how many converged, missed rtol, failed
+    otherwise.
+    """
     cases, rows = pooled(studies), []
     for base, law in product(BASES, LAWS):
         which = (cases["base"] == base) & (cases["micro"] == law)

@@ -26,17 +26,11 @@ LINES = {"color": "black", "linewidth": 0.9}
 DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
 
 
-@figure(
-    "picard_domain",
-    "picard_domain",
-    size=(TWO_COLUMNS, 4.8),
-    panels=(2, 3),
-    caption="""Size of the cycle in which the paper's successive approximations (8) end, over the compliance C of the
-    layer and the relaxation 1 + 2k, and the lines of the linear theory. Last panel: two successive iterates
-    near the edge, and the solution.""",
-)
+@figure("picard_domain", "picard_domain", size=(TWO_COLUMNS, 4.8), panels=(2, 3))
 def domain(panels, found: xr.Dataset) -> Columns:
-    """Five maps of the size of the cycle in which the approximations end, and two successive iterates in one."""
+    """Size of the cycle in which the paper's successive approximations (8) end, over the compliance C of the layer and
+    the relaxation 1 + 2k, and the lines of the linear theory. Last panel: two successive iterates near the edge, and
+    the solution."""
     *maps, last = panels.ravel()
     parts = []
     for axes, (beta, nodes) in zip(maps, MAPS, strict=True):

@@ -40,17 +40,11 @@ ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
 """Errors at which the paper's way is compared with Newton."""
 
 
-@figure(
-    "tradeoff",
-    "tradeoff",
-    size=(TWO_COLUMNS, 6.4),
-    panels=(2, 2),
-    caption="""Error below which 95 % of the cases are, against processor time per case, a panel for each problem set
-    (docs/tradeoff.md). Open marks: fewer than 99 % of the cases ended. Dashed: half of the cases differ by more
-    between two models.""",
-)
+@figure("tradeoff", "tradeoff", size=(TWO_COLUMNS, 6.4), panels=(2, 2))
 def work_precision(panels, found: xr.Dataset) -> Columns:
-    """Error of 95 % of the cases against time per case; a panel a set. Models that differ are lines at their median."""
+    """Error below which 95 % of the cases are, against processor time per case, a panel for each problem set
+    (docs/tradeoff.md). Open marks: fewer than 99 % of the cases ended. Dashed: half of the cases differ by more between
+    two models."""
     for axes, name in zip(panels.ravel(), found["set"].values.tolist(), strict=True):
         here = found.sel(set=name)
         axes.set_title(name, fontsize=9)
@@ -115,8 +109,6 @@ def label(way: str) -> str:
 @table(
     "tradeoff",
     "tradeoff",
-    caption="""Work and precision: time per case on one thread, error of half and of 95% of the cases, largest error,
-    share of the cases that ended.""",
     columns=r"""
     set
     way
@@ -129,7 +121,8 @@ def label(way: str) -> str:
     ended | .1%""",
 )
 def rows(found: xr.Dataset) -> list[tuple]:
-    """Set, way, cases, setting, time per case (µs), median, 95 % and largest error, share ended."""
+    """Work and precision: time per case on one thread, error of half and of 95% of the cases, largest error, share of
+    the cases that ended."""
     table = []
     for name in found["set"].values.tolist():
         for way in found["way"].values.tolist():
@@ -148,12 +141,11 @@ def rows(found: xr.Dataset) -> list[tuple]:
 @table(
     "tradeoff_cheapest",
     "tradeoff",
-    caption="""Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
-    none.""",
     columns="\n".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]),
 )
 def cheapest(found: xr.Dataset) -> list[tuple]:
-    """Set, way, and the time per case (µs) for each of TARGETS."""
+    """Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
+    none."""
     table = []
     for name in found["set"].values.tolist():
         for way in STYLES:
@@ -173,7 +165,6 @@ def time_to(part: xr.Dataset, target: float) -> float:
 @table(
     "tradeoff_factors",
     "tradeoff",
-    caption="On the paper's layer: the paper's way at its cheapest beside Newton (rtol), time per case in us.",
     columns="""
     error | g
     the paper's way | .3g
@@ -182,7 +173,10 @@ def time_to(part: xr.Dataset, target: float) -> float:
     factor | .0f""",
 )
 def factors(found: xr.Dataset) -> list[tuple]:
-    """Error, time of the paper's way and its k, time of Newton, ratio; for errors that the paper's way reaches."""
+    """On the paper's layer: the paper's way at its cheapest beside Newton (rtol), time per case in us.
+
+    It has those of ERRORS that the paper's way reaches.
+    """
     layer, table = found.sel(set="paper, layer"), []
     ways = [way for way in layer["way"].values.tolist() if way.startswith("paper") and int(layer["cases"].sel(way=way))]
     for target in ERRORS:

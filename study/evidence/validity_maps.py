@@ -33,17 +33,10 @@ TITLES = {
 MAIN_CASE = {"h": 0.02, "n": 0.5}
 
 
-@figure(
-    "validity",
-    "validity",
-    size=(TWO_COLUMNS, 7.6),
-    panels=(5, 5),
-    caption="""Error of the thin layer against the exact one under one load, over h/a (a of the exact layer) and n:
-    rows are quantities, columns materials. Star: the paper's main case. Hatched: the thin-layer equation does
-    not apply.""",
-)
+@figure("validity", "validity", size=(TWO_COLUMNS, 7.6), panels=(5, 5))
 def given_load(panels, found: xr.Dataset) -> Columns:
-    """Errors of a, p(0), D, Ar/An, p_max under one load, paper's main roughness; a row each, a column per material."""
+    """Error of the thin layer against the exact one under one load, over h/a (a of the exact layer) and n: rows are
+    quantities, columns materials. Star: the paper's main case. Hatched: the thin-layer equation does not apply."""
     rough = found.sel(micro="disc_cell")
     rows = [(name, rough, name) for name in ("a", "p0", "D", "Ar_An", "p_max")]
     symbols = {"a": "$a$", "p0": "$p(0)$", "D": "$D$", "Ar_An": "$A_r/A_n$", "p_max": r"$p_{\max}$"}
@@ -52,17 +45,11 @@ def given_load(panels, found: xr.Dataset) -> Columns:
     return columns
 
 
-@figure(
-    "validity_load",
-    "validity_load",
-    size=(TWO_COLUMNS, 3.9),
-    panels=(2, 5),
-    caption="""Error of the load of the thin layer against the exact one at one contact radius, over h/a and n: smooth
-    and rough punch. Dashed: the closed form of docs/accuracy.md. Star: the paper's main case. Hatched: the
-    thin-layer equation does not apply.""",
-)
+@figure("validity_load", "validity_load", size=(TWO_COLUMNS, 3.9), panels=(2, 5))
 def given_radius(panels, found: xr.Dataset) -> Columns:
-    """Error of the load at one contact radius: smooth punch, with the estimate dashed, and the paper's roughness."""
+    """Error of the load of the thin layer against the exact one at one contact radius, over h/a and n: smooth and rough
+    punch. Dashed: the closed form of docs/accuracy.md. Star: the paper's main case. Hatched: the thin-layer equation
+    does not apply."""
     rows = [(micro, found.sel(micro=micro), "P") for micro in ("smooth", "disc_cell")]
     columns = matrix(panels, rows, {"smooth": "$P$, smooth", "disc_cell": "$P$, rough"})
     for axes, case in zip(panels[0], materials(found), strict=True):
@@ -166,15 +153,14 @@ MATERIALS = ("frictionless", "nu=0", "nu=0.3", "nu=0.45")
     "validity",
     "validity",
     "validity_load",
-    caption="""Largest h/a (0.01 or more) up to which the thin-layer model errs by less than 1% and 10%, n from 0.01 to
-    0.95; nu: bonded.""",
     columns="\n".join(
         ["punch", "error in", "given"]
         + [rf"{name} {level}% | .3g | {name}, {level}\%" for name in MATERIALS for level in (1, 10)]
     ),
 )
 def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
-    """Largest h/a up to which the thin-layer model errs by less than 1 % and 10 %, whatever n from 0.01 to 0.95."""
+    """Largest h/a (0.01 or more) up to which the thin-layer model errs by less than 1% and 10%, n from 0.01 to 0.95;
+    nu: bonded."""
     rows = []
     for micro, names in (("smooth", ("P", "a", "p0", "D")), ("disc_cell", ("P", "a", "p0", "D", "Ar_An", "p_max"))):
         for name in names:

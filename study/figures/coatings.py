@@ -16,23 +16,16 @@ PALE = 0.4  # opacity of curves outside validity
 RANGE = (0.05, 20.0)  # of a/h
 
 
-@figure(
-    "coatings",
-    "coatings",
-    size=(TWO_COLUMNS, 7.2),
-    panels=(3, 2),
-    caption="""Coatings from soft (blue) to hard (red) under loads from 1e-14 to 1e-3 E2* R², film-dominated contacts
-    to the left, substrate-dominated ones to the right; frictionless and bonded. E_eff is (dP/dD)/(2a); the largest real
+@figure("coatings", "coatings", size=(TWO_COLUMNS, 7.2), panels=(3, 2))
+def master_curves(panels, found: xr.Dataset) -> Columns:
+    """Coatings from soft (blue) to hard (red) under loads from 1e-14 to 1e-3 E2* R², film-dominated contacts to the
+    left, substrate-dominated ones to the right; frictionless and bonded. E_eff is (dP/dD)/(2a); the largest real
     pressure is over that under the same load without a coating. Curves of the rough punch begin where there are 100
     spots and end at the largest load; pale: another assumption of the model does not hold (spots merge, or the strain
-    is not small).""",
-)
-def master_curves(panels, found: xr.Dataset) -> Columns:
-    """Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two
-    interfaces.
+    is not small).
 
-    A rough curve is drawn where the spots are many, and pale where `validity` is not 0. E_eff of the smooth punch is
-    dashed.
+    Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two
+    interfaces. E_eff of the smooth punch is dashed.
     """
     peak = peak_pressure(found)
     bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # with equal ν this layer is as if it were not there

@@ -4,7 +4,6 @@
 `table`, and `make`, know a function in one of these rooms without another line anywhere.
 """
 
-import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -66,14 +65,13 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
-        words = caption or (draw.__doc__ or "").partition("\n\n")[0]
-        FIGURES[name] = Figure(studies, draw, size, panels, re.sub(r"\s+", " ", words).strip())
+        FIGURES[name] = Figure(studies, draw, size, panels, one_line(caption or first_paragraph(draw)))
         return draw
 
     return register
 
 
-def table(name: str, *studies: str, caption: str, columns: str):
+def table(name: str, *studies: str, columns: str, caption: str = ""):
     """Register `rows(*datasets)`, which gives the table NAME as a list of tuples, one value per column.
 
     Parameters
@@ -81,14 +79,25 @@ def table(name: str, *studies: str, caption: str, columns: str):
     studies : names of the studies whose datasets `rows` takes, in this order
     columns : a line for each column, "heading | format of its numbers | heading in LaTeX"; without a format the cells
         are text, without a heading in LaTeX it is the plain one
+    caption : by default the first paragraph of the docstring
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
         heads = tuple(column(line) for line in columns.strip().split("\n"))
-        TABLES[name] = Table(studies, rows, re.sub(r"\s+", " ", caption), heads)
+        TABLES[name] = Table(studies, rows, one_line(caption or first_paragraph(rows)), heads)
         return rows
 
     return register
+
+
+def first_paragraph(function: Callable) -> str:
+    """The first paragraph of the docstring of a function."""
+    return (function.__doc__ or "").partition("\n\n")[0]
+
+
+def one_line(text: str) -> str:
+    """A text without its ends of lines."""
+    return " ".join(text.split())
 
 
 def column(line: str) -> Column:

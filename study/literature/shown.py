@@ -49,18 +49,11 @@ def look(name: str) -> dict:
     return {"color": colour, "linestyle": dashes, "linewidth": 1.1}
 
 
-@figure(
-    "literature",
-    "literature",
-    "literature_coatings",
-    size=(TWO_COLUMNS, 3.7),
-    panels=(1, 3),
-    caption="""Error of published formulas for a smooth punch against the exact layer. Left and middle: of the load at
-    one depth on a rigid base, over a/h. Right: of the stiffness on a bonded coating, ν = 0.3, the largest over a/h from
-    0.01 to 20, over n. Grey: within 1 % and 5 %.""",
-)
+@figure("literature", "literature", "literature_coatings", size=(TWO_COLUMNS, 3.7), panels=(1, 3))
 def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
-    """Size of the error of each formula: of the load over a/h, of the stiffness over n."""
+    """Error of published formulas for a smooth punch against the exact layer. Left and middle: of the load at one depth
+    on a rigid base, over a/h. Right: of the stiffness on a bonded coating, ν = 0.3, the largest over a/h from 0.01 to
+    20, over n. Grey: within 1 % and 5 %."""
     parts = []
     for panel, (axes, (bonded, nu, title)) in enumerate(zip(panels, INTERFACES, strict=False)):
         for formula in formulas.LOADS:
@@ -120,15 +113,14 @@ def columns(parts: list[tuple]) -> Columns:
 @table(
     "literature",
     "literature",
-    caption="""Formulas of the load on a smooth sphere on a layer on a rigid base: the a/h (0.01 to 20) up to which, or
-    from which on, they err by less than 1% and 5% at one depth, and their errors.""",
     columns="\n".join(
         ["formula", "interface", "nu | s | $\\nu$", "constants read in", "1% | s | 1\\%", "5% | s | 5\\%"]
         + [f"a/h = {x:g} | +.2% | $a/h = {x:g}$" for x in SHOWN_AT]
     ),
 )
 def loads(rigid: xr.Dataset) -> list[tuple]:
-    """Formula, interface, ν, source of the constants, the ranges of LEVELS, errors at SHOWN_AT."""
+    """Formulas of the load on a smooth sphere on a layer on a rigid base: the a/h (0.01 to 20) up to which, or from
+    which on, they err by less than 1% and 5% at one depth, and their errors."""
     from scipy.interpolate import CubicSpline
 
     rows = []
@@ -147,15 +139,14 @@ def loads(rigid: xr.Dataset) -> list[tuple]:
 @table(
     "literature_coatings",
     "literature_coatings",
-    caption="""Formulas of the stiffness of a smooth contact over 2a on a bonded coating, nu = 0.3: largest error over
-    a/h from 0.01 to 2 and to 20, and the n around 1 for which it stays below 1% and 5%.""",
     columns="\n".join(
         ["formula", "constants read in", "a/h up to | g | $a/h$ up to", "1% | s | 1\\%", "5% | s | 5\\%"]
         + [f"n = {n:g} | .2% | $n = {n:g}$" for n in SHOWN_N]
     ),
 )
 def stiffnesses(coated: xr.Dataset) -> list[tuple]:
-    """Formula, source of its constants, a/h, the ranges of LEVELS, largest errors at SHOWN_N."""
+    """Formulas of the stiffness of a smooth contact over 2a on a bonded coating, nu = 0.3: largest error over a/h from
+    0.01 to 2 and to 20, and the n around 1 for which it stays below 1% and 5%."""
     x, n, _ = stiffness(coated)
     places = [int(np.argmin(np.abs(np.log(n / wanted)))) for wanted in SHOWN_N]
     rows = []
@@ -174,8 +165,6 @@ def stiffnesses(coated: xr.Dataset) -> list[tuple]:
     "literature_decided",
     "literature",
     "literature_coatings",
-    caption="""Where the literature differs, on a rigid base. c1, c2, c3: coefficients of the load over that of Hertz in
-    powers of sqrt(R D)/h. kappa: stiffness of a flat punch over 2 E1* a.""",
     columns="""
     quantity
     by
@@ -184,7 +173,8 @@ def stiffnesses(coated: xr.Dataset) -> list[tuple]:
     off by | +.1%""",
 )
 def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
-    """Quantity, who says it, what, the exact value, the relative difference."""
+    """Where the literature differs, on a rigid base. c1, c2, c3: coefficients of the load over that of Hertz in powers
+    of sqrt(R D)/h. kappa: stiffness of a flat punch over 2 E1* a."""
     bonded, loose = coefficients(rigid, True, 0.5), coefficients(rigid, False, 0.3)
     one = int(np.argmin(np.abs(formulas.KAPPA_AT - 1)))
     first, second = formulas.DIMITRIADIS, formulas.GARCIA
@@ -209,8 +199,6 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
 @table(
     "literature_rough",
     "literature_rough",
-    caption="""A sphere with asperities of normal heights: pressure in the middle and effective radius over those of
-    Hertz, by Greenwood and Tripp (1967), who leave out that asperities press down their neighbours, and with it.""",
     columns="""
     alpha | g | $\\alpha$
     mu | g | $\\mu$
@@ -224,7 +212,8 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     radius off by | +.1%""",
 )
 def rough_spheres(rough: xr.Dataset) -> list[tuple]:
-    """α, μ, Ra, λ(0); then p(0) and the effective radius, over those of Hertz: as published, exact, the difference."""
+    """A sphere with asperities of normal heights: pressure in the middle and effective radius over those of Hertz, by
+    Greenwood and Tripp (1967), who leave out that asperities press down their neighbours, and with it."""
     rows = []
     values = zip(*over_smooth(rough), rough["Ra"].values, rough["lam0"].values, strict=True)
     for alpha, mu, p0, radius, Ra, covered in values:

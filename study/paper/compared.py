@@ -12,7 +12,6 @@ from .law_fits import bound, fitted, printed_error
     "paper_numbers",
     "reference_load",
     "main_case",
-    caption="Numbers printed in the paper and the converged ones of the same model.",
     columns="""
     quantity
     paper | .4g
@@ -20,7 +19,10 @@ from .law_fits import bound, fitted, printed_error
     difference | +.2%""",
 )
 def paper_numbers(reference: xr.Dataset, main: xr.Dataset) -> list[tuple]:
-    """Quantity, printed, ours, relative difference; of a bound, whether it holds."""
+    """Numbers printed in the paper and the converged ones of the same model.
+
+    Of a bound it tells whether it holds.
+    """
     rough, homogeneous = (pick(main, label=f"rough, {base}") for base in ("layered", "homogeneous"))
     Ra, Nbar, *_ = numbers.TABLE1[0]
     fit = fitted(Ra, Nbar)

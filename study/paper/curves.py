@@ -9,7 +9,7 @@ from functools import partial
 import xarray as xr
 
 from ..figures.annotate import load_axis, name_curve, note_violations, shade_violations
-from ..figures.registry import ONE_COLUMN, Columns, figure, pick
+from ..figures.registry import ONE_COLUMN, Columns, figure, first_paragraph, pick
 
 CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
@@ -23,16 +23,17 @@ for the curves named in the legend."""
 PAPER_LABEL = "thin layer (the paper)"
 
 
-def with_companion(name: str, *studies: str, caption: str, height: float = 3.0):
+def with_companion(name: str, *studies: str, more: str = "", height: float = 3.0):
     """Register `draw(axes, *datasets, exact)` as the figure NAME and, with exact = True, as its companion.
 
-    caption : of both; what holds for the layer is added
+    more : what the caption of both has after the docstring; what holds for the layer is added
     """
 
     def register(draw):
         for suffix, exact in (("", False), ("_layered", True)):
             layer = LAYER_EXACT if exact else LAYER_THIN
-            named = figure(name + suffix, *studies, size=(ONE_COLUMN, height), caption=f"{caption} {layer}")
+            caption = f"{first_paragraph(draw)} {more} {layer}"
+            named = figure(name + suffix, *studies, size=(ONE_COLUMN, height), caption=caption)
             named(partial(draw, exact=exact))
         return draw
 
@@ -87,34 +88,21 @@ def pressures(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Col
     return columns
 
 
-@with_companion(
-    "fig03",
-    "main_case",
-    caption="Nominal pressure under the rough punch with a layer (1) and without (2); a0 is the radius of contact 1.",
-)
+@with_companion("fig03", "main_case")
 def rough_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
-    """Figure 3: pressure of the rough punch."""
+    """Nominal pressure under the rough punch with a layer (1) and without (2); a0 is the radius of contact 1."""
     return pressures(axes, main, {"1": "above", "2": "above"}, exact)
 
 
-@with_companion(
-    "fig07",
-    "main_case",
-    caption="Nominal pressure, rough and smooth (primes), with a layer (1) and without (2); a0: radius of 1.",
-)
+@with_companion("fig07", "main_case")
 def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
-    """Figure 7: pressure of the rough and of the smooth punch."""
+    """Nominal pressure, rough and smooth (primes), with a layer (1) and without (2); a0: radius of 1."""
     return pressures(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
 
 
-@with_companion(
-    "fig10",
-    "spot_density",
-    caption="Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1.",
-)
+@with_companion("fig10", "spot_density")
 def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
-    """Figure 10: nominal pressure on the layer for three densities of asperities under one load, over the paper's a0
-    of the first."""
+    """Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1."""
     paper = [pick(found, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
     columns, validity, a0 = {}, {}, float(paper[0]["a"])
     for thin, (name, side) in zip(paper, {"1": "above", "2": "below", "3": "below"}.items(), strict=True):
@@ -153,42 +141,29 @@ def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, sides
     return columns
 
 
-@with_companion(
-    "fig04", "load_sweep", "main_case", caption="Real over nominal contact area against the load. " + OVER_LOADS
-)
+@with_companion("fig04", "load_sweep", "main_case", more=OVER_LOADS)
 def contact_area(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Figure 4: real over nominal contact area against the load."""
+    """Real over nominal contact area against the load."""
     axes.set_ylabel("$A_r/A_n$")
     return against_load(axes, data, "Ar_An", {"1": "above", "2": "below"}, exact)
 
 
-@with_companion(
-    "fig05",
-    "load_sweep",
-    "main_case",
-    caption="Largest real pressure in the middle of the contact against the load. " + OVER_LOADS,
-)
+@with_companion("fig05", "load_sweep", "main_case", more=OVER_LOADS)
 def largest_pressure(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Figure 5: largest real pressure in the middle against the load."""
+    """Largest real pressure in the middle of the contact against the load."""
     axes.set_ylabel(r"$p_{\max}/E_2^*$")
     return against_load(axes, data, "p_max", {"1": "below", "2": "below"}, exact)
 
 
-@with_companion("fig06", "load_sweep", "main_case", caption="Depth of the rough punch against the load. " + OVER_LOADS)
+@with_companion("fig06", "load_sweep", "main_case", more=OVER_LOADS)
 def depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Figure 6: depth of the rough punch against the load."""
+    """Depth of the rough punch against the load."""
     axes.set_ylabel(DEPTH)
     return against_load(axes, data, "D", {"1": "above", "2": "below"}, exact, 1e-3)
 
 
-@with_companion(
-    "fig08",
-    "load_sweep",
-    "main_case",
-    height=3.6,
-    caption="Depth of the rough punch, and of the smooth one (primes), against the load. " + OVER_LOADS,
-)
+@with_companion("fig08", "load_sweep", "main_case", more=OVER_LOADS, height=3.6)
 def rough_and_smooth_depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Figure 8: depth of the rough and of the smooth punch against the load."""
+    """Depth of the rough punch, and of the smooth one (primes), against the load."""
     axes.set_ylabel(DEPTH)
     return against_load(axes, data, "D", {"1": "above", "2": "above", "1′": "below", "2′": "below"}, exact, 1e-3)

@@ -25,9 +25,6 @@ def on_lattice(Ra: float, Nbar: float) -> np.ndarray:
 
 @table(
     "table1_lattice",
-    caption="""Table 1 against asperities on a square lattice, 0.0025 to 0.025 E1*: largest error of the power law with
-    the paper's constants, and of the disc cell that it is fitted to; the power law fitted to the lattice, and its
-    error. B is in R/E1*^beta.""",
     columns=r"""
     Ra/R | g | $R_a/R$
     N R^2 | d | $\bar N R^2$
@@ -39,7 +36,9 @@ def on_lattice(Ra: float, Nbar: float) -> np.ndarray:
     error | .1%""",
 )
 def table1_lattice() -> list[tuple]:
-    """Errors of the paper's constants and of its disc cell against a lattice, and constants fitted to the lattice."""
+    """Table 1 against asperities on a square lattice, 0.0025 to 0.025 E1*: largest error of the power law with the
+    paper's constants, and of the disc cell that it is fitted to; the power law fitted to the lattice, and its error. B
+    is in R/E1*^beta."""
     rows = []
     for Ra, Nbar, *_ in numbers.TABLE1:
         true = on_lattice(Ra, Nbar)
@@ -49,16 +48,10 @@ def table1_lattice() -> list[tuple]:
     return rows
 
 
-@figure(
-    "fig09_lattice",
-    size=(TWO_COLUMNS, 2.9),
-    panels=(1, 2),
-    caption="""Additional displacement against pressure: asperities on a square lattice, the disc cell of the paper
-    (dashed), and the power law with the constants of its Table 1 (dotted). (a) Three densities of asperities, (b) three
-    radii.""",
-)
+@figure("fig09_lattice", size=(TWO_COLUMNS, 2.9), panels=(1, 2))
 def laws(panels) -> Columns:
-    """Figure 9 with the lattice in place of the paper's fits."""
+    """Additional displacement against pressure: asperities on a square lattice, the disc cell of the paper (dashed),
+    and the power law with the constants of its Table 1 (dotted). (a) Three densities of asperities, (b) three radii."""
     p, columns = PRESSURES, {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
         for i, (Ra, Nbar) in enumerate(roughnesses):
@@ -79,18 +72,11 @@ def laws(panels) -> Columns:
     return columns
 
 
-@figure(
-    "fig10_lattice",
-    "spot_density_lattice",
-    "spot_density",
-    size=(TWO_COLUMNS, 3.0),
-    panels=(1, 2),
-    caption="""Left: nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted:
-    with the power law of Table 1 on the same layer. Right: how far that (dotted) and the disc cell (dashed) are from
-    the lattice, over its p(0). a0: radius of the paper's contact 1.""",
-)
+@figure("fig10_lattice", "spot_density_lattice", "spot_density", size=(TWO_COLUMNS, 3.0), panels=(1, 2))
 def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
-    """Figure 10 with the lattice, over the paper's a0, and the differences."""
+    """Left: nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted: with
+    the power law of Table 1 on the same layer. Right: how far that (dotted) and the disc cell (dashed) are from the
+    lattice, over its p(0). a0: radius of the paper's contact 1."""
     axes, beside = panels
     columns, validity = {}, {}
     a0 = float(pick(paper, Nbar=250_000, base="thin_layer")["a"])

@@ -68,9 +68,6 @@ def bound(Ra: float, Nbar: float) -> str:
 
 @table(
     "table1",
-    caption="""Power law A = B p^beta fitted to the additional displacement of a rough layer: the paper's constants, the
-    error that it states and the one that we find; our constants and their error. B is in R/E1*^beta; the B of a study,
-    which is in Ra/E1*^beta, is this over Ra/R.""",
     columns=r"""
     Ra/R | g | $R_a/R$
     N R^2 | d | $\bar N R^2$
@@ -84,7 +81,9 @@ def bound(Ra: float, Nbar: float) -> str:
     error | .1%""",
 )
 def table1() -> list[tuple]:
-    """The constants that the paper prints, then ours."""
+    """Power law A = B p^beta fitted to the additional displacement of a rough layer: the paper's constants, the error
+    that it states and the one that we find; our constants and their error. B is in R/E1*^beta; the B of a study, which
+    is in Ra/E1*^beta, is this over Ra/R."""
     rows = []
     for Ra, Nbar, B, beta in numbers.TABLE1:
         found = printed_error(Ra, Nbar, B, beta)
@@ -92,16 +91,11 @@ def table1() -> list[tuple]:
     return rows
 
 
-@figure(
-    "fig09",
-    size=(TWO_COLUMNS, 2.9),
-    panels=(1, 2),
-    caption="""Additional displacement against pressure: the exact law (dashed), the power law B p^beta fitted to it,
-    and that with the constants of the paper's Table 1, which are rounded (dotted). (a) Three densities of
-    asperities, (b) three radii.""",
-)
+@figure("fig09", size=(TWO_COLUMNS, 2.9), panels=(1, 2))
 def laws(panels) -> Columns:
-    """Figure 9: additional displacement against pressure, exact, fitted, and with the paper's constants."""
+    """Additional displacement against pressure: the exact law (dashed), the power law B p^beta fitted to it, and that
+    with the constants of the paper's Table 1, which are rounded (dotted). (a) Three densities of asperities, (b) three
+    radii."""
     p, columns = PRESSURES, {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
         for i, (Ra, Nbar) in enumerate(roughnesses):

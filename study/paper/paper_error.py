@@ -78,8 +78,6 @@ def contacts(load: float) -> dict[str, float]:
 @table(
     "paper_error",
     "tradeoff",
-    caption="""The paper's numbers, the converged ones, and those by two successive iterates of Eq. (8) with k = 0: the
-    load by the first, the rest by the second, or under its load.""",
     columns="""
     quantity
     paper | .4g
@@ -89,7 +87,8 @@ def contacts(load: float) -> dict[str, float]:
     iterates off | +.2%""",
 )
 def rows(found: xr.Dataset) -> list[tuple]:
-    """Quantity, printed, converged, by iterates, each with its relative difference from the printed number."""
+    """The paper's numbers, the converged ones, and those by two successive iterates of Eq. (8) with k = 0: the load by
+    the first, the rest by the second, or under its load."""
     table = []
     for key, *ours in zip(*(found[name].values for name in ("quantity", "converged", "by_iterates")), strict=True):
         quantity, printed = numbers.NUMBERS[str(key)]

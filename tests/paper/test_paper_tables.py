@@ -116,7 +116,7 @@ def test_the_largest_thickness_is_where_the_error_first_exceeds_the_level(errors
 @pytest.mark.parametrize("name", TABLES)
 def test_text_is_aligned(tables, name):
     caption, _, head, rule, *lines = (tables / f"{name}.txt").read_text(encoding="utf-8").splitlines()
-    assert caption == TABLES[name].caption
+    assert caption and caption == TABLES[name].caption
     assert set(rule) == {"-"} and len(rule) == max(map(len, [head, *lines]))
     assert len({len(line) for line in lines}) == 1
 

@@ -121,8 +121,9 @@ def cells(text: str) -> list[list[str]]:
 
 
 def test_the_page_is_that_of_the_program(results):
-    """Its words, and the names in its tables; the numbers are of larger studies."""
-    written, found = pages.read("docs/literature.md"), page(results)
+    """Its words stay, and the names in its tables; the numbers are of larger studies."""
+    written = pages.read("docs/literature.md")
+    found = page(re.sub(r"^[|].*\n", "", written, flags=re.MULTILINE), results)
 
     def words(text):
         return [line for line in text.splitlines() if not line.startswith("|")]

@@ -32,38 +32,32 @@ class Progress:
         self.done += cases
         self.computed += cases
         self.failed += failed
-        self._show(self._line)
+        self._write(self._line)
 
     def close(self) -> None:
         """End the rewritten line."""
-        self._show(self._end)
+        self._write(lambda terminal: "\n" if terminal and self.computed else "")
 
-    def _show(self, what: Callable[[], None]) -> None:
-        """Write to the stream, if there is one. When that fails, go on without it: a run must not end because of it."""
+    def _write(self, text: Callable[[bool], str]) -> None:
+        """Write text(whether it is for a terminal), if there is a stream. When that fails, go on without it: a run must
+        not end because of it."""
         try:
-            if self.stream is not None:
-                what()
+            if self.stream is not None and (shown := text(self.stream.isatty())):
+                self.stream.write(shown)
+                self.stream.flush()
         except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
             self.stream = None
 
-    def _line(self) -> None:
+    def _line(self, terminal: bool) -> str:
+        """How far the run is; "" as long as the last line is young."""
         now = time.monotonic()
-        if now - self.written >= (BLINK if self.stream.isatty() else EVERY) or self.done >= self.total:
-            self.written = now
-            self._write(now)
-
-    def _end(self) -> None:
-        if self.stream.isatty() and self.computed:
-            self.stream.write("\n")
-            self.stream.flush()
-
-    def _write(self, now: float) -> None:
+        if now - self.written < (BLINK if terminal else EVERY) and self.done < self.total:
+            return ""
+        self.written = now
         counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
-        if self.stream.isatty():  # a line that fills the last column may wrap
-            self.stream.write(f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}")
-        else:
-            self.stream.write(f"{describe(*counts)}\n")
-        self.stream.flush()
+        if terminal:  # a line that fills the last column may wrap
+            return f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}"
+        return f"{describe(*counts)}\n"
 
 
 def columns(terminal: TextIO) -> int:

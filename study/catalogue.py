@@ -63,9 +63,7 @@ def outdated(name: str, known: dict, results, folder) -> bool:
 def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     """A figure as it will be written, the columns of numbers that it shows, and the title that its files carry.
 
-    Raises
-    ------
-    StudyError : there is no such figure, or a study it needs has no results
+    Raises StudyError when there is no such figure, or a study it needs has no results.
     """
     recipe, datasets = entry(name, FIGURES), open_studies(name, FIGURES, results)
     digests = [dataset.attrs["study_digest"][:16] for dataset in datasets]
@@ -122,12 +120,7 @@ def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]
 
 
 def tabulate(name: str, results="results", folder="tables") -> list[Path]:
-    """Write a table as FOLDER/NAME.txt, .csv and .tex; returns the three paths.
-
-    Raises
-    ------
-    StudyError : there is no such table, or a study it needs has no results
-    """
+    """Write a table as FOLDER/NAME.txt, .csv and .tex; returns the three paths. Raises as `compose` does."""
     table, datasets = entry(name, TABLES), open_studies(name, TABLES, results)
     rows = table.rows(*datasets)
     texts = {"txt": as_text(table, rows), "csv": as_csv(table, rows), "tex": as_latex(table, rows)}

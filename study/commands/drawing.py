@@ -67,7 +67,10 @@ def table(options, name: str) -> int:
 
 def tradeoff(options, _) -> int:
     """Measure error against time, and say in which file it is."""
-    return _measured(options, options.force)
+    force = getattr(options, "force", False)  # `plot` and `table` have no such option
+    measured.results(options.results, force=force, command=command_line())
+    answer(f"{options.results}/tradeoff.nc")
+    return 0
 
 
 def _write(options, name: str, known: dict, make) -> int:
@@ -83,13 +86,7 @@ def _ready(options, study: str) -> int:
     """Compute what is missing of a study, if this command has not done so yet. Older results may be replaced."""
     codes = vars(options).setdefault("codes", {})  # study -> exit code, of this command
     if study not in codes and study == "tradeoff":
-        codes[study] = _measured(options, force=False)
+        codes[study] = tradeoff(options, study)
     elif study not in codes:
         codes[study] = completed(load(study_file(study), options.results), force=True)
     return codes[study]
-
-
-def _measured(options, force: bool) -> int:
-    measured.results(options.results, force=force, command=command_line())
-    answer(f"{options.results}/tradeoff.nc")
-    return 0

@@ -8,6 +8,7 @@ import atexit
 import os
 import signal
 import sys
+from types import SimpleNamespace
 
 from ..terminal import empty_buffers
 
@@ -15,14 +16,8 @@ INTERRUPTED = 130  # exit code
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
-class State:
-    """working : the command has begun; interrupted : a signal has come; code : the exit code, once it is known."""
-
-    def __init__(self):
-        self.working, self.interrupted, self.code = False, False, None
-
-
-state = State()
+state = SimpleNamespace(working=False, interrupted=False, code=None)
+"""working : the command has begun; interrupted : a signal has come; code : the exit code, once it is known."""
 
 
 def listen() -> None:

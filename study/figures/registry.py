@@ -117,7 +117,8 @@ def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Da
     """The datasets that a figure or table needs, in their order. Raises StudyError if a study has no results yet."""
     paths = {study: Path(results) / f"{study}.nc" for study in entry(name, known).studies}
     missing = [
-        f"{path}: does not exist, {name} needs it; make it with: {program()} {command_of(study)}"
+        # the trade-off is no study file and has a command of its own
+        f"{path}: does not exist, {name} needs it; make it with: {program()} {'run ' * (study != 'tradeoff')}{study}"
         for study, path in paths.items()
         if not path.exists()
     ]
@@ -126,17 +127,10 @@ def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Da
     return [open_results(path) for path in paths.values()]
 
 
-def command_of(study: str) -> str:
-    """The command that makes the results of a study. The trade-off is no study file and has a command of its own."""
-    return study if study == "tradeoff" else f"run {study}"
-
-
 def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:
     """The one case whose coordinates along `case` have the wanted values (numbers within 1e-9).
 
-    Raises
-    ------
-    StudyError : no case, or several, fit
+    Raises StudyError when no case, or several, fit.
     """
     fits = np.ones(dataset.sizes["case"], dtype=bool)
     for name, value in wanted.items():

@@ -14,8 +14,6 @@ LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, list]:
     """Columns of a random sample: parameter -> list of `size` values, in the order of the table.
 
-    Parameters
-    ----------
     table : {size, seed, NAME = ..., ...}, known names; each parameter either a list, drawn with equal chances, or a
         range {start, stop, spacing = "linear" | "log"}, drawn uniformly in the parameter or in its logarithm. A range
         with over = "Ra^2" is that of the product with Ra^2: what is drawn is divided by that power of another
@@ -23,8 +21,6 @@ def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, lis
     known : parameter -> what values it may have
     errors : messages are appended here; {} is returned then
 
-    Notes
-    -----
     Each parameter has random numbers of its own, so that a further parameter changes no other and a larger `size`
     continues the sample. Values are rounded to six digits: powers differ in the last bit between machines, rounded ones
     do not, and any case can be written down.

@@ -21,15 +21,11 @@ OLD_FORMAT = b"roughcoat block 1\n"
 
 
 class Damaged(OSError):
-    """A file that is no block, or not the one that was written. is_file : whether it is a file at all."""
-
-    is_file = True
+    """A file that is no block, or not the one that was written."""
 
 
 class NoFile(Damaged):
     """A folder, a pipe or a device in place of a block."""
-
-    is_file = False
 
 
 @dataclass(frozen=True, eq=False)

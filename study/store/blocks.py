@@ -21,7 +21,7 @@ from ..data.dataset import not_run
 from ..files.atomic import remove_temporary
 from ..spec.definition import Definition, StudyError
 from ..spec.vocabulary import NOT_RUN
-from .block_file import Block, Damaged, read_block, write_block
+from .block_file import Block, Damaged, NoFile, read_block, write_block
 from .keys import case_keys, find
 
 log = logging.getLogger(__name__)
@@ -148,9 +148,7 @@ def inventory(
 
     retry : cases of these statuses count as missing; force : ignore blocks of another version of the numerics
 
-    Raises
-    ------
-    StudyError : there are blocks of another version of the numerics, and no `force`
+    Raises StudyError when there are blocks of another version of the numerics, and no `force`.
     """
     sources, blocks, covered = [], {}, set()
     keys = case_keys(store.definition.grid)
@@ -164,7 +162,9 @@ def inventory(
             covered.add(path)
         if block.facts["numerics_version"] != NUMERICS_VERSION:
             if not force:
-                raise StudyError([_of_other_numerics(store, block.facts)])
+                version = f"version {block.facts['numerics_version']} of the numerics, this is {NUMERICS_VERSION}"
+                choice = "--force computes it again, --results DIR writes elsewhere"
+                raise StudyError([f"{store.folder}: holds unfinished work of {version}: {choice}"])
         elif usable(store.definition, block.facts, block.arrays):
             sources.append(BlockSource(path, block.keys, block.arrays["status"]))
     sources += [earlier] if earlier else []
@@ -181,12 +181,6 @@ def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> 
     where = find(keys, known, status)
     missing = ((source, -1), (row, -1), (status, NOT_RUN))
     return tuple(np.append(array, array.dtype.type(none))[where] for array, none in missing)
-
-
-def _of_other_numerics(store: Store, given: dict) -> str:
-    version = f"version {given['numerics_version']} of the numerics, this is {NUMERICS_VERSION}"
-    choice = "--force computes it again, --results DIR writes elsewhere"
-    return f"{store.folder}: holds unfinished work of {version}: {choice}"
 
 
 def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
@@ -221,7 +215,7 @@ def _is_another(path: Path, block: Block) -> bool:
     except FileNotFoundError:
         return False
     except Damaged as error:
-        return not error.is_file
+        return isinstance(error, NoFile)
     return not np.array_equal(there.keys, block.keys) or there.facts != block.facts
 
 

@@ -43,9 +43,7 @@ def clean(store: Store, done: bool) -> list[str]:
 
     done : the results file holds the whole study, so no block serves it
 
-    Raises
-    ------
-    StudyError : a run of the study is going on
+    Raises StudyError while a run of the study is going on.
     """
     if not store.folder.exists():
         return [f"{store.folder}: is not there, nothing to remove"]
@@ -69,11 +67,8 @@ def _counted(paths: list[Path], known: Inventory) -> str:
     """ "3 blocks of 15 cases, 1 damaged block, 2 other files"."""
     cases = [known.blocks[path] for path in paths if path in known.blocks]
     whole = [number for number in cases if number >= 0]
-    parts = [
-        (len(whole), "block", f" of {counted(sum(whole), 'case')}"),
-        (len(cases) - len(whole), "damaged block", ""),
-    ]
-    parts.append((len(paths) - len(cases), "other file", ""))
+    parts = [(len(whole), "block", f" of {counted(sum(whole), 'case')}")]
+    parts += [(len(cases) - len(whole), "damaged block", ""), (len(paths) - len(cases), "other file", "")]
     return ", ".join(f"{counted(number, what)}{more}" for number, what, more in parts if number)
 
 

@@ -25,10 +25,7 @@ def writing(store: Store, known: Inventory, command: str, aside: bool = False) -
     A step does nothing while the next cases are missing. When the iterator ends, the file is in its place.
     aside : keep the file that is there, as `set_aside` does
 
-    Raises
-    ------
-    Damaged : a block has been spoiled since the inventory was made
-    OSError : the file cannot be written
+    Raises Damaged when a block has been spoiled since the inventory was made, OSError when the file cannot be written.
     """
     with replacing(store.path, store.folder) as temporary:
         with File(temporary, "w", store.path) as file:

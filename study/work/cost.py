@@ -59,14 +59,9 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
-    return Estimate(cases, present, seconds, memory, size, disk_for(definition, missing) if missing else 0.0)
-
-
-def disk_for(definition: Definition, missing: int) -> float:
-    """Bytes of the results file and of the blocks of the missing cases. Both are on disk when the file is complete."""
-    block = KEY + sum(array.nbytes for array in not_run(definition, 1).values())
-    results = definition.numbers * np.dtype(definition.dtype).itemsize
-    return HEAD + ROOM * results + block * missing
+    # the results file and the blocks of the missing cases: both are on disk when the file is complete
+    blocks = missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
+    return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + blocks if missing else 0.0)
 
 
 def _matrices(definition: Definition) -> int:

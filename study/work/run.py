@@ -32,12 +32,9 @@ log = logging.getLogger(__name__)
 def run(definition: Definition, results="results", **options) -> Report:
     """Compute what is missing and write results/NAME.nc. `options` as of `Order`.
 
-    Raises
-    ------
-    StudyError : the folder cannot be written, or holds results that would be lost, or no scheduler answers; nothing has
-        been computed or written then.
-    OSError : writing failed later (a full disk), or the scheduler is lost; blocks written so far stay and are used by
-        the next run.
+    Raises StudyError when the folder cannot be written, or holds results that would be lost, or no scheduler answers;
+    nothing has been computed or written then. Raises OSError when writing failed later (a full disk), or the scheduler
+    is lost; blocks written so far stay and are used by the next run.
     """
     order = Order(definition, Path(results), **options)
     found, seen = look(order.store), stamp(order.path)
@@ -154,9 +151,7 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
 def dry_run(definition: Definition, results="results", *, workers=None, yes=False, force=False) -> Estimate:
     """What `run` would cost, how many cases it would find computed, and whether it would be refused. Writes nothing.
 
-    Raises
-    ------
-    StudyError : the study is very large and there are results or blocks to look through, and no `yes`
+    Raises StudyError when the study is very large and there are results or blocks to look through, and no `yes`.
     """
     order = Order(definition, Path(results))
     found = look(order.store)

@@ -20,9 +20,7 @@ def address_error(text: str) -> str:
 def connected(address: str, seconds: float):
     """A dask client of the scheduler at an address.
 
-    Raises
-    ------
-    StudyError : nothing answers there in so many seconds, or what answers is no scheduler
+    Raises StudyError when nothing answers there in so many seconds, or what answers is no scheduler.
     """
     from ..spec.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
 

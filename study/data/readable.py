@@ -26,7 +26,5 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
         finite = np.abs(owner.values[np.isfinite(owner.values)])
         word, size = multiple(finite.max() if finite.size else np.inf, unit)
         found[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
-    coords = {name: variable for name, variable in found.items() if name in dataset.coords}
-    made = dataset.drop_vars(list(coords)).assign_coords(coords)
-    made = made.assign({name: variable for name, variable in found.items() if name in dataset.data_vars})
-    return made.assign_attrs({PHYSICAL_SCALE: "readable multiples of SI units, by the attribute units"})
+    scale = "readable multiples of SI units, by the attribute units"
+    return dataset.assign(found).assign_attrs({PHYSICAL_SCALE: scale})

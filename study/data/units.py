@@ -101,9 +101,8 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
             attributes = physical_attributes(name, array.attrs)
             fill = {key: value for key, value in array.encoding.items() if key == "_FillValue"}
             changed[name] = array.dims, array.data * factor(name, **scales), attributes, fill
-    physical = dataset.assign_coords({name: made for name, made in changed.items() if name in dataset.coords})
-    physical = physical.assign({name: made for name, made in changed.items() if name in dataset.data_vars})
-    return physical.assign_attrs({PHYSICAL_SCALE: f"R = {scales['R']!r} m, E2* = {scales['E2_star']!r} Pa"})
+    scale = f"R = {scales['R']!r} m, E2* = {scales['E2_star']!r} Pa"
+    return dataset.assign(changed).assign_attrs({PHYSICAL_SCALE: scale})
 
 
 def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:

@@ -10,6 +10,7 @@ from solver.models.thin_layer_error import thin_layer_error
 
 from ..data.derived import from_layered
 from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from ..literature.compared import safe_range
 from ..spec.vocabulary import VOCABULARY
 
 LEVELS = (-10.0, -0.1, -0.01, 0.01, 0.1, 10.0)
@@ -65,9 +66,11 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
     """Draw a map for each row (name, dataset, quantity) and each material. Returns the errors that are not NaN."""
     parts = []
     for i, (name, dataset, quantity) in enumerate(rows):
-        for axes, case in zip(panels[i], materials(dataset), strict=True):
+        for j, (axes, case) in enumerate(zip(panels[i], materials(dataset), strict=True)):
             h_a, error = one_map(axes, case, quantity)
-            parts.append((h_a, error))
+            n, known = error["n"].broadcast_like(error), np.isfinite(error.values)
+            place = np.full((2, known.sum()), [[i], [j]])
+            parts.append([*place, *(array.values[known] for array in (h_a, n, error))])
             if case["bonding"] == "frictionless":
                 main_case(axes, case)
             if i == 0:
@@ -79,7 +82,8 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
         )
     for axes in panels[-1]:
         axes.set_xlabel("$h/a$")
-    return long_columns(rows, parts)
+    names = ("row", "material", "h/a", "n", "error")
+    return {name: np.concatenate(column) for name, column in zip(names, zip(*parts, strict=True), strict=True)}
 
 
 def materials(dataset: xr.Dataset) -> list[xr.Dataset]:
@@ -134,17 +138,6 @@ def legend(panels, *, estimate: bool) -> None:
     panels[0][0].figure.legend(handles=handles, loc="outside lower center", ncols=4, fontsize=7, handlelength=1.8)
 
 
-def long_columns(rows, parts) -> Columns:
-    """Columns with a line for each point: number of the row, of the material, h/a, n, error."""
-    found, per_row = [], len(parts) // len(rows)
-    for i, (h_a, error) in enumerate(parts):
-        n, finite = error["n"].broadcast_like(error).values, np.isfinite(error.values)
-        place = np.full((2, finite.sum()), [[i // per_row], [i % per_row]])
-        found.append([*place, *(array[finite] for array in (h_a.values, n, error.values))])
-    names = ("row", "material", "h/a", "n", "error")
-    return {name: np.concatenate(column) for name, column in zip(names, zip(*found, strict=True), strict=True)}
-
-
 MATERIALS = ("frictionless", "nu=0", "nu=0.3", "nu=0.45")
 """The first cases of the validity studies: without friction, and bonded with equal Poisson ratios."""
 
@@ -173,15 +166,10 @@ def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
 
 
 def largest_thickness(case: xr.Dataset, name: str, level: float) -> float:
-    """Smallest h/a, over all n, at which |error| of a quantity exceeds `level`; inf if it never does.
-
-    Between the points of the grid the error is taken as linear in ln(h/a).
-    """
+    """Smallest h/a, over all n, at which |error| of a quantity exceeds `level`, see `safe_range`; inf if none does."""
     h_a, error = error_over_thickness(case, name)
     crossings = [np.inf]
-    for x, e in zip(np.log(h_a.values), error.values, strict=True):
-        i = int(np.argmax(np.abs(e) > level))
-        if abs(e[i]) > level:
-            limit = np.copysign(level, e[i])
-            crossings.append(x[i - 1] + (limit - e[i - 1]) * (x[i] - x[i - 1]) / (e[i] - e[i - 1]) if i else x[0])
-    return float(np.exp(min(crossings)))
+    for x, e in zip(h_a.values, error.values, strict=True):
+        if (np.abs(e) > level).any():
+            crossings.append(x[0] if abs(e[0]) > level else safe_range(x, e, level)[1])
+    return float(min(crossings))

@@ -6,6 +6,7 @@ feels, over x = a/h: in E1* on a rigid base, in E2* on a half-space with n = E1*
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -98,24 +99,21 @@ def squeezed(chi, nu):
     return 3 * np.pi / 8 * chi**3
 
 
-def for_interface(function: Callable, bonded: bool) -> Callable:
-    """A formula of (χ, ν, bonded) as one of (χ, ν)."""
-    return lambda chi, nu: function(chi, nu, bonded)
-
-
 LOADS = (
     Formula("Hertz 1882", series(), True, (0.0, 0.3, 0.45, 0.5), "closed"),
     Formula("Hertz 1882", series(), False, (0.3,), "closed"),
     Formula("Hayes et al. 1972", hayes, True, (0.3, 0.45, 0.5), BIOMOMENTUM),
     Formula("Dimitriadis et al. 2002, nu = 1/2", series(*DIMITRIADIS), True, (0.5,), PYFMRHEO),
     Formula("Dimitriadis et al. 2002, nu = 1/2", series(0.884, 0.781, 0.386, 0.0048), False, (0.5,), PYFMRHEO),
-    Formula("Dimitriadis et al. 2002, general", for_interface(dimitriadis, True), True, (0.0, 0.3, 0.45, 0.5), ATOMICJ),
-    Formula("Dimitriadis et al. 2002, general", for_interface(dimitriadis, False), False, (0.0, 0.3, 0.5), ATOMICJ),
+    Formula(
+        "Dimitriadis et al. 2002, general", partial(dimitriadis, bonded=True), True, (0.0, 0.3, 0.45, 0.5), ATOMICJ
+    ),
+    Formula("Dimitriadis et al. 2002, general", partial(dimitriadis, bonded=False), False, (0.0, 0.3, 0.5), ATOMICJ),
     Formula("Garcia and Garcia 2018", series(*GARCIA), True, (0.5,), PYFMRHEO),
-    Formula("Hermanowicz 2021", for_interface(hermanowicz, True), True, (0.5,), ATOMICJ + ", his program"),
-    Formula("Hermanowicz 2021", for_interface(hermanowicz, False), False, (0.3,), ATOMICJ + ", his program"),
-    Formula("Johnson 1985, springs", for_interface(springs, True), True, (0.0, 0.3, 0.45), DERIVED, thin=True),
-    Formula("Johnson 1985, springs", for_interface(springs, False), False, (0.3,), DERIVED, thin=True),
+    Formula("Hermanowicz 2021", partial(hermanowicz, bonded=True), True, (0.5,), ATOMICJ + ", his program"),
+    Formula("Hermanowicz 2021", partial(hermanowicz, bonded=False), False, (0.3,), ATOMICJ + ", his program"),
+    Formula("Johnson 1985, springs", partial(springs, bonded=True), True, (0.0, 0.3, 0.45), DERIVED, thin=True),
+    Formula("Johnson 1985, springs", partial(springs, bonded=False), False, (0.3,), DERIVED, thin=True),
     Formula("Johnson 1985, Jaffar 1989, nu = 1/2", squeezed, True, (0.5,), DERIVED, thin=True),
 )
 

@@ -59,8 +59,8 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
         for formula in formulas.LOADS:
             if formula.bonded == bonded and (nu in formula.nu or formula.nu == (nu,) or is_short(formula, bonded)):
                 x, error = load_error(formula, rigid, nu)
-                words = formula.name.replace("general", f"general, nu = {nu:g}")
-                axes.plot(x, np.abs(error), label=greek(words), **look(formula.name))
+                words = formula.name.replace("general", f"general, nu = {nu:g}").replace("nu =", r"$\nu$ =")
+                axes.plot(x, np.abs(error), label=words, **look(formula.name))
                 parts.append((panel, x, error))
         axes.set(xlabel="$a/h$", xlim=(0.01, 20), title=title)
     axes = panels[2]
@@ -68,7 +68,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
     for name, error in stiffness_errors(coated).items():
         if not name.endswith("0.626"):
             largest = np.abs(error).max(axis=1)
-            axes.plot(n, largest, label=greek(name), **look(name))
+            axes.plot(n, largest, label=name, **look(name))
             parts.append((2, n, largest))
     axes.set(xlabel="$n = E_1^*/E_2^*$", xlim=(0.01, 100), title=r"coating, bonded, $\nu = 0.3$")
     axes.figure.suptitle("smooth punch, against the exact layer", fontsize=7)
@@ -92,11 +92,6 @@ def frame(axes, words: str) -> None:
     axes.title.set_fontsize(8)
     axes.tick_params(labelsize=7)
     axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.2), fontsize=6, handlelength=2.2, frameon=False)
-
-
-def greek(name: str) -> str:
-    """A name as a figure has it."""
-    return name.replace("nu =", r"$\nu$ =")
 
 
 def columns(parts: list[tuple]) -> Columns:

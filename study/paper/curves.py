@@ -115,12 +115,12 @@ def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     return columns
 
 
-def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, sides: dict[str, str], exact: bool,
-                 scale: float = 1.0) -> Columns:  # fmt: skip
+def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, label: str, sides: dict[str, str],
+                 exact: bool, scale: float = 1.0) -> Columns:  # fmt: skip
     """One quantity over `scale` of the curves named in `sides` against the load; P0 marked, loads shaded where an
     assumption fails.
 
-    data : datasets load_sweep and main_case
+    data : datasets load_sweep and main_case; label : of the ordinate
     """
     sweep, main = data
     P, columns, first = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}, {}
@@ -135,7 +135,8 @@ def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, sides
     if exact:
         axes.plot([], [], color="0.3", label=PAPER_LABEL, **PAPER)
     load_axis(axes, P[-1], float(main["P"]))
-    axes.set_ylim(0, 1.08 * max(float(case[quantity].max()) for case in first.values()) / scale)
+    highest = max(float(case[quantity].max()) for case in first.values()) / scale
+    axes.set(ylabel=label, ylim=(0, 1.08 * highest))
     shade_violations(axes, P, {curve: case["validity"] for curve, case in first.items()})
     axes.legend(loc="lower right", fontsize=7)
     return columns
@@ -144,26 +145,22 @@ def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, sides
 @with_companion("fig04", "load_sweep", "main_case", more=OVER_LOADS)
 def contact_area(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Real over nominal contact area against the load."""
-    axes.set_ylabel("$A_r/A_n$")
-    return against_load(axes, data, "Ar_An", {"1": "above", "2": "below"}, exact)
+    return against_load(axes, data, "Ar_An", "$A_r/A_n$", {"1": "above", "2": "below"}, exact)
 
 
 @with_companion("fig05", "load_sweep", "main_case", more=OVER_LOADS)
 def largest_pressure(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Largest real pressure in the middle of the contact against the load."""
-    axes.set_ylabel(r"$p_{\max}/E_2^*$")
-    return against_load(axes, data, "p_max", {"1": "below", "2": "below"}, exact)
+    return against_load(axes, data, "p_max", r"$p_{\max}/E_2^*$", {"1": "below", "2": "below"}, exact)
 
 
 @with_companion("fig06", "load_sweep", "main_case", more=OVER_LOADS)
 def depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Depth of the rough punch against the load."""
-    axes.set_ylabel(DEPTH)
-    return against_load(axes, data, "D", {"1": "above", "2": "below"}, exact, 1e-3)
+    return against_load(axes, data, "D", DEPTH, {"1": "above", "2": "below"}, exact, 1e-3)
 
 
 @with_companion("fig08", "load_sweep", "main_case", more=OVER_LOADS, height=3.6)
 def rough_and_smooth_depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
     """Depth of the rough punch, and of the smooth one (primes), against the load."""
-    axes.set_ylabel(DEPTH)
-    return against_load(axes, data, "D", {"1": "above", "2": "above", "1′": "below", "2′": "below"}, exact, 1e-3)
+    return against_load(axes, data, "D", DEPTH, {"1": "above", "2": "above", "1′": "below", "2′": "below"}, exact, 1e-3)

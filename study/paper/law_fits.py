@@ -3,11 +3,10 @@
 No study is needed: the exact law is a formula, Eqs (6) and (7), and a fit takes milliseconds.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from solver import fit_power_law, micro
+from solver.laws.fit import Fit
 
 from ..figures.annotate import name_curve
 from ..figures.registry import TWO_COLUMNS, Columns, figure, table
@@ -21,27 +20,15 @@ PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_0
 """Ra and N̄ of the curves in each panel of Figure 9."""
 
 
-class Fitted(NamedTuple):
-    """B in R/E1*^β, β, and the largest relative error over the paper's interval of A = B p^β."""
-
-    B: float
-    beta: float
-    error: float
-
-    def displacement(self) -> np.ndarray:
-        """A/R at PRESSURES."""
-        return self.B * PRESSURES**self.beta
-
-
 def exact(Ra: float, Nbar: float) -> np.ndarray:
     """A/R at PRESSURES by Eqs (6) and (7)."""
     return micro.displacement(PRESSURES, 1.0, Nbar, Ra)
 
 
-def fitted(Ra: float, Nbar: float) -> Fitted:
-    """The power law as the paper fits it."""
-    B, beta, error = fit_power_law(Nbar * Ra**2)
-    return Fitted(B * Ra, beta, error)
+def fitted(Ra: float, Nbar: float) -> Fit:
+    """The power law as the paper fits it, with B in R/E1*^β."""
+    found = fit_power_law(Nbar * Ra**2)
+    return found._replace(B=found.B * Ra)
 
 
 def printed(Ra: float, Nbar: float) -> np.ndarray:
@@ -99,7 +86,8 @@ def laws(panels) -> Columns:
     p, columns = PRESSURES, {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
         for i, (Ra, Nbar) in enumerate(roughnesses):
-            A = {"exact": exact(Ra, Nbar), "fit": fitted(Ra, Nbar).displacement(), "paper": printed(Ra, Nbar)}
+            B, beta, _ = fitted(Ra, Nbar)
+            A = {"exact": exact(Ra, Nbar), "fit": B * p**beta, "paper": printed(Ra, Nbar)}
             lines = axes.plot(p, A["fit"] * 1e4, "-", color=f"C{i}")
             axes.plot(p, A["exact"] * 1e4, **EXACT_LAW)
             axes.plot(p, A["paper"] * 1e4, color=f"C{i}", **PAPERS_LAW)

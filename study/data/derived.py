@@ -74,7 +74,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
     """`validity` of the variables of a dataset. It computes with arrays, since DataArrays take as long as a contact."""
     status, used = variables["status"], variables["model_used"].attrs
     v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
-    layered, rough = v["base"] != "half_space", _rough(v["micro"])
+    layered, rough = v["base"] != "half_space", _have("rough", v["micro"])
     h, n = _given(v, "h"), _given(v, "n")
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
     # No more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
@@ -87,7 +87,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         2: rough & (_spots(v) < FEW_SPOTS),
         4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
         8: (v["base"] == "thin_layer") & (n >= 1),
-        16: rough & _smears(v["micro"]) & (v["lam0"] > MERGING),
+        16: rough & _have("smears", v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & compressed,
         64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (steep > STEEP_SPOT)),
         128: layered & rough & (_given(v, "Nbar") * (PITCH_OVER_LAYER * h) ** 2 < 1),
@@ -148,13 +148,13 @@ def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
 @quantity("spots")
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return _spots(dataset).where(_rough(dataset["micro"]))
+    return _spots(dataset).where(_have("rough", dataset["micro"]))
 
 
 @quantity("b0")
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return _spot_radius(dataset).where(_rough(dataset["micro"]))
+    return _spot_radius(dataset).where(_have("rough", dataset["micro"]))
 
 
 @quantity("p_peak")
@@ -217,14 +217,9 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
     return error
 
 
-def _rough(micro):
-    """Whether the cases have asperities. A law that is not registered is taken to have some."""
-    return sum(micro == name for name, law in LAWS.items() if not law.rough) == 0
-
-
-def _smears(micro):
-    """Whether the law spreads the pressure of the neighbours evenly. One that is not registered is taken to do so."""
-    return sum(micro == name for name, law in LAWS.items() if not law.smears) == 0
+def _have(feature: str, micro):
+    """Whether the laws of the cases are "rough", or have another feature. One that is not registered is taken to."""
+    return sum(micro == name for name, law in LAWS.items() if not getattr(law, feature)) == 0
 
 
 def _spots(values):

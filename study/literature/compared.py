@@ -47,15 +47,9 @@ def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
     x, n, exact = stiffness(coated)
     nu = float(coated["nu1"])
     found = {name: of(x, n[:, None], nu) / exact - 1 for name, (of, _) in formulas.STIFFNESSES.items()}
-    return found | {"Doerner and Nix 1986, King 1987": best_alpha(x, n, exact, nu)[1]}
-
-
-def best_alpha(x, n, exact, nu) -> tuple[np.ndarray, np.ndarray]:
-    """For each n the α of Doerner and Nix whose largest error is smallest, (k,), and its errors (k, m)."""
-    tried = np.geomspace(0.1, 10, 201)
-    errors = formulas.doerner_nix(x, n[:, None], nu, tried[:, None, None]) / exact - 1
-    best = np.abs(errors).max(axis=2).argmin(axis=0)
-    return tried[best], errors[best, np.arange(len(n))]
+    errors = formulas.doerner_nix(x, n[:, None], nu, np.geomspace(0.1, 10, 201)[:, None, None]) / exact - 1
+    best = np.abs(errors).max(axis=2).argmin(axis=0)  # the α with the smallest largest error
+    return found | {"Doerner and Nix 1986, King 1987": errors[best, np.arange(len(n))]}
 
 
 def over_smooth(rough: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:

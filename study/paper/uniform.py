@@ -14,6 +14,7 @@ import numpy as np
 from scipy.special import ellipkm1
 
 from solver import Problem, Status
+from solver.body.springs import local_compliance
 from solver.laws import LAWS
 from solver.threads import one_blas_thread
 
@@ -127,7 +128,8 @@ class Contact:
         law, layered = LAWS[str(problem.micro[0])], problem.base[0] == "thin_layer"
         E = problem.n if layered else np.ones(len(problem))
         self.law = law.bind(E, **{name: getattr(problem, name) for name in law.parameters})
-        self.C = compliance(problem) if layered else np.zeros(len(problem))
+        material = problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
+        self.C = local_compliance(problem.h, *material) if layered else np.zeros(len(problem))
         self.given, self.value = problem.control, problem.value
         self.mesh, self.k, self.tolerance = mesh, k, tolerance
         self.limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
@@ -190,13 +192,6 @@ class Contact:
         D = 2 * a / len(mesh.x) * (p.sum(axis=1) - p[:, 0] / 2) + self.C * p[:, 0] + A0  # (14)
         arrays = a, P, D, p[:, 0], peak, 2 * (law.area(y, q) @ mesh.w), A0  # (12)
         return Found(*np.where(status == Status.DIVERGED, np.nan, arrays), status, self.count)
-
-
-def compliance(problem: Problem) -> np.ndarray:
-    """C = 2 A2 h/E1* of the layer, Eq. (3), with A2 of Eq. (2)."""
-    stiffness = problem.n * (1 - problem.nu1) / (1 - problem.nu2) * (1 - 2 * problem.nu2)
-    bonded = (1 + stiffness) * (1 - 2 * problem.nu1 - stiffness) / (2 * (1 - problem.nu1) ** 2)
-    return 2 * np.where(problem.bonding == "bonded", bonded, 0.5) * problem.h / problem.n
 
 
 def halved(load_error, start: np.ndarray, tolerance: float) -> np.ndarray:

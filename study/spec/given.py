@@ -150,9 +150,11 @@ class Draft:
         """Fill in the defaults and check what concerns several parameters."""
         self.errors += one_control(self.sections)
         self._check_dimensions()
-        for name in PARAMETERS:
+        _, laws = self.values.get("micro", ((), ""))  # "" if what was given has been refused
+        for name in [name for name in PARAMETERS if name not in self.sections]:
             own = VOCABULARY[name].own
-            if name not in self.sections and own.default is not None and self._has_its_law(name):
+            selector, owners = own.needed_by
+            if own.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
                 self.values[name] = (), np.array(own.default)
         grid = self._grid()
         if not self.errors and wants_a_fit(grid):
@@ -164,12 +166,6 @@ class Draft:
             self.errors += missing_parameters(grid) + picard_for_nothing(grid)
             self.errors += [] if self.physical else mixed_units(grid)
         return grid
-
-    def _has_its_law(self, name: str) -> bool:
-        """Whether a parameter belongs to no law, or to the law of some case."""
-        condition, laws = VOCABULARY[name].own.needed_by
-        _, given = self.values.get("micro", ((), ""))  # "" if what was given has been refused
-        return condition != "micro" or bool(np.isin(given, laws).any())
 
     def _grid(self) -> Grid:
         return Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)

@@ -70,11 +70,6 @@ class Order:
     stream: TextIO | None = None
 
     @property
-    def path(self) -> Path:
-        """Path of the results file."""
-        return self.store.path
-
-    @property
     def store(self) -> Store:
         return Store(self.definition, self.results)
 
@@ -87,11 +82,13 @@ class Order:
         """Whether a results file that was examined is that of this study, and holds no case to be tried again."""
         if not belongs(self.definition, found):
             return False
-        return not (self.retry and np.isin(statuses(self.path), self.retry).any())
+        return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 
     def report(self, known: Inventory | None = None, **what) -> Report:
         counts = count_statuses(known.status) if known else {}
-        return replace(Report(self.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what)
+        return replace(
+            Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what
+        )
 
 
 def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:

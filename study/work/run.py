@@ -37,17 +37,17 @@ def run(definition: Definition, results="results", **options) -> Report:
     is lost; blocks written so far stay and are used by the next run.
     """
     order = Order(definition, Path(results), **options)
-    found, seen = look(order.store), stamp(order.path)
+    found, seen = look(order.store), stamp(order.store.path)
     if order.done(found):
         if order.store.folder.exists():  # a run was killed before it removed its blocks, or other blocks are there
             return _finish_if_last(order, order.report())
         return order.report()
     check_size(order)
     made = [folder for folder in (order.store.folder, order.results) if not folder.exists()]
-    check_writable(order.path)
+    check_writable(order.store.path)
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-            if stamp(order.path) != seen:  # the run for which this one has waited has written it
+            if stamp(order.store.path) != seen:  # the run for which this one has waited has written it
                 found = look(order.store)
             report = _compute(order, found)
         return _finish_if_last(order, report) if order.shared else report
@@ -66,8 +66,8 @@ def _compute(order: Order, found: Condition) -> Report:
     if order.done(found):
         return order.report(kept=tidy(order.store))
     if found.kind == "damaged":
-        kept = f"computing again what is damaged, {target(order.path)}.damaged keeps it"
-        log.warning("%s: %s; %s", order.path, found.reason, kept)
+        kept = f"computing again what is damaged, {target(order.store.path)}.damaged keeps it"
+        log.warning("%s: %s; %s", order.store.path, found.reason, kept)
     known = prepared(order, found)
     missing = len(known.missing)
     writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))

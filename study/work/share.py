@@ -101,17 +101,14 @@ def _processes_allowed(definition: Definition, workers: int | None) -> int:
     """
     own = parcel(definition, np.arange(1)).laws
     parts = [part for law in own for part in vars(law).values() if callable(part)]
-    if not _is_python() or any(getattr(part, "__module__", "") == "__main__" for part in parts):
+    # a program that has Python inside would start itself anew
+    python = "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
+    if not python or any(getattr(part, "__module__", "") == "__main__" for part in parts):
         return 0
     if workers is not None:
         return workers - 1
     divided = multiprocessing.parent_process() or threading.current_thread() is not threading.main_thread()
     return 0 if divided else available_workers() - 1
-
-
-def _is_python() -> bool:
-    """Whether `sys.executable` is Python, and not a program that has it inside and would start itself anew."""
-    return "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
 
 
 def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[str, np.ndarray]:

@@ -1,7 +1,4 @@
-"""Where the paper's successive approximations converge: maps of the cycle in which they end, over C and k.
-
-A last panel shows two iterates of such a cycle near the edge of the contact.
-"""
+"""Where the paper's successive approximations converge: maps of the cycle in which they end, over C and k."""
 
 from importlib.resources import files
 

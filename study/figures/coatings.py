@@ -1,5 +1,7 @@
 """Master curves of coated contacts: effective modulus, largest pressure and real contact area against a/h."""
 
+from itertools import product
+
 import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
@@ -13,6 +15,7 @@ COLOURS = {
 }  # fmt: skip
 """Colour by n, from soft (blue) to hard (red)."""
 PALE = 0.4  # opacity of curves outside validity
+DASHES = (0, (2.5, 1.5))  # of the smooth punch
 RANGE = (0.05, 20.0)  # of a/h
 
 
@@ -35,30 +38,26 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
         "Ar/An": found["Ar_An"],
     }
     a_h = found["a"] / found["h"]
-    parts = {name: [] for name in ("bonded", "rough", "n", "P/(E2* R^2)", "a/h", *quantities)}
+    parts = []
     for column, bonding in zip(panels.T, found["bonding"].values, strict=True):
-        for n in found["n"].values.tolist():
-            for micro in ("disc_cell", "smooth"):
-                where = {"bonding": bonding, "n": n, "micro": micro}
-                flags = found["validity"].sel(where).values
-                shown, valid = flags & 2 == 0, flags == 0
-                x = a_h.sel(where).values[shown]
-                for name, values in {"bonded": bonding == "bonded", "rough": micro != "smooth", "n": n}.items():
-                    parts[name].append(np.full(len(x), float(values)))
-                parts["P/(E2* R^2)"].append(found["P"].values[shown])
-                parts["a/h"].append(x)
-                for axes, (name, quantity) in zip(column, quantities.items(), strict=True):
-                    y = quantity.sel(where).values[shown]
-                    parts[name].append(y)
-                    if micro != "smooth" or name == "E_eff/E1*":
-                        dashes = "-" if micro != "smooth" else (0, (2.5, 1.5))
-                        width = 1.3 if micro != "smooth" else 0.8
-                        look = {"linestyle": dashes, "color": COLOURS[n]}
-                        axes.plot(x, y, alpha=PALE, linewidth=0.7 * width, **look)
-                        axes.plot(x, np.where(valid[shown], y, np.nan), linewidth=width, **look)
+        for n, micro in product(found["n"].values.tolist(), ("disc_cell", "smooth")):
+            where, rough = {"bonding": bonding, "n": n, "micro": micro}, micro != "smooth"
+            flags = found["validity"].sel(where).values
+            shown, valid = flags & 2 == 0, flags == 0
+            fixed = {"bonded": float(bonding == "bonded"), "rough": float(rough), "n": n}
+            part = {name: np.full(shown.sum(), value) for name, value in fixed.items()}
+            part |= {"P/(E2* R^2)": found["P"].values[shown], "a/h": a_h.sel(where).values[shown]}
+            part |= {name: quantity.sel(where).values[shown] for name, quantity in quantities.items()}
+            parts.append(part)
+            look, width = {"linestyle": "-" if rough else DASHES, "color": COLOURS[n]}, 1.3 if rough else 0.8
+            for axes, name in zip(column, quantities, strict=True):
+                if rough or name == "E_eff/E1*":
+                    x, y = part["a/h"], part[name]
+                    axes.plot(x, y, alpha=PALE, linewidth=0.7 * width, **look)
+                    axes.plot(x, np.where(valid[shown], y, np.nan), linewidth=width, **look)
         column[0].set_title(bonding)
     decorate(panels, found)
-    return {name: np.concatenate(part) for name, part in parts.items()}
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
 def decorate(panels, found: xr.Dataset) -> None:
@@ -77,7 +76,7 @@ def decorate(panels, found: xr.Dataset) -> None:
     handles = [
         Line2D([], [], color=COLOURS[n], linewidth=1.3, label=f"$n = {power(n)}$") for n in found["n"].values.tolist()
     ]
-    handles.append(Line2D([], [], color="0.2", linewidth=0.8, linestyle=(0, (2.5, 1.5)), label="smooth punch"))
+    handles.append(Line2D([], [], color="0.2", linewidth=0.8, linestyle=DASHES, label="smooth punch"))
     handles.append(Line2D([], [], color="0.2", linewidth=0.9, alpha=PALE, label="outside validity"))
     P = rf"$P/(E_2^* R^2)$ from {written(float(found['P'][0]))} to {written(float(found['P'][-1]))}"
     panels[0, 0].figure.suptitle(", ".join([*stated([found]), P]), fontsize=7)

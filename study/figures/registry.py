@@ -55,8 +55,6 @@ TABLES: dict[str, Table] = {}
 def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), caption: str = ""):
     """Register `draw(axes, *datasets)`, which draws the figure NAME and returns the numbers that it shows.
 
-    Parameters
-    ----------
     studies : names of the studies whose datasets `draw` takes, in this order
     size : width and height in inches
     panels : rows and columns; several make `axes` an array
@@ -65,7 +63,7 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
-        FIGURES[name] = Figure(studies, draw, size, panels, one_line(caption or first_paragraph(draw)))
+        FIGURES[name] = Figure(studies, draw, size, panels, caption_of(draw, caption))
         return draw
 
     return register
@@ -74,8 +72,6 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
 def table(name: str, *studies: str, columns: str, caption: str = ""):
     """Register `rows(*datasets)`, which gives the table NAME as a list of tuples, one value per column.
 
-    Parameters
-    ----------
     studies : names of the studies whose datasets `rows` takes, in this order
     columns : a line for each column, "heading | format of its numbers | heading in LaTeX"; without a format the cells
         are text, without a heading in LaTeX it is the plain one
@@ -84,20 +80,15 @@ def table(name: str, *studies: str, columns: str, caption: str = ""):
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
         heads = tuple(column(line) for line in columns.strip().split("\n"))
-        TABLES[name] = Table(studies, rows, one_line(caption or first_paragraph(rows)), heads)
+        TABLES[name] = Table(studies, rows, caption_of(rows, caption), heads)
         return rows
 
     return register
 
 
-def first_paragraph(function: Callable) -> str:
-    """The first paragraph of the docstring of a function."""
-    return (function.__doc__ or "").partition("\n\n")[0]
-
-
-def one_line(text: str) -> str:
-    """A text without its ends of lines."""
-    return " ".join(text.split())
+def caption_of(function: Callable, given: str = "") -> str:
+    """The caption that was given, by default the first paragraph of the docstring, on one line."""
+    return " ".join((given or (function.__doc__ or "").partition("\n\n")[0]).split())
 
 
 def column(line: str) -> Column:

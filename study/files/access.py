@@ -44,17 +44,15 @@ class Access:
     def acquire(self, blocking: bool = True) -> bool:
         if not Access._mine.acquire(blocking):
             return False
+        taken = False
         try:
-            again = Access._depth and blocking  # not blocking: xarray closes a dataset that is garbage
+            again = Access._depth > 0 and blocking  # not blocking: xarray closes a dataset that is garbage
             taken = again or NETCDF4_PYTHON_LOCK.acquire(blocking)
-        except BaseException:
-            Access._mine.release()
-            raise
-        if not taken:
-            Access._mine.release()
-            return False
-        Access._depth += 1
-        return True
+        finally:
+            Access._depth += taken
+            if not taken:
+                Access._mine.release()
+        return taken
 
     def release(self) -> None:
         Access._depth -= 1

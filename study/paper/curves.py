@@ -9,7 +9,7 @@ from functools import partial
 import xarray as xr
 
 from ..figures.annotate import load_axis, name_curve, note_violations, shade_violations
-from ..figures.registry import ONE_COLUMN, Columns, figure, first_paragraph, pick
+from ..figures.registry import ONE_COLUMN, Columns, caption_of, figure, pick
 
 CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
@@ -32,7 +32,7 @@ def with_companion(name: str, *studies: str, more: str = "", height: float = 3.0
     def register(draw):
         for suffix, exact in (("", False), ("_layered", True)):
             layer = LAYER_EXACT if exact else LAYER_THIN
-            caption = f"{first_paragraph(draw)} {more} {layer}"
+            caption = f"{caption_of(draw)} {more} {layer}"
             named = figure(name + suffix, *studies, size=(ONE_COLUMN, height), caption=caption)
             named(partial(draw, exact=exact))
         return draw

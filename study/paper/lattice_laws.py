@@ -87,9 +87,11 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
         cases = {name: true, f"{name}, power law": fitted}
         columns |= profile(axes, cases, a0, rf"{name}: $\bar N R^2 = {int(true['Nbar'])}$", side)
         for kind, other, style in (("power law", fitted, PAPER), ("disc cell", disc, DISC)):
-            r, difference = difference_of_pressures(other, true, a0)
-            beside.plot(r, 100 * difference, color=f"C{i}", **style)
-            columns |= {f"r/a0 ({name}, {kind} off)": r, f"off/p(0) ({name}, {kind})": difference}
+            r = np.linspace(0, max(float(case["a"]) for case in (other, true)), true.sizes["x"])
+            p = [np.interp(r, case["x"] * case["a"], case["p"], right=0.0) for case in (other, true)]
+            difference = (p[0] - p[1]) / float(true["p0"])
+            beside.plot(r / a0, 100 * difference, color=f"C{i}", **style)
+            columns |= {f"r/a0 ({name}, {kind} off)": r / a0, f"off/p(0) ({name}, {kind})": difference}
         validity[name] = true["validity"]
     axes.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
     pressure_axes(axes, exact=False)
@@ -100,10 +102,3 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
     beside.set(xlabel="$r/a_0$", ylabel=r"difference from the lattice / $p(0)$ (%)", xlim=axes.get_xlim())
     beside.legend(loc="best", fontsize=8)
     return columns
-
-
-def difference_of_pressures(other: xr.Dataset, true: xr.Dataset, a0: float) -> tuple[np.ndarray, np.ndarray]:
-    """r/a0 up to the larger of two contact radii, and the difference of the pressures there, over the true p(0)."""
-    r = np.linspace(0, max(float(case["a"]) for case in (other, true)), true.sizes["x"])
-    p = [np.interp(r, case["x"] * case["a"], case["p"], right=0.0) for case in (other, true)]
-    return r / a0, (p[0] - p[1]) / float(true["p0"])

@@ -7,7 +7,6 @@ computed, or how large the blocks are. The cases of an earlier results file are 
 import hashlib
 import json
 import logging
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
@@ -129,18 +128,6 @@ def _is_kept(definition: Definition, block: Block) -> bool:
     return same_points and kept and block.facts.get("numerics_version") == NUMERICS_VERSION
 
 
-def blocks_on_disk(store: Store) -> Iterator[tuple[Path, Block | None]]:
-    """(path, block) of every block; None for a damaged one, which is logged: its cases are computed again."""
-    for path in sorted(store.folder.glob("*.block")):
-        try:
-            yield path, read_block(path)
-        except FileNotFoundError:  # removed just now by the run to which it belongs
-            continue
-        except OSError as error:
-            log.warning("%s", error)
-            yield path, None
-
-
 def inventory(
     store: Store, earlier: Source | None = None, retry: tuple[int, ...] = (), force: bool = False
 ) -> Inventory:
@@ -153,10 +140,16 @@ def inventory(
     sources, blocks, covered = [], {}, set()
     keys = case_keys(store.definition.grid)
     first = np.sort(keys[:, 0])
-    for path, block in blocks_on_disk(store):
-        blocks[path] = -1 if block is None else len(block.keys)
-        if block is None:
+    for path in sorted(store.folder.glob("*.block")):
+        try:
+            block = read_block(path)
+        except FileNotFoundError:  # removed just now by the run to which it belongs
             continue
+        except OSError as error:  # its cases are computed again
+            log.warning("%s", error)
+            blocks[path] = -1
+            continue
+        blocks[path] = len(block.keys)
         near = np.minimum(np.searchsorted(first, block.keys[:, 0]), len(first) - 1)
         if (first[near] == block.keys[:, 0]).all() and _is_kept(store.definition, block):
             covered.add(path)

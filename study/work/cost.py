@@ -58,24 +58,17 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     processes = processes_for(count, -(-missing // definition.block))
     memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
-    memory += count * (SOLVING + _matrices(definition)) + (processes or 1) * TABLES * _on_exact_layer(definition)
+    base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
+    # whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer
+    exact = np.isin(base, ("layered", "auto")).any() or (
+        (base == "thin_layer").any() and (judged == "first_order").any()
+    )
+    nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
+    matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
+    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes or 1) * TABLES * exact
     # the results file and the blocks of the missing cases: both are on disk when the file is complete
     blocks = missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
     return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + blocks if missing else 0.0)
-
-
-def _matrices(definition: Definition) -> int:
-    """Bytes of the matrices that a worker has at a time on the largest mesh."""
-    nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
-    stack = 3 * STACK if _on_exact_layer(definition) else STACK
-    return 8 * MATRICES * nodes * min(nodes * min(definition.block, definition.grid.size), stack)
-
-
-def _on_exact_layer(definition: Definition) -> bool:
-    """Whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer."""
-    base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
-    judged = np.any(base == "thin_layer") and np.any(judged == "first_order")
-    return bool(judged or np.isin(base, ("layered", "auto")).any())
 
 
 def seconds_per_case(definition: Definition) -> float:

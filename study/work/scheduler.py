@@ -28,13 +28,16 @@ def connected(address: str, seconds: float):
     if reason:
         raise StudyError([f"--scheduler {address}: {reason}"])
     try:
-        from dask.distributed import Client, Security
+        from dask.distributed import Client
     except ImportError:
         raise StudyError(["--scheduler needs the package distributed: pip install 'roughcoat[cluster]'"]) from None
     logging.getLogger("distributed.client").setLevel(logging.CRITICAL)  # its messages are long; `Lost` says the same
     try:
-        if address.startswith(("tls:", "wss:")) and not Security().get_connection_args("client")["ssl_context"]:
-            raise OSError("TLS needs certificates, which dask's configuration must name: see docs/cluster.md")
+        if address.startswith(("tls:", "wss:")):
+            from dask.distributed import Security
+
+            if not Security().get_connection_args("client")["ssl_context"]:
+                raise OSError("TLS needs certificates, which dask's configuration must name: see docs/cluster.md")
         _greeted(address, seconds)
         return Client(address, timeout=seconds, set_as_default=False)
     except Exception as error:  # what the client raises for an answer that it does not understand is not known

@@ -44,16 +44,12 @@ def add_engine(sub: argparse.ArgumentParser) -> None:
 def add_curves(sub: argparse.ArgumentParser) -> None:
     """Options of `plot` to draw curves of the results of a study, or of a results file, instead of a known figure."""
     group = sub.add_argument_group("curves of the results of a study, or of a file .nc")
-    drawn = [
-        group.add_argument("--x", metavar="QUANTITY", help="abscissa, such as P, or a"),
-        group.add_argument(
-            "--y", metavar="QUANTITY", help="ordinate, such as p_max; also An, spots, p_peak, E_eff ..."
-        ),
-        group.add_argument(
-            "--hue", metavar="AXIS", default="", help="a curve for each of its values, such as n, or label"
-        ),
-    ]
-    for option in drawn:
+    for name, word, text in (
+        ("--x", "QUANTITY", "abscissa, such as P, or a"),
+        ("--y", "QUANTITY", "ordinate, such as p_max; also An, spots, p_peak, E_eff ..."),
+        ("--hue", "AXIS", "a curve for each of its values, such as n, or label"),
+    ):
+        option = group.add_argument(name, metavar=word, default="", help=text)
         option.completer = partial(proposed, "--x")
     group.add_argument("--where", action="append", type=assignment, default=[], metavar="AXIS=VALUE", help="this alone")
 

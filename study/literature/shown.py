@@ -74,7 +74,13 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
     axes.figure.suptitle("smooth punch, against the exact layer", fontsize=7)
     for axes, words in zip(panels, ("error of the load", "error of the load", "largest error, stiffness"), strict=True):
         frame(axes, words)
-    return columns(parts)
+    sizes = [len(x) for _, x, _ in parts]
+    return {
+        "panel": np.repeat([panel for panel, *_ in parts], sizes),
+        "curve": np.repeat(np.arange(len(parts)), sizes),
+        "a/h or n": np.concatenate([x for _, x, _ in parts]),
+        "error": np.concatenate([error for *_, error in parts]),
+    }
 
 
 def is_short(formula: formulas.Formula, bonded: bool) -> bool:
@@ -92,17 +98,6 @@ def frame(axes, words: str) -> None:
     axes.title.set_fontsize(8)
     axes.tick_params(labelsize=7)
     axes.legend(loc="upper center", bbox_to_anchor=(0.45, -0.2), fontsize=6, handlelength=2.2, frameon=False)
-
-
-def columns(parts: list[tuple]) -> Columns:
-    """Number of the panel and of the curve, abscissa (a/h or n), error."""
-    sizes = [len(x) for _, x, _ in parts]
-    return {
-        "panel": np.repeat([panel for panel, *_ in parts], sizes),
-        "curve": np.repeat(np.arange(len(parts)), sizes),
-        "a/h or n": np.concatenate([x for _, x, _ in parts]),
-        "error": np.concatenate([error for *_, error in parts]),
-    }
 
 
 @table(

@@ -75,8 +75,6 @@ Found = namedtuple("Found", "a P D p0 p_max Ar_An A0 status iterations")
 def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None) -> Found:
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 
-    Parameters
-    ----------
     problem : cases on "thin_layer", where its equation applies, or "half_space", given P or a, with R = E2* = 1; its
         scheme, k, rtol and nodes are not used
     intervals : of the uniform mesh on [0, a]
@@ -85,13 +83,8 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
         halving when the bracket of ln a is
     limit : approximations at one radius; by default LIMIT, or LIMIT_RELAXED (1 + k) if that is more
 
-    Returns
-    -------
-    Found : `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, DIVERGED, or INVALID_INPUT
-
-    Raises
-    ------
-    ValueError : a base that the paper does not have, smooth cases on the half-space, or an elastic punch
+    `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, DIVERGED, or INVALID_INPUT. Raises ValueError
+    for a base that the paper does not have, smooth cases on the half-space, or an elastic punch.
 
     Examples
     --------

@@ -96,10 +96,8 @@ def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:
     definition, found = store.definition, examine(store.path, columns)
     sizes = list(definition.in_results(definition.grid.sizes).items())
     if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
-        reason = (
-            f"another program has changed it: its dimensions are {list(found.sizes)}, not {[dim for dim, _ in sizes]}"
-        )
-        return replace(found, kind="foreign", reason=reason)
+        dims = f"{list(found.sizes)}, not {[dim for dim, _ in sizes]}"
+        return replace(found, kind="foreign", reason=f"another program has changed it: its dimensions are {dims}")
     return found
 
 

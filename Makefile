@@ -76,7 +76,7 @@ test: $(READY) ## all tests
 # Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
 # the shrunken results of all studies, which are twenty seconds of computing.
 CHECKED := numerics/test_linalg.py numerics/test_operator.py laws/test_micro.py laws/test_fit.py body/test_kernel.py \
-  contact/test_golden_numbers.py contact/test_numbers.py models/test_closed_forms.py scene/test_quantities.py \
+  contact/test_golden_numbers.py contact/test_numbers.py models/test_closed_forms.py specimen/test_quantities.py \
   spec/test_given.py spec/test_definition.py spec/test_bad_files.py data files/test_atomic.py store/test_blocks.py \
   work/test_engine.py work/test_progress.py figures/test_annotate.py commands/test_cli_options.py \
   paper/test_uniform.py::test_weights_are_the_trapezoidal_rule paper/test_uniform.py::test_second_order_towards_newton \

@@ -24,8 +24,8 @@ _HOME = {
 }
 _MODULES = {
     "derived": "data.derived",
-    "materials": "scene.materials",
-    "roughness": "scene.roughness",
+    "materials": "specimen.materials",
+    "roughness": "specimen.roughness",
     "units": "data.units",
     "vocabulary": "spec.vocabulary",
 }

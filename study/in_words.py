@@ -11,10 +11,10 @@ from .physical.bodies import BODIES
 from .physical.bounds import absurd
 from .physical.inputs import is_rigid, used_inputs
 from .physical.scene import ASSUMED
-from .scene.quantities import READABLE, readable
-from .scene.roughness import looks_like_iso_ra
 from .spec.laws import smooth_laws
 from .spec.vocabulary import CONTROLS, VOCABULARY
+from .specimen.quantities import READABLE, readable
+from .specimen.roughness import looks_like_iso_ra
 
 MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")

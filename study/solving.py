@@ -17,11 +17,11 @@ from .in_words import doubts
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
-from .scene.materials import Material
 from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
 from .spec.grid import shown
 from .spec.vocabulary import NUMERICS, VOCABULARY
+from .specimen.materials import Material
 from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray

@@ -3,7 +3,7 @@
 import numpy as np
 import xarray as xr
 
-from ..scene.quantities import READABLE, multiple
+from ..specimen.quantities import READABLE, multiple
 from .units import PHYSICAL_SCALE
 
 

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..scene.quantities import has_unit, quantity
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
+from ..specimen.quantities import has_unit, quantity
 
 PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical units
 

@@ -8,9 +8,9 @@ import xarray as xr
 
 from ..physical.inputs import all_inputs, is_rigid, used_inputs
 from ..physical.names import SCENE
-from ..scene import quantities
-from ..scene.quantities import READABLE, readable
 from ..spec.vocabulary import VOCABULARY, over_scale
+from ..specimen import quantities
+from ..specimen.quantities import READABLE, readable
 
 TIMES = r"\,"
 """What is written between two factors, in mathtext."""

@@ -12,9 +12,9 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..data.derived import QUANTITIES
-from ..scene.quantities import quantity
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
+from ..specimen.quantities import quantity
 from .labels import axis_label, multiple, stated, value_text, wrapped, written
 from .registry import Columns
 from .style import style

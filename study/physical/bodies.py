@@ -4,10 +4,10 @@ from typing import Any
 
 import numpy as np
 
-from ..scene import materials
-from ..scene.quantities import Quantity
 from ..spec.grid import shown, twins
 from ..spec.vocabulary import VOCABULARY
+from ..specimen import materials
+from ..specimen.quantities import Quantity
 from .names import RIGID_TEXTS, CaseValues, QuantityList
 
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.

@@ -9,9 +9,9 @@ from solver.parameters import allowed as within
 from solver.parameters import ends
 
 from ..data.units import with_unit
-from ..scene.quantities import multiple, quantity, readable, unit_in
 from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY, allowed
+from ..specimen.quantities import multiple, quantity, readable, unit_in
 from ..terminal import on_one_line
 from .names import SCENE, QuantityList, unit_of
 from .scene import Scene

@@ -6,8 +6,8 @@ import numpy as np
 import xarray as xr
 from xarray.indexes import PandasIndex
 
-from ..scene.quantities import has_unit
 from ..spec.vocabulary import VOCABULARY
+from ..specimen.quantities import has_unit
 from .names import SCENE, si, unit_of
 
 

@@ -3,8 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
-from ..scene.quantities import Quantity, quantity
 from ..spec.vocabulary import SI, VOCABULARY
+from ..specimen.quantities import Quantity, quantity
 
 #: Inputs of a scene that are no parameters of the solver -> SI unit, long name.
 SCENE = {

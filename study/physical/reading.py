@@ -9,12 +9,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..scene.quantities import READABLE, Quantity, has_unit, quantity
 from ..spec.definition import StudyError
 from ..spec.given import label_slips
 from ..spec.grid import MOVED, shown, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
+from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from .bodies import BODIES, assumed, layered, with_materials
 from .bounds import beyond_bounds, value_text
 from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of

@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ..scene.quantities import Quantity, has_unit, quantity
 from ..spec import definition
 from ..spec.definition import Definition, StudyError
 from ..spec.given import Draft, one_control
@@ -20,6 +19,7 @@ from ..spec.identity import digest_of_array
 from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
 from ..spec.vocabulary import CONTROLS, NUMERICS, VOCABULARY, Parameter, si_unit
+from ..specimen.quantities import Quantity, has_unit, quantity
 from .bodies import BODIES, with_materials
 from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_of
 

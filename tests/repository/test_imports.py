@@ -21,7 +21,7 @@ ROOMS = {
         *("contact", "scaling", "schemes", "models", "solve"),
     ),
     "study": (
-        *("terminal", "scene", "spec", "data", "physical", "in_words", "files", "store", "work"),
+        *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
         *("solving", "figures", "api", "paper", "literature", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
@@ -138,7 +138,7 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
     light = ("spec.vocabulary", "spec.grid", "spec.given", "spec.definition", "commands.arguments", "work.processes")
-    alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "scene.materials")))
+    alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))
 
 
 def test_rooms_are_there_after_import_of_the_package_alone():

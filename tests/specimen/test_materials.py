@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from study.scene import materials
+from study.specimen import materials
 
 ROOT = Path(__file__).resolve().parents[2]
 #: What each class of materials lies between: E in Pa, nu. A unit slip or exchanged numbers fall outside.

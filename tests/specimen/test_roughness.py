@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from study import roughness
-from study.scene import summits
+from study.specimen import summits
 
 ELL = 1e-6  # correlation length of the random surfaces, m
 SLOPE = 0.1  # their rms slope

@@ -6,8 +6,8 @@ import re
 import numpy as np
 import pytest
 
-from study.scene import quantities
-from study.scene.quantities import READABLE, Quantity, has_unit, quantity, readable
+from study.specimen import quantities
+from study.specimen.quantities import READABLE, Quantity, has_unit, quantity, readable
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from study import roughness
-from study.scene.scan import UNITS
+from study.specimen.scan import UNITS
 
 X = np.arange(20) * 0.5
 Z = np.round(np.sin(X) + 0.3 * np.cos(2.7 * X), 6)

@@ -1,1 +1,0 @@
-"""The physical scene: materials, roughness, quantities with units."""

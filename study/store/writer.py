@@ -41,7 +41,6 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
     in_file = Grid(sizes, {})
     rows = CaseDigests(in_file.size)
     most = AT_ONCE * in_file.size // (8 * definition.numbers)
-    two_blocks, written = 16 * definition.numbers * definition.block // definition.grid.size, 0  # bytes
     chunk = definition.in_results(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
     for window in windows(in_file, most, CHUNK):
         window |= {MOVED: slice(None)} if MOVED in definition.grid.sizes else {}
@@ -57,9 +56,6 @@ def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator
         for name, array in part.data_vars.items():
             file.write(name, array.values, place)
             rows.add(name, array.values.reshape(-1, *array.shape[len(sizes) :]))
-            written += array.nbytes
-            if written >= two_blocks:  # so that the steps, one a block, come up with the blocks
-                yield
-                written = 0
+            yield
         start += grid.size
     add_checksums(file, rows, {"=cases": digest_of_cases(NUMERICS_VERSION, definition.x, known.keys)})

@@ -13,6 +13,9 @@ from layered_independent import answers, rough
 from solver_cases import ALL_KINDS, KINDS, ROUGH_KINDS, difference
 
 from solver import Problem, Status, solve
+from solver.contact import equation
+from solver.contact.start import guess_radius
+from solver.scaling import as_cases
 from study.spec.sample import draw
 from study.spec.vocabulary import VOCABULARY
 
@@ -107,6 +110,16 @@ def test_stiff_films_neither_fail_nor_lift_off(law, which):
     s, fine = solved_twice(case, base="layered", micro=law)
     assert np.all(s.status == Status.CONVERGED) and np.all(fine.status == Status.CONVERGED)
     assert np.all(difference(s, fine) <= RTOL)
+
+
+def test_no_operator_is_so_wrong_that_an_open_iteration_could_have_closed():
+    """The residual from which on the operator is not asked, `_OPEN`, is far above all that its error can close."""
+    cases = as_cases(Problem.of(**sample("layered", 3000), base="layered", micro="disc_cell"))
+    a = guess_radius(cases)
+    for nodes in (8, 144):
+        rounding = equation._ROUNDING / cases.body.softness(a)
+        most = np.maximum(equation._OF_OPERATOR * equation._floor(cases.body, a, nodes), rounding)
+        assert 0 < most.max() < equation._OPEN / 100
 
 
 @pytest.mark.parametrize(("base", "law"), ROUGH_KINDS)

@@ -92,7 +92,7 @@ class Layered(NamedTuple):
         if near is not None and near.mesh == mesh and not far.any():
             return near
         parts += parts_of(self, a, np.flatnonzero(far))
-        return LayeredOperator(mesh, parts, *_matrix_and_edge(parts, mesh))
+        return LayeredOperator(mesh, parts, _rows(parts, mesh))
 
     def softness(self, a):
         """L (B,) at the wave number 1.5/a: about what the contact feels."""
@@ -129,54 +129,63 @@ class Layered(NamedTuple):
 
 
 class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: its mesh, the kernel (list of
-    :class:`.part.Part`), the matrix K (B, n, n), of which the cases are neighbours in memory, and the row of the edge
-    (B, n)."""
+    """The :class:`~solver.body.operator.Operator` of layers: its mesh, the kernel (list of :class:`.part.Part`), and
+    `rows` (B, n + 1, n): the matrix K and under it the row of the edge. The cases are neighbours in memory."""
 
     mesh: Mesh
     parts: list
-    K: np.ndarray
-    edge: np.ndarray
+    rows: np.ndarray
+
+    @property
+    def K(self):
+        """The matrix (B, n, n)."""
+        return self.rows[:, :-1]
+
+    @property
+    def edge(self):
+        """The row (B, n) of the edge."""
+        return self.rows[:, -1]
 
     def take(self, index):
         """The sub-batch at `index`, ascending."""
-        place = np.full(len(self.edge), -1)
+        place = np.full(len(self.rows), -1)
         place[index] = np.arange(len(index))
-        rows = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
-        parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, rows, strict=True) if len(r)]
-        K = np.take(self.K.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
-        return LayeredOperator(self.mesh, parts, K, self.edge[index])
+        at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
+        parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, at, strict=True) if len(r)]
+        rows = np.take(self.rows.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
+        return LayeredOperator(self.mesh, parts, rows)
 
     def join(self, operators, places):
         """The batch of sub-batches, each at its places (b,)."""
         size, n = sum(len(place) for place in places), self.mesh.n
-        K, edge, groups = np.empty((n, n, size)).transpose(2, 0, 1), np.empty((size, n)), {}
+        rows, groups = np.empty((n + 1, n, size)).transpose(2, 0, 1), {}
         for operator, place in zip(operators, places, strict=True):
-            K[place], edge[place] = operator.K, operator.edge
+            rows[place] = operator.rows
             for part in operator.parts:
                 groups.setdefault((part.stiffness, part.film is None), []).append(
                     part._replace(index=place[part.index])
                 )
-        return LayeredOperator(self.mesh, [join(parts) for parts in groups.values()], K, edge)
+        return LayeredOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
 
     def products(self, q):
         """K q (B, n) and edge @ q (B,)."""
-        return np.einsum("bij,bj->bi", self.K, q), np.einsum("bj,bj->b", self.edge, q)
+        return _apart(np.einsum("bij,bj->bi", self.rows, q))
 
     def slopes(self, q):
         """Derivatives of the products by ln a: (B, n) and (B,)."""
-        d_Kq, d_edge_q = np.empty(q.shape), np.empty(len(q))
+        out = np.empty((len(q), self.mesh.n + 1))
         for part in self.parts:
             for tab, rows in part.tables(self.mesh):
-                index = part.index[rows]
+                index, uL = part.index[rows], part.uL[rows]
                 own = q[index]
-                moved = tab.weights(part.uL[rows]) * (own @ tab.phi.T)
-                d_Kq[index], d_edge_q[index] = moved @ tab.J, moved @ tab.J_edge
+                if tab.is_small:
+                    moved = (uL @ tab.product).reshape(len(own), -1, self.mesh.n)
+                    out[index] = np.einsum("bij,bj->bi", moved, own)
+                else:
+                    out[index] = (tab.weights(uL) * (own @ tab.phi.T)) @ tab.J
                 if part.film is not None:
-                    K, edge = _film(part.d_film[rows], tab, self.mesh.n)
-                    d_Kq[index] += np.matmul(K, own[..., None])[..., 0]
-                    d_edge_q[index] += (edge * own).sum(axis=1)
-        return d_Kq, d_edge_q
+                    out[index] += np.matmul(_film(part.d_film[rows], tab, self.mesh.n), own[..., None])[..., 0]
+        return _apart(out)
 
     def between(self, q, s, half_space):
         """K q (B, m) at points s (m,) between the nodes; half_space (B, m) is H[q] - H[q](edge) there."""
@@ -195,35 +204,38 @@ class LayeredOperator(NamedTuple):
         return out
 
 
-def _matrix_and_edge(parts, mesh):
-    """K (B, n, n), its cases next to each other in memory, and the row of the edge (B, n)."""
-    order, n = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n
-    flat, edge, end = np.empty((n * n, len(order))), np.empty((len(order), n)), 0
+def _apart(values):
+    return values[:, :-1], values[:, -1]
+
+
+def _rows(parts, mesh):
+    """K and under it the row of the edge (B, n + 1, n), its cases next to each other in memory."""
+    order, n, end = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n, 0
+    flat, half_space = np.empty(((n + 1) * n, len(order))), np.vstack([mesh.K, mesh.edge]).reshape(-1, 1)
     for part in parts:
+        begin = end
         for tab, rows in part.tables(mesh):
-            begin, end = end, end + rows.stop - rows.start
-            L1, share = part.L1[rows], part.share if part.level is None else part.share[rows]
-            own, row = flat[:, begin:end], L1 @ tab.edge + share * mesh.edge
+            low, end = end, end + rows.stop - rows.start
+            own, L1 = flat[:, low:end], part.L1[rows]
+            of_cases = own.reshape(n + 1, n, -1).transpose(2, 0, 1)
             if tab.product is None:
-                for one, w in zip(own.reshape(n, n, -1).transpose(2, 0, 1), tab.weights(L1), strict=True):
+                for one, w in zip(of_cases, tab.weights(L1), strict=True):
                     one[:] = (tab.J * w[:, None]).T @ tab.phi
             else:
                 np.matmul(tab.product.T, L1.T, out=own)
-            own += mesh.K.reshape(-1, 1) * np.transpose(share)
             if part.film is not None:
-                K, at_edge = _film(part.film[rows], tab, n)
-                own.reshape(n, n, -1).transpose(2, 0, 1)[:] += K
-                row += at_edge
-            edge[part.index[rows]] = row
+                of_cases[:] += _film(part.film[rows], tab, n)
+        flat[:, begin:end] += half_space * np.transpose(part.share)
     if np.any(np.diff(order) < 0):
         flat = np.take(flat, np.argsort(order), axis=1)
-    return flat.reshape(n, n, -1).transpose(2, 0, 1), edge
+    return flat.reshape(n + 1, n, -1).transpose(2, 0, 1)
 
 
 def _film(c, tab, n):
-    """What a convolution c (b, T) adds to the matrix (b, n, n) and to the row of the edge (b, n)."""
+    """What a convolution c (b, T) adds to the matrix and to the row of the edge under it, (b, n + 1, n)."""
     nodes, near, edge = tab.film
-    K, at_edge = np.zeros((len(c), n, n)), c @ edge
-    K -= at_edge[:, None]
-    K[:, nodes] += near.of(c)
-    return K, at_edge
+    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ edge
+    rows[:, :-1] -= at_edge[:, None]
+    rows[:, nodes] += near.of(c)
+    rows[:, -1] = at_edge
+    return rows

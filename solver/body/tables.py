@@ -18,6 +18,8 @@ from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
 _KEEP = 4e6
 #: All tables that are kept take at most so many bytes.
 _MOST_BYTES = 4e8
+#: On meshes of up to so many nodes the product is formed for a single case too: it serves all later ones.
+_SMALL = 22
 #: The transform of J0 is formed in pieces, along each of which the argument of J0 grows by at most so many radians.
 _PHASE = 120.0
 #: The transform is kept in parts of so many nodes k.
@@ -30,10 +32,10 @@ _DEGREES = (16, 48, 144)
 class Table(NamedTuple):
     """What makes the operator of L - 1 at the few nodes k (M,) of one octave on one mesh.
 
-    L - 1 (b, M) times `edge` (M, n) is the row of the edge, times `product` (M, n²), None if that is too large or for
-    few cases, the matrix. At all nodes k (G,) of the quadrature: J = J0(k x_i) - J0(k) and φ (G, n); J_edge = J0(k)
-    (G,); `spread`, (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the quadrature,
-    π/2 included.
+    L - 1 (b, M) times `product` (M, (n + 1) n), None if that is too large or for few cases, is the matrix and, under
+    it, the row of the edge. At all nodes k (G,) of the quadrature: J (G, n + 1) is J0(k x_i) - J0(k), and last J0(k);
+    φ (G, n); `spread`, (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the
+    quadrature, π/2 included.
 
     `film`: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge (T, n).
     """
@@ -41,11 +43,15 @@ class Table(NamedTuple):
     k: np.ndarray
     J: np.ndarray
     phi: np.ndarray
-    J_edge: np.ndarray
     spread: np.ndarray
-    edge: np.ndarray
     product: np.ndarray | None
     film: tuple | None
+
+    @property
+    def is_small(self):
+        """Whether a matrix takes fewer multiplications than its product with q by way of all nodes k."""
+        of_few = self.product is not None and self.spread.ndim == 2
+        return of_few and self.product.size < self.spread.size + self.J.size + self.phi.size
 
     def weights(self, L1):
         """(π/2) w (L - 1) (b, G) at all nodes of the quadrature from L - 1 (b, M) at the few."""
@@ -68,27 +74,22 @@ def _kept(make):
 @_kept
 def table(grid, octave, stiffness, many):
     """The :class:`Table` of a mesh, for many cases or few."""
-    k, J, phi, J_edge = _waves(grid, octave, stiffness % len(STIFFEST))
-    at_edge, product = J_edge[:, None] * phi, None
-    if octave != FILM:
-        spread = _spread(octave, stiffness)
-        edge = spread @ at_edge
-        if many:
-            product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
-    else:
-        spread = np.pi / 2 * quadrature(octave, stiffness)[1]
-        edge = spread[:, None] * at_edge
-        if many and phi.size * grid.n <= _KEEP:
-            product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
-    return Table(k, J, phi, J_edge, spread, edge, product, _film_table(grid, many) if octave == FILM else None)
+    k, J, phi = _waves(grid, octave, stiffness % len(STIFFEST))
+    product, is_film = None, octave == FILM
+    spread = np.pi / 2 * quadrature(octave, stiffness)[1] if is_film else _spread(octave, stiffness)
+    if is_film and many and J.size * grid.n <= _KEEP:
+        product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
+    elif not is_film and (many or grid.n <= _SMALL):
+        product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
+    return Table(k, J, phi, spread, product, _film_table(grid, many) if is_film else None)
 
 
 @_kept
 def _waves(grid, octave, stiffness):
-    """k, J, φ and J_edge of a :class:`Table`, which those for many cases and for few have in common."""
+    """k, J and φ of a :class:`Table`, which those for many cases and for few have in common."""
     k, _ = quadrature(octave, stiffness)
-    J_edge = j0(k)
-    return k, j0(k[:, None] * grid.x) - J_edge[:, None], transform(grid, k), J_edge
+    edge = j0(k)[:, None]
+    return k, np.hstack([j0(k[:, None] * grid.x) - edge, edge]), transform(grid, k)
 
 
 @_kept

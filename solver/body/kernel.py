@@ -99,8 +99,8 @@ def _frictionless_terms(u, n):
     gap, excess = rest * rest - u * ue4, wedge - 2 * ue4
     if np.any(n > 2):  # beside the wedge, n times what cancels in them does not count for smaller n
         small = np.flatnonzero(u < _SERIES)
-        v = u.reshape(-1)[small]
-        gap.reshape(-1)[small], excess.reshape(-1)[small] = _gap_series(v), 2 * _excess_series(v)
+        gap.reshape(-1)[small], own = _series(u.reshape(-1)[small], e.reshape(-1)[small])
+        excess.reshape(-1)[small] = 2 * own
     return _Frictionless(e, rest, e4, ue4, wedge, gap, excess, wedge + n * gap)
 
 
@@ -155,9 +155,9 @@ def _bonded_below(u, e, rest, bond):
         d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)
         if not np.any(hard):
             return soft, d_soft
-    gap = _gap(u, e, rest)
+    gap, excess = _gap_and_excess(u, e, rest)
     stiff = one_a * one_b + one_a * b * (rest - 4 * u * u * e) + a * one_b * rest + a * b * gap
-    d_stiff = 2 * e * (one_a * b * (1 - 4 * u + 4 * u * u) + a * one_b) + a * b * _gap_slope(u, e, gap)
+    d_stiff = 2 * e * (one_a * b * (1 - 4 * u + 4 * u * u) + a * one_b) + a * b * (4 * excess - 2 * gap)
     if np.all(hard):
         return stiff, d_stiff
     return np.where(hard, stiff, soft), np.where(hard, d_stiff, d_soft)
@@ -165,7 +165,7 @@ def _bonded_below(u, e, rest, bond):
 
 def _bonded_whole(u, n, nu1, nu2):
     bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
-    excess = _sinh_excess(u, e)
+    _, excess = _gap_and_excess(u, e, rest)
     above = bond.one_ab + 2 * bond.a * bond.b * excess + 4 * u * bond.b * bond.plus_a * e  # 1 + 4bue - ab e²
     return above / _bonded_below(u, e, rest, bond)[0]
 
@@ -185,35 +185,20 @@ def _one_minus(a, one_a, e, rest):
     return np.where(a > 0, one_a + a * rest, 1 - a * e)
 
 
-def _gap(u, e, rest):
-    """(1 - e)² - 4u²e = 4e (sinh² u - u²)."""
-    gap, small = rest * rest - 4 * u * u * e, u < _SERIES
-    gap[small] = _gap_series(u[small])
-    return gap
+def _gap_and_excess(u, e, rest):
+    """(1 - e)² - 4u²e = 4e (sinh² u - u²), of which the derivative is four times the second less twice the first; and
+    e (sinh 2u - 2u)."""
+    ue = u * e
+    gap, excess, small = rest * rest - 4 * u * ue, rest * (1 + e) / 2 - 2 * ue, u < _SERIES
+    gap[small], excess[small] = _series(u[small], e[small])
+    return gap, excess
 
 
-def _gap_series(v):
-    """4e (sinh² v - v²): cosh 2v - 1 - 2v² = Σ (2v)^(2j)/(2j)!, j >= 2."""
-    z = 4 * v * v
-    return np.exp(-2 * v) * z * z / 12 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
-
-
-def _gap_slope(u, e, gap):
-    """Derivative of :func:`_gap` by u."""
-    return 4 * _sinh_excess(u, e) - 2 * gap
-
-
-def _sinh_excess(u, e):
-    """e (sinh 2u - 2u)."""
-    excess, small = (1 - e * e) / 2 - 2 * u * e, u < _SERIES
-    excess[small] = _excess_series(u[small])
-    return excess
-
-
-def _excess_series(v):
-    """e (sinh 2v - 2v)."""
-    z = 4 * v * v
-    return np.exp(-2 * v) * v * z / 3 * _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))
+def _series(u, e):
+    """The same from the series cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2, and sinh 2u - 2u."""
+    z = 4 * u * u
+    gap = z * z / 12 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
+    return e * gap, e * u * z / 3 * _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))
 
 
 def _nested(z, divisors):

@@ -1,4 +1,4 @@
-"""What describes a case: the one table of bounds, defaults and choices, and of which cases have and use what."""
+"""What describes a case: the one table of bounds, defaults and choices, and of which cases need and use a parameter."""
 
 from functools import lru_cache
 from typing import NamedTuple
@@ -11,7 +11,7 @@ BASES = ("half_space", "thin_layer", "layered", "auto")
 MODEL_CHECKS = ("closed_form", "first_order")
 
 
-#: The condition of what every case needs.
+#: The condition that every case meets, of `needed_by` and `used_by` below.
 EVERY = ("", ())
 
 
@@ -19,16 +19,16 @@ class Parameter(NamedTuple):
     """One parameter of a case.
 
     default : its value where it is not given; None: it has none, and must be given if a case needs it.
-    choices : the words allowed, of a text; of a number ().
-    whole : a number without fraction.
-    interval : of a number, what is allowed, in units R = E2* = 1 and mathematical notation. Within it the solver is
-        tested (tests/fuzz_solver.py): each case is solved, or has a status.
+    choices : the words that a text may be; () for a number.
+    whole : whether the number is an integer.
+    interval : the numbers allowed, in units R = E2* = 1 and mathematical notation. Within it the solver is tested
+        (tests/fuzz_solver.py): each case is solved, or has a status.
     also : single values allowed outside the interval.
-    needed_by : (name of another parameter, some of its choices): the cases that have this one. There it is checked,
-        and must be given if it has no default. ("", ()): all have it.
-    used_by : the same again: those of them whose answer depends on it.
-    powers : (i, j), its unit is E2*^i R^j; of the parameters that laws declare.
-    symbol, long_name : how tables and figures call what a registered law declares.
+    needed_by : (name of another parameter, some of its choices), a condition: the cases that meet it need this
+        parameter. For these it is checked, and must be given if it has no default. EVERY: all need it.
+    used_by : a second condition: the answer depends on the parameter in those cases only that meet both.
+    powers : (i, j), its unit is E2*^i R^j; for parameters that laws declare.
+    symbol, long_name : what tables and figures call a parameter that a registered law declares.
     """
 
     default: float | int | str | None = None
@@ -43,20 +43,20 @@ class Parameter(NamedTuple):
     long_name: str = ""
 
 
-#: The cases that have a layer, and a bonded layer.
+#: The conditions that a case has a layer, and that it is bonded.
 LAYERED = ("base", ("thin_layer", "layered", "auto"))
 BONDED = ("bonding", ("bonded",))
 
-#: What may be given; a case has one of them.
+#: What controls a case: one of these is given.
 CONTROL = {
     "P": Parameter(interval="[1e-24, 1e3]"),
     "a": Parameter(interval="[1e-9, 1e3]"),
     "D": Parameter(interval="[1e-18, 1e3]"),
 }
 
-#: What a law needs it declares itself: `laws.register` adds it here, and the law to the choices of `micro`; `schemes`
-#: does so with those of `scheme`. Units are said in :class:`~solver.problem.Problem`. Keys of cases leave defaults out
-#: (study/store/keys.py): whoever changes a default changes `NUMERICS_VERSION`.
+#: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
+#: `laws.register` adds them here, and the name of the law to the choices of `micro`. `schemes` adds those of `scheme`.
+#: Keys of cases leave defaults out (study/store/keys.py): whoever changes a default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
     "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
@@ -79,8 +79,8 @@ PARAMETERS = {
 
 
 def among(condition, values):
-    """(...) bool: the cases that a condition such as `needed_by` names; `values(name)` gives the texts of a parameter,
-    of any shape."""
+    """(...) bool: the cases that meet a condition such as `needed_by`. `values(name)` gives the texts of a parameter,
+    in an array of any shape."""
     name, words = condition
     return np.any([values(name) == word for word in words], axis=0) if name else np.True_
 
@@ -99,7 +99,7 @@ def ends(interval):
 
 
 def allowed(own, values):
-    """(...) bool: numbers that a :class:`Parameter`, or what has its interval, may have; NaN is none of them."""
+    """(...) bool: `values` that are allowed by the `interval` and `also` of `own`; NaN never is."""
     low, high, with_low, with_high = ends(own.interval)
     values = np.asarray(values)
     above = values >= low if with_low else values > low

@@ -23,15 +23,15 @@ class Problem:
     value
         Its value: load, radius of the nominal contact area or indentation depth.
     h, n : needed by every base but "half_space"
-        Thickness of the layer, and ratio of the reduced moduli E1*/E2*. n = 0 is a rigid base; E2* is infinite there,
-        and E1* is the unit of moduli, in numbers and as `E2`, in its place.
+        Thickness of the layer, and ratio of the reduced moduli E1*/E2*. n = 0 is a rigid base. Its E2* is infinite, so
+        E1* is the unit of moduli in its place, and `E2` means E1*.
     m : 0
         Ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
         displacements of both bodies add; D is the approach of their distant points.
     nu1, nu2 : 0.3
         Poisson ratios of layer and half-space. Without friction between them these change nothing.
     bonding : "frictionless" (default) or "bonded"
-        The interface of layer and half-space.
+        The interface between layer and half-space.
     Nbar, Ra : needed by the micro laws that declare them; of this package's all but "smooth"
         Asperities per unit area, and their radius.
     base : "half_space", "thin_layer", "layered" (default) or "auto"
@@ -47,8 +47,8 @@ class Problem:
         or of random heights; or the name of a registered law, or such a :class:`~solver.laws.Law` itself.
     B, beta : needed by the micro law "power_law"
         Coefficient, without unit, and exponent.
-    sigma, cut : needed by the micro law "normal_heights"; cut = 4; "uniform_heights" needs sigma
-        Standard deviation of the heights, and the largest one above their mean, over sigma. Both are in `more`.
+    sigma, cut : "normal_heights" needs both, cut = 4; "uniform_heights" needs sigma
+        Standard deviation of the heights; and the largest height above their mean, over sigma. Both are in `more`.
     scheme : "newton" (default) or "picard"
         Newton's method, or the paper's successive approximations, Eqs (8) and (10). These are for asperities: a smooth
         case that asks for them is not solved.
@@ -60,10 +60,10 @@ class Problem:
         Number of nodes; 0: chosen by `rtol`.
     max_iterations : 0
         Most steps on a mesh, or approximations at one radius; 0: the limit of the scheme.
-    R, E2 : > 0; 1
-        Radius of the punch, and reduced modulus E2* of the half-space; any units.
+    R, E2 : 1
+        Radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units.
     more : name -> (B,)
-        The parameters of registered laws that are not above; each is an attribute as well.
+        The parameters of laws that are not fields of their own; each is an attribute as well.
     """
 
     control: str
@@ -97,7 +97,7 @@ class Problem:
         return f"Problem({len(self)} cases, {given}, base: {kinds[0]}, micro: {kinds[1]})"
 
     def __getattr__(self, name):
-        """A parameter of `more`; NaN of a law that was registered later."""
+        """A parameter of `more`; NaN if its law was registered after this batch was made."""
         if name not in PARAMETERS:
             raise AttributeError(f"Problem has no {name}")
         return self.more.get(name, np.full(len(self), np.nan))
@@ -165,8 +165,8 @@ class Problem:
         return (self.scheme == "picard") & ~self.rough()
 
     def invalid(self):
-        """(B,) bool: a number that the case needs is not finite or outside its bounds, those of a problem in units R =
-        E2* = 1."""
+        """(B,) bool: a number that the case needs is not finite or out of bounds. The bounds are those of a problem in
+        units R = E2* = 1."""
         bad = ~allowed(CONTROL[self.control], self.value)
         having = {}
         for name, own in PARAMETERS.items():
@@ -189,7 +189,7 @@ def _array(name, value):
 
 
 def _missing(name, arrays):
-    """A message if some case needs a parameter that is not given, as a list."""
+    """[message] if some case needs the parameter `name`, which is not given; else []."""
     selector, needing = PARAMETERS[name].needed_by
     if PARAMETERS[name].default is not None or not selector:
         return []

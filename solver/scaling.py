@@ -35,7 +35,7 @@ def dimensionless(problem):
 
 
 def _without_unit(value, powers, R, E2):
-    """`value` over E2^i R^j, (i, j) = `powers`; divided one by one, for R² may overflow where the quotient does not."""
+    """`value` over E2^i R^j, (i, j) = `powers`. It divides one by one: R² may overflow where the quotient does not."""
     for unit, power in zip((R, E2), powers[::-1], strict=True):
         for _ in range(abs(power)):
             value = value / unit if power > 0 else value * unit
@@ -43,11 +43,12 @@ def _without_unit(value, powers, R, E2):
 
 
 def with_rigid_punch(problem):
-    """The problem with an elastic punch on a half-space or a thin layer as that of a rigid one: the same contact.
+    """The problem with rigid punches in place of elastic ones on half-spaces and thin layers: the contacts are the same.
 
-    Displacements add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m: the body has the
-    modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of a frictionless layer
-    of thickness 2 A2 h/(1 + m). The exact layer stays as it is; so do thin layers without springs, or that it judges.
+    The displacements of both bodies add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m:
+    its half-space has the modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of
+    a frictionless layer of thickness 2 A2 h/(1 + m). Exact layers stay as they are. So do thin layers without springs,
+    and those whose model error comes from a step of the exact layer (`model_check` "first_order").
     """
     m, base = problem.m, problem.base
     if not (m > 0).any():
@@ -67,9 +68,9 @@ def with_rigid_punch(problem):
 
 
 def with_a_stiff_base(problem):
-    """The problem with a thin layer on a rigid base, n = 0, as that on a half-space whose part is below rounding.
+    """The problem with rigid bases, n = 0, under thin layers replaced by half-spaces that yield less than rounding.
 
-    Layers that are judged by the exact one stay as they are.
+    Layers whose model error comes from a step of the exact layer stay as they are.
     """
     stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
     if not stiff.any():
@@ -84,18 +85,18 @@ def refused(problem, scaled):
 
 
 def without_springs(scaled):
-    """(B,) bool: thin layers to which Eq. (3) does not apply, C <= 0."""
+    """(B,) bool: thin layers to which Eq. (3) does not apply, because C <= 0."""
     return (scaled.base == "thin_layer") & ~(local_compliance(*_layer(scaled)[:5]) > 0)
 
 
 def as_cases(part):
-    """:class:`~solver.contact.equation.Cases` of one law on one base."""
+    """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law and one base."""
     body = BODIES[str(part.base[0])](*_layer(part))
     return Cases(part.control, law_of(part), body, part.value)
 
 
 def law_of(part):
-    """The law of cases of one law, bound to their numbers."""
+    """:class:`~solver.laws.Bound`: the one law of the cases, with their numbers."""
     law = LAWS[str(part.micro[0])]
     return law.bind(layer_modulus(part.n) / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
 
@@ -105,9 +106,9 @@ def _layer(problem):
 
 
 def restore(solution, problem):
-    """The solution in the units of the problem: the end of every way to solve.
+    """The solution in the units of the problem: every way to solve ends here.
 
-    A case with a number that cannot be is not converged, nor is one with a number that its unit makes infinite.
+    A case with a number that cannot be is ``Status.DIVERGED``; so is one with a number that its unit makes infinite.
     """
     solution = solution.refused(solution.out_of_range(), Status.DIVERGED)
     arrays = {}

@@ -38,8 +38,8 @@ def newton(part, x):
 
 @scheme
 def picard(part, x):
-    """The paper's successive approximations on one mesh, of `nodes` or of as many as rtol is likely to need. Their
-    error is the distance to one Newton step on the next finer mesh."""
+    """The paper's successive approximations on one mesh: of `nodes` nodes, or if that is 0 of as many as rtol is likely
+    to need. `error` is their distance to one Newton step on the next finer mesh."""
     nodes = np.where(part.nodes > 0, part.nodes, start_nodes(part.rtol))
     groups = [(n, np.flatnonzero(nodes == n)) for n in np.unique(nodes).tolist()]
     return Solution.join(len(nodes), len(x), [(i, _approximated(part.take(i), mesh(n), x)) for n, i in groups])

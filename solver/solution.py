@@ -7,13 +7,14 @@ import numpy as np
 
 from .status import Status
 
-#: Numbers of a converged case that are positive, and those that may be 0 as well, in units R = E2* = 1.
+#: Numbers of a converged case, in units R = E2* = 1: those that are positive, and those that may also be 0.
 _POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _NOT_NEGATIVE = ("A0", "residual", "error")
 _PROFILES = ("p", "lam")
-#: Types of what is counted or names something.
+#: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
-#: Shares of an area, which are at most 1; rounding of a sum over the nodes may make them larger by this.
+#: Shares of an area are at most 1. A sum over 256 nodes may round to 1 + 256 eps, which is 1 + 6e-14. What is above
+#: 1 + _ROUNDING is no rounding.
 _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 
@@ -33,11 +34,11 @@ class Model(IntEnum):
 
 @dataclass(frozen=True)
 class Solution:
-    """The answers: arrays (B,), and profiles (B, m) at the m radii asked for. Units are those of the problem: of its R
-    and E2.
+    """The answers: arrays (B,), and profiles (B, m) at the m radii asked for. Units are those of the problem, made of
+    its R and E2.
 
-    A case that fails is no error: `status` says why, and whether the last numbers are kept. One without numbers has NaN
-    everywhere but in the controlled quantity. The bounds below are those of a converged case.
+    A case that fails raises nothing: `status` says why, and whether the last numbers are kept. A case without numbers
+    has NaN everywhere but in the quantity that was given. The bounds below are those of a converged case.
 
     Attributes
     ----------
@@ -57,8 +58,9 @@ class Solution:
     error : in [0, rtol]
         Estimated relative error: the largest over a, P, D, p0, p_max, Ar_An. Profiles between the nodes are not in it.
     model_error : >= 0
-        The same for the model used against the exact layered rough one; 0 for that one, and for a half-space that was
-        asked for by name. Of the base "auto" it is within `accuracy`.
+        Estimated relative error, over the same six, of the model used against the exact layer with its asperities. 0
+        for the exact layer, and for a half-space that was asked for by name; with "auto" at most `accuracy`. The error
+        of a law that comes from a table is part of it.
     status : int8
         A :class:`~solver.status.Status`.
     model_used : int8
@@ -98,7 +100,7 @@ class Solution:
 
     @classmethod
     def of(cls, size, points, **values):
-        """`size` cases with profiles of `points` radii and the given arrays; what is not given is NaN, a count 0."""
+        """`size` cases with profiles at `points` radii and the arrays `values`; what is not given is NaN, counts 0."""
 
         def array(name):
             shape = (size, points) if name in _PROFILES else (size,)
@@ -111,8 +113,8 @@ class Solution:
 
     @classmethod
     def join(cls, size, points, pieces):
-        """`size` cases with profiles of `points` radii from ``pieces`` (index, Solution); of two for one case the last
-        counts, and a case in none has no numbers."""
+        """`size` cases with profiles at `points` radii, put together from ``pieces`` (index, Solution). If a case is in
+        two pieces, the last one counts; a case in none has no numbers."""
         whole = vars(cls.of(size, points))
         for index, piece in pieces:
             for name, values in vars(piece).items():
@@ -124,7 +126,7 @@ class Solution:
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
     def not_finite(self):
-        """(B,) bool: the case has an end that comes with numbers, and one of these is NaN or infinite.
+        """(B,) bool: by its status the case has numbers, but one of them is NaN or infinite.
 
         `model_error` may always be NaN.
         """
@@ -136,9 +138,9 @@ class Solution:
         return ~finite & ended
 
     def out_of_range(self):
-        """(B,) bool: the case has converged to a number that is negative, or nought, or above 1 where it cannot be.
+        """(B,) bool: the case has converged to a number that is negative, 0 or above 1 where it cannot be.
 
-        In units R = E2* = 1, where no number is rounded to nought by its unit.
+        To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
         """
         names, ended = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES), self.status == Status.CONVERGED
         least = dict(zip(names, (values.min(initial=1.0) for values in self._of(names, ended)), strict=True))
@@ -152,12 +154,12 @@ class Solution:
         return np.any(wrong, axis=0) & ended
 
     def _of(self, names, chosen):
-        """The arrays of these names, of the `chosen` (B,) cases alone."""
+        """The arrays of these names for the cases that are `chosen`, (B,) bool."""
         arrays = (getattr(self, name) for name in names)
         return arrays if chosen.all() else (values[chosen] for values in arrays)
 
     def refused(self, mask, status):
-        """The same without the numbers of the cases of `mask` (B,), whose status says why."""
+        """The solution without the numbers of the cases in `mask`, (B,) bool; they get this status."""
         if not mask.any():
             return self
         arrays = {name: np.array(values) for name, values in vars(self).items()}
@@ -169,7 +171,7 @@ class Solution:
 
 
 def _ends(values):
-    """Smallest and largest of the numbers (B,) or (B, m) of each case: (2, B); NaN if one is."""
+    """Smallest and largest number of each case of `values` (B,) or (B, m): (2, B); NaN where one of them is NaN."""
     if values.ndim == 1:
         return np.stack([values, values])
     if not values.shape[1]:

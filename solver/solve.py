@@ -44,8 +44,8 @@ def solve(problem, x=(0.0, 1.0)):
     -----
     Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
     exact layer, iterate by their scheme. Successive approximations are for asperities: a smooth case with the scheme
-    "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets `accuracy`; where
-    that is a smooth punch, to which the asperities are added, there is nothing to approximate either.
+    "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets `accuracy`. That may be a
+    smooth punch, to which the asperities are added afterwards: then `scheme` has no effect.
 
     Examples
     --------
@@ -62,7 +62,8 @@ def solve(problem, x=(0.0, 1.0)):
 
 
 def _of_a_model(problem, x):
-    """:func:`solve` of cases that a model makes of allowed ones, whatever the bounds say of its parameters."""
+    """:func:`solve` of cases that :mod:`.models` has made from allowed ones. Their own parameters need not be within
+    the bounds."""
     return _solved(problem, x, problem.without_scheme())
 
 
@@ -80,7 +81,7 @@ def _solved(given, x, invalid):
     found.status[missed] = Status.TOLERANCE_NOT_MET
     solution = _with_models(given, restore(found, problem))
     solution = solution.refused(outside_law(given, solution), Status.OUTSIDE_LAW)
-    return replace(solution, **{given.control: given.value * 1.0})  # as it was given, of what is refused too
+    return replace(solution, **{given.control: given.value * 1.0})  # exactly as given, also where a case is refused
 
 
 def _routes(problem, solvable):

@@ -12,7 +12,7 @@ class Status(IntEnum):
     DIVERGED = 3
     THIN_LAYER_NOT_APPLICABLE = 4
     TOLERANCE_NOT_MET = 5
-    INVALID_INPUT = 6  # 7 was in numerics version 2
+    INVALID_INPUT = 6  # 7 was a status of numerics version 2 and is not used again
     LIFT_OFF = 8
     BUDGET_SPENT = 9
     OUTSIDE_LAW = 10

@@ -15,10 +15,10 @@ from threadpoolctl import LibController, ThreadpoolController
 
 
 class _OfTheProcess:
-    """The number of threads of libraries that have one for the whole process: 1 from the first enter to the last exit.
+    """For libraries with one number of threads for the whole process: it is 1 from the first enter to the last exit.
 
-    Calls overlap when they come from several threads. Each of them saving and restoring for itself would leave the
-    number at 1 for good: the second call would save the 1 of the first one and restore it after the first has ended.
+    Calls overlap when they come from several threads. If each saved and restored the number for itself, it would stay
+    1 for good: the second call would save the 1 of the first, and restore it after the first has ended.
     """
 
     def __init__(self, libraries: list[LibController]):
@@ -55,8 +55,8 @@ class _OfTheProcess:
 def _set(library: LibController, count: int) -> None:
     """Set the number of threads of a library, from whichever thread.
 
-    From version 3.8 on threadpoolctl lets one thread at a time set the number of a whole process, the first that did,
-    and what the others set does nothing. Here a lock and a count of the calls see to the order.
+    From version 3.8 on, threadpoolctl lets only the thread that did so first set the number of a whole process; calls
+    of other threads do nothing. Here this is switched off: the lock and the count of :class:`_OfTheProcess` do instead.
     """
     let_go = getattr(library, "clear_controlling_thread", lambda force: None)
     let_go(force=True)
@@ -66,8 +66,9 @@ def _set(library: LibController, count: int) -> None:
 
 @lru_cache(maxsize=1)
 def _blas() -> tuple[_OfTheProcess, ThreadpoolController]:
-    """The loaded BLAS libraries: those with one number of threads for the process, and those with one a thread."""
-    with warnings.catch_warnings():  # about OpenMP libraries that the program has loaded: not our affair
+    """The loaded BLAS libraries: those with one number of threads for the process, and those with one for each
+    thread."""
+    with warnings.catch_warnings():  # about OpenMP libraries that the user's program has loaded: not our affair
         warnings.simplefilter("ignore")
         blas = ThreadpoolController().select(user_api="blas")
     of_threads = blas.select(threading_layer="openmp")

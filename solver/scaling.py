@@ -43,7 +43,7 @@ def _without_unit(value, powers, R, E2):
 
 
 def with_rigid_punch(problem):
-    """The problem with rigid punches in place of elastic ones on half-spaces and thin layers: the contacts are the same.
+    """The problem with rigid punches in place of elastic ones on half-spaces and thin layers: the same contacts.
 
     The displacements of both bodies add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m:
     its half-space has the modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of

@@ -13,7 +13,7 @@ __all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load"
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
-#: Names that no parameter of a law can have; those of results come from the vocabulary of studies.
+#: Names that no parameter of a law can have; study/spec/laws.py adds the names of results.
 RESERVED = {*CONTROL, "control", "value", "more"}
 
 
@@ -26,8 +26,8 @@ def register(law):
     Raises
     ------
     ValueError
-        The name is none, or that of a law of this package; there is no version; a parameter is called like another
-        one, like one of another law with other bounds, or like a result.
+        The name is not allowed, or is that of a law of this package; there is no version; a parameter has the name of
+        another parameter, of one of another law with other bounds, or of a result.
     """
     if LAWS.get(law.name) is law:
         return law
@@ -41,7 +41,7 @@ def register(law):
 
 
 def _declare(laws):
-    """Put the parameters of `laws` (name -> Law) into the table, and add their names to the choices of `micro`.
+    """Put the parameters of `laws` (name -> Law) into the table of parameters; the choices of `micro` are their names.
 
     Returns `laws`. Raises ValueError, and changes nothing, where a parameter cannot have its name.
     """
@@ -62,7 +62,7 @@ def _declare(laws):
 
 @cache
 def load():
-    """Register the laws of installed packages, once: what is loaded is a :class:`Law`, or a list of them.
+    """Register the laws of installed packages, once. Each entry point is a :class:`Law`, or a list of them.
 
     Raises
     ------
@@ -79,8 +79,8 @@ def load():
 
 
 def named(given):
-    """Names in place of laws: of one, or of each in a list. A law given as an object, or as "table:" and the path of a
-    table of one's own, becomes known by its name.
+    """The name of a law, or the names of a list of laws. A law given as an object, or as "table:" and the path of a
+    table of one's own, is registered first.
 
     Raises ValueError for a table that cannot be used.
     """
@@ -97,7 +97,7 @@ def known(parameters, micro):
 
 
 def identity(name):
-    """Text that tells the law of this name from others: the name, and the version of a registered law."""
+    """Text that tells the law of this name from all others: its name, and its version if it has one."""
     law = LAWS.get(name)
     return f"{name} {law.version}" if law and law.version else name
 

@@ -37,7 +37,7 @@ def spot_curve(y):
     """q(y), g(y) of Eqs (7) and (6) and their derivatives; y = cot θ > 0 of any shape."""
     y = np.asarray(y, dtype=float)
     q, dq, sin, sin2, cos2, theta, sc, slope = _pressure(y)
-    # d(q sinθ)/dθ with the cancelling terms taken out by hand; what is left needs θ - sinθ cosθ
+    # d(q sinθ)/dθ, written so that nothing cancels but in θ - sinθ cosθ, which has a series
     d_q_sin = slope / (theta + sc) * ((cos2 - 3 * sin2) * _theta_minus_sc(theta, sc) - 6 * sin2 * sc)
     return Curve(
         q,
@@ -51,7 +51,7 @@ def _pressure(y):
     """q(y) and dq/dy; of θ: sin, sin², cos², θ itself and sinθ cosθ; and cos²θ/(θ + sinθ cosθ)."""
     sin2 = 1 / (1 + y * y)
     sin = np.sqrt(sin2)
-    cos, theta = y * sin, np.arctan(1 / y)  # three times as fast as arctan2
+    cos, theta = y * sin, np.arctan(1 / y)
     cos2, sc = cos * cos, sin * cos
     slope = cos2 / (theta + sc)
     q = slope * cos
@@ -79,7 +79,7 @@ def spot_peak(y, q):
 
 
 def spot_guess(q):
-    """y with q(y) = q within 1 %: the root of y³ = q (2 y² + π/2), which has both ends of Eq. (7)."""
+    """y with q(y) = q within 1 %: the root of y³ = q (2 y² + π/2), which is Eq. (7) for small and for large y."""
     m, kappa = np.minimum(2 / 3 * q, 1e100), np.minimum(np.pi / 4 * q, 1e200)  # of larger q the cubes overflow
     m2 = m * m
     m3 = m2 * m
@@ -92,13 +92,13 @@ def spot_from_pressure(q):
     q = np.asarray(q, dtype=float)
     target = np.where(q > 0, q, 1.0)
     y = spot_guess(target)
-    for _ in range(3):  # ln q against ln y has slopes from 3 to 1: from within 1 % three steps do
+    for _ in range(3):  # the slope of ln q by ln y is between 1 and 3: from a guess within 1 % three steps are enough
         y = y * np.exp(log_step(lambda y: _pressure(y)[:2], target, y))
     return of_positive(q, y)
 
 
 def _odds(curve):
-    """g/(1 - 3 g), which is about y² at both ends, and its derivative by y."""
+    """The odds g/(1 - 3 g), which are about y² for small and for large y, and their derivative by y."""
     rest = np.maximum(1 - 3 * curve.g, 1e-300)
     return curve.g / rest, curve.dg / rest**2
 
@@ -112,7 +112,7 @@ def spot_from_displacement(g):
 
 
 def _near():
-    """g/(1 - 3 g) and y over its root, (2, 200), ascending: to within 0.5 % at any y."""
+    """A table (2, 200) of the odds, ascending, and of y over their square root. Interpolated, y is right to 0.5 %."""
     y = np.geomspace(1e-2, 1e2, 200)
     odds, _ = _odds(spot_curve(y))
     return odds, y / np.sqrt(odds)

@@ -60,20 +60,21 @@ def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", 
 
 
 def least_squares(p, A):
-    """B and β of the A = B p^β that leaves the least of A (n,) at p (n,), which ascends."""
-    from scipy.optimize import brentq  # its import takes 0.3 s, which only a fit is to wait for
+    """B and β of the least-squares fit A = B p^β to A (n,) at p (n,), which ascends."""
+    from scipy.optimize import brentq  # imported here: it takes 0.3 s (python -X importtime), and only a fit needs it
 
     scale = np.sqrt(p[0] * p[-1])  # powers of p/scale, so that B and β are not nearly dependent
     logarithm = np.log(p / scale)
 
     def best(beta):
-        """(p/scale)^β, its best factor, and what it leaves of A."""
+        """(p/scale)^β, its best factor, and A less the two multiplied."""
         power = np.exp(beta * logarithm)
         factor = (A @ power) / (power @ power)
         return power, factor, A - factor * power
 
     def slope(beta):
-        """The misfit falls with β where this is positive. Its root is β to rounding, which no minimiser finds."""
+        """The misfit falls with β where this is positive, so its root is the best β. A root is found to rounding, a
+        minimum only to the square root of that."""
         power, _, rest = best(beta)
         return rest @ (power * logarithm)
 

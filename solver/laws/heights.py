@@ -1,15 +1,15 @@
 """The micro laws of spherical asperities of random heights: normal, cut at ±c σ, uniform, and of a histogram.
 
-The mean field is that of the disc cell, Eqs (6), (7): a spot of radius b has the others as the uniform pressure p
-outside its cell. Each summit has its own approach and its own spot, and p is the mean: ``spread.py``. A = δ is counted
-from the touch of the highest summit. One height is the disc cell.
+As in the disc cell, Eqs (6) and (7), a spot feels the others as a mean field: the uniform pressure p outside its cell.
+Each summit has its own approach and its own spot, and p is the mean over them: ``spread.py``. A is counted from the
+touch of the highest summit. Without a spread, σ = 0, the law is the disc cell.
 
-Few summits touch at the edge: p ~ A^(5/2) there, until A is about σ/c. The normal density without a cut has no edge. c
-moves it: the radius a grows with c, and so does D, by c σ, while the pressures, and the load at a given distance of the
-mean plane, tend to a limit.
+Few summits touch at the edge of the contact: p ~ A^(5/2) there, until A is about σ/c. A normal density without a cut
+has no highest summit, so the contact would have no edge. The cut c decides where it is: a grows with c, and D grows by
+c σ. The pressures tend to a limit as c grows, and so does the load at a given depth of the mean plane.
 
-q is the root of an equation at each y. A law is therefore tabulated, once for each σ/A* and c, when it is first used:
-cases with one spread are solved faster, a batch of which each has another spread waits for its tables.
+q is the root of an equation at each y. So a law is tabulated when it is first used, once for each σ/A* and c. Many
+cases with one spread are fast; a batch in which each case has a spread of its own waits for as many tables.
 """
 
 from collections.abc import Callable
@@ -23,15 +23,15 @@ from ..parameters import Parameter
 from . import disc_cell, spread
 from .law import Curve, Law
 
-#: For σ/A* below this the first guess is that of equal heights.
+#: For σ/A* below this the power law of small pressures (`edge`) is that of equal heights.
 _ALIKE = 0.03
-#: Most tables that are kept (11 kB each), and how many are made at a time.
+#: Most tables that are kept, 2 KNOTS numbers each, and how many are made at a time.
 _KEPT, _AT_ONCE = 4096, 64
-#: Largest relative error of A, λ and p_max by the tables, that of λ (tests/laws/test_heights.py): A has 5e-6, with
-#: uniform heights 3e-5. Of a histogram of up to 32 classes, whose steps are corners of the curves; A has 1e-4 there.
+#: Largest relative error of A, λ and p_max by the tables (tests/laws/test_heights.py). It is that of λ; A has 5e-6, and
+#: with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves; A has 1e-4 there.
 ERROR, STEPPED = 2e-4, 5e-4
 
-#: Standard deviation of the heights, in R, and the largest height above the mean over it.
+#: Standard deviation σ of the heights, in R; and c, the largest height above the mean, over σ.
 SIGMA = Parameter(interval="[0, 10]", powers=(0, 1))
 CUT = Parameter(4.0, interval="[3, 5]")
 #: Half the width of a uniform density over its standard deviation.
@@ -39,11 +39,11 @@ UNIFORM = np.sqrt(3.0)
 
 
 class Density(NamedTuple):
-    """A density of the heights, of x, the depth below the highest summit over σ, and a parameter c (B, 1).
+    """A density of the heights. It depends on x, the depth below the highest summit over σ, and on a number c (B, 1).
 
     at : (x (B, m, pieces, n), c (B, 1, 1, 1)) -> density; top : c -> density at x = 0; mean : c -> mean x
     edges : c -> (B, pieces + 1), where its smooth pieces end
-    of : name of the parameter c, or its value, or None: x is in R
+    of : the name of the parameter that c is; or the value of c; or None for a histogram, whose x is in R and σ is 1
     """
 
     at: Callable
@@ -93,7 +93,8 @@ _TABLES: dict[tuple, np.ndarray] = {}
 
 
 def _tables(density, field, sigma, cut):
-    """The tables of the different laws among B cases, (G, ...), and which of them is whose (B,)."""
+    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the table of each
+    case (B,)."""
     laws, group = np.unique(np.concatenate([sigma, cut], axis=1), axis=0, return_inverse=True)
     keys = [(density, field, *row) for row in laws.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}
@@ -116,7 +117,7 @@ def _at(density, c, x):
 
 
 def _looked_up(density, field, which, y, sigma, cut):
-    """q or λ (B, m), `which` is 0 or 1, and its derivative by ln y over it."""
+    """q (B, m) if `which` is 0, λ if it is 1; and d ln q/d ln y, or that of λ."""
     table, group = _tables(density, field, np.where(sigma > 0, sigma, 1.0), cut)
     value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y)
     return np.exp(value), slope
@@ -132,7 +133,8 @@ def _curve(density, field, y, sigma, cut):
 
 
 def _guess(density, field, q, sigma, cut):
-    """A is at least that of one height, and at most the depth of the mean plane more."""
+    """y with q(y) = q, roughly: A by the power law of small pressures, but no less than that of one height, and no more
+    than that and the depth of the mean plane together."""
     one = disc_cell.spot_guess(np.maximum(q, 0.0))
     alike = disc_cell.spot_curve(np.maximum(one, 1e-300)).g
     few = (1.25 * np.pi * sigma / density.top(cut) * np.maximum(q, 0.0)) ** 0.4
@@ -145,7 +147,7 @@ def _area(density, field, y, q, sigma, cut):
 
 
 def _peak(density, field, y, q, sigma, cut):
-    """Under the highest summit; where its cell is filled, with the pressure in the middle of a flat punch more."""
+    """p_max/p* under the highest summit. Where its cell is filled, the middle of a flat punch adds its pressure."""
     delta, k = (y / (1 + q)) ** 2, field * (2 / 3) * q
     v = np.clip((1 - delta) / (k + np.sqrt(np.maximum(k * k + 1 - delta, 0.0))), 0.0, 1.0)
     c = np.sqrt(np.clip((delta + 2 * k) * (1 + v) / (1 + v + 2 * k), 0.0, 1.0))
@@ -174,8 +176,8 @@ def law(name, density, field=1.0, **known):
 
 
 def histogram(name, z, share, version):
-    """:class:`~solver.laws.law.Law` of summits whose heights z (n,), in R, have these shares (n,): bins of one width
-    around each z, which ascends in equal steps."""
+    """:class:`~solver.laws.law.Law` of summits whose heights z (n,), in R, have the shares `share` (n,). z ascends in
+    equal steps; around each z there is a bin of that width, evenly filled."""
     step = (z[-1] - z[0]) / (len(z) - 1)
     depth, steps = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
     ends = step * np.arange(len(z) + 1)

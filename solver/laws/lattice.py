@@ -1,14 +1,17 @@
 """The micro laws of identical asperities on a square and on a hexagonal lattice.
 
-In p^ = p Ra/(E l), l = 1/sqrt(Nbar), one curve each of A^ = A Ra/l², λ and p_max^ serves every Nbar, Ra and E. They
-come from lattices.csv, which tests/references/make_lattices.py computes from the periodic contact problem. p* and A*
-are those of the disc cell. Both ends are known.
+With l = 1/sqrt(Nbar), p^ = p Ra/(E l), A^ = A Ra/l² and p_max^ = p_max Ra/(E l), one curve each of A^, λ and p_max^
+over p^ serves every Nbar, Ra and E. They come from lattices.csv, which tests/references/make_lattices.py computes from
+the periodic contact problem. p* and A* are those of the disc cell. Both ends of the curves are known.
 
-- Isolated spots are Hertz's, A^ = (9/16 p^²)^(1/3) - c p^ + ..., c = 1.2415 and 1.2481 (sums over the lattice).
-- At full contact A^ is the mean relief, 1/12 and 0.0802. The pressure of full contact is minus infinity on the ridges
-  between the summits: (z J/4π) ln r at a distance r of a place where z of them meet, z = 2 on a ridge itself, J the
-  change of slope there. So gaps stay, of size exp(-4π p^/(z J)), and their area falls by exp(-2π p^/J). A^ falls short
-  by the mean gap, which falls by exp(-3π p^) on the square lattice (J = 1, z = 4) and by exp(-4π p^/J) on the other.
+- Isolated spots are Hertz's: A^ = (9/16 p^²)^(1/3) - c p^ + ..., where c = 1.2415 (square) and 1.2481 (hexagonal) are
+  sums over the lattice.
+- At full contact A^ would be the mean relief, the mean depth below the summits: 1/12 and 0.0802. It is a limit only.
+  Between neighbouring summits the surface has a kink, here called a ridge, where its slope changes by J. The pressure
+  of full contact would be minus infinity there: (z J/4π) ln r at the distance r from a point where z ridges meet, and
+  from a ridge itself, with z = 2. So gaps stay, of the size exp(-4π p^/(z J)); their area falls as exp(-2π p^/J). A^
+  falls short of its limit by the mean gap. That falls as exp(-3π p^) on the square lattice (J = 1, z = 4), and as
+  exp(-4π p^/J) on the hexagonal one.
 """
 
 import csv
@@ -20,11 +23,11 @@ from . import disc_cell
 from .tabulated import Table, fitted, law_of, t_of
 
 FILE = Path(__file__).with_name("lattices.csv")
-#: p* and A* in units E = Ra = l = 1, and the radius of an isolated spot over y.
+#: p* and A* in units E = Ra = l = 1; and the radius of an isolated spot over y, for y -> 0.
 P_STAR, A_STAR = 2 / (3 * np.sqrt(np.pi)), 1 / np.pi
 _SPOT = np.cbrt(0.75 * P_STAR)
-#: J, the distance of neighbours, is the change of slope on a ridge between them; relief: its mean; above: p_max^ - p^
-#: at full contact, by ``full_contact`` of the maker of the table; rate: how fast A^ and p_max^ - p^ tend to their ends.
+#: Full contact. J: the change of slope on a ridge, equal to the distance of neighbours. relief: the limit of A^. above:
+#: that of p_max^ - p^, from ``full_contact`` in tests/references/make_lattices.py. rate: both go as exp(-rate p^).
 ENDS = {
     "square": {"J": 1.0, "relief": 1 / 12, "above": 0.2206356, "rate": 3 * np.pi},
     "hex": {
@@ -36,11 +39,12 @@ ENDS = {
 }
 #: Largest relative error of A, λ and p_max (tests/laws/test_lattice.py). It is that of λ; A and p_max have 1e-5.
 ERROR = 2e-4
-#: Degree of the polynomials: 5e-6 from the rows of A. Degree 16 is 3e-6 from them, and costs a twentieth more time.
+#: Degree of the polynomials. They are near enough to the rows: FITTED in tests/laws/test_lattice.py.
 _DEGREE = 12
-#: Weight of points beyond the last row.
+#: Beyond the last row the fit is led by guiding points. This is their weight; that of a row is at most 1.
 _WEIGHT = 1e-4
-#: There V + m ln t goes on over this distance in t: it tends to a number.
+#: At the guiding points V + m ln t goes on from the last row and tends to a number: its slope decays over this distance
+#: in t.
 _SETTLES = 0.15
 
 
@@ -65,7 +69,8 @@ def _table(name):
 
 
 def _quantity(t, q, X, power, rate, limit, first):
-    """:class:`~solver.laws.tabulated.Quantity` through the rows X (n,) at t and q (n,), with both its ends."""
+    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,) at t and q (n,), with both its ends: X/t^power is
+    `first` for t -> 0, and X tends to `limit` by exp(-rate p^)."""
     rate = rate * P_STAR
     last = -rate * q[-2:] - np.log(1 / X[-2:] - 1 / limit)  # V + m ln t
     beyond = np.linspace(t[-1], 1, 13)[1:]

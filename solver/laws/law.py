@@ -18,10 +18,10 @@ import numpy as np
 
 from ..parameters import Parameter
 
-#: Most Newton steps of an inverse, of which the laws here need ten, and the longest step of ln y.
+#: Most Newton steps of an inverse, far more than the laws of this package need; and the largest change of ln y in one.
 _STEPS, _LONGEST = 100, 5.0
-#: After a step of ln y below the first number the next one would be below rounding. Steps below the second number that
-#: no longer halve are rounding as well: where a law saturates, y is not determined better (tests/laws/test_micro.py).
+#: A step of ln y below _LAST is the last: the next one would be below rounding. Where a law saturates, rounding leaves
+#: y less determined (tests/laws/test_micro.py): so a step below _ROUNDING that is not half the one before is the last.
 _LAST, _ROUNDING = 1e-9, 1e-3
 
 
@@ -59,15 +59,15 @@ class Law:
     edge : (*own) -> (gamma, beta) of g ~ gamma q^beta for small q; floats, or arrays that broadcast to (B, m)
     version : text that changes whenever the numbers of the law may change; part of the keys of its cases
     rough : False of no asperities at all: A = 0, and the equation of the contact is linear in y = q
-    error : largest relative error of A, λ and p_max themselves, of a law that comes from a table; part of `model_error`
-    least, most : smallest and largest p/E that it knows: a contact with a p(0) below it, or a pressure above it, gets
-        no numbers
-    corners : whether λ has corners, as where the lowest summits touch; Ar/An then has a quadrature of its own
+    error : largest relative error of A, λ and p_max in a law that comes from a table, else 0; part of `model_error`
+    least, most : smallest and largest p/E that the law knows. A contact whose p(0) is below `least`, or with a pressure
+        above `most`, gets no numbers
+    corners : whether λ(y) has corners, for example where the lowest summits touch; Ar/An then has its own quadrature
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
-    rise : how fast the number of nodes that a case wants grows with the share of the asperities in the displacement of
-        the centre: 0.5 of power laws, 1.1 of a law that saturates, as random cases have it. The error is not left to it
+    rise : how much the displacement of the asperities saves nodes on the mesh to begin with: 0.5 for power laws, 1.1
+        for a law that saturates, fitted to random cases. A wrong value costs time; `error` does not depend on it
 
-    What follows may be left out: it then comes from `curve` and `edge`, in more time.
+    The rest may be left out. It is then found from `curve` and `edge`, which takes more time.
 
     from_pressure : (q, *own) -> y with q(y) = q >= 0
     from_displacement : (g, *own) -> y with g(y) = g >= 0; NaN where g is larger than the law's limit
@@ -100,8 +100,8 @@ class Law:
         return Bound(self, p_star * one, A_star * one, tuple((v * one)[:, None] for v in own))
 
     def at(self, p, E, **given):
-        """:class:`Spots` at the nominal pressure p >= 0 (unit of E) and the parameters of the law, all of any shapes
-        that broadcast. NaN stays NaN."""
+        """:class:`Spots` at the nominal pressure p >= 0 (unit of E) and the parameters of the law. All may have any
+        shapes that broadcast. NaN stays NaN."""
         names = list(self.parameters)
         p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(given[name] for name in names))))
         flat = {name: v.ravel() for name, v in zip(names, values, strict=True)}
@@ -111,7 +111,7 @@ class Law:
 
 
 class Bound(NamedTuple):
-    """A law with the numbers of B cases: p* and A* (B,), and what else its functions depend on, `own`, (B, 1) each."""
+    """A law with the numbers of B cases: p* and A* (B,), and in `own`, (B, 1) each, what else its functions need."""
 
     law: Law
     p_star: np.ndarray
@@ -168,22 +168,22 @@ class Bound(NamedTuple):
         return (np.broadcast_to(v, (len(self.p_star), 1))[:, 0] for v in self.law.edge(*self.own))
 
     def sparse(self, g):
-        """q (B, m) of small g, for any g: the inverse of g = gamma q^beta."""
+        """q (B, m) at g (B, m) by the power law of small pressures, g = gamma q^beta, whether g is small or not."""
         gamma, beta = self.law.edge(*self.own)
         return (g / gamma) ** (1 / beta)
 
     def limit(self, new, old):
-        """y after a Newton step from `old` to `new`: it stays positive and changes by a factor of five at most. Without
-        asperities the step is exact, and any sign is right."""
+        """`new`, y after a Newton step, limited to a fifth and to five times `old`: so it stays positive. Without
+        asperities the step is exact, y may have any sign, and there is no limit."""
         return np.clip(new, 0.2 * old, 5.0 * old) if self.law.rough else new
 
 
 def inverse(value, target, y):
     """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding.
 
-    value : y -> (value, its derivative), increasing from 0; target : array; y : array of its shape, to begin with.
+    value : y -> (value, its derivative), increasing from 0; target : array; y : first guess, an array of its shape.
 
-    Returns 0 where target <= 0, and NaN where it is NaN or no y is found. Each element goes on until it has converged.
+    Returns 0 where target <= 0, and NaN where it is NaN or no y is found. Each element stops when it has converged.
     """
     goal = np.where(target > 0, target, 1.0)
     y = np.where((target > 0) & (y > 0), y, 1.0)

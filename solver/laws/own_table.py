@@ -1,11 +1,11 @@
 """A micro law from a table of one's own: a measurement, or another code.
 
-``micro = "table:mine.csv"``, where mine.csv has a heading with the columns p, A, lam, p_max and a row for a pressure:
-the nominal one over E, the additional displacement over R, the relative contact area λ, and the largest real
-pressure over E. E is E1* (E2* without a layer), of base and punch together. The curves go near the rows; the law's
-`error` is how far a row is from the curve through the others, at most. Below the first row A goes on as the power of p
-that the first two rows have: that is where every contact has its edge, so begin the table at a thousandth of p(0), or
-below. A contact whose p(0) is below the first row, or with pressures above the last one, is not solved:
+``micro = "table:mine.csv"``, where mine.csv has a heading with the columns p, A, lam, p_max, and a row for each nominal
+pressure: that pressure over E, the additional displacement over R, the relative contact area λ, and the largest real
+pressure over E. E is E1* (E2* without a layer), of base and punch together. Smooth curves are laid near the rows; the
+law's `error` is the largest distance of a row from the curve fitted to the other rows. Below the first row A goes on as
+the power of p that the first two rows have. Every contact has its edge there, so begin the table at a thousandth of
+p(0) or below. A contact whose p(0) is below the first row, or with pressures above the last one, gets no numbers:
 ``Status.OUTSIDE_LAW``.
 
 With the columns z and share it is a histogram of the heights of the summits, in R, in equal steps, and the law is that
@@ -24,17 +24,17 @@ from .tabulated import Table, fitted, law_of, t_of
 
 PREFIX = "table:"
 COLUMNS = ("p", "A", "lam", "p_max")
-#: Columns of a histogram, and most of its rows: each costs 0.1 s.
+#: Columns of a histogram, and most of its rows: the time of its first use grows with their number.
 HEIGHTS, _MOST = ("z", "share"), 32
-#: Fewest rows; highest degree of the polynomials; distance from the rows that needs no higher one, and the largest: a
-#: curve farther away is none through these rows.
+#: A table of a law: its fewest rows, and the highest degree of a polynomial. A polynomial within _NEAR of the rows is
+#: near enough, and needs no higher degree; one farther than _FAR from a row is refused. Both are relative distances.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
-#: A degree is as good as the best one if its distance is within this of it: higher ones follow the noise.
+#: The lowest degree counts whose distance is below this times that of the best degree: higher ones follow the noise.
 _HARDLY = 1.5
-#: Largest exponent of A(p) over the rows: that of a contact is at most 1, noise has 5 %.
+#: Largest exponent of A(p) over the rows. That of a contact is at most 1; the rest is left to noise.
 _BENT = 1.05
-#: Of round summits A goes as p^(2/3), of flat ones as p; below this exponent, and where λ is below _LIGHT, λ rises
-#: faster than p_max, by all laws of this package (tests/laws/test_own_table.py).
+#: Where λ is below _LIGHT and A rises with an exponent below _ROUND (2/3 of round summits, 1 of flat ones), λ rises
+#: faster than p_max in all laws of this package (tests/laws/test_own_table.py): else the columns are exchanged.
 _ROUND, _LIGHT = 0.7, 0.5
 #: Exponents of the edge, A ~ p^β, that the curves can have.
 _BETA = (0.2, 1.5)
@@ -58,7 +58,7 @@ def read(name):
 
 @lru_cache(maxsize=16)
 def _of_text(name, text):
-    """The law of a table: a study asks several times for it, and the fits take 30 ms."""
+    """The law of a table. It is kept, because a study asks for it several times."""
     heading = next((line for line in text.splitlines() if line.strip() and not line.startswith("#")), "")
     if "share" in map(str.strip, heading.split(",")):
         return _histogram(name, **_columns(text, HEIGHTS, 2))
@@ -68,7 +68,7 @@ def _of_text(name, text):
 
 
 def _histogram(name, z, share):
-    """The law of a histogram that has been read, and is checked here."""
+    """The law of a histogram with the columns z and share (n,). Raises ValueError where z is not that of one."""
     steps = np.diff(z)
     if len(z) > _MOST:
         raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")
@@ -160,13 +160,13 @@ def _scales(p_star, A_star, E):
 
 
 def _curve(column, t, q, X, power):
-    """:class:`~solver.laws.tabulated.Quantity` near the rows (n,), and how far it is from them.
+    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,), and its largest error at one of them.
 
-    Its degree is the lowest that is hardly farther than any other. Raises ValueError where all are too far, or fall.
+    Its degree is the lowest that is near enough. Raises ValueError where every degree is too far away, or falls.
     """
     degrees = range(1, min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
-    far = np.array([error[1:-1].max() for _, error in tried])  # nothing is beyond the ends
+    far = np.array([error[1:-1].max() for _, error in tried])  # without the ends: no curve through the others says them
     if far.min() > _FAR:
         row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
         raise ValueError(
@@ -184,6 +184,6 @@ def _curve(column, t, q, X, power):
 
 
 def _falls(found, t):
-    """Whether a :class:`~solver.laws.tabulated.Quantity` falls somewhere between the rows, and behind them."""
+    """Whether a :class:`~solver.laws.tabulated.Quantity` falls somewhere between the rows at t (n,), or below them."""
     points = np.append(np.geomspace(1e-6, t[0], 50), np.linspace(t[0], 1, 2000)[:-1])
     return bool((found.power / points + found.exponent(points)[1] <= 0).any())

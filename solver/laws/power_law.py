@@ -11,7 +11,7 @@ from .law import Curve, Law
 
 
 def _scales(E, Nbar, Ra, B, beta):
-    """p*, A*; and β, p* over that of the fitted law."""
+    """p*, A*; and further β, and p* over that of the law that is fitted."""
     return E, B * Ra, beta, E / disc_cell.scales(E, Nbar, Ra)[0]
 
 

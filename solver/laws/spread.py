@@ -1,14 +1,16 @@
-"""Spots of asperities of random heights in the mean field of the disc cell: their means, and tables of them.
+"""The spots of asperities of random heights in the mean field of the disc cell: means over them, and tables of these.
 
-All is in units p* and A*, with q = p/p* and k = 2 q/3. A summit that lies ζ below the highest has the approach δ - ζ.
-Where 0 < δ - ζ + 2 k and δ - ζ < 1 it has a spot of radius c = b/B̄, with v = sqrt(1 - c²),
+Units are p* and A*; q = p/p*, k = 2 q/3, and δ = A/A* is the approach of the highest summit. One that lies ζ below it
+has the approach δ - ζ. Where 0 < δ - ζ + 2 k and δ - ζ < 1 it has a spot of radius c = b/B̄, with v = sqrt(1 - c²),
 
     δ - ζ = 1 - v² - 2 k v,   its load on the area of a cell:   f = (2/π) (c³ + q (arccos v - v c)),
 
-which are (6) and the load that (7) is the balance of. At δ - ζ = 1 the spot fills its cell. From there on the cell is
-pressed like a flat punch of its size, f = 2/π + q + (3/π) (δ - ζ - 1): f and its first two derivatives by δ go over
-into each other, and at full contact, where all cells are filled, δ is the mean relief <ζ> + 1/3, as it must be.
-p is the mean, q = <f> over the density of ζ. With 1 - f the share of q alone, S, this is P = q S without cancellation.
+by (6) and (7). At δ - ζ = 1 the spot fills its cell. From there on the cell is pressed like a flat punch of its size,
+f = 2/π + q + (3/π) (δ - ζ - 1). There f and its first two derivatives by δ are continuous. At full contact, where all
+cells are filled, δ is the mean relief <ζ> + 1/3, as it must be.
+
+The nominal pressure is the mean over the density of ζ, q = <f>. At given spots f is linear in q, so that
+<f> = P + (1 - S) q, and the equation is P = q S, in which nothing cancels.
 
 The unknown is y = sqrt(δ) (1 + q): δ = (y/(1 + q))² is then explicit, and P - q S falls with q at any y.
 """
@@ -19,20 +21,23 @@ import numpy as np
 
 from ..numerics.quadrature import gauss_legendre
 
-#: Points over the heights of each piece, of spots and of filled cells.
+#: Gauss points on each smooth piece of the density: of summits with a spot, and of those that fill their cell.
 _SPOTS, _FILLED = 24, 16
-#: Most Newton steps on ln q, the change that is the last, since the next would be below rounding, and the largest.
+#: Newton's method on ln q: most steps; a change below _LAST is the last, for the next would be below rounding; a change
+#: below _NEAR is taken even if it leaves the bracket of the root, which then is rounding; the largest change.
 _STEPS, _LAST, _NEAR, _LONGEST = 60, 1e-9, 1e-6, 2.0
-#: Knots of a table: ln y from the first on. A quintic through six of them errs by less than 5e-6 of q and 2e-4 of λ.
+#: Knots of a table in ln y: the first, their distance, their number. A quintic through six of them errs by less than
+#: 5e-6 in q and 2e-4 in λ (tests/laws/test_heights.py).
 FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 672
 
 
-#: Every so many knots are solved first, and the others begin between them: that takes half the time.
+#: Every sixth knot is solved first. The others begin at what is interpolated between these, and take fewer steps.
 _EVERY = 6
 
 
 class Means(NamedTuple):
-    """At q and δ: P and S of the module, λ, the mean of c, and d(q - <f>)/dq at constant δ; arrays of one shape."""
+    """At q and δ, arrays of one shape: `load` P and `rest` S (see the module), `area` λ, the mean of `c`, and `fall`,
+    d(q - <f>)/dq at constant δ."""
 
     load: np.ndarray
     rest: np.ndarray
@@ -44,8 +49,10 @@ class Means(NamedTuple):
 def means(edges, density, field, q, delta, sigma):
     """:class:`Means` at q and delta (B, m).
 
-    edges : (B, J + 1), ends of the pieces of the density: depth below the highest summit over sigma
-    density : (x (B, m, J, n)) -> of the depths x; field : 0 if asperities do not feel each other; sigma : (B, 1)
+    edges : (B, J + 1), ends of the smooth pieces of the density, in x = ζ/sigma, the depth below the highest summit
+    density : x (B, m, J, n) -> the density there
+    field : 1, or 0 if asperities do not feel each other
+    sigma : (B, 1), standard deviation of the heights, in A*
     """
     low, high = (edges[:, None, part, None] for part in (slice(None, -1), slice(1, None)))
     sigma, delta, q = sigma[..., None, None], delta[..., None, None], q[..., None, None]
@@ -54,7 +61,8 @@ def means(edges, density, field, q, delta, sigma):
     begin, end = np.clip(full, low, high), np.clip(touching, low, high)
 
     tau, weight = gauss_legendre(_SPOTS)
-    x = end - (end - begin) * np.sin(np.pi / 2 * tau) ** 2  # f begins as (touching - ζ)^(3/2), v as sqrt(1 - δ + ζ)
+    # sin² makes roots at both ends smooth: f begins as (touching - ζ)^(3/2), and v as sqrt(1 - δ + ζ)
+    x = end - (end - begin) * np.sin(np.pi / 2 * tau) ** 2
     w = np.pi / 2 * weight * np.sin(np.pi * tau) * (end - begin) * density(x)
     depth = delta - sigma * x
     v = np.clip((1 - depth) / (k + np.sqrt(np.maximum(k * k + 1 - depth, 0.0))), 0.0, 1.0)
@@ -66,10 +74,10 @@ def means(edges, density, field, q, delta, sigma):
     w_full = weight * (begin - low) * density(x_full)
     excess = delta - sigma * x_full - 1
 
-    share = (w.sum(axis=(-1, -2)) + w_full.sum(axis=(-1, -2)))[..., None, None]
-    every = touching >= edges[:, None, -1:, None]
+    share = (w.sum(axis=(-1, -2)) + w_full.sum(axis=(-1, -2)))[..., None, None]  # of the summits that touch
+    every = touching >= edges[:, None, -1:, None]  # where all touch, the share is made exactly 1
     w, w_full = w / np.where(every, share, 1.0), w_full / np.where(every, share, 1.0)
-    free = np.where(every, 0.0, 1 - share)[..., 0, 0]  # without contact
+    free = np.where(every, 0.0, 1 - share)[..., 0, 0]
 
     def of(values, filled=0.0):
         return (w * values).sum(axis=(-1, -2)) + (w_full * filled).sum(axis=(-1, -2))
@@ -84,7 +92,7 @@ def means(edges, density, field, q, delta, sigma):
 def pressure(edges, density, field, y, sigma, relief, q=None):
     """q (B, m) at y (B, m) > 0, and :class:`Means` there: Newton's method on ln q.
 
-    relief : (B, 1), the limit of δ; q : to begin with, if something is known
+    relief : (B, 1), the limit of δ; q : the first guess, or None; the rest as for :func:`means`
     """
     if q is None:
         at = means(edges, density, field, np.zeros_like(y), y * y, sigma)
@@ -107,15 +115,15 @@ def pressure(edges, density, field, y, sigma, relief, q=None):
 
 
 def _weights():
-    """(6, 6): powers of t in [0, 1] -> weights of the values at -2, ..., 3 in the quintic whose values and first two
-    derivatives at 0 and 1 are those of the five values around each."""
+    """(6, 6): a row for each of the values at -2, ..., 3, a column for each power of t in [0, 1]. They give the quintic
+    whose value and first two derivatives at 0 and at 1 are those of the polynomial through the five values around."""
     first = np.array([1, -8, 0, 8, -1]) / 12
     second = np.array([-1, 16, -30, 16, -1]) / 12
     hermite = np.array([
         [1, 0, 0, -10, 15, -6], [0, 1, 0, -6, 8, -3], [0, 0, 0.5, -1.5, 1.5, -0.5],
         [0, 0, 0, 10, -15, 6], [0, 0, 0, -4, 7, -3], [0, 0, 0, 0.5, -1, 0.5],
     ])  # fmt: skip
-    rows = np.zeros((6, 6))  # value, first and second derivative at 0, then at 1; by the six values
+    rows = np.zeros((6, 6))  # rows: value, first and second derivative at 0, then at 1; columns: the six values
     for end in (0, 1):
         rows[3 * end, 2 + end] = 1
         rows[3 * end + 1, end : end + 5] = first
@@ -127,8 +135,8 @@ _WEIGHTS = _weights()
 
 
 def look_up(table, group, y, step=STEP):
-    """ln of what `table` (G, n) is of, and its derivative by ln y: (B, m) at y (B, m) of the laws `group` (B,).
-    The knots are `step` apart. Beyond the ends it goes on as a straight line."""
+    """The logarithms that `table` (G, n) has at its knots, interpolated to y (B, m), and their derivative by ln y, both
+    (B, m). `group` (B,) is the row of each case. The knots are `step` apart; beyond them it is a straight line."""
     place, count = (np.log(y) - FIRST) / step, table.shape[1]
     knot = np.clip(place.astype(int), 2, count - 4)
     t = np.clip(place - knot, 0.0, 1.0)

@@ -1,13 +1,14 @@
-"""A micro law through the rows of a table: smooth curves that rise, with the ends that are known.
+"""A micro law from the rows of a table: smooth curves near the rows that rise, with the ends that are known.
 
-With t = y/(1 + y), from 0 to 1, the pressure is q = y t^s. A small q is then y^(1 + s), so that g ~ y² is g ~ q^β for
-s = 2/β - 1, and a large one is y - s. A quantity that begins as t^m and tends to a limit by exp(-rate q) is
+The unknown y > 0 is chosen by q = y t^s with t = y/(1 + y), which goes from 0 to 1. For small y, q is y^(1 + s): with
+s = 2/β - 1, g ~ y² means g ~ q^β. For large y, q is y - s. A quantity that begins as t^m and tends to a limit by
+exp(-rate q) is written
 
-    X = 1/(1/limit + exp(-rate q - V(t))/t^m),
+    X = 1/(1/limit + exp(-rate q - V(t))/t^m).
 
-in which V is smooth up to both ends: a polynomial, by least squares. A spline through the rows would carry their noise
-to its knots, where a mesh has to resolve it: with one, random cases took a sixth more nodes at rtol = 1e-6, and a third
-more at 1e-8. Without a limit this is infinity, and the rate 0. p_max is q and such a quantity.
+V is then smooth up to both ends: a polynomial, by least squares. A spline through the rows would follow their noise,
+and a mesh would need more nodes to resolve it. For an X without a limit, `limit` is infinity and the rate 0. A/A*, λ
+and (p_max - p)/p* are such quantities.
 """
 
 from functools import partial
@@ -18,15 +19,15 @@ from numpy.polynomial import chebyshev, polynomial
 
 from .law import Curve, Law, inverse, of_positive
 
-#: Of a larger q, y is q to rounding.
+#: Above this q, y is q to rounding.
 _LARGE = 1e30
 _TINY = np.finfo(float).tiny
 
 
 class Quantity(NamedTuple):
-    """One X of the module; V is a polynomial in 2 t - 1, its coefficients in ascending order.
+    """One X of the module, with m = `power`; V holds the coefficients of a polynomial in 2 t - 1, ascending.
 
-    span : the smallest and the largest t of the polynomial. Below, V goes on as a straight line; above, V + m ln t.
+    span : the smallest and the largest t of the polynomial. Below, V is a straight line in t; above, V + m ln t is one.
     """
 
     power: int
@@ -67,14 +68,14 @@ class Quantity(NamedTuple):
         return V, slope
 
     def with_slope(self, t, q, dq):
-        """X, its rest, and d ln(1/rest)/dy, where dq = dq/dy and dt/dy = (1 - t)²."""
+        """X, its rest, and d ln(1/rest)/dy; `dq` is dq/dy, and dt/dy = (1 - t)²."""
         V, dV = self.exponent(t)
         rest = self.rest(t, q, V)
         return 1 / (1 / self.limit + rest), rest, (self.power / t + dV) * (1 - t) ** 2 + self.rate * dq
 
 
 class Table(NamedTuple):
-    """A/A*, λ and (p_max - p)/p* of a law, and the exponent s of q = y t^s."""
+    """The quantities of a law: A/A*, λ, and `above`, (p_max - p)/p*; and the exponent s of q = y t^s."""
 
     A: Quantity
     lam: Quantity
@@ -89,11 +90,11 @@ class Table(NamedTuple):
 
 
 def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
-    """:class:`Quantity` near the values X (n,) at t and q (n,), and how far each of them is from the one through the
-    others, relative (n,): that is what rows far apart leave unsaid between them.
+    """:class:`Quantity` near the rows X (n,) at t and q (n,), and its error at each row (n,), relative: how far the row
+    is from the curve fitted to the other rows alone. Rows far apart have large errors, as the curve between them has.
 
     degree : of the polynomial
-    guides : t and V (k,) where there are no rows, and their weight, small enough to take nothing from the rows
+    guides : t and V (k,) of guiding points where there are no rows, and their weight, small beside those of the rows
     first : X/t^power for t -> 0, if it is known; met exactly
     form : power, and rate, limit and span of the Quantity
     """
@@ -110,7 +111,7 @@ def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
     if first is not None:
         V = polynomial.polyadd(polynomial.polymul(V, [0.5, 0.5]), [lowest])
     one = one._replace(V=V)
-    own = (Q[: len(t)] ** 2).sum(axis=1)  # share of a row in the curve at it
+    own = (Q[: len(t)] ** 2).sum(axis=1)  # leverage: how much of the curve at a row comes from that row itself
     return one, np.abs(one.at(t, q) / X - 1) / np.maximum(1 - own, 1e-9)
 
 
@@ -121,10 +122,8 @@ def t_of(q, s=2.0):
 
 
 def law_of(table, **known):
-    """:class:`~solver.laws.law.Law` of a :class:`Table`; `known`: name, scales and all else that a table does not say.
-
-    Its functions can be pickled.
-    """
+    """:class:`~solver.laws.law.Law` of a :class:`Table`, which can be pickled. `known`: its name, its `scales` and all
+    else that the table does not say."""
     functions = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge}
     functions |= {"from_pressure": _from_pressure, "from_displacement": partial(_from_displacement, _inverse(table))}
     return Law(**{name: partial(function, table) for name, function in functions.items()}, **known)
@@ -156,14 +155,15 @@ def _from_pressure(table, q, *own):
 
 
 def _root(q):
-    """y >= 0 with y³ = q (1 + y)², by Cardano's formula, in which no terms cancel: to a few units of rounding."""
+    """y >= 0 with y³ = q (1 + y)², which is q = y t², by Cardano's formula. No terms cancel: y is right to a few units
+    of rounding."""
     one = np.minimum(q, _LARGE)
     t = np.cbrt(one * (0.5 + np.sqrt(0.25 + one / 27) + one / 3 * (1 + one / 9)))
     return np.where(q > _LARGE, q, one / 3 + t + one * (one + 6) / (9 * np.maximum(t, _TINY)))
 
 
 def _inverse(table):
-    """ln(1/rest) of A, and ln y, at points of a curve (2, n), ascending: an inverse of A within 1e-3."""
+    """ln(1/rest) of A and ln y at points of the curve, (2, n), ascending: interpolated, a first guess of y."""
     t = np.append(np.geomspace(1e-6, 0.01, 40), np.linspace(0.01, 1, 400)[1:-1])
     y = t / (1 - t)
     rest = table.A.rest(t, table.pressure(y)[1], table.A.exponent(t)[0])
@@ -171,7 +171,8 @@ def _inverse(table):
 
 
 def _from_displacement(inverse_curve, table, g, *own):
-    """By 1/rest, which is g itself without a limit, and grows to infinity where g comes near one."""
+    """y (B, m) at which A/A* is g. Solved for 1/rest: it is g if there is no limit, else it grows to infinity as g
+    comes near the limit."""
     A, g = table.A, np.asarray(g, dtype=float)
     odds = 1 / (1 / np.where(g < A.limit, g, np.nan) - 1 / A.limit)
 

@@ -1,14 +1,15 @@
-"""Films far thinner than the contact: the part of the layered operator that only the edge of the contact feels.
+"""Films, layers far thinner than the contact: the part of the operator that only the edge of the contact feels.
 
-The half-space times n' = L(cut η/2), η = h/a, is taken out. The rest, L(kη) - n', is split by a smooth step χ. What
-lies below k = cut (in 1/a) is summed as for any layer; beyond, the Bessel functions are plane waves, and the kernel is
-a convolution:
+Let η = h/a, k in 1/a, and cut the largest k of the quadrature that all films share (CUT of :mod:`.wave_rule`). From
+L(kη) the constant n' = L(cut η/2) is taken out: it is n' times a half-space. The rest, L(kη) - n', is split by a smooth
+step χ, which falls from 1 to 0 below k = cut. χ (L - n') is integrated over k as for any layer. For (1 - χ)(L - n') the
+Bessel functions are plane waves, and the kernel is a convolution: with κ = k/cut and τ = cut |x - x'|,
 
-    ∫ (L(kη) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(cut |x - x'|)/sqrt(x x'),
+    ∫ (L(kη) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(τ)/sqrt(x x'),
     c(τ) = (1/π) ∫ (L(κ cut η) - n')(1 - χ) cos(κτ) dκ/κ.
 
-What is left out is of the order cut⁻² of the effect. Inside the contact the convolution sees a smooth pressure, and
-nothing of it remains. The convolution is linear in c, so that it is tabulated like the rest.
+The relative error of that is of the order cut⁻². Inside the contact, where the pressure is smooth, the convolution is
+nothing. It is linear in c, so it is tabulated like the rest.
 """
 
 from functools import lru_cache
@@ -23,19 +24,19 @@ from scipy.special import erfc, spherical_jn
 from ..numerics.pieces import against, pieces
 from ..numerics.quadrature import gauss_legendre, radau_nodes
 
-#: Octaves of κ = k/cut above 1 and of τ below 1; the step χ falls between κ = 1/4 and 1.
+#: Number of octaves of κ above 1, and of τ below 1.
 _OCTAVES = 24
-#: Nodes in each half-octave of κ and in each octave of τ: under a film n times stiffer than its base, what is wrong in
-#: c comes back in the pressure more than n times as large.
+#: Nodes in each half-octave of κ and in each octave of τ. They are many: under a film n times stiffer than its base, an
+#: error of c becomes an error of the pressure that is more than n times as large.
 _KAPPA, _TAU = 14, 20
-#: Steepness of χ: it is within erfc(_STEP)/2, below 1e-6, of 1 at κ = 1/4 and of 0 at κ = 1.
+#: Steepness of χ. At κ = 1/4 it differs from 1, and at κ = 1 from 0, by erfc(_STEP)/2, below 1e-6.
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
-#: Up to this τ c is smooth, except at 0. Beyond, it swings with the period of the step, and it ends at REACH: a panel
-#: there needs as many points as one that contains the target (tests/body/test_work.py).
+#: c is smooth for τ up to this, except at 0. Beyond, it swings with the period of the step, and it ends at REACH: a
+#: panel there needs as many points as one that contains the point where c is wanted (tests/body/test_work.py).
 _SMOOTH = 12.0
-#: From so many cases on their matrices are products with one table.
+#: So many cases or more get their matrices as products with one table.
 MANY = 8
 
 
@@ -46,9 +47,9 @@ def step(kappa):
 
 @lru_cache(maxsize=1)
 def waves():
-    """Nodes κ (G,) of half-octaves, τ (T,) of octaves, and the matrix (T, G) of (1/π) ∫ · cos(κτ) dκ/κ.
+    """Nodes κ (G,) of the half-octaves, nodes τ (T,) of the octaves, and the matrix (T, G) of (1/π) ∫ · cos(κτ) dκ/κ.
 
-    The integral is exact for polynomials over κ on each panel (Filon).
+    The integral is exact where the integrand over κ is a polynomial on each half-octave (Filon's rule).
     """
     t, _ = gauss_legendre(_KAPPA)
     ends = np.append(0.0, 2.0 ** np.arange(-2, _OCTAVES + 0.25, 0.5))
@@ -66,17 +67,18 @@ def waves():
 
 
 def transform(f, level, p):
-    """c (b, T) at the nodes τ, from f = (L - n')(1 - χ) (b, G) at the nodes κ, which ends as 1 - n' = -level (b, 1).
+    """c (b, T) at the nodes τ, from f = (L - n')(1 - χ) (b, G) at the nodes κ. f tends to 1 - n' = -level (b, 1).
 
-    p (b, 1) is the thickness in 1/cut: the end -level (1 - e^-pκ)/κ has the transform -level ln(1 + p²/τ²)/2.
+    p (b, 1) is the thickness in a/cut. The end of f is taken out as -level (1 - e^-pκ), whose transform
+    -level ln(1 + p²/τ²)/(2π) is added.
     """
     kappa, tau, matrix = waves()
     return (f - level * np.expm1(-p * kappa)) @ matrix.T - level / (2 * np.pi) * np.log1p((p / tau) ** 2)
 
 
 class Share(NamedTuple):
-    """The part of a convolution of r pairs of a point and a panel, `row` and `panel` (r,). At the g points of the rule
-    of each pair: the `weight` of c (r, g), and the basis of the panel, `columns` (r or 1, g, order)."""
+    """The part of a convolution that r pairs have, each of a point and a panel, `row` and `panel` (r,). A pair has a
+    rule of g points; there the `weight` of c (r, g) and the basis of the panel, `columns` (r or 1, g, order)."""
 
     row: np.ndarray
     panel: np.ndarray
@@ -85,11 +87,11 @@ class Share(NamedTuple):
 
 
 class Convolution(NamedTuple):
-    """The convolution at m points: a matrix, as a linear function of c.
+    """The convolution at m points as a linear function of c: for each c a matrix (m, n).
 
-    `shape` is (m, p, order), of p panels; `shares` are all :class:`Share` that are not zero. The N points of all their
-    rules are sorted by octaves of τ: `place` (N,) is the place of each among the points of all shares, `local` (N,)
-    where it is in its octave, from -1 to 1; `ends` are the ends of the octaves in both.
+    `shape` is (m, p, order), for p panels; `shares` are all :class:`Share` that are not zero. The N points of all their
+    rules are sorted by octaves of τ: `place` (N,) is the index of each among the points of all shares, and `local` (N,)
+    where it is in its octave, from -1 to 1. In both, octave i begins at ends[i].
     """
 
     shape: tuple
@@ -127,7 +129,7 @@ class Convolution(NamedTuple):
         return Whole((m, panels * order), out.reshape(count, -1))
 
     def _parts(self):
-        """Pairs of a share and the slice of its points among those of all shares."""
+        """Pairs of a share and the slice of its points among the points of all shares."""
         end = 0
         for share in self.shares:
             begin, end = end, end + share.weight.size
@@ -135,8 +137,8 @@ class Convolution(NamedTuple):
 
 
 class Whole(NamedTuple):
-    """A :class:`Convolution` at m points for many c together: the matrices of all unit vectors c, `table` (T, m n);
-    `shape` is (m, n)."""
+    """A :class:`Convolution` at m points for many c: `table` (T, m n) has for each node of τ, as a row, the matrix of
+    the c that is 1 at this node and 0 at the others; `shape` is (m, n)."""
 
     shape: tuple
     table: np.ndarray
@@ -149,8 +151,8 @@ class Whole(NamedTuple):
 def convolution(grid, points, cut):
     """The :class:`Convolution` at `points` (m,) in s, for the basis of a mesh.
 
-    Panel by panel: a rule that runs across the ends of panels is right for smooth pressures only. What it makes of
-    others would let the discrete equation of a stiff film have false solutions.
+    Each panel has rules of its own. A rule across the ends of panels would be right for smooth pressures only, and the
+    discrete equation of a stiff film would have false solutions.
     """
     low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
     s = points[:, None]
@@ -182,8 +184,7 @@ def _chebyshev_nodes():
 
 
 def _in_octaves(tau):
-    """Of τ > 0 (N,), octave by octave: their places (N,), where in their octave they are, from -1 to 1 (N,), and the
-    ends of the octaves. The first octave begins at 0."""
+    """`place`, `local` and `ends` of a :class:`Convolution` for τ > 0 (N,). The first octave begins at 0."""
     octave = np.maximum(np.floor(np.log2(tau)) + (_OCTAVES + 1), 0).astype(np.int8)
     place = np.argsort(octave, kind="stable")
     octave = octave[place]

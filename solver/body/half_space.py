@@ -10,10 +10,10 @@ import numpy as np
 from ..numerics.mesh import Mesh
 from .operator import fitted_nodes
 
-#: Below this rtol a case on springs begins on eight nodes, not on the six of the coarsest mesh: of the random cases few
-#: stayed on six.
+#: Below the rtol _FINE a case on springs begins on at least _SECOND nodes, the second coarsest mesh: on the coarsest,
+#: few random cases met their rtol.
 _FINE, _SECOND = 3e-5, 8
-#: Work of a Newton step of a lone case: it takes as long as so many entries of the matrix.
+#: Work of one Newton step of a lone case, in the unit of :meth:`~solver.body.operator.Body.work`.
 _STEP = 150
 
 
@@ -33,7 +33,7 @@ class HalfSpaceOperator(NamedTuple):
         return self.mesh.edge[None]
 
     def take(self, index):
-        """Itself: it has nothing of single cases."""
+        """Itself: it is the same for all cases."""
         return self
 
     def join(self, operators, places):
@@ -81,7 +81,7 @@ class HalfSpace(NamedTuple):
         return np.zeros_like(a)
 
     def work(self, a, nodes):
-        """Work (B,) of an operator on a mesh of its own, and of a step."""
+        """Work (B,) of a mesh with its operator, and of one step."""
         return np.full_like(a, nodes**2), np.full_like(a, _STEP)
 
     def order(self, a):
@@ -91,7 +91,7 @@ class HalfSpace(NamedTuple):
         """None: nothing is cheaper."""
 
     def first_nodes(self, rtol, a, rise=None):
-        """Number of nodes (B,); springs let the pressure begin more gently at the edge than a half-space."""
+        """Number of nodes (B,); on springs the pressure begins more gently at the edge than on a half-space."""
         springs = self.C > 0
         digits, factor = np.where(springs, 3.4, 1.1), np.where(springs, 0.97, 0.93)
         nodes = fitted_nodes(rtol, 0.0 if rise is None else rise, digits, factor)
@@ -99,5 +99,5 @@ class HalfSpace(NamedTuple):
 
 
 def half_space(h, n, nu1, nu2, bonded, m):
-    """The half-space alone, n = 1, under a punch of m = E2*/E3*. Of the layer, which there is not, nothing counts."""
+    """The half-space alone, n = 1, under a punch of m = E2*/E3*. There is no layer: the other arguments do nothing."""
     return HalfSpace(n / (n + m), 0 * n)

@@ -1,16 +1,16 @@
 """The exact kernel L(u), u = kh, of an elastic layer on an elastic half-space, frictionless or bonded.
 
-Surface displacement u(r) = (2/E1*) ∫ L(kh) p̂(k) J0(kr) dk. L(0) = n, L(∞) = 1. What the solver uses is L - 1, which
-decays like e^(-2u), and u dL/du; all are formed without cancellation from u = 0 to infinity.
+The displacement of the surface is (2/E1*) ∫ L(kh) p̂(k) J0(kr) dk. L(0) = n, L(∞) = 1. The solver uses L - 1, which
+decays like e^(-2u), and u dL/du. All are formed without cancellation from u = 0 to infinity.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-#: Below this u, differences of hyperbolic functions and their first terms are taken from series.
+#: Below this u, a hyperbolic function less the first term of its series is taken from the rest of the series.
 _SERIES = 0.8
-#: In place of u = 0, where the quotients are those of their limits.
+#: Stands for u = 0: the quotients, 0/0 there, have their limits here.
 _LEAST = 1e-300
 
 
@@ -76,8 +76,8 @@ def decaying_part(u, n, nu1, nu2, bonded):
 
 
 class _Frictionless(NamedTuple):
-    """Terms of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u, with e = exp(-2u): rest = 1 - e,
-    e4 = 4e, ue4 = 4ue, and, times 4e, the wedge sc + u, the gap s² - u², the excess sc - u, and the denominator."""
+    """Terms of L = [s² + n(sc + u)]/[(sc + u) + n(s² - u²)], s = sinh u, c = cosh u. With e = exp(-2u): rest = 1 - e,
+    e4 = 4e, ue4 = 4ue. Multiplied by 4e: wedge = sc + u, gap = s² - u², excess = sc - u, and below, the denominator."""
 
     e: np.ndarray
     rest: np.ndarray
@@ -97,7 +97,7 @@ def _frictionless_terms(u, n):
     ue4 = u * e4
     wedge = rest * (1 + e) + ue4
     gap, excess = rest * rest - u * ue4, wedge - 2 * ue4
-    if np.any(n > 2):  # beside the wedge, n times what cancels in them does not count for smaller n
+    if np.any(n > 2):  # for smaller n what the gap and the excess lose by cancellation is small beside the wedge
         small = np.flatnonzero(u < _SERIES)
         gap.reshape(-1)[small], own = _series(u.reshape(-1)[small], e.reshape(-1)[small])
         excess.reshape(-1)[small] = 2 * own
@@ -121,8 +121,8 @@ def _frictionless(u, n):
 
 
 class _Bond(NamedTuple):
-    """Constants of the bonded kernel: with alpha = G1/G2 and g = 3 - 4 nu, a = (alpha g2 - g1)/(1 + alpha g2),
-    b = (alpha - 1)/(alpha + g1), and 1 - a, 1 - b, 1 + a, 1 - ab in product form."""
+    """Constants of the bonded kernel: with alpha = G1/G2 and g = 3 - 4 nu, a = (alpha g2 - g1)/(1 + alpha g2) and
+    b = (alpha - 1)/(alpha + g1), c1 and c2 of docs/model.md; and 1 - a, 1 - b, 1 + a, 1 - ab in product form."""
 
     a: np.ndarray
     b: np.ndarray
@@ -149,7 +149,7 @@ def _bond(n, nu1, nu2):
 def _bonded_below(u, e, rest, bond):
     """Denominator 1 - (a + b + 4bu²)e + ab e² of L and its derivative."""
     a, b, one_a, one_b, _, _ = bond
-    hard = b > 0  # then 1 - b e nearly vanishes at small u: written in 1 - a, 1 - b and s² - u²
+    hard = b > 0  # 1 - b e may nearly vanish at small u: then the denominator is written in 1 - a, 1 - b and s² - u²
     if not np.all(hard):
         soft = _one_minus(a, one_a, e, rest) * (1 - b * e) - 4 * b * u * u * e
         d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)

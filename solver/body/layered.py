@@ -3,11 +3,11 @@
     K q = H[q] + (π/2) Λ[q], both less their values at the edge,
     Λ_ij(η) = ∫₀^∞ (L(kη) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
 
-k in units of 1/a, η = h/a, l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1 decays
-like e^(-2u), so Λ is smooth for every η. What depends on k and the mesh alone is tabulated for an octave of η
+with k in units of 1/a, η = h/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1
+decays like e^(-2u), so Λ is smooth for every η. What depends on k and the mesh alone is tabulated for each octave of η
 (:mod:`.tables`). For a batch, the matrix is then one product of the values of L - 1 with that table; the derivatives
-by ln a come from u dL/du. The octaves agree to the error of the quadrature where they meet. Films, below the last
-octave, all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
+by ln a come from u dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first
+octave are films. They all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
 """
 
 from typing import NamedTuple
@@ -23,24 +23,24 @@ from .springs import layer_modulus, thin_layer
 from .tables import between, felt, film_rows
 from .wave_rule import CUT, FILM, LOOSE, place_of
 
-#: Layers thinner than this times the radius are nearly thin layers.
+#: A layer thinner than this times the radius yields nearly as the thin layer does.
 _THIN = 0.02
-#: Work of a lone case, of films and of thicker layers: on a mesh of its own, for a node of films and for an entry of
-#: the matrix of others; for a Newton step on any mesh, and for an entry of the matrix in that step. They are processor
-#: times of lone cases over that of an entry of a half-space's matrix, to a factor of two: BUDGET needs no more.
+#: Work of a lone case in the unit of :meth:`.operator.Body.work`, of films first, of thicker layers second. _MESH: of a
+#: new mesh, for each node of films and for each entry of the matrix of others. _STEP and _ENTRY: of a Newton step, and
+#: more for each entry of the matrix. They are ratios of processor times to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
-#: A loose operator is right to this part of rtol. What it leaves out may count up to so many times in a solution: more
-#: than once in random cases, and less often than this (tests/body/test_loose.py).
+#: A loose operator is right to this part of rtol. A solution may change by more than what the operator leaves out: in
+#: random cases by more than once and less than _COUNTS times that (tests/body/test_loose.py).
 _OF_RTOL, _COUNTS = 0.01, 3.0
 
 
 class Layered(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
-    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, and m = E1*/E3*. `loose`, bool (B,) or
-    None where none is: whether the operator is formed of fewer values of L (:meth:`within`).
+    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, and m = E1*/E3*. `loose`, (B,) bool, or
+    None if no case is: whether the operator is made of fewer values of L (:meth:`within`).
 
-    The punch yields as a half-space of E3* does, so that the kernel is L + m. In units of both surfaces, E of
-    1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m), and its L - 1 is (L - 1)/(1 + m).
+    The punch yields as a half-space of E3* does, so the kernel of both is L + m relative to E1*. Relative to the
+    modulus E of both, 1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m): L - 1 becomes (L - 1)/(1 + m).
     """
 
     h: np.ndarray
@@ -53,7 +53,7 @@ class Layered(NamedTuple):
 
     @property
     def E(self):
-        """Modulus (B,) in E2* of a half-space of the layer's material and the punch, to which K is relative."""
+        """Modulus (B,) in E2* to which K is relative, that of the layer's material and the punch together."""
         return layer_modulus(self.n) / (1 + self.m)
 
     @property
@@ -75,14 +75,14 @@ class Layered(NamedTuple):
         return Layered(*(None if field is None else field[index] for field in self))
 
     def within(self, rtol, a):
-        """The body with an operator that is loose where it is still right to a hundredth of rtol (B,), for contacts of
-        about the radius a."""
+        """The body for contacts of about the radius a; its operator is loose where that is right to a hundredth of
+        rtol (B,)."""
         every = self._replace(loose=np.ones(len(a), dtype=bool))
-        may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not: their class may change with the radius
+        may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not be: their class may change with the radius
         return self._replace(loose=may_be & (every.error(a, 1) <= _OF_RTOL * rtol))
 
     def at(self, a, mesh, near=None):
-        """The :class:`LayeredOperator` at the radii a (B,); where those of `near` are the same, so is its kernel."""
+        """The :class:`LayeredOperator` at the radii a (B,). Cases whose radius is that of `near` have its kernel."""
         parts, far = [], np.ones(len(a), dtype=bool)
         for part in () if near is None else near.parts:
             same = np.flatnonzero(a[part.index] == part.radius)
@@ -95,12 +95,12 @@ class Layered(NamedTuple):
         return LayeredOperator(mesh, parts, _rows(parts, mesh))
 
     def softness(self, a):
-        """L (B,) at the wave number 1.5/a: about what the contact feels."""
+        """The kernel (B,) at the wave number 1.5/a: about what the contact feels."""
         return self.whole(1.5 * self.h / a)
 
     def error(self, a, nodes):
-        """Error (B,) of the operator: rounding, what it leaves out if it is loose, and what the convolution of films
-        does."""
+        """Relative error (B,) of the operator: rounding, what a loose one leaves out, and for films that of the
+        convolution."""
         L, below = self.whole(10 * self.h / a), (self.n + self.m) / (1 + self.m)
         octave, stiffness = place_of(self, a)
         local = np.abs(L - below) / np.maximum(L, below)
@@ -108,29 +108,30 @@ class Layered(NamedTuple):
         return (1e-14 * nodes + _COUNTS * left_out) / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
     def work(self, a, nodes):
-        """Work (B,) of an operator on a mesh of its own, and of a step."""
+        """Work (B,) of a mesh with its operator, and of one step."""
         film = place_of(self, a)[0] == FILM
         mesh, least, entry = (np.where(film, *two) for two in (_MESH, _STEP, _ENTRY))
         return mesh * np.where(film, nodes, nodes**2), least + entry * nodes**2
 
     def order(self, a):
-        """Permutation (B,) that puts cases with one table together: fewer, larger matrix products."""
+        """Permutation (B,) that puts cases with the same table together: fewer and larger matrix products."""
         return np.lexsort(place_of(self, a))
 
     def alike(self, a):
-        """The thin layer in place of a film, if there is one."""
+        """The thin layer, if all cases are much thinner than a and it applies to them; else None."""
         thin = thin_layer(*self[:6])
         return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
 
     def first_nodes(self, rtol, a, rise=None):
-        """Number of nodes (B,): under asperities as on a half-space; of a smooth punch, the fewer the thicker."""
+        """Number of nodes (B,): under asperities as on a half-space; under a smooth punch, the fewer the thicker the
+        layer."""
         smooth = 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3
         return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))
 
 
 class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: its mesh, the kernel (list of :class:`.part.Part`), and
-    `rows` (B, n + 1, n): the matrix K and under it the row of the edge. The cases are neighbours in memory."""
+    """The :class:`~solver.body.operator.Operator` of layers: its mesh, the kernel as a list of :class:`.part.Part`, and
+    `rows` (B, n + 1, n): the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
 
     mesh: Mesh
     parts: list

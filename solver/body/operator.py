@@ -1,9 +1,9 @@
 """The protocol of a body: what lies under the punch. One file has one body: :mod:`.half_space`, :mod:`.layered`.
 
-The contact asks for nothing else, and never which body it has. Lengths are in R, moduli in E2*; a is the radius.
-The displacement of the surface under the pressure p = p* q, less that of the edge, is
+The contact asks a body for nothing else, and never which one it is. Lengths are in R, moduli in E2*; a is the contact
+radius, and x = r/a. The displacement of the surface under the pressure p = p* q, less that at the edge, is
 
-    u(x) - u(1) = 4 a/(π E) p* (K q)(x) + C p* q(x),      x = r/a.
+    u(x) - u(1) = 4 a/(π E) p* (K q)(x) + C p* q(x).
 """
 
 from typing import Protocol
@@ -19,9 +19,9 @@ class Operator(Protocol):
     Attributes
     ----------
     K : (B, n, n), or (1, n, n) where all cases share it
-        The matrix of K. K q at the nodes is without the displacement of the edge.
+        The matrix of K at the nodes: the displacement less that of the edge.
     edge : (B or 1, n)
-        The row of the displacement at the edge: edge @ q.
+        The row that gives the displacement of the edge itself: edge @ q.
     """
 
     mesh: Mesh
@@ -32,7 +32,7 @@ class Operator(Protocol):
         """The operator of the sub-batch at `index`."""
 
     def join(self, operators, places):
-        """The operator of a batch from those of its sub-batches, each at its `places` (b,) in the batch."""
+        """The operator of a batch from the `operators` of its sub-batches, each at its `places` (b,) in the batch."""
 
     def products(self, q):
         """K q (B, n) and edge @ q (B,) for q (B, n)."""
@@ -41,7 +41,8 @@ class Operator(Protocol):
         """Derivatives of both :meth:`products` by ln a at fixed q: (B, n) and (B,)."""
 
     def between(self, q, s, half_space):
-        """K q (B, m) at points s (m,) > 0 between the nodes; half_space (B, m) is the same of a half-space."""
+        """K q (B, m) at points s = sqrt(1 - x²) (m,) > 0 between the nodes; `half_space` (B, m) is what K of a
+        half-space gives there."""
 
 
 class Body(Protocol):
@@ -62,34 +63,36 @@ class Body(Protocol):
         """The body of the sub-batch at `index`."""
 
     def within(self, rtol, a):
-        """The body with an operator right to a hundredth of rtol (B,), if that is cheaper, for contacts of about the
-        radius a."""
+        """The body for contacts of about the radius a, with a cheaper operator if there is one that is right to a
+        hundredth of rtol (B,)."""
 
     def at(self, a, mesh, near=None):
-        """The :class:`Operator` at the radii a (B,). `near`: one of these cases, perhaps at other radii or on another
-        mesh; what of it holds here is not computed again."""
+        """The :class:`Operator` at the radii a (B,). `near`: an operator of the same cases, perhaps at other radii or
+        on another mesh; what of it still holds is used again."""
 
     def softness(self, a):
-        """Compliance (B,) under a contact of radius a over that of a half-space of E, about."""
+        """About the compliance (B,) that a contact of radius a feels, over that of a half-space of E."""
 
     def error(self, a, nodes):
-        """Relative error (B,) of the operator itself on `nodes` nodes, that no mesh takes away."""
+        """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""
 
     def work(self, a, nodes):
-        """What is computed for a case alone at the radius a, in entries of a half-space's matrix made anew: (B,) for
-        the operator on a mesh of `nodes` nodes that is made for it, and (B,) for one Newton step on it."""
+        """The work of a case that is solved alone: (B,) for making a mesh of `nodes` nodes and the operator on it, and
+        (B,) for one Newton step there. The unit is that for one entry of the matrix of a half-space on a new mesh."""
 
     def order(self, a):
-        """Permutation (B,) in which cases that share work stand together; None: the order does not matter."""
+        """Permutation (B,) that puts cases that share work next to each other; None: the order does not matter."""
 
     def alike(self, a):
-        """A body of nearly the same displacement that is much cheaper to solve for contacts of radius a; or None."""
+        """A body that yields nearly as this one under contacts of radius a, and is much cheaper to solve; or None."""
 
     def first_nodes(self, rtol, a, rise=None):
         """Number of nodes (B,) that just about meet rtol (B,) for contacts of radius a. `rise` (B,), from 0 to about 1,
-        says how gently asperities let the pressure begin at the edge; None: a smooth punch."""
+        says how gently asperities let the pressure begin at the edge (:class:`~solver.laws.Law`); None: a smooth punch.
+        """
 
 
 def fitted_nodes(rtol, rise, digits, factor=0.93):
-    """The fit of :meth:`Body.first_nodes` to random cases; `digits`: of the error, at no nodes and rise 0."""
+    """Number of nodes (B,), a formula fitted to random cases: at rise 0 it is 0 for rtol = 10^-digits, and grows by
+    factor/0.25 with each further digit."""
     return factor * (-np.log10(rtol) - digits + 3.6 * rise) / (0.25 + rise)

@@ -1,4 +1,7 @@
-"""The kernel of a batch of layers at the nodes of the quadrature: a part for each class of stiffness, and for films."""
+"""The kernel L of a batch of layers at nodes k of the quadrature: a part for each class of stiffness, and for films.
+
+Classes, octaves of h/a, the few nodes and which layers are films: :mod:`.wave_rule`.
+"""
 
 from itertools import pairwise
 from typing import NamedTuple
@@ -15,11 +18,12 @@ _BLOCK = 16384
 
 
 class Part(NamedTuple):
-    """The kernel of cases of one class of stiffness, or of films of one.
+    """The kernel of b cases of one class of stiffness, all of them films or none.
 
-    `index` (b,) are their places in the batch, `octave` (b,) those of h/a, equal ones next to each other, `radius` (b,)
-    is a, and L1, uL (b, M) are L - 1 and -u dL/du at the few nodes k of the tables. Films have χ (L - n') in place of
-    L - 1, their convolution c and its derivative by ln a (b, T), and n' (b, 1).
+    `index` (b,): their places in the batch; `octave` (b,) of h/a, equal ones next to each other; `radius` (b,): a.
+    L1, uL (b, M): L - 1 and -u dL/du at the few nodes k of the tables. Films have χ (L - n') in place of L - 1, and
+    further their convolution c and its derivative by ln a, `film` and `d_film` (b, T), and n', `level` (b, 1):
+    :mod:`.film` says what these are.
     """
 
     stiffness: int
@@ -33,13 +37,13 @@ class Part(NamedTuple):
     level: np.ndarray | None = None
 
     def tables(self, mesh):
-        """Pairs of a :class:`~solver.body.tables.Table` on a mesh and its own rows (slice)."""
+        """Pairs of a :class:`~solver.body.tables.Table` on a mesh and the rows (slice) of the cases that it is for."""
         for octave, rows in runs(self.octave):
             yield table(mesh, octave, self.stiffness, rows.stop - rows.start >= film.MANY), rows
 
     @property
     def share(self):
-        """The share (b, 1) of the half-space that stands beside Λ: 1 but for films."""
+        """How much of the half-space's K is added to Λ: 1, or n' (b, 1) of films."""
         return 1.0 if self.level is None else self.level
 
     def take(self, rows, index):
@@ -91,11 +95,11 @@ def _film_part(layer, eta, octave, stiffness):
 
 
 def _kernel(layer, eta, k, level=None, factor=1.0):
-    """L less `level` (b, 1), or less 1, and -u dL/du, both times a factor (M,), at the nodes k, (b, M) or (M,): (b, M)
-    each."""
+    """L less `level` (b, 1), or less 1 if that is None, and -u dL/du; both (b, M), at the nodes k, (b, M) or (M,), and
+    times a `factor` (M,)."""
     size, count = len(eta), k.shape[-1]
     L1, uL = np.empty((2, size, count))
-    many, yields = max(1, _BLOCK // count), layer.m.any()  # few punches do
+    many, yields = max(1, _BLOCK // count), layer.m.any()  # whether a punch yields; few do
     for of_interface in (np.flatnonzero(layer.bonded), np.flatnonzero(~layer.bonded)):
         for low in range(0, len(of_interface), many):
             rows = of_interface[low : low + many]

@@ -1,16 +1,16 @@
-"""The elastic base: the coefficients of the layered half-space.
+"""The thin layer, Eq. (3): a half-space that carries springs, and the coefficients A1, A2 of both.
 
-Surface displacement under an axisymmetric pressure: u = (2/E1*) ∫ L(kh) p̂ J0 dk. The thin-layer model takes L(u) ≈
-A1 + A2 u, Eq. (2), so that u = (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*, Eq. (3).
+The displacement of the surface under an axisymmetric pressure is (2/E1*) ∫ L(kh) p̂ J0 dk. The thin-layer model takes
+L(u) ≈ A1 + A2 u, Eq. (2): the displacement is then (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*, Eq. (3).
 """
 
 import numpy as np
 
 from .half_space import HalfSpace
 
-#: n of a base that stands for a rigid one under the thin layer: the equation divides by the half-space's part X, which
-#: must not be 0, and is here below 1e-20 of that of the springs for every h and a within the bounds. Squares and cubes
-#: of it are still far from the least float.
+#: n of a base that stands for a rigid one under the thin layer. The equation divides by the half-space's part X, which
+#: must not be 0. With this n, X is below 1e-20 of the springs' part Y for every h and a within the bounds, and the
+#: squares and cubes of n are still far from the least float.
 STIFF = 1e-50
 
 
@@ -51,14 +51,14 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
 
 
 def local_compliance(h, n, nu1, nu2, bonded):
-    """C = 2 A2 h/E1* of Eq. (3), in R/E2*; <= 0 where the thin-layer equation does not apply. Shapes as above, h in
-    R."""
+    """C = 2 A2 h/E1* of Eq. (3), (B,) in R/E2*, for h (B,) in R and the other arguments as above. C <= 0 where the
+    thin-layer equation does not apply."""
     _, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
     return 2 * A2 * h / layer_modulus(n)
 
 
 def layer_modulus(n):
-    """E1* in the unit of moduli, which is E2*: n. On a rigid base, n = 0, the unit is E1* itself: 1."""
+    """E1* in the unit of moduli. That is E2*, so E1* is n; on a rigid base, n = 0, it is E1* itself, so E1* is 1."""
     return n + (n == 0)
 
 

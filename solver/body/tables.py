@@ -13,31 +13,33 @@ from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
 from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
 
-#: Tables of more numbers than this are not kept, J0 between the nodes is then formed anew, and the product of J0 φ case
-#: by case.
+#: Largest array of a table, in numbers. If it were larger, the product of J0 and φ (of films) is formed case by case,
+#: and J0 between the nodes is formed anew each time.
 _KEEP = 4e6
 #: All tables that are kept take at most so many bytes.
 _MOST_BYTES = 4e8
 #: On meshes of up to so many nodes the product is formed for a single case too: it serves all later ones.
 _SMALL = 22
-#: The transform of J0 is formed in pieces, along each of which the argument of J0 grows by at most so many radians.
+#: The integral of the transform φ is taken in pieces, along each of which the argument of J0 grows by at most so many
+#: radians.
 _PHASE = 120.0
-#: The transform is kept in parts of so many nodes k.
+#: φ is formed, and its moments kept, in parts of so many nodes k.
 _ROWS = 250
-#: Degrees up to which the moments of a panel are formed at once: J0 costs the most, and meshes of all orders have its
-#: values in common.
+#: The moments of a panel are formed up to one of these degrees at once. J0 costs the most, and so meshes of all orders
+#: have its values in common.
 _DEGREES = (16, 48, 144)
 
 
 class Table(NamedTuple):
-    """What makes the operator of L - 1 at the few nodes k (M,) of one octave on one mesh.
+    """What makes the operator, in one octave on one mesh of n nodes, from L - 1 (b, M) at the few nodes k.
 
-    L - 1 (b, M) times `product` (M, (n + 1) n), None if that is too large or for few cases, is the matrix and, under
-    it, the row of the edge. At all nodes k (G,) of the quadrature: J (G, n + 1) is J0(k x_i) - J0(k), and last J0(k);
-    φ (G, n); `spread`, (M, G), or of films, which have no few nodes, (G,), takes L - 1 to the weights of the
-    quadrature, π/2 included.
+    L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; `product` is None for few
+    cases, or if it were too large. The rest is at all G nodes of the quadrature: `k` (G,); `J` (G, n + 1), which is
+    J0(k x_i) - J0(k), and last J0(k); `phi` (G, n). `spread` makes (π/2) w (L - 1) there, w the weights, from L - 1 at
+    the few nodes: (M, G); or (G,) for films, which have no few nodes.
 
-    `film`: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge (T, n).
+    `film`, of films: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge
+    (T, n).
     """
 
     k: np.ndarray
@@ -73,7 +75,7 @@ def _kept(make):
 
 @_kept
 def table(grid, octave, stiffness, many):
-    """The :class:`Table` of a mesh, for many cases or few."""
+    """The :class:`Table` of a mesh in an octave and a class of stiffness; `many` bool: for many cases, or for few."""
     k, J, phi = _waves(grid, octave, stiffness % len(STIFFEST))
     product, is_film = None, octave == FILM
     spread = np.pi / 2 * quadrature(octave, stiffness)[1] if is_film else _spread(octave, stiffness)
@@ -86,7 +88,7 @@ def table(grid, octave, stiffness, many):
 
 @_kept
 def _waves(grid, octave, stiffness):
-    """k, J and φ of a :class:`Table`, which those for many cases and for few have in common."""
+    """k, J and φ of a :class:`Table`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
     edge = j0(k)[:, None]
     return k, np.hstack([j0(k[:, None] * grid.x) - edge, edge]), transform(grid, k)
@@ -94,7 +96,7 @@ def _waves(grid, octave, stiffness):
 
 @_kept
 def _spread(octave, stiffness):
-    """The `spread` of a :class:`Table`, which all meshes have in common."""
+    """The `spread` of a :class:`Table`, the same for all meshes."""
     return np.pi / 2 * few(octave, stiffness).spread
 
 
@@ -106,13 +108,14 @@ def _film_table(grid, many):
 
 @_kept
 def film_rows(grid, s_bytes, many):
-    """The :class:`film.Convolution` at points s between the nodes for few cases, for many the :class:`film.Whole`."""
+    """The convolution at points s between the nodes: a :class:`film.Convolution` for few cases, a :class:`film.Whole`
+    for many."""
     found = film.convolution(grid, np.frombuffer(s_bytes), CUT)
     return found.whole() if many else found
 
 
 def felt(grid, x):
-    """Indices of the radii x where the convolution is felt: near the edge, and where panels resolve more than CUT."""
+    """Indices of the radii x where the convolution is felt: near the edge, and where panels resolve waves above CUT."""
     ends = np.sqrt(1 - np.array(grid.breaks) ** 2)
     home = np.clip(np.searchsorted(-ends, -x) - 1, 0, len(ends) - 2)
     fine = (ends[home] - ends[home + 1]) * CUT < 16 * grid.order
@@ -124,7 +127,7 @@ def transform(grid, k):
     phi, order = np.empty((len(k), grid.n)), grid.order
     count = next((most for most in _DEGREES if order <= most), order)
     of_legendre = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
-    for stop in range(len(k), 0, -_ROWS):  # from the end, which quadratures of an octave share
+    for stop in range(len(k), 0, -_ROWS):  # from the end: all classes of an octave have the last nodes in common
         part = slice(max(stop - _ROWS, 0), stop)
         for i, ends in enumerate(pairwise(grid.breaks)):
             moments = _moments(*ends, count, k[part].tobytes())
@@ -134,8 +137,8 @@ def transform(grid, k):
 
 @lru_cache(maxsize=1024)
 def _moments(low, high, count, k_bytes):
-    """∫ P_m J0(k sqrt(1 - s²)) s ds over a panel, P_m its Legendre polynomials, which meshes and quadratures have in
-    common: (G', count)."""
+    """∫ P_m J0(k sqrt(1 - s²)) s ds over a panel, P_m its Legendre polynomials: (G', count) for G' nodes k. Meshes of
+    all orders use the same."""
     k = np.frombuffer(k_bytes)
     angle, weight = _angles(low, high, k.max(), count)
     sin, cos = np.sin(angle), np.cos(angle)
@@ -144,13 +147,14 @@ def _moments(low, high, count, k_bytes):
 
 
 def _angles(low, high, k, order):
-    """Nodes φ and weights (g,) of ∫ · dφ for s = sin φ on a panel: pieces of like phase k cos φ, the first of half."""
+    """Angles and weights (g,) of the integral over the angle, s = sin(angle), on a panel. The phase k cos(angle)
+    changes by the same along each piece, and by half of that along the first."""
     x = np.sqrt(1 - np.array([low, high]) ** 2)
     pieces = int(k * (x[0] - x[1]) / _PHASE) + 1
     ends = np.arccos(x[0] + np.maximum(np.arange(pieces + 1) - 0.5, 0) / (pieces - 0.5) * (x[1] - x[0]))
     ends[[0, -1]] = np.arcsin([low, high])
     width, sin = np.diff(ends), np.sin(ends)
-    # at most, of J0 and of a polynomial, which is fastest at the ends of its panel
+    # the largest phase on a piece: that of J0, and that of a polynomial, which is fastest at the ends of its panel
     share = min(np.diff(sin).max() / (high - low), 1.0)
     phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(share))
     t, w = gauss_legendre(8 * int(phase / 32 + np.cbrt(phase / 2) * 3 / 8 + 2))

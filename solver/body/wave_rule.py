@@ -1,9 +1,9 @@
-"""The quadrature in k of the layered operator for each octave of h/a, and the few nodes that determine L - 1 at all.
+"""The quadrature in k of the layered operator, one for each octave of h/a, and the few of its nodes that determine L.
 
-Its panels follow the oscillation of J0 J0 (whose frequency is 2) and the scale of L (1/η, and for stiff layers
-n^(-1/3)/η and 1/(nη), η = h/a), so that it is as accurate for every h/a and n of the octave. L - 1 does not oscillate:
-of all layers of a class of stiffness, at all h/a of an octave, what counts of it lies within rounding in a space of
-some 50 to 100 dimensions.
+k is in units of 1/a, and an octave is all η = h/a from a power of two to the next. The panels follow the oscillation of
+J0 J0, whose frequency is 2, and the scale of L: 1/η, and for stiff layers n^(-1/3)/η and 1/(nη). So the quadrature is
+as accurate for every η and n of an octave. L - 1 itself does not oscillate: for all layers of a class of stiffness and
+all η of an octave, its values at all nodes follow, to rounding, from those at 52 to 104 of them (_FEW).
 """
 
 from functools import lru_cache
@@ -15,38 +15,39 @@ import numpy as np
 from ..numerics.quadrature import gauss_legendre
 from .kernel import decaying_part
 
-#: First and last octave of h/a with tables of their own. All h/a below are the octave FILM; above, the half-space under
-#: the layer is not felt any more.
+#: First and last octave of h/a (as powers of two) with tables of their own. All smaller h/a are films, the octave FILM.
+#: Where h/a is larger, the half-space under the layer is not felt any more.
 OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Width in k of the widest panel: a wider one would need a Gauss rule that is slow to make.
 _WIDEST = 200.0
-#: Largest n of each class of stiffness, and how many dyadic panels towards k = 0 its quadrature has. A stiff layer is a
-#: plate, whose kernel falls at u ~ n^(-1/3), and, bonded, a membrane at u ~ 1/n: beyond the first class the first panel
-#: ends below 0.15/n.
+#: Largest n of each class of stiffness, and how many panels its quadrature has towards k = 0, each half as wide as the
+#: one before. A stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and if bonded also a membrane, whose kernel
+#: falls at u ~ 1/n: beyond the first class the first panel ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: What a loose operator leaves out over the largest L, of each class of stiffness. The two stiffest are never loose:
-#: fewer nodes would hardly do, since the pressure under a plate can be a small difference.
+#: A loose operator is made of L at still fewer nodes, where rtol allows it (:meth:`.layered.Layered.within`). This is
+#: what it leaves out, over the largest L, in each class of stiffness. The two stiffest classes are never loose: the
+#: pressure under a plate can be a small difference of large terms.
 LOOSE = (1e-10, 1e-11, np.inf, np.inf)
-#: How many nodes determine L - 1 of each class of stiffness, then of those in a loose operator: the most that were
-#: needed in any octave.
+#: The numbers of few nodes: of each class of stiffness, then of loose operators of the first two. They are the most
+#: that _LEFT_OUT or LOOSE asks for in any octave; tests/body/test_wave_rule.py checks what they leave out.
 _FEW = (52, 90, 104, 104, 36, 61)
-#: The few nodes are found from so many random layers, their L - 1 and u dL/du. What the nodes leave out of these
-#: functions is at most this part of the largest of them, which is rounding; or that of LOOSE.
+#: The few nodes are chosen by the L - 1 and u dL/du of so many random layers. They are enough when what they leave out
+#: of any of these functions is at most this part of the largest of them, which is rounding; or LOOSE.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 
 
-#: The rule on a panel of the width w between low and high, in u at octave 0: _MORE + w/2 + _ROOT w^(1/3) points, the
-#: fewest of _LEAST below and above u = 1/2, _LESS fewer a digit by which e^-2u has decayed there. With it the operator
-#: is right to rounding, to 1e-11 below h/a = 1/64 (tests/body/test_wave_rule.py).
+#: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
+#: u = 1/2, the second above, with u = k η at the lower end of the octave. For each digit by which L - 1 has decayed
+#: where the panel begins it has _LESS points fewer. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
-#: Where the integral over u ends: at most, and at octave 0. Beyond, L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too
-#: small to count.
+#: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
+#: L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count.
 _END, _END_MIDDLE = 17.0, 15.0
 
 
 def _end(octave):
-    """Where the integral over u ends: what lies beyond is below the error."""
+    """Where the integral over u ends in an octave."""
     return min(_END, _END_MIDDLE + 0.7 * octave)
 
 
@@ -57,12 +58,13 @@ CUT = _end(FILM) * 2.0**-FILM
 def place_of(layer, a):
     """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each.
 
-    The class of a loose operator is that of its stiffness and len(STIFFEST); films are never loose.
+    The class of a loose operator is that of its stiffness plus len(STIFFEST); films are never loose.
     """
     eta = layer.h / a
     octave = np.floor(np.log2(eta))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
-    stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)  # of a film, that of its quadrature's end
+    # all films share one quadrature: a film is as stiff in it as a layer of the octave's h/a with the same n h/a
+    stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)
     stiffness = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
     return octave, stiffness if layer.loose is None else stiffness + len(STIFFEST) * (layer.loose & (octave != FILM))
 
@@ -90,8 +92,8 @@ def _quadrature(octave, stiffness):
 
 
 class Few(NamedTuple):
-    """The few nodes k (M,) of a quadrature, M that of the class, and (M, G) what makes w (L - 1) at all its nodes of
-    L - 1 at those."""
+    """The few nodes k (M,) of a quadrature of G nodes, M by the class of stiffness; and the matrix `spread` (M, G):
+    L - 1 at the few nodes times it is w (L - 1) at all of them, w the weights."""
 
     k: np.ndarray
     spread: np.ndarray
@@ -101,9 +103,9 @@ class Few(NamedTuple):
 def few(octave, stiffness):
     """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples.
 
-    What is left out is small beside the operator (tests/body/test_wave_rule.py): w (L - 1)/(1 + k²) is interpolated,
-    since J0 φ falls like 1/k². The nodes are chosen without BLAS: with its rounding on another worker the choice might
-    be another.
+    The function that is decomposed is w (L - 1)/(1 + k²), since J0 φ falls like 1/k²: so what is left out is small
+    beside the operator (tests/body/test_wave_rule.py). The nodes are chosen without BLAS, whose rounding may differ
+    between machines: each would choose other nodes.
     """
     k, weight = quadrature(octave, stiffness)
     loose, of_layers = divmod(stiffness, len(STIFFEST))
@@ -120,13 +122,13 @@ def few(octave, stiffness):
         left[nodes] = 0.0
     R = np.array(rows)
     spread = np.linalg.solve(np.triu(R[:, nodes]), R) * (1 + k * k)
-    fill = _FEW[stiffness] - len(nodes)  # with nodes that do not count
+    fill = _FEW[stiffness] - len(nodes)  # nodes that do not count are added, so that all octaves have as many
     return Few(np.pad(k[nodes], (0, fill), mode="edge"), np.pad(scale[nodes, None] * spread, ((0, fill), (0, 0))))
 
 
 def _samples(octave, stiffness, k, scale):
-    """(L - 1) and u dL/du (2 _SAMPLES, G), times `scale`, of random layers of a class with h/a in an octave; over the
-    sum of the first, about the operator's size, where that is above 1."""
+    """L - 1 and u dL/du (2 _SAMPLES, G), times `scale` (G,), of random layers of a class with h/a in an octave. Where
+    the sum of |L - 1| over the nodes, about the size of the operator, is above 1, both are divided by it."""
     random, size = np.random.default_rng(0), _SAMPLES
     of_n, of_eta = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
     low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])

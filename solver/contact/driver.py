@@ -1,4 +1,4 @@
-"""The active-set loop of every iterative scheme, Newton's method with it, and a second way in where that fails."""
+"""The loop of every iterative scheme, Newton's method by that loop, and a search for the radius where Newton fails."""
 
 from dataclasses import replace
 from typing import Any, NamedTuple
@@ -9,8 +9,9 @@ from ..numerics.bracket import false_position
 from . import newton
 from .start import guess_radius, smooth_start
 
-#: A case may take _STEPS Newton steps on a mesh of up to _NODES nodes, and fewer on finer ones, where a step takes
-#: longer, but at least _FEWEST. Random cases that searched for their radius took up to a few hundred.
+#: A case may take _STEPS Newton steps on a mesh of up to _NODES nodes. On finer ones, where a step takes longer, it may
+#: take fewer, but at least _FEWEST. A search for the radius takes the most, a hundred and more
+#: (tests/contact/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
 #: that are made for it alone. It is not counted in seconds, so that it is the same on every machine. With half of it,
@@ -21,7 +22,7 @@ BUDGET = 1_500_000
 
 class Iterated(NamedTuple):
     """The end of an iteration: `at`, the batch after the last step of each case; `closed` (B,) bool, whether the case
-    has closed; `count` (B,), how many steps it took."""
+    has found its solution; `count` (B,), how many steps it took."""
 
     at: Any
     closed: np.ndarray
@@ -30,7 +31,7 @@ class Iterated(NamedTuple):
 
 @np.errstate(all="ignore")  # what goes wrong is NaN, and `lost`
 def iterate(cases, start, step, limit):
-    """Repeat `step` on a batch; a case that has closed or is lost leaves it, the others go on: :class:`Iterated`.
+    """Repeat `step` on a batch: :class:`Iterated`. A case that has closed or is lost leaves it, the others go on.
 
     Parameters
     ----------
@@ -68,16 +69,17 @@ def newton_steps(nodes):
 
 
 def steps_within(cases, a, nodes, budget):
-    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes, where `budget` (B,) is left to
-    each: the last step may spend more than that."""
+    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes, if each has `budget` (B,) left.
+    The last step may spend a little more than that."""
     left = np.where(budget > 0, budget // cases.body.work(a, nodes)[1] + 1, 0)
     return np.minimum(newton_steps(nodes), left).astype(int)
 
 
 def solve_on(start, limit=0, budget=BUDGET):
-    """:class:`Iterated` of Newton's method from the equation at its `start`, by the radius where that fails.
+    """:class:`Iterated` of Newton's method from the equation at its `start`; where that fails, of a search for the
+    radius.
 
-    limit : most steps; 0: those of the method. budget : float, or (B,), what is left of that of the case.
+    limit : most steps; 0: the method's own limit, and the search. budget : float, or (B,), the work left to each case.
     """
     cases, grid = start.cases, start.mesh
     most = steps_within(cases, np.exp(start.state.eta), grid.n, budget)
@@ -102,8 +104,8 @@ def _newton(start, limit=newton.LIMIT):
 def _by_radius(cases, grid, most):
     """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together.
 
-    At each radius the iteration starts from the smooth contact. The load under a very stiff film hardly depends on the
-    radius: Newton on both leaves the branch.
+    At each radius Newton's method starts from the smooth contact. The load under a very stiff film, for example, hardly
+    depends on the radius: there Newton's method on pressure and radius together leaves the branch of solutions.
     """
     spent, radius = np.zeros(len(cases.value), int), guess_radius(cases)
 

@@ -1,11 +1,11 @@
-"""The discrete equation of a batch of cases of one micro law on one body: its groups, residual and derivatives.
+"""The discrete equation of a batch of cases of one micro law on one body: its groups X, Y, Z, residual, derivatives.
 
-With p = p* q(y), A = A* g(y), s = sqrt(1 - x²) and x = r/a, Eq. (4) divided by a²/2 is
+With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by a²/2 is
 
     X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh. The control (load, radius or depth) is one more equation, for η = ln a. The body has E, the
-springs C and K (:mod:`..body.operator`); the law has p*, A*, q and g (:mod:`..laws.law`).
+at the nodes of the mesh. The control (load, radius or depth) is one more equation. The unknowns are y at the nodes and
+η = ln a. The body has E, the springs C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
 """
 
 from dataclasses import dataclass, fields
@@ -19,13 +19,15 @@ from ..laws import Bound, Curve
 
 #: A pressure below this part of the largest counts as none.
 _NOTHING = 1e-16
-#: An iteration has closed when its residual is below the first number, or below this part of the error of the operator.
+#: An iteration has closed (it has found its solution) when the residual is below _CLOSED, or below this part of the
+#: error of the operator, or is the rounding of a soft layer.
 _CLOSED, _OF_OPERATOR = 1e-13, 1e-2
 #: A residual above this is too large for any operator, whose error then need not be computed. It is far above what
 #: closes an iteration with the worst operator (tests/contact/test_extremes.py).
 _OPEN = 1e-5
-#: Rounding of the residual of a soft layer, times the softness of the layer. Its half-space and its layer terms are
-#: large and nearly cancel. Under three BLAS kernels, on 12 to 64 nodes, at most 18 eps were seen.
+#: Rounding of the residual of a soft layer, times its softness. In its operator the terms of the half-space and L - 1
+#: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
+#: from step to step: half are below 0.5 eps, 2 in 800 above 20 eps (tests/contact/test_equation.py).
 _ROUNDING = 20 * np.finfo(float).eps
 
 
@@ -60,8 +62,8 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The equation of `cases` at a state: the operator of the body there, the groups X, Y, Z (B, 1), the law (its
-    curve), K q and the residual F at the nodes (B, n), and edge @ q (B,)."""
+    """The equation of `cases` at a state: the operator of the body there, the groups X, Y, Z (B, 1), the curve of the
+    law, K q and the residual F at the nodes (B, n), and edge @ q (B,)."""
 
     cases: Cases
     state: State
@@ -81,8 +83,8 @@ class Evaluation:
 
     @cached_property
     def G(self):
-        """Logarithm of (controlled quantity/given value), (B,): Eq. (5) for the load, Eq. (3) at r = a for the
-        depth."""
+        """Residual of the control, (B,): the logarithm of the controlled quantity over its given value. The load is
+        that of Eq. (5), the depth that of Eq. (3) at r = a."""
         return control_residual(self.cases, self.state.eta, self.X, self.curve.q, self.edge_q, self.mesh)
 
     @cached_property
@@ -92,16 +94,18 @@ class Evaluation:
 
     @cached_property
     def gap(self):
-        """Height (B, n) over a²/2 at which asperities hang over the surface that the others press down; else 0."""
+        """Height (B, n), over a²/2, of asperities without pressure above the surface, which others press down; else
+        0."""
         q = self.curve.q
-        if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # as in most batches, and quick to see
+        if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # quick to see, and true of most batches
             return np.zeros(q.shape)
         bare = (q >= 0) & (q < _NOTHING * q.max(axis=1, keepdims=True))
         return np.where(bare, np.maximum(self.F - self.Z * self.curve.g, 0.0), 0.0)
 
     @cached_property
     def residual(self):
-        """Largest residual of a case (B,), relative to the right-hand side (s² <= 1) and to the controlled value.
+        """Largest residual of a case (B,): of the equation, relative to the largest right-hand side s² = 1, and of the
+        control.
 
         Where asperities hang over the surface without pressure, the equation need not hold.
         """
@@ -116,7 +120,7 @@ class Evaluation:
 
     @property
     def closed(self):
-        """(B,) bool: the residual is no more than rounding and the error of the operator leave of it."""
+        """(B,) bool: the residual is so small that only rounding and the error of the operator are left."""
         closed = self.residual < _CLOSED
         near = np.flatnonzero(~closed & (self.residual < _OPEN))
         if len(near):
@@ -127,7 +131,7 @@ class Evaluation:
 
     @property
     def lost(self):
-        """(B,) bool: the residual is no number."""
+        """(B,) bool: the residual is NaN or infinite."""
         return ~np.isfinite(self.residual)
 
     def take(self, index):
@@ -168,7 +172,8 @@ def groups(cases, eta):
 
 
 def evaluate(cases, state, mesh, near=None):
-    """:class:`Evaluation` of `cases` at `state`; `near`: their operator at another state or on another mesh."""
+    """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, of which
+    what still holds is used again."""
     X, Y, Z = groups(cases, state.eta)
     curve = cases.law.evaluate(state.y)
     operator = cases.body.at(np.exp(state.eta), mesh, near)
@@ -199,8 +204,8 @@ def control_gradient(control, ev):
 
 
 def jacobian(ev):
-    """d (B, n), where dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n), at fixed q. By q, not by y: the
-    operator is linear in q."""
+    """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. The first is by q and not by
+    y, because the operator is linear in q."""
     own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X
     return own / ev.X, dF_deta

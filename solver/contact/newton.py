@@ -18,8 +18,8 @@ def tangent(ev):
 def advance(ev):
     """The :class:`State` one step from that of `ev`, and dq/dη (B, n) along the branch of solutions.
 
-    The step is taken in y, in which q is a convex power and g nearly a square. It changes y by a factor of five at
-    most, and the radius by a factor of e: from the first guess of :mod:`.start` it converges without a line search.
+    The step is taken in y: q is nearly a power of y, and g nearly its square. A step changes y by a factor of five at
+    most, and the radius by a factor of e at most. From the first guess of :mod:`.start` it needs no line search.
     """
     diagonal, dF_deta = jacobian(ev)
     solution = solve_stack(ev.operator.K, diagonal, np.stack([-dF_deta, -ev.F / ev.X], axis=-1))

@@ -11,14 +11,15 @@ _LEAST = 1e-12
 
 
 def guess_radius(cases):
-    """Contact radius (B,): the given one; or a guess from the load or depth, with each term of the equation alone."""
+    """Contact radius (B,): the given one; or a guess from the load or depth. It combines the radii that a half-space,
+    springs and asperities would each have alone."""
     if cases.control == "a":
         return cases.value
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
         return np.sqrt(1.5 * cases.value)
     hertz, springs, spots = _one_term_radii(cases)
     a = (hertz**4 + springs**4 + spots**4) ** 0.25
-    for _ in range(6):  # the modulus the contact feels depends on its radius
+    for _ in range(6):  # the modulus that the contact feels depends on its radius
         before, a = a, ((hertz * np.cbrt(cases.body.softness(a))) ** 4 + springs**4 + spots**4) ** 0.25
         if np.array_equal(a, before):
             break
@@ -26,7 +27,8 @@ def guess_radius(cases):
 
 
 def _one_term_radii(cases):
-    """Radii (B,) under the load of a half-space, of springs of compliance C, and of asperities of A ~ p^β alone."""
+    """Three radii (B,) under the load: on a half-space alone, on springs of compliance C alone, and with asperities of
+    A ~ p^β alone."""
     gamma, beta = cases.law.edge()
     e = 1 / beta
     hertz = np.cbrt(0.75 * cases.value / cases.body.E)
@@ -37,8 +39,8 @@ def _one_term_radii(cases):
 
 
 def guess_pressure(cases, a, s):
-    """q (B, m) at s (m,) > 0 under contacts of radius a (B,) from the solutions of half-space, springs and asperities
-    alone, added as compliances: each term of the equation is exact where it matters alone."""
+    """q (B, m) at s (m,) > 0 under contacts of radius a (B,). 1/q is the sum of those that half-space, springs and
+    asperities have alone: so it is exact where one of them yields far more than the others."""
     X, Y, Z = groups(cases, np.log(a))
     base = (X * cases.body.softness(a)[:, None] * HERTZ * s + Y) / s**2
     return 1 / (base + 1 / cases.law.sparse(s**2 / Z))
@@ -51,8 +53,8 @@ def first_guess(cases, grid, a=None):
 
 
 def smooth_start(cases, grid):
-    """The equation at given radii (control "a") at the smooth contact there and the asperities alone, added as
-    compliances."""
+    """The equation at given radii (control "a"), at a first guess: its 1/q is the sum of those of the smooth contact
+    and of the asperities alone."""
     eta, s2 = np.log(cases.value), grid.s**2
     X, Y, Z = groups(cases, eta)
     operator = cases.body.at(np.exp(eta), grid)
@@ -63,11 +65,11 @@ def smooth_start(cases, grid):
 
 
 def nodes_wanted(cases, rtol, a):
-    """Number of nodes (B,) that just about meet rtol (B,), as random samples have it: the fewer, the wider the layer at
-    the edge in which the asperities yield more than the body; of a smooth punch, the thicker the layer. a (B,):
-    :func:`guess_radius`."""
+    """Number of nodes (B,) that just about meet rtol (B,), by a fit to random cases. Asperities need fewer, the wider
+    the ring at the edge in which they yield more than the body; a smooth punch fewer, the thicker the layer. a (B,) is
+    that of :func:`guess_radius`."""
     if not cases.law.rough:
         return cases.body.first_nodes(rtol, a, None)
     q = guess_pressure(cases, a, np.ones(1))
-    share = groups(cases, np.log(a))[2] * cases.law.evaluate(cases.law.guess(q)).g  # of s² = 1 in the centre
+    share = groups(cases, np.log(a))[2] * cases.law.evaluate(cases.law.guess(q)).g  # of the asperities in s² = 1
     return cases.body.first_nodes(rtol, a, cases.law.law.rise * np.clip(np.nan_to_num(share[:, 0]), 0.0, 1.0))

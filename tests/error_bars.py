@@ -7,7 +7,7 @@ which are the truth. A line for each number of nodes:
 - blind: of cases whose estimate is multiplied by _BLIND, how many have a truth above the estimate without that factor,
   and how many above the estimate with it;
 - ring: of cases whose truth is above the estimate, where λ has risen before the first node: how many there are, and
-  the largest error of Ar/An over λ times the area of the ring;
+  the largest error of Ar/An over λ s²/2 at that node, in units of Ar/An;
 - above: how many have a truth above their error bar, and by which factor at most.
 """
 

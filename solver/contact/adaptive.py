@@ -1,7 +1,7 @@
 """Newton's method, for each case on the mesh that meets its tolerance.
 
-A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state from
-which the error was estimated. What the finest mesh does not resolve is solved on panels, each case on its own.
+A case whose estimated error is above its tolerance goes on to the next finer mesh. It begins there at the state by
+which the error was estimated. Cases that the finest mesh does not resolve are solved on panels, one by one.
 """
 
 from dataclasses import replace
@@ -18,16 +18,16 @@ from .equation import evaluate
 from .panels import solve_on_panels
 from .start import first_guess, guess_radius, nodes_wanted
 
-#: Panels are halved until the last coefficients on each are small against rtol. If the error is still above rtol, they
-#: are halved again, until the coefficients are small against this times rtol.
+#: Panels are halved until the last coefficients on each are small against rtol. If the error is then still above rtol,
+#: they are halved until these coefficients are small against this times rtol.
 _FINER = 0.03
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
     """:class:`~solver.solution.Solution` of a batch of one law on one body, in units R = E2* = 1.
 
-    rtol (B,); nodes (B,) int, 0: chosen by rtol; limit int, Newton steps a mesh (0: the method's own); x (m,) radii of
-    the profiles.
+    rtol : (B,); nodes : (B,) int, 0: chosen by rtol; limit : int, Newton steps on each mesh, 0: the method's own;
+    x : (m,), radii of the profiles.
     """
     size, free = len(rtol), nodes == 0
     work, before = np.zeros(size), np.full(size, np.inf)
@@ -59,7 +59,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
 
 
 def _together(rungs, size, points):
-    """The last :class:`.answer.Answer` of each case from those on all meshes, (index, answer); their steps add up."""
+    """:class:`.answer.Answer` of `size` cases from those on all meshes, (index, answer): the last one of each case,
+    with the steps of all."""
     count, (tension, floor) = np.zeros(size, int), np.zeros((2, size))
     gap, slow = np.zeros((2, size), bool)
     for index, found in rungs:
@@ -70,7 +71,7 @@ def _together(rungs, size, points):
 
 
 def _hopeless(found, rtol):
-    """(B,) bool: the error is above rtol, and no mesh makes it smaller."""
+    """(B,) bool: the error is above rtol, and no mesh will make it smaller."""
     closed, error = found.solution.status == Status.CONVERGED, found.solution.error
     return closed & hopeless(error, found.slow, found.floor, rtol) & ~found.unsure
 
@@ -78,7 +79,7 @@ def _hopeless(found, rtol):
 def _ended(solution, missed, lifted, spent):
     """The solution with its final status.
 
-    missed : (B,) bool, the error is above rtol; lifted : (B,) bool; spent : (B,) bool, the budget is spent
+    missed, lifted, spent : (B,) bool: the error is above rtol, the punch lifts off, the budget is spent
     """
     status = np.where(missed, np.where(spent, Status.BUDGET_SPENT, Status.TOLERANCE_NOT_MET), solution.status)
     over = (status == Status.ITERATION_LIMIT) & (spent | (solution.iterations >= newton_steps(solution.nodes)))
@@ -87,11 +88,12 @@ def _ended(solution, missed, lifted, spent):
 
 
 def _on_panels(case, before, rtol, x, left):
-    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before` if that is better.
+    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before`, the
+    :class:`.answer.Answer` on the finest mesh, if its error is smaller.
 
     left : what is left of its budget.
 
-    Tension and gaps count only if they are there on finer panels too: panels that are too coarse show some as well.
+    Tension and gaps count only if finer panels show them too: panels that are too coarse show some that are not there.
     """
     best, lifted, count, at = before.solution, before.lifted, before.solution.iterations, None
     resolved, missed, spent = False, best.status == Status.CONVERGED, False

@@ -1,4 +1,4 @@
-"""What is said of B cases on a mesh: the solution with its error, its profiles, and whether the punch lifts off."""
+"""What an iteration on a mesh has found: the solution with its error and profiles, and whether the punch lifts off."""
 
 from typing import NamedTuple
 
@@ -11,24 +11,25 @@ from .equation import State
 from .error import completed, estimate, refine
 from .results import profiles, quantities
 
-#: Where the error of a case is below this, p(0) < 0 is no error of the mesh.
+#: If the error of a case is below this, p(0) < 0 is real and no error of the mesh.
 _SURE = 0.1
-#: A gap higher than this times a²/2, and tension of more than this part of the load, are no rounding.
+#: A gap higher than this times a²/2, or tension above this part of the load, is real and no rounding.
 _GAP, _TENSION = 1e-9, 1e-9
-#: A case is stuck where its error is above _FALLS of that on the mesh before, on a mesh of _LATE nodes or more, and
-#: above _FAR times rtol: two finer meshes are left, and halving the error on each does not make it 100 times smaller.
+#: A case is stuck if, on a mesh of _LATE nodes or more, its error is above _FALLS times that on the mesh before, and
+#: above _FAR times rtol: two finer meshes are left, and halving the error twice does not make it 100 times smaller.
 _FALLS, _LATE, _FAR = 0.5, 48, 100.0
 #: An error that does not fall, and is below this times the error of the operator, comes from the operator.
 _NOISE = 30.0
 
 
 class Answer(NamedTuple):
-    """The solution of B cases, and what tells whether the punch lifts off.
+    """The solution of B cases, and what tells whether the punch lifts off and whether a finer mesh is of use.
 
-    tension : (B,) tensile part of the load over the load; gap : (B,) bool, whether there is a gap inside the contact.
-    Either may also mean that the mesh does not resolve the pressure. slow : (B,) bool, the error is hardly smaller
-    than on the mesh before. floor : (B,) below which no mesh brings the error. finer : the state on the next finer
-    mesh.
+    tension : (B,), the tensile part of the load over the load
+    gap : (B,) bool, there is a gap inside the contact. Gap or tension may also mean a mesh that is too coarse
+    slow : (B,) bool, the error is hardly smaller than on the mesh before
+    floor : (B,), no mesh brings the error below this
+    finer : the state on the next finer mesh, with which that mesh begins
     """
 
     solution: Solution
@@ -45,7 +46,7 @@ class Answer(NamedTuple):
 
     @property
     def lifted(self):
-        """(B,) bool: there is tension, somewhere or in the centre, and it is larger than its error."""
+        """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""
         error = self.solution.error
         return (self.tension > np.fmax(10 * error, _TENSION)) | ((self.solution.p0 < 0) & (error < _SURE))
 
@@ -68,8 +69,8 @@ def hopeless(error, slow, floor, rtol):
 def answer(iterated, x, enough=np.inf, before=np.inf):
     """:class:`Answer` of an iteration, with profiles at the radii x (m,).
 
-    A case goes on to a finer mesh, and gets no profiles, where it has closed, its error exceeds `enough` (B,), and it
-    is neither stuck nor hopeless; `before` (B,): its error on the mesh before. A case without finite numbers is
+    A case will go on to a finer mesh, and gets no profiles here, if it has closed, its error is above `enough` (B,),
+    and it is neither stuck nor hopeless. `before` (B,): its error on the mesh before. A case without finite numbers is
     ``Status.DIVERGED`` and NaN.
     """
     ev, closed, count = iterated
@@ -79,7 +80,7 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     finite = np.isfinite(ev.residual) & np.isfinite(error)
     enough = np.where(closed, enough, np.inf)
     slope, last = refined.dP_dD, np.flatnonzero(enough == np.inf)
-    if len(last):  # of cases that stay on this mesh dP/dD is that of this mesh, as their other numbers are
+    if len(last):  # cases that end on this mesh have dP/dD of this mesh, as their other numbers are
         at = ev.take(last)
         slope[last] = newton.stiffness(at, newton.tangent(at), own.P[last], own.D[last])
     slow = error > _FALLS * before
@@ -94,7 +95,7 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     rest = {"dP_dD": slope, "residual": ev.residual, "error": error, "p": p, "lam": lam, "status": status}
     ends = {"nodes": ev.mesh.n, "iterations": count}
     solution = Solution.of(len(error), len(x), **own._asdict(), **rest, **ends)
-    # only where the equation is linear can there be tension
+    # there can be tension only where the equation is linear: without asperities
     q, w = ev.curve.q, ev.mesh.w
     tension = np.where(finite, np.maximum(-q, 0.0) @ np.abs(w) / np.abs(q @ w), 0.0)
     return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, ev.floor, refined.state)

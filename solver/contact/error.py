@@ -14,21 +14,23 @@ from . import newton
 from .equation import State, evaluate, groups
 from .results import cornered, difference, interpolate, quantities
 
-#: No mesh sees how λ rises between the edge and the node next to it. That ring has a real area of about λ at the node
-#: times the area of the ring. The error of Ar/An was seen to reach 3 times this area; it is taken to be 8 times.
+#: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about
+#: λ s² to Ar/An. The error of Ar/An is taken to be at least _UNSEEN times λ s²/2. Cases that need it reach 5.3 times
+#: that (`python tests/error_bars.py`); one is "ring" of tests/contact/test_error_bars.py.
 _UNSEEN = 8.0
-#: λ at the node next to the edge above which this error is counted.
+#: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05
-#: Near the edge asperities yield more than the body, in a ring that the meshes may not resolve. The estimate is then
-#: multiplied by this; the error was seen to be up to 7 times the estimate without it.
+#: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
+#: is multiplied by this. Of such extreme cases on 6 nodes 10 % have an error above the estimate without the factor, 3 %
+#: above that with it (`python tests/error_bars.py`); two that need it are "blind" of tests/contact/test_error_bars.py.
 _BLIND = 3.0
-#: Where λ in the centre is above this, λ may rise sharply inside the contact, and Ar/An is compared with another rule.
+#: If λ in the centre is above this, λ may rise sharply inside the contact. Then Ar/An is compared with another rule,
+#: which has _FINER more points on each panel than the mesh has nodes: "saturated" of tests/contact/test_error_bars.py.
 _SATURATED = 0.5
-#: By how many nodes the rule that Ar/An is compared with is finer.
 _FINER = 5
 #: On a law with corners two meshes may agree by chance. So the error also counts what the mesh misses of the load
-#: between its nodes. The misses of rings may cancel in that: so this part of the largest, of any ring from the edge
-#: inward, is counted as well.
+#: between its nodes: the sum over the contact, in which misses of opposite sign cancel, and _CHANCE times the largest
+#: sum from the edge to any radius (test_random_heights of tests/contact/test_error_bars.py).
 _CHANCE = 1 / 2
 
 
@@ -43,8 +45,9 @@ class Refined(NamedTuple):
 def refine(ev, own):
     """:class:`Refined` of the equation at a solution with the quantities `own`.
 
-    Of a law with corners Ar/An is that of `own` and what the step changes of it on the finer mesh: the nodes of the two
-    meshes see the corners differently, which is no error of :func:`~.results.cornered`.
+    For a law with corners, Ar/An is that of `own` plus what the step changes on the finer mesh. The nodes of the two
+    meshes see the corners differently, but this is no error of the quadrature that such a law has
+    (:func:`~.results.cornered`): so it is left out.
     """
     fine, corners = finer_mesh(ev.mesh), ev.cases.law.law.corners
     y = interpolate(ev, fine.s, 1e-10 if corners else 1e-8)
@@ -58,8 +61,9 @@ def refine(ev, own):
 
 
 def nearby(ev, state, curve=None):
-    """:class:`~solver.contact.equation.Evaluation` at a state near that of `ev`, with the operator to first order, and
-    the law as well, if its `curve` there is not given; for :func:`~solver.contact.results.quantities`, not for F."""
+    """:class:`~solver.contact.equation.Evaluation` at a state near that of `ev`: good for
+    :func:`~solver.contact.results.quantities`, but not for F. The operator is taken to first order; so is the law, if
+    its `curve` at the state is not given."""
     if curve is None:
         dy, old = state.y - ev.state.y, ev.curve
         curve = old._replace(q=old.q + old.dq * dy, g=old.g + old.dg * dy)
@@ -68,9 +72,9 @@ def nearby(ev, state, curve=None):
 
 
 def estimate(ev, found, refined):
-    """Estimated relative error (B,) of a solution with the quantities `found`, by the two meshes alone."""
+    """Estimated relative error (B,) of a solution with the quantities `found`, from the two meshes alone."""
     share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.mesh.s[0] ** 2
-    # a small share of the asperities at the first node: the ring in which they yield more than the body is not seen
+    # if the share of the asperities is small at the first node already, the mesh misses the ring where it is large
     margin = np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
     error = margin * difference(found, refined.found)
     return np.maximum(error, ev.floor)
@@ -81,9 +85,8 @@ def completed(ev, Ar_An, error, rows):
 
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`.
 
-    Near the edge the error of Ar/An is an upper bound, where λ has risen before the first node. Where the asperities
-    saturate in the centre, it is the difference to a quadrature with other nodes. A law with corners has a quadrature
-    of its own.
+    If λ has risen before the first node, what is missed there is counted by _UNSEEN. If asperities saturate in the
+    centre, Ar/An is compared with another quadrature. A law with corners has a quadrature of its own.
     """
     law, mesh, area, error = ev.cases.law.take(rows), ev.mesh, Ar_An[rows], error[rows]
     if not law.rough or not len(rows):

@@ -1,8 +1,8 @@
 """Cases that one polynomial does not resolve: polynomials on panels, chosen for each case by how its solution varies.
 
-Where the asperities saturate, A → B̄²/(3Ra), inside a contact, the pressure has a corner at s² = Z/3, as wide as the
-body is stiff; a stiff or thin body adds an edge layer. Both are found by the coefficients of the pressure and of the
-contact area on each panel, and enclosed by halving.
+Where asperities saturate inside a contact, A → B̄²/(3Ra), the pressure has a corner at s² = Z/3; the stiffer the body,
+the more it is rounded. A stiff or thin body adds an edge layer. Both are found by the coefficients of the pressure and
+of λ on each panel, and enclosed by halving the panels.
 """
 
 from itertools import pairwise
@@ -20,13 +20,14 @@ from .start import first_guess, guess_radius
 START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
 ORDER = 12
 DEPTH = 30
-#: More panels than this are not made: the operator is not accurate enough to tell more.
+#: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
-#: Tolerances of the rounds of solving and halving: a coarse solution cannot tell where a fine one is not resolved.
+#: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
+#: be resolved, so rtol is approached in steps.
 _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
-#: A panel is resolved when what its last coefficients add to the load and the real area is below this times rtol.
+#: A panel is resolved when what its last two coefficients add to the load and to the real area is, relative to these,
+#: below _SHARE times rtol, or below _FLOOR: for the smallest rtol the error of the operator is larger than that.
 _SHARE = 0.3
-#: A panel is also resolved when they add less than this: for the smallest rtol the error of the operator is larger.
 _FLOOR = 1e-12
 
 
@@ -74,8 +75,8 @@ def _first(case, rtol, budget):
 
 
 def resolve(ev, rtol):
-    """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) on them; those of its mesh where it is
-    resolved."""
+    """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) at their nodes. If its own panels resolve
+    it, these are returned."""
     grid, law = ev.mesh, ev.cases.law
     values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
     scale = values @ grid.w * max(_SHARE * rtol, _FLOOR)
@@ -95,13 +96,14 @@ def resolve(ev, rtol):
 
 
 def _between(ev, panels):
-    """y (1, ORDER) at the nodes of each of some panels, which the mesh does not have."""
+    """y (1, ORDER) at the nodes of each of the `panels` (low, high), by interpolation."""
     y = interpolate(ev, np.concatenate([on_panels(radau_nodes(ORDER), panel) for panel in panels]))
     return np.split(y, len(panels), axis=1)
 
 
 def _tail(law, y):
-    """Size of the last two Legendre coefficients of q and of λ of y (1, ORDER) at the nodes of a panel: (2,)."""
+    """Sizes (2,) of the last two Legendre coefficients together, of q and of λ, for y (1, ORDER) at the nodes of a
+    panel."""
     q = law.evaluate(y).q
     return np.abs(np.concatenate([q, law.area(y, q)]) @ _LAST).sum(axis=1)
 

@@ -1,10 +1,10 @@
 """The paper's successive approximations, Eqs (8) and (10), and the load or depth by a search on the contact radius.
 
-Where there are springs, Eq. (8): p̂ = ((a² - r²)/(2R) - half-space part - A[p])/C; else, Eq. (10): p̂ is the pressure
-whose A is what the half-space part leaves. Either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 + k), from p = 0,
-until |p̂ - p| is below rtol/10 of the largest pressure. The slope of A ~ p^β, β < 1, is infinite at the edge, and where
-A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure there never settles, the load does to 3 to 4
-digits. The finer the mesh, the nearer to the edge is its last node, and the more k it takes.
+Where there are springs, Eq. (8): p̂ = ((a² - r²)/(2R) - half-space part - A[p])/C. Else, Eq. (10): p̂ is the pressure
+whose A[p̂] is (a² - r²)/(2R) - half-space part. Either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 + k), from
+p = 0, until |p̂ - p| is below rtol/10 of the largest pressure. The slope of A ~ p^β, β < 1, is infinite at the edge.
+Where A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure there never settles, while the load
+settles to 3 or 4 digits. On a finer mesh the node next to the edge is nearer to it, and a larger k is needed.
 """
 
 from dataclasses import dataclass, replace
@@ -20,7 +20,7 @@ from .start import guess_radius
 
 #: Most successive approximations at one radius.
 LIMIT = 1000
-#: Most successive approximations of one case; those at the radius that exceeds it are finished. Four radii reach LIMIT.
+#: Most successive approximations of one case at all radii, four times LIMIT; those at the last radius are finished.
 APPROXIMATIONS = 4_000
 #: The load has settled when one more approximation changes it by less than this.
 _SETTLED = 1e-2
@@ -29,10 +29,10 @@ _TINY = np.finfo(float).tiny
 
 @dataclass(frozen=True, eq=False)
 class Approximation:
-    """B cases at given radii, after `done` approximations: the pressure q (B, n), and by how much it still changes.
+    """B cases at given radii, after `done` approximations: the pressure q (B, n), and how much it still changes.
 
-    Of the changes, (B,) each, one is the last |p̂ - p| over the largest pressure, one that of the load, and one is
-    |p̂ - p| when half of all approximations had been made.
+    Changes, (B,) each: `change` is the last |p̂ - p| over the largest pressure, `earlier` what that was when half of all
+    approximations had been made, and `load_change` the last relative change of the load.
     """
 
     cases: Cases
@@ -80,7 +80,8 @@ class Approximation:
 
 
 def solve(cases, mesh, k, rtol, limit):
-    """:class:`~solver.contact.driver.Iterated` with the equation at the end, and status (B,), by the paper's scheme.
+    """:class:`~solver.contact.driver.Iterated` by the paper's scheme, `at` being the equation at the end; and the
+    status (B,).
 
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
     """
@@ -120,7 +121,8 @@ def _status(at, missed, spent):
 def approximate(cases, eta, mesh, k, rtol, limit):
     """:class:`~solver.contact.driver.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
 
-    They amplify rounding where they do not settle quickly, so that all of a case is computed as if it were alone.
+    Where they do not settle quickly they amplify rounding. So each case is computed as if it were alone: its numbers do
+    not depend on the batch.
     """
     never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n))
     alone = [cases.body.take([i]).at(np.exp(eta[i : i + 1]), mesh) for i in range(len(eta))]

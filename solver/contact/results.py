@@ -8,10 +8,10 @@ import numpy as np
 from ..numerics.mesh import gauss_rule
 from ..numerics.quadrature import gauss_legendre, lagrange
 
-#: Most Newton steps between the nodes. A few are enough, except near full contact.
+#: Most Newton steps for y between the nodes. A few are enough, except near full contact.
 _STEPS = 40
-#: For a law with corners: Gauss points between two nodes, first those to which y is interpolated, then those at which
-#: λ is looked up; and the relative `tolerance` of y there.
+#: For a law with corners: the number of Gauss points between two nodes to which y is interpolated, and that of points
+#: at which λ is looked up; and the relative `tolerance` of the interpolated y.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
 
 
@@ -27,7 +27,7 @@ class Quantities(NamedTuple):
     A0: np.ndarray
 
 
-#: Those whose largest relative error is the error of a case.
+#: The largest relative error of these is the error of a case.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 
 
@@ -49,12 +49,13 @@ def quantities(ev):
 
 
 def difference(first, second):
-    """Largest relative difference (B,) of two :class:`Quantities`, over those that are judged."""
+    """Largest relative difference (B,) of two :class:`Quantities`, over those of JUDGED."""
     return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in JUDGED], axis=0)
 
 
 class Between(NamedTuple):
-    """To interpolate from a mesh to other points s (m,) > 0: Lagrange and H - H(1) rows (m, n); κ (m,) and (n,)."""
+    """What interpolates from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials, `L`, and
+    of H - H(1), `H`; and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
 
     s: np.ndarray
     L: np.ndarray
@@ -70,7 +71,7 @@ def _between(mesh, s_bytes):
 
 
 def _stiffness_between(mesh, s):
-    """κ (m,) at points s: about what the half-space makes of an oscillation between the nodes."""
+    """κ (m,) at points s: H of a pressure that oscillates from node to node is about κ times this pressure."""
     ends = np.array(mesh.breaks)
     home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)
     low, high = ends[home], ends[home + 1]
@@ -81,13 +82,16 @@ def _stiffness_between(mesh, s):
 
 
 def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
-    """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh.
+    """The unknown y (B, m) at points s (m,) > 0 between the nodes of the mesh; of the cases `rows` alone, if given.
 
-    The pressure there satisfies the equation itself: (X κ + Y) q + Z g(q) = s² - X (H[q] - κ q_L), with q_L the
-    interpolating polynomial and κ about what the half-space makes of an oscillation between the nodes; where the
-    asperities or the layer yield most, near the edge, this is far more accurate than q_L, and where they yield
-    nothing it is q_L. Newton's method solves it, from a guess of two terms times what that misses at the nodes, until
-    the next step would be below the relative `tolerance`. Of the cases `rows` alone, if given.
+    Let q_L be the polynomial through the pressures at the nodes. The difference q - q_L oscillates from node to node,
+    and its displacement of the half-space is about κ (q - q_L). So the equation at a point between the nodes is
+
+        (X κ + Y) q + Z g(q) = s² - X (K[q_L] - κ q_L).
+
+    Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
+    nothing it is q_L. Newton's method solves it until the next step would be below the relative `tolerance`. It begins
+    at a closed form for two terms, times the factor by which that is wrong at the nodes, interpolated.
     """
     between = _between(ev.mesh, np.ascontiguousarray(s, dtype=float).tobytes())
     Kq = ev.operator.between(ev.curve.q, between.s, ev.curve.q @ between.H.T)[rows]
@@ -121,7 +125,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
 
 class Cornered(NamedTuple):
     """What :func:`cornered` finds, (b,) each: Ar/An and its relative error; `missed`, the part of the load that the
-    polynomial through the nodes misses between them; `largest`, the most that it misses from the edge to any radius."""
+    polynomial through the nodes misses between them; `largest`, the largest part that it misses from the edge to any
+    radius."""
 
     Ar_An: np.ndarray
     error: np.ndarray
@@ -132,9 +137,9 @@ class Cornered(NamedTuple):
 def cornered(ev, rows):
     """:class:`Cornered` of the cases `rows` (b,), of a law with corners.
 
-    Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too few.
-    So y is interpolated to more points, and from these by a polynomial between each two nodes to twice as many, where
-    λ is looked up. The error is taken to be the difference of the two quadratures, of which it is a small part.
+    Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too far
+    apart. So y is interpolated to _FEW points between each two nodes, and from these by a polynomial to _MANY, where λ
+    is looked up. The error is taken to be the difference of the two quadratures; it is a small part of that.
     """
     law, pieces = ev.cases.law.take(rows), (0.0, *ev.mesh.s.tolist())
     (s, w), (fine_s, fine_w) = gauss_rule(_FEW, pieces), gauss_rule(_MANY, pieces)

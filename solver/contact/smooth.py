@@ -1,9 +1,9 @@
 """Smooth cases: Hertz's closed form, and one linear solve on a thin layer.
 
-On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once per mesh,
-K = V diag(κ) V⁻¹, so that X q = V (c/(κ + t)), t = Y/X = pi C/(4 a), for every case: load, depth and central pressure
-are sums of n fractions of t. (κ is real and positive, the condition of V below 20 up to 200 nodes.) Cases are columns
-here: sums over the nodes then run along whole rows.
+On a thin layer (X K + Y) q = s² with X = 8/(pi a), Y = 2 C/a² (p in E2*). K is diagonalised once for each mesh,
+K = V diag(κ) V⁻¹; κ is real and positive, and V well conditioned (tests/contact/test_smooth.py). With c = V⁻¹ s² and
+t = Y/X = pi C/(4 a), X q = V (c/(κ + t)): load, depth and central pressure are sums of n fractions 1/(κ + t). Arrays
+are (n, B) here, with a column for each case: sums over the nodes then run along whole rows.
 """
 
 from dataclasses import replace
@@ -18,27 +18,27 @@ from ..numerics.mesh import mesh
 from ..solution import Solution
 from ..status import Status
 
-#: Quantity -> its value from the radius a and the sums S (3, B), of which each quantity has one row.
+#: Quantity -> its value from the radius a and the sums S (3, B); each quantity has one row of S.
 _OF_SUMS = {
     "P": lambda a, S: np.pi**2 / 4 * a * a * a * S[0],
     "D": lambda a, S: a * a / 2 * S[1],
     "p0": lambda a, S: np.pi / 8 * a * S[2],
 }
 _ROWS = {name: row for row, name in enumerate(_OF_SUMS)}
-#: The power of a in each quantity; and the part of each sum without pressure, 1 in D = a²/2 (1 + ...).
+#: The power of a in each quantity; and the part of each sum that is there without pressure: 1 in D = a²/2 (1 + ...).
 _POWERS, _BARE = np.array([[3.0], [2.0], [1.0]]), np.array([[0.0], [1.0], [0.0]])
 #: First guess of the radius under a load: (a_H^m + a_L^m)^(1/m), of Hertz's radius a_H and the radius a_L on springs
-#: alone. With this m it is right to 0.0022.
+#: alone. With this m it is right to 0.3 % (tests/contact/test_smooth.py).
 _BLEND = 3.21
-#: Most Newton steps for ln a, and the step after which none is needed: a step leaves an error below 0.04 times its
-#: square. Under a load the second step is the last, at a depth the third.
+#: Most Newton steps for ln a; a step below _LAST is the last one. A step leaves an error below 0.04 times its square
+#: (tests/contact/test_smooth.py), so that after one below _LAST the error is below rounding.
 _STEPS, _LAST = 30, 2e-7
 #: Control -> the factor with which :func:`_unseen` is an upper bound (tests/contact/test_accuracy.py).
 _ENCLOSING = {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
 class Modes(NamedTuple):
-    """Spectral form of a mesh: κ (n, 1), `nodal` (n, n) from the fractions to X q, `sums` (3, n) from them to S."""
+    """Spectral form of a mesh: `kappa` (n, 1); `nodal` (n, n) makes X q of the fractions, and `sums` (3, n) makes S."""
 
     kappa: np.ndarray
     nodal: np.ndarray
@@ -85,7 +85,8 @@ def _solution(arrays):
 
 
 def _on_mesh(control, value, C, n, x):
-    """Arrays (dict) on n nodes; the error is the distance, to first order, to the next finer mesh."""
+    """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes; `error` is the distance, to first order, to the
+    solution on the next finer mesh, or the bound of :func:`_unseen` if that is larger."""
     grid, modal = mesh(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)
@@ -119,10 +120,10 @@ def _distance(control, t, S, slopes, finer):
 
 
 def _unseen(control, t, s1):
-    """Upper bound (B,) of the error that neither of two meshes sees, at the edge.
+    """Upper bound (B,) of the error at the edge that neither of two meshes sees.
 
-    In a ring s ~ t at the edge the springs yield more than the half-space. If the ring is narrower than the first node
-    s1, the error is t times one function of t/s1², the same on every mesh; the bound lies above that function.
+    In a ring s < t at the edge the springs yield more than the half-space. If it ends before the first node s1, the
+    error is t times a function of t/s1², the same function on every mesh. The bound lies above that function.
     """
     blind = _ENCLOSING[control] * t * np.log1p(s1**2 / (2 * t))
     return np.where((t > 0) & (t < 16 * s1**2), blind, 0.0)

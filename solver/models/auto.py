@@ -1,9 +1,9 @@
 """The base "auto": each case is solved once, on the cheapest model whose error a closed form shows to be small enough.
 
-Cheaper than the exact layer are the thin layer and, for a thick one, a half-space of its material; cheaper than both
-is the smooth punch on them, to which the asperities are added afterwards. How far each is from the exact layered rough
-contact is bounded before anything is solved, from h/a and A[p(0)]/a² at the first guess of the radius (:func:`bounds`).
-The bound is what `model_error` says of the case.
+Cheaper than the exact layer are the thin layer and, for a thick one, a half-space of its material. Cheaper still is a
+smooth punch on these, to which the asperities are added afterwards. Before anything is solved, the error of each model
+against the rough contact on the exact layer is bounded, from h/a and A[p(0)]/a² at the first guess of the radius
+(:func:`bounds`). The bound of the model that is chosen becomes `model_error`.
 """
 
 from dataclasses import replace
@@ -20,18 +20,18 @@ from ..solution import Model, Solution
 from ..status import Status
 from .model_error import closed_form
 
-#: Of each factor of a bound below, `python tests/models/margins.py` needed at most 0.85, over random cases.
-#: The error of the thin layer is at most this times its closed form, which is that of a smooth punch, where h/a is
-#: below the second number.
+#: In random cases the true error is at most 0.85 of each bound that follows (`python tests/models/margins.py`).
+#: Where h/a is below _THINNEST, the error of the thin layer is at most _THIN times its closed form, which is that of a
+#: smooth punch.
 _THIN, _THINNEST = 4.0, 0.1
-#: The error of dropping the body under a thick layer is at most this times (a/h) ∫|L - 1| du. Where h/a is below the
-#: second number, the bound is too large to be of use unless n is almost 1, and is not computed.
+#: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times
+#: (a/h) ∫|L - 1| du. Below, that bound would be too large to be of use, unless n is almost 1.
 _ALONE, _THICKEST = 0.8, 1.0
 #: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D.
 _ASPERITIES = {"P": 5.0, "a": 7.0, "D": 4.0}
-#: Bounds above this are none: closed forms of first order were seen to fail there.
+#: A bound above this is not trusted, for it is of first order; so its model is not taken, whatever `accuracy` is.
 _TRUSTED = 0.3
-#: Nodes u and weights of ∫ · du by the trapezoidal rule in ln u: 14, for an integral that need not be better than 10 %.
+#: Nodes u and weights of ∫ · du by the trapezoidal rule in ln u. They are few: 10 % are enough for a bound.
 _U = np.exp(np.linspace(np.log(1e-3), np.log(25.0), 14))
 _WEIGHTS = _U * np.log(_U[1] / _U[0])
 
@@ -49,7 +49,7 @@ def model_of(problem):
 
 
 def cheapest(problem, x, solve):
-    """:class:`Solution` of cases in units R = E2* = 1, each on the cheapest model that meets its accuracy.
+    """:class:`Solution` of cases in units R = E2* = 1, each on the cheapest model whose bound is within its accuracy.
 
     A case that its cheap model cannot solve is solved on the exact layer.
 

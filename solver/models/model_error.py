@@ -1,9 +1,9 @@
 """The error of a cheap model against the exact layer with its asperities, estimated from the solution of the cheap one.
 
-One Newton step of the exact equation begins at the pressure and the radius of the cheap
-solution. It gives to first order what the exact model would have found under the same control. The largest relative
-difference over a, P, D, p(0), p_max, Ar/An is the estimate. A whole solution takes some ten steps on each of several
-meshes; this takes one, on few nodes.
+One Newton step of the exact equation begins at the pressure and the radius of the cheap solution. It gives to first
+order what the exact model would have found under the same control. The largest relative difference over a, P, D, p(0),
+p_max, Ar/An is the estimate. A solution on the exact layer takes several steps on each of several meshes; this takes
+one step on one mesh.
 """
 
 from dataclasses import replace
@@ -66,11 +66,11 @@ def first_order(cases, cheap, p):
 
 
 def closed_form(problem, a):
-    """Estimated relative error (B,) of the thin-layer model, without asperities and at no cost.
+    """Estimated relative error (B,) of the thin-layer model, as if there were no asperities; nothing is solved for it.
 
-    `a` (B,) are its contact radii, in the unit of `problem.h`. NaN where the thin-layer equation does not apply. See
-    :func:`~solver.models.thin_layer_error.largest_error`, which is made for a rigid punch. Under an elastic one that
-    number at given a, the largest of the three controls, stands for all controls.
+    `a` (B,) are its contact radii, in the unit of `problem.h`. NaN where the thin-layer equation does not apply. The
+    estimate, :func:`~solver.models.thin_layer_error.largest_error`, is made for a rigid punch. Under an elastic one its
+    value at given a, which is the largest of the three controls, is taken for each control.
     """
 
     def error(part, radius, control):

@@ -7,9 +7,9 @@ from ..laws import LAWS
 
 
 def outside_law(problem, solution):
-    """(B,) bool: p(0) is below the range of the law, or a nominal pressure above it, p(0) or one of the profile.
+    """(B,) bool: p(0) is below the range of the law, or p(0) or a pressure of the profile is above it.
 
-    `solution` in the units of `problem`. NaN is in any range.
+    `solution` is in the units of `problem`. NaN counts as within the range.
     """
     outside = np.zeros(len(problem), dtype=bool)
     present = set(problem.micro.tolist())

@@ -1,15 +1,15 @@
 """How far the thin-layer model is from the exact layer, for a smooth punch: a closed form that can be worked by hand.
 
-For h << a the two models differ near the edge only. There the exact kernel L and A1 + A2 u give half-plane problems,
-which the Wiener-Hopf method solves: the contact of the thin layer is wider by κ h,
+For h << a the two models differ near the edge only. There the exact kernel L and A1 + A2 u each give a half-plane
+problem, which the Wiener-Hopf method solves: the contact of the thin layer is wider by κ h,
 
     κ = (1/π) ∫₀^∞ ln[(A1 + A2 u)/L(u)] du/u².
 
-So at given load the radius is wrong by κ h/a, while depth and central pressure have no error of first order; at given
+So at given load the radius is wrong by κ h/a, while depth and central pressure have no error of first order. At given
 radius the load is wrong by -m κ h/a, with m = d ln P/d ln a. For h >> a the true load is that of a half-space of E1*,
 (4/3) E1* a³/R, and the load of the thin layer tends to (3π/(32 A2)) (a/h) of it. The estimate is the simplest fraction
-with both limits (docs/accuracy.md shows it with a table of κ; tests/models/test_thin_layer_error.py compares it with
-the solver).
+with both limits. docs/accuracy.md shows it with a table of κ; tests/models/test_thin_layer_error.py compares it with
+the solver.
 """
 
 from functools import lru_cache
@@ -27,12 +27,13 @@ _STEP = 0.5
 _U = np.exp(np.arange(-16.0, 36.0, _STEP))
 #: Number of these points below u = 45. Beyond, L - 1 < e^-90: L is 1 and is not evaluated.
 _NEAR = int(np.sum(_U < 45.0))
-#: Smallest x0. The line that is fitted to it falls below nought under stiff layers without friction (n > 1.33) and soft
-#: bonded ones that are nearly incompressible; the estimate then had a pole, and was negative beside it. From 0.2 to 0.5
-#: all serve alike (tests/models/test_thin_layer_error.py, test_materials_beyond_the_fit).
+#: Smallest x0, the fitted number of :func:`thin_layer_error`. The fit falls below 0 for stiff layers without friction
+#: (n > 1.33) and for soft bonded ones that are nearly incompressible: the estimate would have a pole there, and be
+#: negative beside it. All values from 0.2 to 0.5 serve alike (test_materials_beyond_the_fit in
+#: tests/models/test_thin_layer_error.py).
 _LEAST_LENGTH = 0.3
-#: Largest |ln n| of the table of κ without friction, beyond the bounds of n. A case costs 0.2 µs from the table and
-#: 6 µs by the rule; a whole smooth case on a thin layer costs about 2 µs.
+#: Largest |ln n| of the table of κ without friction, beyond the bounds of n. If integrated for each case, κ would take
+#: longer than the whole solution of a smooth case on a thin layer.
 _RANGE = 25.0
 
 
@@ -82,7 +83,7 @@ def edge_shift(n, nu1, nu2, bonded):
 @lru_cache(maxsize=1)
 def _without_friction():
     """κ without friction as a cubic spline over ln n, right to 1e-8; Poisson ratios change nothing there."""
-    from scipy.interpolate import CubicSpline  # its import takes 0.3 s, which only few solves are to wait for
+    from scipy.interpolate import CubicSpline  # here, for it takes 0.4 s (python -X importtime) and few solves need it
 
     ln_n = np.linspace(-_RANGE, _RANGE, 1001)
     none = np.zeros_like(ln_n)
@@ -153,8 +154,8 @@ def largest_error(control, h_a, n, nu1, nu2, bonded):
     -----
     P/P_thin - 1 has a term of the edge and a term of thick layers, which may have different signs. Their sizes are
     added: where they cancel in P, the other quantities are still wrong. The term of the edge counts in full at given a,
-    where it changes the load. At given P or D it changes the radius, and counts 1/m times; where the contact is the
-    narrower one (κ < 0) p(0) is twice as wrong, and it counts 2/m times.
+    where it changes the load. At given P or D it changes the radius, and counts 1/m times. Where the contact of the
+    thin layer is the narrower one (κ < 0), p(0) is twice as wrong as the radius, and the term counts 2/m times.
     """
     edge, far, m = _terms(h_a, n, nu1, nu2, bonded)
     inwards = np.where(edge < 0, 2, 1)
@@ -164,7 +165,7 @@ def largest_error(control, h_a, n, nu1, nu2, bonded):
 
 
 def _terms(h_a, n, nu1, nu2, bonded):
-    """The term of the edge and that of thick layers, whose sum is P/P_thin - 1, and m = d ln P/d ln a."""
+    """The term of the edge and the term of thick layers, whose sum is P/P_thin - 1; and m = d ln P/d ln a."""
     x = np.asarray(h_a, dtype=float)
     kappa = edge_shift(n, nu1, nu2, bonded)
     g = 32 / (3 * np.pi) * thin_layer_coefficients(n, nu1, nu2, bonded)[1]

@@ -9,12 +9,13 @@ def false_position(evaluate, start, tolerance, steps=80):
     Parameters
     ----------
     evaluate : callable
-        ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), in which a case may be twice; NaN where there
-        is no value: that case is given up.
+        ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), which may hold a case twice. NaN means that
+        there is no value; the case is then given up.
     start : (B,) float
-        Where to begin; the bracket is ± 0.1, its ends moved outwards, doubling, until they enclose the root.
+        Where to begin. The bracket begins as start ± 0.1; its ends move outwards, by steps that double, until they
+        enclose the root.
     tolerance : (B,) float
-        A case is done when abs(g) or its bracket is below this; it is then left alone, whatever the others need.
+        A case is done when abs(g) or the width of its bracket is below this. It is then not evaluated again.
 
     Returns
     -------
@@ -32,7 +33,7 @@ def false_position(evaluate, start, tolerance, steps=80):
         x[active] = np.where((guess > lo) & (guess < hi), guess, 0.5 * (lo + hi))
         g[active] = value = evaluate(x[active], active)
         below = value < 0
-        share = np.where(below == was_below[active], 0.5, 1.0)  # of an end that stays for the second time
+        share = np.where(below == was_below[active], 0.5, 1.0)  # an end that stays for the second time counts half
         g_high[active], g_low[active] = np.where(below, share * gh, value), np.where(below, value, share * gl)
         was_below[active] = below
         low[active], high[active] = np.where(below, x[active], lo), np.where(below, hi, x[active])

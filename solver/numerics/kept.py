@@ -1,4 +1,4 @@
-"""What takes long to make and is asked for again: the latest used of it is kept, up to a number of bytes."""
+"""A cache: values that take long to make are kept, the latest used of them, up to a number of bytes."""
 
 from collections import Counter, OrderedDict
 from threading import Lock
@@ -7,9 +7,10 @@ import numpy as np
 
 
 class Kept:
-    """Values by their keys, the latest used, whose arrays take at most `most` bytes; but one is always kept.
+    """Values by their keys. The latest used are kept, as many as have arrays of at most `most` bytes together; one is
+    always kept.
 
-    An array that several values share counts once. Threads may use it at the same time.
+    An array that several values share counts once. Several threads may use it at the same time.
     """
 
     def __init__(self, most):
@@ -17,7 +18,7 @@ class Kept:
         self._values, self._uses, self._lock = OrderedDict(), Counter(), Lock()
 
     def get(self, key, make):
-        """The value of `key`; if it is not kept, that of ``make()``: an array, or a tuple or list of such values."""
+        """The value of `key`, from ``make()`` if it is not kept: an array, or a tuple or list of such values."""
         with self._lock:
             if key in self._values:
                 self._values.move_to_end(key)

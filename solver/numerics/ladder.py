@@ -6,11 +6,13 @@ import numpy as np
 from .mesh import mesh, panel_mesh
 
 LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
-#: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known.
+#: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known. Below the last: 32.
 _START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
-#: The estimated error is the distance to the next finer mesh times this, since the finer mesh has an error too.
+#: The estimated error is this times the distance to the next finer mesh, since the finer mesh has an error too
+#: ("margin" of tests/contact/test_error_bars.py).
 MARGIN = 2.0
-#: Unknowns that are solved together: so many that the calls take no time, so few that they stay in the cache.
+#: Unknowns that are solved together: so many that the time of the calls does not count, so few that they stay in the
+#: processor's cache.
 STACK = 40_000
 
 
@@ -26,12 +28,12 @@ def first_rung(wanted):
 
 
 def next_rung(n):
-    """The next finer mesh: of the ladder; beyond its end, half as many nodes again."""
+    """Number of nodes of the next finer mesh: of the ladder; beyond its end, half as many nodes more."""
     return next((m for m in LADDER if m > n), n + n // 2)
 
 
 def finer_mesh(grid):
-    """The next finer :class:`.mesh.Mesh`: of the ladder, or of the same panels with a third more nodes."""
+    """The next finer :class:`.mesh.Mesh`: of the ladder; or, of several panels, these with a third more nodes."""
     if len(grid.breaks) == 2:
         return mesh(next_rung(grid.n))
     return panel_mesh(grid.order + grid.order // 3, grid.breaks)
@@ -46,9 +48,10 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
     nodes : (B,) int
         A fixed mesh, or 0: begin on `first`.
     solve_on : callable
-        ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. error (b,): their
-        estimated errors, NaN where there is no use in going on; finer: what the next finer mesh begins with, its
-        `start` there, with ``finer.take(rows)`` and ``finer.join(others)``; or None. On the first mesh that is None.
+        ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. `start` is the `finer`
+        of the mesh before, or None on the first mesh. error (b,): estimated errors, NaN where there is no use in going
+        on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and ``finer.join(others)``; or
+        None. found: the answer, which is passed on.
     first : (B,) int, optional
         The mesh to begin on; else chosen by rtol.
     order : (B,) int, optional
@@ -57,7 +60,7 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
     Returns
     -------
     list of (index, found)
-        Of each stack that was solved. The last one that has a case has its answer.
+        One of each stack that was solved. The answer of a case is in the last stack that has it.
     """
     rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
     order = np.arange(len(rtol)) if order is None else order
@@ -78,7 +81,7 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
 
 
 def _together(on, n):
-    """Stacks of those that go on to n nodes, (index, start), from those of the mesh before."""
+    """The stacks (index, start) on n nodes of the cases `on`, (index, start), that go on from the mesh before."""
     index, start = np.concatenate([one for one, _ in on]), on[0][1]
     if start is None:
         return [(rows, None) for rows in _stacks(index, n)]

@@ -1,17 +1,18 @@
-"""Stacks of small linear systems of one operator, or one each, and a diagonal of their own."""
+"""Stacks of small linear systems: one matrix for all, or one for each, and for each a diagonal that is added."""
 
 import numpy as np
 
-#: Fewest systems that are eliminated together, and most unknowns of each: else LAPACK, one by one, is faster.
+#: Fewest systems that are eliminated together, and most unknowns of each. With fewer systems or more unknowns, LAPACK
+#: is faster, which solves one by one.
 _FEWEST, _LARGEST = 200, 32
 
 
 def solve_stack(K, diagonal, rhs):
-    """Solve (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k); a singular member cannot
-    spoil the others, its own solution is NaN.
+    """x (B, n, k) of (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k). The solution of a
+    singular system is NaN; it does not spoil the others.
 
-    Large stacks are eliminated without exchange of rows, which an elastic base on springs does not need: nothing grows.
-    Where a pivot is not positive, LAPACK has the system.
+    Large stacks are eliminated without exchange of rows: the systems of an elastic body do not need it, since no number
+    grows. Systems with a pivot that is not positive are left to LAPACK.
     """
     size, n, _ = rhs.shape
     if size < _FEWEST or n > _LARGEST:
@@ -25,7 +26,7 @@ def solve_stack(K, diagonal, rhs):
 
 
 def _eliminate(K, diagonal, rhs):
-    """Solution (B, n, k) by LU decomposition of all systems at a time, and where all pivots are positive (B,)."""
+    """Solution (B, n, k) by LU decomposition of all systems at once, and (B,) bool: all pivots are positive."""
     size, n, columns = rhs.shape
     system = np.empty((n, n + columns, size))
     system[:, :n], system[:, n:] = K.transpose(1, 2, 0), rhs.transpose(1, 2, 0)

@@ -1,9 +1,10 @@
-"""The nodes on the contact radius and the half-space operator on them, built once per mesh and cached.
+"""The nodes on the contact radius and the half-space operator on them, built once for each mesh and cached.
 
-The variable is s = sqrt(1 - x²), x = r/a. In it the pressure is smooth at the centre (it is a function of x²) and at
-the edge (an expansion in sqrt(1 - x)), Hertz's pressure is the polynomial s, the right-hand side of Eq. (4) is s², and
-x dx = -s ds. A mesh is one polynomial in s, or one on each of several panels. The nodes are Gauss-Radau with the
-centre s = 1 among them, so that p(0) is an unknown and not an interpolate.
+The variable is s = sqrt(1 - x²), x = r/a: the centre is s = 1, the edge s = 0. In s the pressure is smooth at the
+centre, where it is a function of x², and at the edge, where it is a series in sqrt(1 - x). Hertz's pressure is the
+polynomial s, the right-hand side of Eq. (4) is s², and x dx = -s ds. On a mesh the pressure is one polynomial in s, or
+one on each of several panels. The nodes are Gauss-Radau: the centre is one of them, so that p(0) is an unknown and need
+not be interpolated.
 """
 
 from dataclasses import dataclass
@@ -25,8 +26,8 @@ WHOLE = (0.0, 1.0)
 class Mesh:
     """Discretisation of the contact radius with n nodes.
 
-    The number of nodes and the panels determine all the rest. Two meshes that agree in these are equal, so that what is
-    kept for one (solver/body/tables.py) serves the other.
+    The number of nodes and the panels determine all the rest. Meshes that agree in these are equal: what is kept for
+    one (solver/body/tables.py) serves the other.
 
     Attributes
     ----------
@@ -58,7 +59,7 @@ class Mesh:
 
     @cached_property
     def _hash(self):
-        """Tables are looked up by it."""
+        """Kept, because tables are looked up by it."""
         return hash((self.n, self.breaks))
 
     @property
@@ -150,10 +151,11 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
 
     Notes
     -----
-    K(k)/(x + x') = K(x_</x_>)/x_> (Landen), so the integrand has the one singularity log|s - s'| (a root at the
-    centre): panels farther from it than their length have a plain Gauss rule, the others are split there, each side
-    with dyadic panels towards it. The complementary parameter 1 - k² is formed from the distance to the singularity,
-    so nothing is lost near it. Accurate to about 1e-15 of the largest entry.
+    With x_< and x_> the smaller and the larger of x, x', K(k)/(x + x') is K(x_</x_>)/x_> (Landen): so the only
+    singularity of the integrand is log|s - s'| (a root at the centre). Panels farther from it than their length have a
+    plain Gauss rule. The others are split there, and each side has panels that shrink towards it (:mod:`.pieces`). The
+    complementary parameter 1 - k² is formed from the distance to the singularity, so that no digits are lost near it.
+    Polynomial pressures are right to 1e-14 (tests/numerics/test_operator.py).
     """
     panels = len(breaks) - 1
     order = len(nodes) // panels
@@ -165,7 +167,7 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
 
 
 def _kernel(s, gap, sign):
-    """s' K(x_</x_>)/x_> at s' = s + sign·gap, which broadcast."""
+    """s' K(x_</x_>)/x_> at s' = s + sign·gap, x_< and x_> the smaller and the larger of x and x'; all broadcast."""
     point = s + sign * gap
     outer2 = (1 - s) * (1 + s) if sign > 0 else ((1 - s) + gap) * (1 + point)  # the larger x²
     return point * ellipkm1(np.minimum(gap * (s + point) / outer2, 1.0)) / np.sqrt(outer2)

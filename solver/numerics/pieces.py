@@ -1,5 +1,5 @@
-"""Rules of ∫ · ds' over the panels of a mesh for integrands with one singularity, at the target s' = s, of many targets
-and panels at once; nothing about contact."""
+"""Quadrature rules of ∫ · ds' over the panels of a mesh, for integrands with one singularity at a target s' = s; for
+many targets and panels at once. Nothing about contact."""
 
 from typing import NamedTuple
 
@@ -7,16 +7,17 @@ import numpy as np
 
 from .quadrature import gauss_legendre, lagrange, log_rule, panels_towards
 
-#: Numbers of a piece, points times nodes of a panel: some MB, in which the calls of numpy no longer count.
+#: Most numbers of a piece, points times nodes of a panel: 1 MB, so many that the time of numpy's calls does not count.
 _TOGETHER = 131_072
 
 
 class Piece(NamedTuple):
-    """Points of rules of one shape, over r pairs of a target and a panel.
+    """Rules of g points each, for r pairs of a target and a panel, on one side of the targets.
 
-    `row`, `panel` (r,): the pairs, each once; `sign`: +1 where s' > s, -1 where s' < s; `gap` and `weight` (r, g):
-    |s' - s| to full relative precision, and the weights of ∫ · ds'; `local`: where the points are on their panel, from
-    0 to 1, (r, g), or (1, g) of targets outside their panels, which have all the same.
+    `row`, `panel` (r,): the pairs, each once
+    `sign`: +1 where s' > s, -1 where s' < s
+    `gap`, `weight` (r, g): |s' - s| to full relative precision, and the weights of ∫ · ds'
+    `local`: where the points are on their panel, from 0 to 1: (r, g), or (1, g) if the targets are outside their panels
     """
 
     row: np.ndarray
@@ -37,13 +38,15 @@ def against(values, basis):
 
 
 def pieces(s, breaks, order, near=None, rough=None):
-    """Yield the :class:`Piece` of targets s (m,) and polynomials of `order` nodes on the panels between `breaks`.
+    """Yield each :class:`Piece` of targets s (m,) and polynomials of `order` nodes on the p panels between `breaks`.
 
-    A panel farther from the target than its own length has a plain Gauss rule. One that is nearer, and each side of
-    one that contains the target, has panels of its own towards the target (:func:`.quadrature.log_rule`), no more of
-    them than its distance asks for. `near` (m, p) bool: the pairs that count; all if None. `rough` (m, p) bool: those
-    where another factor of the integrand is not smooth away from the target, and all these panels are needed; with it,
-    they have as many points each.
+    A panel farther from the target than its own length has a plain Gauss rule. A nearer one, and each side of one that
+    contains the target, is divided into subpanels towards the target (:func:`.quadrature.log_rule`), no more of them
+    than the distance asks for.
+
+    near : (m, p) bool, the pairs that count; None: all
+    rough : (m, p) bool, the pairs for which another factor of the integrand is not smooth away from the target: they
+        have all subpanels. If it is given, the subpanels of all pairs have equally many points
     """
     low, high = np.array(breaks[:-1]), np.array(breaks[1:])
     length = high - low
@@ -66,8 +69,9 @@ def pieces(s, breaks, order, near=None, rough=None):
 
 
 class _Side(NamedTuple):
-    """What of p panels lies on one side of m targets s, ahead of them where `sign` is +1: the panels begin at `low` and
-    have this `length`, (p,) each; `start` and `end` (m, p) are the distances from a target to the part of a panel."""
+    """The parts of p panels that lie on one side of m targets s, above them where `sign` is +1. The panels begin at
+    `low` and have this `length`, (p,) each; `start` and `end` (m, p) are the distances of a target from the ends of a
+    part."""
 
     s: np.ndarray
     low: np.ndarray
@@ -78,7 +82,7 @@ class _Side(NamedTuple):
 
 
 def _piece(side, pairs, rule, inside):
-    """The :class:`Piece` of `pairs` (targets, panels), the targets inside their panels or not, for a rule on [0, 1]."""
+    """The :class:`Piece` of `pairs` (targets, panels) by a `rule` on [0, 1]; `inside`: targets are in their panels."""
     (row, panel), (distance, weight), sign = pairs, rule, side.sign
     begin = side.start[row, panel, None]
     reach = side.end[row, panel, None] - begin

@@ -10,12 +10,12 @@ from functools import lru_cache
 import numpy as np
 from scipy.special import roots_jacobi
 
-#: Number of panels towards a singularity, each a quarter as long as the one before; and the power m of the last panel,
-#: on which the variable is x = t^m: the integrand is smooth in t.
+#: Number of subpanels towards a singularity, each a quarter as long as the one before; and the power m of the last one.
+#: The variable on it is x = t^m, and the integrand is smooth in t.
 _PANELS, _POWER = 16, 8
-#: Numbers of such panels that are used.
+#: Numbers of subpanels towards a singularity outside. They are few different ones, so that many pairs share a rule.
 _FEWER = (0, 1, 2, 3, 4, 6, 8, 11, _PANELS)
-#: Points on a panel that the singularity needs; a polynomial beside it needs more.
+#: Points on a subpanel that the singularity needs; a polynomial as a factor needs more.
 _LEAST = 14
 
 
@@ -28,15 +28,15 @@ def gauss_legendre(n):
 
 @lru_cache(maxsize=64)
 def radau_nodes(n):
-    """Gauss-Radau nodes (n,) on [0, 1], ascending, the last one exactly 1 (weight function 1, exact to degree 2n -
-    2)."""
+    """Gauss-Radau nodes (n,) on [0, 1], ascending, the last one exactly 1. Their rule has the weight function 1 and is
+    exact to degree 2n - 2."""
     inner, _ = roots_jacobi(n - 1, 1.0, 0.0)
     return _frozen(np.append((inner + 1) / 2, 1.0))
 
 
 def barycentric_weights(nodes):
-    """Barycentric weights (n,) of `nodes` (n,), scaled by the capacity of [0, 1] so that they neither over- nor
-    underflow."""
+    """Barycentric weights (n,) of `nodes` (n,). Distances are divided by the capacity of [0, 1], 1/4, so that products
+    of them neither overflow nor underflow."""
     return _weights_kept(np.ascontiguousarray(nodes, dtype=float).tobytes())
 
 
@@ -66,8 +66,9 @@ def lagrange(nodes, points):
 
 
 def panels_towards(gap, length):
-    """How many panels of :func:`log_rule` (...) a singularity `gap` before an interval of `length` asks for: as on the
-    others, it is at least a third of the last one away. Of a few numbers only, so that many have the same."""
+    """How many subpanels (...) of :func:`log_rule` an interval of `length` needs if the singularity is `gap` before it:
+    so many that the distance of the last one is at least a third of its length, as it is for the others. It is one of
+    _FEWER."""
     with np.errstate(divide="ignore"):
         wanted = np.log(length / (3 * gap)) / np.log(4.0)
     return np.array(_FEWER)[np.minimum(np.searchsorted(_FEWER, wanted), len(_FEWER) - 1)]
@@ -76,12 +77,12 @@ def panels_towards(gap, length):
 @lru_cache(maxsize=64)
 def log_rule(n, everywhere=False, panels=_PANELS):
     """Rule on [0, 1] for a logarithm or a root at 0 times a polynomial of degree 2 (n - _LEAST): distances from 0 and
-    weights.
+    weights. Its relative error is below 3^(-2 _LEAST).
 
-    Each panel is a quarter as long as the one before, and on it the polynomial, whose zeros lie densest at an end,
-    changes its sign half as often. Relative error below 3^(-2 _LEAST). Where another factor of the integrand is as
-    narrow as a film, `everywhere` gives all panels `n` points. Fewer `panels` are for a singularity before 0, at least
-    a third of the last one, [0, 4^-panels], away.
+    Each subpanel is a quarter as long as the one before. The zeros of the polynomial lie densest at an end, so that it
+    changes its sign half as often on each next one: these have fewer and fewer points. If another factor of the
+    integrand varies near 0, as under a film, `everywhere` gives all of them `n` points. Fewer `panels` are enough if
+    the singularity is before 0, by at least a third of the last subpanel, [0, 4^-panels].
     """
     upper, least = 4.0 ** -np.arange(panels), n if everywhere else min(n, _LEAST)
     distance, weight = [], []

@@ -186,8 +186,8 @@ def _one_minus(a, one_a, e, rest):
 
 
 def _gap_and_excess(u, e, rest):
-    """(1 - e)² - 4u²e = 4e (sinh² u - u²), of which the derivative is four times the second less twice the first; and
-    e (sinh 2u - 2u)."""
+    """The gap (1 - e)² - 4u²e = 4e (sinh² u - u²) and the excess e (sinh 2u - 2u). The derivative of the gap is
+    4 excess - 2 gap."""
     ue = u * e
     gap, excess, small = rest * rest - 4 * u * ue, rest * (1 + e) / 2 - 2 * ue, u < _SERIES
     gap[small], excess[small] = _series(u[small], e[small])
@@ -195,7 +195,7 @@ def _gap_and_excess(u, e, rest):
 
 
 def _series(u, e):
-    """The same from the series cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2, and sinh 2u - 2u."""
+    """The same by the series of cosh 2u - 1 - 2u² = Σ (2u)^(2j)/(2j)!, j >= 2, and of sinh 2u - 2u."""
     z = 4 * u * u
     gap = z * z / 12 * _nested(z, (30, 56, 90, 132, 182, 240, 306, 380))
     return e * gap, e * u * z / 3 * _nested(z, (20, 42, 72, 110, 156, 210, 272, 342))

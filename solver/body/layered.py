@@ -130,8 +130,8 @@ class Layered(NamedTuple):
 
 
 class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: its mesh, the kernel as a list of :class:`.part.Part`, and
-    `rows` (B, n + 1, n): the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
+    """The :class:`~solver.body.operator.Operator` of layers: its mesh; `parts`, the kernel; and `rows` (B, n + 1, n),
+    the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
 
     mesh: Mesh
     parts: list
@@ -210,7 +210,7 @@ def _apart(values):
 
 
 def _rows(parts, mesh):
-    """K and under it the row of the edge (B, n + 1, n), its cases next to each other in memory."""
+    """K and under it the row of the edge, (B, n + 1, n); in memory the index of the case runs fastest."""
     order, n, end = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n, 0
     flat, half_space = np.empty(((n + 1) * n, len(order))), np.vstack([mesh.K, mesh.edge]).reshape(-1, 1)
     for part in parts:

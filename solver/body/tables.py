@@ -51,7 +51,8 @@ class Table(NamedTuple):
 
     @property
     def is_small(self):
-        """Whether a matrix takes fewer multiplications than its product with q by way of all nodes k."""
+        """Whether the product of L - 1 with `product`, the matrix, takes fewer multiplications than the matrix times q
+        by a sum over all nodes k."""
         of_few = self.product is not None and self.spread.ndim == 2
         return of_few and self.product.size < self.spread.size + self.J.size + self.phi.size
 

@@ -15,8 +15,8 @@ from .equation import State, evaluate, groups
 from .results import cornered, difference, interpolate, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about
-#: λ s² to Ar/An. The error of Ar/An is taken to be at least _UNSEEN times λ s²/2. Cases that need it reach 5.3 times
-#: that (`python tests/error_bars.py`); one is "ring" of tests/contact/test_error_bars.py.
+#: λ s² to Ar/An. The error of Ar/An is taken to be at least _UNSEEN times λ s²/2. In cases that need it, it is at most
+#: 5.3 times λ s²/2 (`python tests/error_bars.py`); one of them is "ring" of tests/contact/test_error_bars.py.
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05

@@ -1,8 +1,8 @@
 """Cases that one polynomial does not resolve: polynomials on panels, chosen for each case by how its solution varies.
 
 Where asperities saturate inside a contact, A → B̄²/(3Ra), the pressure has a corner at s² = Z/3; the stiffer the body,
-the more it is rounded. A stiff or thin body adds an edge layer. Both are found by the coefficients of the pressure and
-of λ on each panel, and enclosed by halving the panels.
+the more it is rounded. On a stiff or thin body the pressure also rises steeply at the edge. Both are found by the
+coefficients of the pressure and of λ on each panel, and enclosed by halving the panels.
 """
 
 from itertools import pairwise

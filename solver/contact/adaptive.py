@@ -54,7 +54,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
     opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol)) & free & (limit == 0)
     opened = np.flatnonzero(opened & ~spent)
     ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in opened]
-    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)  # spent: no panels can confirm it
+    # where the budget is spent, no panels can confirm that the punch lifts off: the error counts as too large
+    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 

@@ -50,7 +50,7 @@ def solve_on_panels(case, rtol, budget, at=None):
             continue
         nodes = ORDER * (len(breaks) - 1)
         made, judged = (case.body.work(radius, n)[0][0] for n in (nodes, nodes + nodes // 3))
-        if work + made + judged > budget:  # what is left pays for the error of the solution so far
+        if work + made + judged > budget:  # what is left is for estimating the error of the solution so far
             work = np.inf
             break
         work, grid = work + made, panel_mesh(ORDER, breaks)

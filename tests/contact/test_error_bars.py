@@ -12,7 +12,7 @@ from solver import Problem, Status, solve
 
 #: Case, nodes, and the largest part of the truth that the error bar may be.
 CASES = {
-    # neither mesh sees the ring at the edge in which asperities yield more than the base: _BLIND times as much
+    # neither mesh sees the ring at the edge in which asperities yield more than the body: the estimate times _BLIND
     "blind": (
         {"base": "half_space", "micro": "disc_cell", "P": 3.3475e-10, "Ra": 3.36056e-5, "Nbar": 3.30048e14},
         12, 2,
@@ -21,19 +21,19 @@ CASES = {
         {"base": "half_space", "micro": "power_law", "P": 8.107e-4, "Ra": 6.197e-4, "Nbar": 2692336.0, "beta": 0.58935},
         6, 2,
     ),
-    # the finer mesh has an error too: MARGIN times as much
+    # the finer mesh has an error too: the distance between both times MARGIN
     "margin": (
         {"base": "thin_layer", "micro": "disc_cell", "P": 2.76712e-6, "Ra": 4.4813e-3, "Nbar": 3736084.0,
          "h": 4.8048e-4, "n": 0.020863},
         6, 2,
     ),
-    # nearly all is in contact outside the first node as well: _UNSEEN areas of that ring
+    # λ is nearly 1 between the edge and the first node as well: _UNSEEN times λ s²/2 at that node
     "ring": (
         {"base": "thin_layer", "micro": "disc_cell", "P": 9.5121e-9, "Ra": 4.35751e-4, "Nbar": 8.93755e11,
          "h": 3.7334e-8, "n": 2.30066e-6},
         6, 300,
     ),
-    # asperities saturate inside the contact, between the nodes of both meshes: from _SATURATED on another rule looks
+    # asperities saturate inside the contact, between the nodes of both meshes: above _SATURATED by another rule
     "saturated": (
         {"base": "thin_layer", "micro": "power_law", "P": 2.929241e-3, "Ra": 0.02036508, "Nbar": 1.4454193,
          "h": 7.54902e-8, "n": 1.249559e-5, "B": 0.229085, "beta": 0.565},

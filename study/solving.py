@@ -19,9 +19,9 @@ from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
 from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
-from .spec.grid import shown
 from .spec.vocabulary import NUMERICS, VOCABULARY
 from .specimen.materials import Material
+from .terminal import shown
 from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray

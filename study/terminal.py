@@ -4,17 +4,25 @@ import errno
 import os
 import re
 import sys
-from typing import TextIO
+from typing import Any, TextIO
 
 #: Control characters of a terminal, without ends of lines and tabs, and those that change the direction of writing.
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
 NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # somebody waits for the text and does not get it
 
 
-def on_one_line(text: str, most: int) -> str:
+def on_one_line(text: str, most: int = 60) -> str:
     """At most `most` characters of a text; control characters, ends of lines and tabs are written as in "\\x1b"."""
     cut = text if len(text) <= most else text[: most - 3] + "..."
     return CONTROL.sub(_written_out, cut).replace("\n", "\\n").replace("\t", "\\t")
+
+
+def shown(value: Any) -> str:
+    """A value as a message quotes it, at most 60 characters."""
+    try:
+        return on_one_line(f'"{value}"' if isinstance(value, str) else str(value))
+    except ValueError:  # Python writes no whole number of more than 4300 digits
+        return "a number of more than 4300 digits"
 
 
 def _written_out(found: re.Match) -> str:

@@ -58,7 +58,7 @@ def assignment(text: str) -> tuple[str, float | str]:
     """NAME and VALUE of NAME=VALUE, the value as a number if it is one."""
     name, _, value = (part.strip() for part in text.partition("="))
     if not name or not value:
-        raise argparse.ArgumentTypeError(f'"{on_one_line(text, 60)}": must be NAME=VALUE')
+        raise argparse.ArgumentTypeError(f'"{on_one_line(text)}": must be NAME=VALUE')
     try:
         return name, float(value)
     except ValueError:
@@ -139,7 +139,7 @@ def folder(text: str) -> str:
 def positive(text: str) -> int:
     """A whole number > 0."""
     if not text.isdecimal() or len(text) > MOST_DIGITS or int(text) < 1:
-        raise argparse.ArgumentTypeError(f"{on_one_line(text, 60)}: must be a whole number > 0, at most 9 digits")
+        raise argparse.ArgumentTypeError(f"{on_one_line(text)}: must be a whole number > 0, at most 9 digits")
     return int(text)
 
 
@@ -155,5 +155,5 @@ def part(text: str) -> tuple[int, int]:
     numbers = text.split("/")
     whole = all(each.isdecimal() and len(each) <= MOST_DIGITS for each in numbers)
     if len(numbers) != 2 or not whole or not 1 <= int(numbers[0]) <= int(numbers[1]):
-        raise argparse.ArgumentTypeError(f"{on_one_line(text, 60)}: must be I/N, whole numbers with 1 <= I <= N")
+        raise argparse.ArgumentTypeError(f"{on_one_line(text)}: must be I/N, whole numbers with 1 <= I <= N")
     return int(numbers[0]), int(numbers[1])

@@ -4,10 +4,11 @@ from typing import Any
 
 import numpy as np
 
-from ..spec.grid import shown, twins
+from ..spec.grid import equal_values
 from ..spec.vocabulary import VOCABULARY
 from ..specimen import materials
 from ..specimen.quantities import Quantity
+from ..terminal import shown
 from .names import RIGID_TEXTS, CaseValues, QuantityList
 
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
@@ -39,8 +40,7 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
             found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing
             continue
         texts, *numbers = zip(*(known[str(one)] for one in values), strict=True)
-        for i, j in twins(texts) if several and not isinstance(given, CaseValues) else ():
-            errors.append(f"{body}[{i}] and {body}[{j}] are both {texts[i]}: values of an axis must differ")
+        errors += equal_values(body, texts, str) if several and not isinstance(given, CaseValues) else []
         dim = ("case" if isinstance(given, CaseValues) else body) if several else ""
         for name, column in zip(follows, numbers, strict=False):
             found[name] = QuantityList(list(column), dim) if several else column[0]

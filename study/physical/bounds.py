@@ -21,7 +21,6 @@ from .scene import Scene
 _REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
 _REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
 _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
-LONGEST_SHOWN = 60  # characters of a value in a message
 #: Ratios of moduli, and the modulus from which each follows.
 _RATIOS = (("n", "E1"), ("m", "E_punch"))
 
@@ -60,11 +59,6 @@ def absurd(contacts: xr.Dataset) -> list[str]:
     return found
 
 
-def value_text(given: Any) -> str:
-    """What a user gave, as a message quotes it."""
-    return on_one_line(str(given), LONGEST_SHOWN)
-
-
 def _first_outside(scene: Scene, name: str) -> list[Place]:
     """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
     values = scene.parameters[name]
@@ -96,7 +90,7 @@ def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
     units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
     here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
     bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
-    return f"{called} = {value_text(text)}: {moved}{bounds}"
+    return f"{called} = {on_one_line(str(text))}: {moved}{bounds}"
 
 
 def _written(given: Any, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:

@@ -11,12 +11,13 @@ import xarray as xr
 
 from ..spec.definition import StudyError
 from ..spec.given import label_slips
-from ..spec.grid import MOVED, shown, twins
+from ..spec.grid import MOVED, equal_values, twins
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
+from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, layered, with_materials
-from .bounds import beyond_bounds, value_text
+from .bounds import beyond_bounds
 from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of
 from .scales import make_dimensionless, over_dimensions
 from .scene import STEP, Scene
@@ -142,15 +143,17 @@ def _add(scene: Scene, name: str, given: Any) -> None:
             value = xr.DataArray([one.value for one in found.quantities], dims=found.dim)
             spread = xr.DataArray([one.spread for one in found.quantities], dims=found.dim)
             if found.dim == dim_of(name):
-                _check_distinct(name, value.values.tolist())
+                unit = f" {unit_of(name)}".removesuffix(" 1")
+                for message in equal_values(name, value.values.tolist(), lambda one: f"{one:g}{unit}"):
+                    raise ValueError(message)
         else:
             value, spread = found.value, found.spread
     if name in ("R1", "R2") and not _all(value != 0):
-        raise ValueError(f"{name} = {value_text(given)}: must not be 0")
+        raise ValueError(f"{name} = {on_one_line(str(given))}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
     inside = (value > low) & (value <= high)
     if not _all(inside):
-        text = f"{name} = {value_text(given)}"
+        text = f"{name} = {on_one_line(str(given))}"
         if isinstance(given, xr.DataArray):
             place, unit = np.argwhere(~inside.values)[0].tolist(), given.attrs.get("units", "1")
             text = f"{name}{place} = {given.values[tuple(place)]:g}" + f" {unit}" * (unit != "1")
@@ -159,7 +162,7 @@ def _add(scene: Scene, name: str, given: Any) -> None:
         reach = STEP * spread
         if not _all((value - reach > low) & (value + reach <= high)):
             text = f"with its spread it {limits}; at the limit itself give no spread"
-            raise ValueError(f"{name} = {value_text(given)}: {text}")
+            raise ValueError(f"{name} = {on_one_line(str(given))}: {text}")
         scene.spreads[name] = spread
     scene.given[name] = value
 
@@ -167,12 +170,6 @@ def _add(scene: Scene, name: str, given: Any) -> None:
 def _all(where: Any) -> bool:
     """Whether all of a labelled array, or the one there is, are true: `np.all`, which takes long of a single number."""
     return where if isinstance(where, bool) else bool(np.all(where))
-
-
-def _check_distinct(name: str, values: list) -> None:
-    for i, j in twins(values):
-        text = f"{values[i]:g} {unit_of(name)}".removesuffix(" 1")
-        raise ValueError(f"{name}[{i}] and {name}[{j}] are both {text}: values of an axis must differ")
 
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:

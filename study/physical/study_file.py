@@ -14,12 +14,13 @@ import numpy as np
 from ..spec import definition
 from ..spec.definition import Definition, StudyError
 from ..spec.given import Draft, one_control
-from ..spec.grid import axis_values, shown
+from ..spec.grid import axis_values
 from ..spec.identity import digest_of_array
 from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
 from ..spec.vocabulary import CONTROLS, NUMERICS, VOCABULARY, Parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
+from ..terminal import shown
 from .bodies import BODIES, with_materials
 from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_of
 

@@ -4,7 +4,8 @@ from functools import partial
 
 import numpy as np
 
-from .grid import Grid, along, on_rigid_base, shown
+from ..terminal import shown
+from .grid import Grid, along, on_rigid_base
 from .laws import smooth_laws
 from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, cases_with
 

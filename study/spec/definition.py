@@ -9,10 +9,10 @@ from typing import Any
 
 import numpy as np
 
-from ..terminal import counted, on_one_line
+from ..terminal import counted, on_one_line, shown
 from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
-from .grid import MOVED, Grid, shown
+from .grid import MOVED, Grid
 from .identity import digest_of
 from .toml_text import hint, text_in
 from .vocabulary import NUMERICS, finite, names, suggest

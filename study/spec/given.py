@@ -5,23 +5,16 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
+from ..terminal import shown
 from .checks import missing_parameters, mixed_units, picard_for_nothing
 from .fitted import fitted, wants_a_fit
-from .grid import LONGEST_AXIS, Grid, as_array, axis_values, shown, twins
+from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, twins
 from .laws import is_parameter, law_names, update_vocabulary
 from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
-
-
-def equal_values(name: str, values: list) -> list[str]:
-    """A message for two values of an axis that are the same, if there are some."""
-    return [
-        f"{name}[{i}] and {name}[{j}] are both {shown(values[i])}: values of an axis must differ"
-        for i, j in twins(values)
-    ]
 
 
 def label_slips(labels: list) -> list[str]:

@@ -1,13 +1,13 @@
 """The grid of cases: parameters along named dimensions, their flat columns (B,), and the way back."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from itertools import product
 
 import numpy as np
 
-from ..terminal import on_one_line
+from ..terminal import shown
 from .vocabulary import VOCABULARY, Parameter, all_numbers_allowed, check, finite
 
 LONGEST_AXIS = 1_000_000
@@ -201,15 +201,14 @@ def twins(values: list) -> list[tuple[int, int]]:
     return []
 
 
+def equal_values(name: str, values: list, written: Callable = shown) -> list[str]:
+    """A message for two values of an axis that are the same, if there are some; `written` makes a value a text."""
+    return [
+        f"{name}[{i}] and {name}[{j}] are both {written(values[i])}: values of an axis must differ"
+        for i, j in twins(values)
+    ]
+
+
 def entry(name: str, table: dict) -> str:
     """An entry of a table as a message quotes it: "num = 3", or "num is missing"."""
     return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"
-
-
-def shown(value) -> str:
-    """A value as a message quotes it, at most 60 characters."""
-    try:
-        text = f'"{value}"' if isinstance(value, str) else str(value)
-    except ValueError:  # Python writes no whole number of more than 4300 digits
-        text = "a number of more than 4300 digits"
-    return on_one_line(text, 60)

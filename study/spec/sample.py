@@ -4,7 +4,8 @@ import re
 
 import numpy as np
 
-from .grid import LONGEST_AXIS, check_range, entry, shown
+from ..terminal import shown
+from .grid import LONGEST_AXIS, check_range, entry
 from .vocabulary import Parameter, check
 
 KEYS = ("start", "stop", "spacing", "over")  # of a range

@@ -16,15 +16,13 @@ from functools import cache
 from importlib import resources
 from pathlib import Path
 
-from ..terminal import on_one_line
+from ..terminal import shown
 from .quantities import multiple
 
 SOFTEST, STIFFEST = 1e3, 2e12
 """Bounds of E in Pa. Each E of the table, 8.6 kPa to 1143 GPa, is between them; one in GPa by mistake is below."""
 LEAST_SPREAD = 1e-6
 """Least spread of E, over E: no E is known better. A spread given in GPa by mistake, 5 beside 207e9 Pa, is below."""
-LONGEST_SHOWN = 60
-"""Characters of a user's value in a message: a message stays on two lines of a terminal."""
 
 NUMBERS = {
     "E": f"a number of Pa from {SOFTEST:g} to {STIFFEST:g} (210 GPa is 210e9)",
@@ -206,8 +204,7 @@ def _plain(name) -> str:
 
 
 def _shown(value) -> str:
-    text = f'"{value}"' if isinstance(value, str) else f"{value:g}" if isinstance(value, float) else str(value)
-    return on_one_line(text, LONGEST_SHOWN)
+    return f"{value:g}" if isinstance(value, float) else shown(value)
 
 
 def _numbers(entry: Material) -> tuple[str, str, str, str]:

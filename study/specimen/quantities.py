@@ -11,7 +11,7 @@ from decimal import Decimal
 from functools import cache, lru_cache
 from typing import Any
 
-from ..terminal import on_one_line
+from ..terminal import on_one_line, shown
 
 #: SI unit -> what it measures, and the multiples in which it is read most easily (name, size), the largest first.
 READABLE = {
@@ -86,15 +86,15 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
     if isinstance(given, numbers.Real) and not isinstance(given, bool):
         if unit != "1":
-            raise ValueError(f"{name} = {_shown(given)} has no unit: {wanted}")
+            raise ValueError(f"{name} = {shown(given)} has no unit: {wanted}")
         try:
             return Quantity(float(given))
         except OverflowError as error:
-            raise ValueError(f"{name} = {_shown(given)}: must be finite") from error
+            raise ValueError(f"{name} = {shown(given)}: must be finite") from error
     if isinstance(given, str):
         return _from_text(name, _MINUS.sub("-", given.strip()), unit, wanted)
     if not has_unit(given):
-        raise ValueError(f"{name} = {_shown(given)}: {wanted}")
+        raise ValueError(f"{name} = {shown(given)}: {wanted}")
     try:
         return Quantity(float(given.to(_pint_name(unit)).magnitude))
     except Exception as error:  # its class depends on the registry of the quantity
@@ -166,14 +166,6 @@ def _size(word: str, unit: str) -> Decimal | None:
         return None
     # it is the integer 1 for the SI unit itself
     return Decimal(found) if isinstance(found, (int, Decimal)) and unit != "1" else None
-
-
-def _shown(given: Any) -> str:
-    """What was given, as a message quotes it."""
-    try:
-        return on_one_line(repr(given), LONGEST)
-    except ValueError:  # Python writes no whole number of more than 4300 digits
-        return "a number of more than 4300 digits"
 
 
 def _understood(found: Any) -> str:

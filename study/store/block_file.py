@@ -16,9 +16,6 @@ import numpy as np
 from ..files.atomic import replacing
 from ..files.seal import is_whole, seal
 
-OLD_FORMAT = b"roughcoat block 1\n"
-"""How blocks of an earlier version begin, which are not read any more."""
-
 
 class Damaged(OSError):
     """A file that is no block, or not the one that was written."""
@@ -53,11 +50,6 @@ def read_block(path: Path) -> Block:
         raise NoFile(f"{path}: is no file, so no block")
     again = "the same command computes its cases again"
     if not is_whole(path):
-        with open(path, "rb") as file:
-            if file.read(len(OLD_FORMAT)) == OLD_FORMAT:
-                raise Damaged(
-                    f"{path}: is a block of an earlier version, which is not read; {again}, `clean` removes it"
-                )
         raise Damaged(f"{path}: is no whole block; {again}")
     try:
         with open(path, "rb") as file:

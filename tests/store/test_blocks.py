@@ -93,13 +93,6 @@ def test_what_is_no_block_is_refused_in_spite_of_its_checksum(path, arrays):
         read_block(path)
 
 
-def test_a_block_of_an_earlier_version_is_said_to_be_one(path):
-    path.write_bytes(b'roughcoat block 1\n{"facts": {}, "cases": 0, "columns": []}\n' + bytes(32))
-    again = "the same command computes its cases again, `clean` removes it"
-    with pytest.raises(Damaged, match=f"is a block of an earlier version, which is not read; {again}"):
-        read_block(path)
-
-
 @pytest.fixture
 def wanted() -> Definition:
     return line()

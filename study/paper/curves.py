@@ -55,64 +55,57 @@ def plot(axes, points: list[tuple], label: str) -> list:
     return lines
 
 
-def profile(axes, cases: dict[str, xr.Dataset], a0: float, label: str, side: str) -> Columns:
-    """One curve p/E2* over r/a0, with its name above or below it (`side`)."""
+def pressures(axes, shown: list[tuple[dict[str, xr.Dataset], str, str]], a0: float, dotted: str = "") -> Columns:
+    """Curves p/E2* over r/a0, each with its name, labels, limits, legend, and notes on what is not valid.
+
+    shown : for each curve its cases (the first has the name of the curve), its label, and where its name stands
+    dotted : what the legend calls the dotted lines, if there are some
+    """
     columns = {}
-    for name, case in cases.items():
-        r, p = case["x"].values * float(case["a"]) / a0, case["p"].values
-        columns |= {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
-    numbers = list(columns.values())
-    lines = plot(axes, [(r, p * 100) for r, p in zip(numbers[::2], numbers[1::2], strict=True)], label)
-    name_curve(axes, lines, next(iter(cases)), 0.12, side=side)
-    return columns
-
-
-def pressure_axes(axes, exact: bool) -> None:
-    """Labels, limits and legend of pressures that have all been drawn."""
-    if exact:
-        axes.plot([], [], color="0.3", label=PAPER_LABEL, **PAPER)
+    for cases, label, side in shown:
+        own = []
+        for name, case in cases.items():
+            r, p = case["x"].values * float(case["a"]) / a0, case["p"].values
+            columns |= {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
+            own.append((r, p * 100))
+        name_curve(axes, plot(axes, own, label), next(iter(cases)), 0.12, side=side)
+    if dotted:
+        axes.plot([], [], color="0.3", label=dotted, **PAPER)
     axes.set(xlabel="$r/a_0$", ylabel=r"$p\ /\ (10^{-2} E_2^*)$", xlim=(0, None), ylim=(0, 1.1 * axes.dataLim.y1))
     axes.legend(loc="lower left")
-
-
-def pressures(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Columns:
-    """p(r) of the curves named in `sides` over the paper's contact radius a0 of the rough layered contact."""
-    a0 = float(pick(main, label=CURVES["1"])["a"])
-    columns, validity = {}, {}
-    for curve, side in sides.items():
-        cases = cases_of(main, curve, exact)
-        columns |= profile(axes, cases, a0, f"{curve}: {CURVES[curve]}", side)
-        validity[curve] = cases[curve]["validity"]
-    pressure_axes(axes, exact)
-    note_violations(axes, validity)
+    firsts = (next(iter(cases.items())) for cases, *_ in shown)
+    note_violations(axes, {name: case["validity"] for name, case in firsts})
     return columns
+
+
+def main_case(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Columns:
+    """p(r) of the curves named in `sides` over the paper's contact radius a0 of the rough layered contact."""
+    shown = [(cases_of(main, curve, exact), f"{curve}: {CURVES[curve]}", side) for curve, side in sides.items()]
+    return pressures(axes, shown, float(pick(main, label=CURVES["1"])["a"]), PAPER_LABEL * exact)
 
 
 @with_companion("fig03", "main_case")
 def rough_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure under the rough punch with a layer (1) and without (2); a0 is the radius of contact 1."""
-    return pressures(axes, main, {"1": "above", "2": "above"}, exact)
+    return main_case(axes, main, {"1": "above", "2": "above"}, exact)
 
 
 @with_companion("fig07", "main_case")
 def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure, rough and smooth (primes), with a layer (1) and without (2); a0: radius of 1."""
-    return pressures(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
+    return main_case(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
 
 
 @with_companion("fig10", "spot_density")
 def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1."""
     paper = [pick(found, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
-    columns, validity, a0 = {}, {}, float(paper[0]["a"])
+    shown = []
     for thin, (name, side) in zip(paper, {"1": "above", "2": "below", "3": "below"}.items(), strict=True):
         layered = pick(found, Nbar=float(thin["Nbar"]), base="layered")
         cases = {name: layered, f"{name}, thin layer": thin} if exact else {name: thin}
-        columns |= profile(axes, cases, a0, rf"{name}: $\bar N R^2 = {int(thin['Nbar'])}$", side)
-        validity[name] = cases[name]["validity"]
-    pressure_axes(axes, exact)
-    note_violations(axes, validity)
-    return columns
+        shown.append((cases, rf"{name}: $\bar N R^2 = {int(thin['Nbar'])}$", side))
+    return pressures(axes, shown, float(paper[0]["a"]), PAPER_LABEL * exact)
 
 
 def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, label: str, sides: dict[str, str],

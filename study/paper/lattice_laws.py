@@ -9,10 +9,10 @@ import xarray as xr
 from solver.laws import LAWS
 from solver.laws.fit import least_squares
 
-from ..figures.annotate import name_curve, note_violations
+from ..figures.annotate import name_curve
 from ..figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 from . import numbers
-from .curves import PAPER, pressure_axes, profile
+from .curves import PAPER, pressures
 from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, largest_error, printed
 
 DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
@@ -78,27 +78,24 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
     the power law of Table 1 on the same layer. Right: how far that (dotted) and the disc cell (dashed) are from the
     lattice, over its p(0). a0: radius of the paper's contact 1."""
     axes, beside = panels
-    columns, validity = {}, {}
+    shown, differences = [], {}
     a0 = float(pick(paper, Nbar=250_000, base="thin_layer")["a"])
     for i, side in enumerate(("above", "below", "below")):
         name, here = str(i + 1), found.isel(Nbar=i)
         true, disc = (here.sel(micro=micro) for micro in ("square_lattice", "disc_cell"))
         fitted = pick(paper, Nbar=float(true["Nbar"]), base="layered")
         cases = {name: true, f"{name}, power law": fitted}
-        columns |= profile(axes, cases, a0, rf"{name}: $\bar N R^2 = {int(true['Nbar'])}$", side)
+        shown.append((cases, rf"{name}: $\bar N R^2 = {int(true['Nbar'])}$", side))
         for kind, other, style in (("power law", fitted, PAPER), ("disc cell", disc, DISC)):
             r = np.linspace(0, max(float(case["a"]) for case in (other, true)), true.sizes["x"])
             p = [np.interp(r, case["x"] * case["a"], case["p"], right=0.0) for case in (other, true)]
             difference = (p[0] - p[1]) / float(true["p0"])
             beside.plot(r / a0, 100 * difference, color=f"C{i}", **style)
-            columns |= {f"r/a0 ({name}, {kind} off)": r / a0, f"off/p(0) ({name}, {kind})": difference}
-        validity[name] = true["validity"]
-    axes.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
-    pressure_axes(axes, exact=False)
-    note_violations(axes, validity)
+            differences |= {f"r/a0 ({name}, {kind} off)": r / a0, f"off/p(0) ({name}, {kind})": difference}
+    columns = pressures(axes, shown, a0, "power law (the paper)")
     beside.plot([], [], color="0.3", label="power law (the paper)", **PAPER)
     beside.plot([], [], color="0.3", label="disc cell", **DISC)
     beside.axhline(0, color="0.6", linewidth=0.6, zorder=0)
     beside.set(xlabel="$r/a_0$", ylabel=r"difference from the lattice / $p(0)$ (%)", xlim=axes.get_xlim())
     beside.legend(loc="best", fontsize=8)
-    return columns
+    return columns | differences

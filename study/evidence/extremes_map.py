@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from solver import Status
 
 from ..data.dataset import NO_SOLUTION
-from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 
 BASES = {"half_space": "half-space", "thin_layer": "thin layer", "layered": "exact layer"}
 LAWS = ("smooth", "disc_cell", "power_law")
@@ -58,7 +58,7 @@ def maps(panels, *studies: xr.Dataset) -> Columns:
     for axes, title in zip(panels[0], ("status", "error / rtol, median", "iterations, largest"), strict=True):
         axes.set_title(title, fontsize=9)
     legend(panels, images, np.unique(cases["status"]))
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return joined(parts)
 
 
 def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
@@ -69,7 +69,7 @@ def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
         wanted |= {"N Ra^2": found["Nbar"] * found["Ra"] ** 2, "error/rtol": found["error"] / found["rtol"]}
         same = xr.broadcast(*wanted.values(), exclude=("x",))
         flat.append({name: array.values.ravel() for name, array in zip(wanted, same, strict=True)})
-    return {name: np.concatenate([part[name] for part in flat]) for name in flat[0]}
+    return joined(flat)
 
 
 def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]) -> Columns:

@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogFormatterMathtext
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure
+from ..figures.registry import TWO_COLUMNS, Columns, figure, joined
 
 MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))
 """β and number of nodes of each map."""
@@ -44,7 +44,7 @@ def domain(panels, found: xr.Dataset) -> Columns:
     bar.set_label(r"largest $|\hat p - p|\,/\,p(0)$ after 2000 approximations")
     bar.ax.tick_params(which="both", length=0)
     legend(panels)
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return joined(parts)
 
 
 def compliance(part: xr.Dataset) -> np.ndarray:

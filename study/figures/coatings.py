@@ -8,7 +8,7 @@ from matplotlib.lines import Line2D
 
 from ..data.derived import effective_modulus, peak_pressure
 from .labels import stated, written
-from .registry import TWO_COLUMNS, Columns, figure
+from .registry import TWO_COLUMNS, Columns, figure, joined
 
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
@@ -57,7 +57,7 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
                     axes.plot(x, np.where(valid[shown], y, np.nan), linewidth=width, **look)
         column[0].set_title(bonding)
     decorate(panels, found)
-    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return joined(parts)
 
 
 def decorate(panels, found: xr.Dataset) -> None:

@@ -16,7 +16,7 @@ from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .labels import axis_label, multiple, stated, value_text, wrapped, written
-from .registry import Columns
+from .registry import Columns, joined
 from .style import style
 
 MOST_PANELS, MOST_NAMES = 12, 12  # of a figure, of its legend
@@ -86,7 +86,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     for axes in panels[count:]:
         axes.set_visible(False)
     decorate(figure, panels[:count], found, (x, y, hue))
-    return figure, {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+    return figure, joined(parts)
 
 
 def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:

@@ -21,6 +21,11 @@ Columns = dict[str, np.ndarray]
 """The numbers that a figure shows: heading of the CSV -> column."""
 
 
+def joined(parts: list[Columns]) -> Columns:
+    """The columns of several parts of a figure, one below the other."""
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
 class Figure(NamedTuple):
     """See `figure`."""
 

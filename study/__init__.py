@@ -19,7 +19,7 @@ _HOME = {
     "from_physical": "data.units",
     "reduced_modulus": "data.units",
     "summary": "in_words",
-    "readable": "data.readable",
+    "readable": "data.units",
     "plot": "figures.lines",
 }
 _MODULES = {

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
-from ..specimen.quantities import has_unit, quantity
+from ..specimen.quantities import READABLE, has_unit, multiple, quantity
 
 PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical units
 
@@ -103,6 +103,29 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
             changed[name] = array.dims, array.data * factor(name, **scales), attributes, fill
     scale = f"R = {scales['R']!r} m, E2* = {scales['E2_star']!r} Pa"
     return dataset.assign(changed).assign_attrs({PHYSICAL_SCALE: scale})
+
+
+def readable(dataset: xr.Dataset) -> xr.Dataset:
+    """A dataset in SI units with each variable in the multiple that suits its largest number, for plots and tables.
+
+    Coordinates have it too: a thickness of 2e-6 m is found by sel(h=2.0), in the µm of its attribute `units`. A spread
+    has the multiple of its quantity.
+
+    Raises ValueError for a dataset without physical units.
+    """
+    if PHYSICAL_SCALE not in dataset.attrs:
+        raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
+    found = {}
+    for name, variable in dataset.variables.items():
+        owner = dataset.variables.get(str(name).removesuffix("_spread"), variable)
+        unit = variable.attrs.get("units", "1")
+        if unit not in READABLE or unit == "1" or variable.dtype.kind != "f":
+            continue
+        finite = np.abs(owner.values[np.isfinite(owner.values)])
+        word, size = multiple(finite.max() if finite.size else np.inf, unit)
+        found[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
+    scale = "readable multiples of SI units, by the attribute units"
+    return dataset.assign(found).assign_attrs({PHYSICAL_SCALE: scale})
 
 
 def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:

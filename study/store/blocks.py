@@ -112,20 +112,16 @@ def facts(x: np.ndarray) -> dict:
     return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
 
 
+def covers(there: dict, arrays: dict[str, np.ndarray], wanted: dict, columns: dict[str, np.ndarray]) -> bool:
+    """Whether `arrays` under the facts `there` hold all `columns` under the facts `wanted`, with no fewer digits."""
+    here = all(name in arrays and arrays[name].dtype.itemsize >= own.dtype.itemsize for name, own in columns.items())
+    same_points = there.get("x") == wanted.get("x") or all(own.ndim == 1 for own in columns.values())
+    return here and same_points and there.get("numerics_version") == wanted.get("numerics_version")
+
+
 def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:
-    """Whether arrays computed under the facts `given` hold all that the study wants, with at least as many digits."""
-    wanted = not_run(definition, 0)
-    here = all(name in arrays and arrays[name].dtype.itemsize >= wanted[name].dtype.itemsize for name in wanted)
-    same_points = not definition.profiles or given.get("x") == definition.x.tolist()
-    return here and same_points and given.get("numerics_version") == NUMERICS_VERSION
-
-
-def _is_kept(definition: Definition, block: Block) -> bool:
-    """Whether the results of a study have a place for all the numbers that a block holds of a case."""
-    wanted, arrays = not_run(definition, 0), block.arrays
-    same_points = block.facts.get("x") == definition.x.tolist() or not any(array.ndim > 1 for array in arrays.values())
-    kept = all(name in wanted and array.dtype.itemsize <= wanted[name].dtype.itemsize for name, array in arrays.items())
-    return same_points and kept and block.facts.get("numerics_version") == NUMERICS_VERSION
+    """Whether arrays computed under the facts `given` hold all that the study wants."""
+    return covers(given, arrays, facts(definition.x), not_run(definition, 0))
 
 
 def inventory(
@@ -138,7 +134,7 @@ def inventory(
     Raises StudyError when there are blocks of another version of the numerics, and no `force`.
     """
     sources, blocks, covered = [], {}, set()
-    keys = case_keys(store.definition.grid)
+    keys, results = case_keys(store.definition.grid), (facts(store.definition.x), not_run(store.definition, 0))
     first = np.sort(keys[:, 0])
     for path in sorted(store.folder.glob("*.block")):
         try:
@@ -151,7 +147,7 @@ def inventory(
             continue
         blocks[path] = len(block.keys)
         near = np.minimum(np.searchsorted(first, block.keys[:, 0]), len(first) - 1)
-        if (first[near] == block.keys[:, 0]).all() and _is_kept(store.definition, block):
+        if (first[near] == block.keys[:, 0]).all() and covers(*results, block.facts, block.arrays):
             covered.add(path)
         if block.facts["numerics_version"] != NUMERICS_VERSION:
             if not force:

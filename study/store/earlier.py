@@ -14,8 +14,8 @@ from ..files.access import Unusable
 from ..files.checksums import ATTRIBUTE, digest_of_cases, parsed
 from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
 from ..files.netcdf import File
-from ..physical.from_si import grid_of_results, parameters_from_si, result_from_si, scales_of
 from ..physical.names import SCENE
+from ..physical.scales import grid_of_results, parameters_from_si, result_from_si, scales_of
 from ..spec.definition import Definition, StudyError
 from ..spec.grid import Grid, columns
 from ..spec.vocabulary import NOT_RUN, PARAMETERS

@@ -114,10 +114,10 @@ def coefficients(rigid: xr.Dataset, bonded: bool, nu: float) -> np.ndarray:
     return np.append(found, np.full(3, np.nan))[:3]
 
 
-def kappa(rigid: xr.Dataset, nu: float) -> np.ndarray:
-    """E_eff/E1* of bonded layers at the a/h of the tables of κ: a cubic spline of logarithms."""
+def kappa(rigid: xr.Dataset, nu: float, at: float | np.ndarray = 1.0) -> np.ndarray:
+    """E_eff/E1* of bonded layers at some a/h: a cubic spline of logarithms."""
     from scipy.interpolate import CubicSpline
 
     contact = of_material(rigid, True, nu)
     x = over_hertz(contact)[0]
-    return np.exp(CubicSpline(np.log(x), np.log(effective_modulus(contact).values))(np.log(formulas.KAPPA_AT)))
+    return np.exp(CubicSpline(np.log(x), np.log(effective_modulus(contact).values))(np.log(at)))

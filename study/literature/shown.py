@@ -166,7 +166,6 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     """Where the literature differs, on a rigid base. c1, c2, c3: coefficients of the load over that of Hertz in powers
     of sqrt(R D)/h. kappa: stiffness of a flat punch over 2 E1* a."""
     bonded, loose = coefficients(rigid, True, 0.5), coefficients(rigid, False, 0.3)
-    one = int(np.argmin(np.abs(formulas.KAPPA_AT - 1)))
     first, second = formulas.DIMITRIADIS, formulas.GARCIA
     rows = [("c1, bonded, nu = 1/2", "Dimitriadis, Garcia", first[0], bonded[0])]
     for k in (1, 2):
@@ -176,8 +175,8 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
         said = -2 * formulas.ALPHA_LOOSE * (3 - 2 * nu) / (1 - nu) / np.pi
         rows.append(("c1, frictionless, any nu", f"Dimitriadis with nu = {nu:g}", said, loose[0]))
     for script, said in formulas.KAPPA.items():
-        for nu, values in said.items():
-            rows.append((f"kappa at a/h = 1, nu = {nu:g}", script, values[one], kappa(rigid, nu)[one]))
+        for nu, value in said.items():
+            rows.append((f"kappa at a/h = 1, nu = {nu:g}", script, value, float(kappa(rigid, nu))))
     x, n, exact = stiffness(coated)
     near = int(np.argmin(np.abs(n - 1)))
     share, middle = formulas.gao_weight(x, float(coated["nu1"])), int(np.argmin(np.abs(np.log(x))))

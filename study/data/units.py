@@ -84,8 +84,7 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
 
     Raises
     ------
-    ValueError : the dataset is physical already, or holds pressures in E1* (a micro-law study); R is no length, or
-        E2_star no pressure
+    ValueError : the dataset is physical already; R is no length, or E2_star no pressure
     """
     scales = _scales(R, E2_star)
     if PHYSICAL_SCALE in dataset.attrs:
@@ -93,8 +92,6 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
     for name, array in dataset.variables.items():  # contact.a.to_dataset() has lost the attribute of the dataset
         if name in VOCABULARY and VOCABULARY[name].powers != (0, 0) and "units" in array.attrs:
             raise ValueError(f"the dataset is in physical units already: {name} has units = {array.attrs['units']!r}")
-    if "status" not in dataset and any(array.attrs.get("scale") == "E1*" for array in dataset.variables.values()):
-        raise ValueError("pressures of a micro-law study are in E1*, not in E2*: no half-space is defined there")
     changed = {}
     for name, array in dataset.variables.items():
         if name in VOCABULARY and VOCABULARY[name].powers != (0, 0):

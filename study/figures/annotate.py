@@ -19,7 +19,7 @@ ASSUMPTION_TEXT = {
 }
 OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
 """What a note above the axes adds to the text of an assumption; a legend has no room for it."""
-GREYS = ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78", "0.71")
+GREYS = dict(zip(ASSUMPTION_TEXT, ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78", "0.71"), strict=True))
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
@@ -57,35 +57,35 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
     everywhere = {}
-    for (meaning, of_curves), grey in zip(violations(validity).items(), GREYS, strict=False):
-        curves = [name for name, where in of_curves.items() if where.any()]
-        where = np.any([of_curves[name] for name in curves], axis=0) if curves else np.zeros(1, bool)
+    for meaning, of_curves in violations(validity).items():
+        where = np.any(list(of_curves.values()), axis=0)
         if where.all():
-            everywhere[meaning] = curves
-        elif curves:
-            label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(curves)})"
-            for start, stop in bands(P, where):
-                axes.axvspan(start * 1e5, stop * 1e5, color=grey, linewidth=0, zorder=-1, label=label)
-                label = "_"  # one entry in the legend
+            everywhere[meaning] = of_curves
+            continue
+        label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(of_curves)})"
+        for start, stop in bands(P, where):
+            axes.axvspan(start * 1e5, stop * 1e5, color=GREYS[meaning], linewidth=0, zorder=-1, label=label)
+            label = "_"  # one entry in the legend
     note(axes, everywhere)
 
 
 def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
     """Write above the axes which curves break which assumptions. validity : curve name -> flags of one case."""
-    found = {meaning: [name for name, where in of_curves.items() if where.any()]
-             for meaning, of_curves in violations(validity).items()}  # fmt: skip
-    note(axes, {meaning: curves for meaning, curves in found.items() if curves})
+    note(axes, violations(validity))
 
 
 def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndarray]]:
-    """Assumption -> curve -> where it is broken; of all assumptions, in the order of their masks."""
+    """Assumption -> curve -> where it is broken, of the curves that break it; in the order of the masks."""
     found = {name: broken(flags) for name, flags in validity.items()}
-    meanings = next(iter(found.values()))
-    return {meaning: {name: where[meaning] for name, where in found.items()} for meaning in meanings}
+    of_curves = {
+        meaning: {name: where[meaning] for name, where in found.items() if where[meaning].any()}
+        for meaning in next(iter(found.values()))
+    }
+    return {meaning: curves for meaning, curves in of_curves.items() if curves}
 
 
-def note(axes, everywhere: dict[str, list[str]]) -> None:
-    """Write above the axes a line for each assumption: assumption -> names of the curves that break it everywhere."""
+def note(axes, everywhere: dict[str, dict]) -> None:
+    """Write above the axes a line for each assumption: assumption -> the curves that break it everywhere, by name."""
     lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH.get(meaning, '')}"
              for meaning, curves in everywhere.items()]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")

@@ -13,6 +13,7 @@ from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY, allowed
 from ..specimen.quantities import multiple, quantity, readable, unit_in
 from ..terminal import on_one_line
+from .bodies import BODIES
 from .names import SCENE, QuantityList, unit_of
 from .scene import Scene
 
@@ -21,8 +22,6 @@ from .scene import Scene
 _REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
 _REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
 _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
-#: Ratios of moduli, and the modulus from which each follows.
-_RATIOS = (("n", "E1"), ("m", "E_punch"))
 
 Place = dict[str, int]
 """Dimension -> index along it."""
@@ -37,8 +36,8 @@ def beyond_bounds(scene: Scene, given: dict) -> list[str]:
     messages = [
         _message(scene, name, given[name], place) for name in with_units for place in _first_outside(scene, name)
     ]
-    for ratio, modulus in _RATIOS:
-        for place in _first_outside(scene, ratio) if modulus in scene.given else ():
+    for modulus, _, ratio in BODIES.values():
+        for place in _first_outside(scene, ratio) if ratio and modulus in scene.given else ():
             entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
             understood = f"{modulus} = {readable(_at(scene.given[modulus], place), 'Pa')}"
             messages.append(f"{understood}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")

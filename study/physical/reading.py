@@ -208,10 +208,9 @@ def _missing(parameters: dict) -> list[str]:
         messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
     if layered(parameters) and "E1" not in parameters and "n" not in parameters:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
-    if "E1" in parameters and "n" in parameters:
-        messages.append("E1 and n are both given: one follows from the other")
-    if "E_punch" in parameters and "m" in parameters:
-        messages.append("E_punch and m are both given: one follows from the other")
+    for modulus, _, ratio in BODIES.values():
+        if modulus in parameters and ratio in parameters:
+            messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
     if "nu_punch" in parameters and "E_punch" not in parameters:
         messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
     return messages

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import summits
+from .quantities import readable
 from .scan import FEWEST, Scan, number
 
 #: Least distance of asperities in points of the scan. Those of white noise are three points apart, one in nine points.
@@ -65,11 +66,8 @@ class Roughness:
 
 
 def _length(x: float) -> str:
-    """A length as text, in m, mm, µm or nm."""
-    for unit, size in (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9)):
-        if x >= 0.9995 * size:
-            return f"{x / size:.3g} {unit}"
-    return f"{x / 1e-9:.2g} nm"
+    """A length as text, in m, mm, µm or nm, to three digits."""
+    return readable(float(f"{x:.3g}"), "m")
 
 
 def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Roughness:

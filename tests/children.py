@@ -39,7 +39,7 @@ def started(function, *arguments) -> multiprocessing.Process:
 
 def _run(file: Path, log: Path, at: str, locks: bool, options: dict) -> None:
     import study
-    from study.store import lock
+    from study.files import lock
     from study.work import cases
 
     real = cases.compute

@@ -22,8 +22,8 @@ from line_study import computed, file, quiet  # noqa: F401
 
 from solver import laws
 from study import open_results
+from study.files.lock import held
 from study.spec.laws import update_vocabulary
-from study.store.lock import held
 
 collect_ignore = ["hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]

@@ -1,1 +1,1 @@
-"""Files on disk: whole or not there, checked, and the one module that touches netCDF."""
+"""Files on disk: whole or not there, checked, locked, and the one module that touches netCDF."""

@@ -74,14 +74,13 @@ def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
     path = Path(path)
     try:
         check_regular(path)
-        whole = is_whole(path, LARGE if columns is not None else float("inf"))
-    except FileNotFoundError:
-        return Condition(path, "missing")
-    except Unusable as error:
-        return Condition(path, error.kind, error.reason)
+        if not is_whole(path, LARGE if columns is not None else float("inf")):
+            return examined_in_child(path, columns, stamp(path))
+    except (FileNotFoundError, Unusable):
+        pass  # `examined` finds the same, and says it
     except OSError as error:
         return Condition(path, "unreadable", f"cannot be read: {error.strerror}")
-    return examined(path, columns) if whole else examined_in_child(path, columns, stamp(path))
+    return examined(path, columns)
 
 
 def stamp(path: Path) -> tuple | None:

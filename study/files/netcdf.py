@@ -10,11 +10,7 @@ import numpy as np
 import xarray as xr
 
 from .access import Access, Unusable, access
-
-try:
-    import fcntl
-except ImportError:  # not POSIX
-    fcntl = None
+from .lock import locked
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
 END = {0: 40, 1: 44, 2: 28, 3: 28}
@@ -149,10 +145,10 @@ def _cannot_be_opened(path: Path, error: OSError) -> Exception:
     try:
         with open(path, "rb") as file:
             head, size = file.read(64), os.fstat(file.fileno()).st_size
-            locked = _is_locked(file)
+            free = locked(file.fileno(), shared=True, wait=False)  # HDF5 locks a file that it writes
     except OSError as reason:
         return Unusable(path, "unreadable", f"cannot be read: {reason.strerror}")
-    if locked:
+    if not free:
         return Unusable(path, "unreadable", "is open for writing in another program, which has locked it")
     if not head.startswith(HDF5):
         return Unusable(path, "foreign", "is empty" if not size else "is no netCDF file")
@@ -161,16 +157,3 @@ def _cannot_be_opened(path: Path, error: OSError) -> Exception:
     if len(head) < place + 8 or size < length:
         return Unusable(path, "damaged", f"is damaged: cut off, {size} bytes" + f" of {length}" * (length > size))
     return Unusable(path, "damaged", f"is damaged: cannot be opened ({error.strerror or error})")
-
-
-def _is_locked(file) -> bool:
-    """Whether another program holds the lock that HDF5 takes on a file it writes."""
-    if fcntl is None:
-        return False
-    try:
-        fcntl.flock(file, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except BlockingIOError:
-        return True
-    except OSError:  # no locks on this file system
-        pass
-    return False

@@ -104,24 +104,23 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
 def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     """The quantity in a text. In "200 ± 10 GPa" the unit holds for the value as well."""
     head, *spread = _SPREAD.split(text)
+    said = f'{name} = "{on_one_line(text, LONGEST)}"'
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
-        raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": {wanted}')
+        raise ValueError(f"{said}: {wanted}")
     if _AMBIGUOUS.search(text):
-        said = on_one_line(text, LONGEST)
-        raise ValueError(f'{name} = "{said}": write one number, with a decimal point and without gaps: {wanted}')
+        raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
     if not number:
-        raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind ± must be a number')
+        raise ValueError(f"{said}: behind ± must be a number")
     common = spread[0][number.end() :]
     if common.lstrip().startswith("%"):  # "200 GPa ± 5 %", or "200 ± 5 % GPa", in which pint would read GPa/100
         common = common.replace("%", "", 1).rstrip()
         if common and (has_unit(head) or "%" in common):
-            raise ValueError(f'{name} = "{on_one_line(text, LONGEST)}": behind % may only stand the unit of the number')
+            raise ValueError(f"{said}: behind % may only stand the unit of the number")
         if "%" in head:  # "30 % ± 2 %" could be ± 0.02 and ± 0.006
-            said = on_one_line(text, LONGEST)
-            raise ValueError(f'{name} = "{said}": write the spread as a number, as in "0.3 ± 0.02"')
+            raise ValueError(f'{said}: write the spread as a number, as in "0.3 ± 0.02"')
         value = _si(name, head + common, unit, wanted)
         spread = abs(value * float(number[0])) / 100
         if not math.isfinite(spread):

@@ -1,1 +1,1 @@
-"""What is on disk is the progress: blocks, keys of cases, earlier results, the lock."""
+"""What is on disk is the progress: blocks, keys of cases, earlier results."""

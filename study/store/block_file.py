@@ -7,22 +7,18 @@ executes nothing. It is not an archive of `numpy.savez`, which takes twice as lo
 """
 
 import json
-import stat
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from ..files.atomic import replacing
+from ..files.netcdf import check_regular
 from ..files.seal import is_whole, seal
 
 
 class Damaged(OSError):
     """A file that is no block, or not the one that was written."""
-
-
-class NoFile(Damaged):
-    """A folder, a pipe or a device in place of a block."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,9 +41,8 @@ def write_block(path: Path, block: Block) -> None:
 
 
 def read_block(path: Path) -> Block:
-    """The block in a file. Raises Damaged, or OSError when it cannot be read."""
-    if not stat.S_ISREG(path.stat().st_mode):  # reading a pipe would wait for ever
-        raise NoFile(f"{path}: is no file, so no block")
+    """The block in a file. Raises Damaged, Unusable for a folder or a pipe, or OSError when it cannot be read."""
+    check_regular(path)
     again = "the same command computes its cases again"
     if not is_whole(path):
         raise Damaged(f"{path}: is no whole block; {again}")

@@ -17,10 +17,11 @@ import numpy as np
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import not_run
+from ..files.access import Unusable
 from ..files.atomic import remove_temporary
 from ..spec.definition import Definition, StudyError
 from ..spec.vocabulary import NOT_RUN
-from .block_file import Block, Damaged, NoFile, read_block, write_block
+from .block_file import Block, Damaged, read_block, write_block
 from .keys import case_keys, find
 
 log = logging.getLogger(__name__)
@@ -203,8 +204,10 @@ def _is_another(path: Path, block: Block) -> bool:
         there = read_block(path)
     except FileNotFoundError:
         return False
-    except Damaged as error:
-        return isinstance(error, NoFile)
+    except Damaged:
+        return False
+    except Unusable:  # a folder, a pipe or a device
+        return True
     return not np.array_equal(there.keys, block.keys) or there.facts != block.facts
 
 

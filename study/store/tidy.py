@@ -3,10 +3,10 @@
 from contextlib import suppress
 from pathlib import Path
 
+from ..files.lock import held
 from ..spec.definition import StudyError
 from ..terminal import counted
 from .blocks import Inventory, Store, inventory, remove_litter
-from .lock import held
 
 
 def tidy(store: Store, known: Inventory | None = None) -> str:

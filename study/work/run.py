@@ -12,11 +12,11 @@ import xarray as xr
 from ..data.dataset import NO_SOLUTION, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
+from ..files.lock import held
 from ..physical.scene import dataset_of
 from ..spec.definition import Definition, StudyError
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.earlier import check_replaceable, earlier
-from ..store.lock import held
 from ..store.tidy import tidy, withdraw
 from ..store.writer import writing
 from ..terminal import say

@@ -15,7 +15,7 @@ from line_study import load
 import study
 from study.__main__ import main
 from study.files import seal
-from study.files.netcdf import fcntl
+from study.files.lock import fcntl
 from study.files.results_file import write
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX files and locks")

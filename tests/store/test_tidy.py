@@ -9,10 +9,10 @@ from same import assert_same_numbers
 
 import study
 from study.__main__ import main
+from study.files.lock import held
 from study.store import tidy as tidying
 from study.store.block_file import Damaged, read_block
 from study.store.blocks import Store, gather, inventory
-from study.store.lock import held
 from study.work import plan
 
 FEWER = {"P = {start = 1e-6, stop = 1e-4, num = 23}": "P = [1e-6, 1e-4]"}

@@ -6,10 +6,11 @@ import shutil
 import pytest
 from line_study import leftovers, load, store_block
 
-from study.store import blocks, lock
+from study.files import lock
+from study.files.lock import held
+from study.store import blocks
 from study.store.block_file import read_block
 from study.store.blocks import Store, put
-from study.store.lock import held
 from study.work import cases
 from study.work import run as running
 

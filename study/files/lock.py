@@ -1,11 +1,11 @@
-"""One run at a time in a folder: an advisory lock that the system releases when its holder dies, however it dies."""
+"""Advisory locks, which the system releases when their holder dies, however it dies: one run at a time in a folder."""
 
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from ..files.atomic import make_folder
+from .atomic import make_folder
 
 try:
     import fcntl
@@ -23,11 +23,11 @@ def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callab
     """
     file = _opened(path)
     try:
-        mine = _locked(file, shared, wait, waiting)
+        mine = locked(file, shared, wait, waiting)
         while mine and not _is_at(file, path):  # while this one waited, the last holder removed the folder
             os.close(file)
             file = _opened(path)
-            mine = _locked(file, shared, wait, waiting)
+            mine = locked(file, shared, wait, waiting)
         yield mine
     finally:
         os.close(file)  # releases it
@@ -42,7 +42,8 @@ def _opened(path: Path) -> int:
             continue
 
 
-def _locked(file: int, shared: bool, wait: bool, waiting: Callable) -> bool:
+def locked(file: int, shared: bool, wait: bool, waiting: Callable = lambda: None) -> bool:
+    """Take the lock of an open file; see `held`. Returns whether it is held, until the file is closed."""
     if fcntl is None:
         return True
     kind = fcntl.LOCK_SH if shared else fcntl.LOCK_EX

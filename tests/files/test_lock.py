@@ -7,8 +7,8 @@ import threading
 import pytest
 from children import PATIENCE, PROCESSES
 
-from study.store import lock
-from study.store.lock import held
+from study.files import lock
+from study.files.lock import held
 
 pytestmark = pytest.mark.skipif(lock.fcntl is None, reason="POSIX locks")
 

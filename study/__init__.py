@@ -14,7 +14,7 @@ _HOME = {
     "Study": "api",
     "open_results": "files.results_file",
     "StudyError": "spec.definition",
-    "decode": "data.flags",
+    "decode": "data.dataset",
     "to_physical": "data.units",
     "from_physical": "data.units",
     "reduced_modulus": "data.units",

@@ -6,7 +6,7 @@ import xarray as xr
 from solver import Status
 
 from .data import derived
-from .data.flags import broken, decode
+from .data.dataset import broken, decode
 from .physical.bodies import BODIES
 from .physical.bounds import absurd
 from .physical.inputs import is_rigid, used_inputs

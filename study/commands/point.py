@@ -7,7 +7,7 @@ from argparse import ArgumentTypeError
 
 import xarray as xr
 
-from ..data.flags import decode
+from ..data.dataset import decode
 from ..in_words import SHOWN, summary
 from ..physical.inputs import all_inputs
 from ..physical.names import RIGID, RIGID_TEXTS

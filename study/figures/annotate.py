@@ -5,7 +5,7 @@ import xarray as xr
 from matplotlib.patheffects import withStroke
 
 from ..data import derived
-from ..data.flags import broken
+from ..data.dataset import broken
 
 ASSUMPTION_TEXT = {
     "layer_not_thin": f"layer not thin, error > {derived.NOT_THIN * 100:g} %",

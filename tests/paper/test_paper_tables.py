@@ -13,7 +13,7 @@ from study.evidence.validity_maps import largest_thickness
 from study.figures.formats import as_csv, as_latex, as_text, latex
 from study.figures.registry import Table, column
 from study.paper import law_fits, numbers
-from study.paper.compared import paper_numbers
+from study.paper.paper_error import paper_numbers
 
 CONVERGED = {  # of the thin-layer equation with the power law; every digit stable under refinement
     "P": 2.70408e-5,

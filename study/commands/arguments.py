@@ -2,6 +2,7 @@
 
 import argparse
 import os
+import re
 import sys
 from functools import partial
 from pathlib import Path
@@ -152,8 +153,7 @@ def address(text: str) -> str:
 
 def part(text: str) -> tuple[int, int]:
     """I/N, the I-th of N parts."""
-    numbers = text.split("/")
-    whole = all(each.isdecimal() and len(each) <= MOST_DIGITS for each in numbers)
-    if len(numbers) != 2 or not whole or not 1 <= int(numbers[0]) <= int(numbers[1]):
+    found = re.fullmatch(rf"(\d{{1,{MOST_DIGITS}}})/(\d{{1,{MOST_DIGITS}}})", text)
+    if not found or not 1 <= int(found[1]) <= int(found[2]):
         raise argparse.ArgumentTypeError(f"{on_one_line(text)}: must be I/N, whole numbers with 1 <= I <= N")
-    return int(numbers[0]), int(numbers[1])
+    return int(found[1]), int(found[2])

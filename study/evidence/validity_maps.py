@@ -9,7 +9,7 @@ from matplotlib.ticker import NullFormatter
 from solver.models.thin_layer_error import thin_layer_error
 
 from ..data.derived import from_layered
-from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 from ..literature.compared import safe_range
 from ..spec.vocabulary import VOCABULARY
 
@@ -69,8 +69,9 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
         for j, (axes, case) in enumerate(zip(panels[i], materials(dataset), strict=True)):
             h_a, error = one_map(axes, case, quantity)
             n, known = error["n"].broadcast_like(error), np.isfinite(error.values)
-            place = np.full((2, known.sum()), [[i], [j]])
-            parts.append([*place, *(array.values[known] for array in (h_a, n, error))])
+            place = {"row": np.full(known.sum(), i), "material": np.full(known.sum(), j)}
+            numbers = {"h/a": h_a, "n": n, "error": error}
+            parts.append(place | {name: array.values[known] for name, array in numbers.items()})
             if case["bonding"] == "frictionless":
                 main_case(axes, case)
             if i == 0:
@@ -82,8 +83,7 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
         )
     for axes in panels[-1]:
         axes.set_xlabel("$h/a$")
-    names = ("row", "material", "h/a", "n", "error")
-    return {name: np.concatenate(column) for name, column in zip(names, zip(*parts, strict=True), strict=True)}
+    return joined(parts)
 
 
 def materials(dataset: xr.Dataset) -> list[xr.Dataset]:

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.ticker import FuncFormatter
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 from . import formulas
 from .compared import (
     LEVELS,
@@ -55,13 +55,18 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
     on a rigid base, over a/h. Right: of the stiffness on a bonded coating, ν = 0.3, the largest over a/h from 0.01 to
     20, over n. Grey: within 1 % and 5 %."""
     parts = []
+
+    def keep(panel: int, x: np.ndarray, error: np.ndarray) -> None:
+        place = {"panel": np.full(len(x), panel), "curve": np.full(len(x), len(parts))}
+        parts.append(place | {"a/h or n": x, "error": error})
+
     for panel, (axes, (bonded, nu, title)) in enumerate(zip(panels, INTERFACES, strict=False)):
         for formula in formulas.LOADS:
             if formula.bonded == bonded and (nu in formula.nu or formula.nu == (nu,) or is_short(formula, bonded)):
                 x, error = load_error(formula, rigid, nu)
                 words = formula.name.replace("general", f"general, nu = {nu:g}").replace("nu =", r"$\nu$ =")
                 axes.plot(x, np.abs(error), label=words, **look(formula.name))
-                parts.append((panel, x, error))
+                keep(panel, x, error)
         axes.set(xlabel="$a/h$", xlim=(0.01, 20), title=title)
     axes = panels[2]
     _, n, _ = stiffness(coated)
@@ -69,18 +74,12 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
         if not name.endswith("0.626"):
             largest = np.abs(error).max(axis=1)
             axes.plot(n, largest, label=name, **look(name))
-            parts.append((2, n, largest))
+            keep(2, n, largest)
     axes.set(xlabel="$n = E_1^*/E_2^*$", xlim=(0.01, 100), title=r"coating, bonded, $\nu = 0.3$")
     axes.figure.suptitle("smooth punch, against the exact layer", fontsize=7)
     for axes, words in zip(panels, ("error of the load", "error of the load", "largest error, stiffness"), strict=True):
         frame(axes, words)
-    sizes = [len(x) for _, x, _ in parts]
-    return {
-        "panel": np.repeat([panel for panel, *_ in parts], sizes),
-        "curve": np.repeat(np.arange(len(parts)), sizes),
-        "a/h or n": np.concatenate([x for _, x, _ in parts]),
-        "error": np.concatenate([error for *_, error in parts]),
-    }
+    return joined(parts)
 
 
 def is_short(formula: formulas.Formula, bonded: bool) -> bool:

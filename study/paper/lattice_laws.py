@@ -98,4 +98,5 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
     beside.axhline(0, color="0.6", linewidth=0.6, zorder=0)
     beside.set(xlabel="$r/a_0$", ylabel=r"difference from the lattice / $p(0)$ (%)", xlim=axes.get_xlim())
     beside.legend(loc="best", fontsize=8)
-    return columns | differences
+    by_curve = sorted((columns | differences).items(), key=lambda column: column[0].rpartition("(")[2][0])
+    return dict(by_curve)

@@ -55,11 +55,9 @@ def _greeted(address: str, seconds: float) -> None:
         return
     where = (host.strip("[]"), int(port))
     try:
-        socket.getaddrinfo(*where)
+        peer = socket.create_connection(where, timeout=seconds)
     except socket.gaierror as error:
         raise OSError(f"{host}: {error.strerror}") from None
-    try:
-        peer = socket.create_connection(where, timeout=seconds)
     except OSError:  # perhaps the scheduler is about to start: the client asks again
         return
     with peer, peer.makefile("rb") as stream:

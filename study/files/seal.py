@@ -39,9 +39,6 @@ def is_whole(path: Path, most: float = float("inf")) -> bool:
 def _checksum(file, size: int) -> int:
     """CRC-32 of the next `size` bytes."""
     found = 0
-    while size > 0:
-        piece = file.read(min(size, PIECE))
-        if not piece:
-            break
+    while piece := file.read(min(size, PIECE)):
         found, size = zlib.crc32(piece, found), size - len(piece)
     return found

@@ -4,6 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..data.derived import effective_modulus
+from ..figures.registry import pick
 from . import formulas
 from .formulas import Formula
 
@@ -16,11 +17,8 @@ closed form to 1e-4 (tests/literature/test_literature.py)."""
 
 def of_material(rigid: xr.Dataset, bonded: bool, nu: float) -> xr.Dataset:
     """The contacts of one layer on a rigid base, by rising a/h. Without friction the Poisson ratio has no effect."""
-    found = (rigid["bonding"] == ("bonded" if bonded else "frictionless")).values
-    if bonded:
-        found &= np.isclose(rigid["nu1"].values, nu)
-    (case,) = np.flatnonzero(found)
-    return rigid.isel(case=case).sortby("h", ascending=False)
+    case = pick(rigid, bonding="bonded", nu1=nu) if bonded else pick(rigid, bonding="frictionless")
+    return case.sortby("h", ascending=False)
 
 
 def over_hertz(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -37,11 +37,6 @@ def printed(Ra: float, Nbar: float) -> np.ndarray:
     return B * PRESSURES**beta
 
 
-def printed_error(Ra: float, Nbar: float, B: float, beta: float) -> float:
-    """Largest |B p^β / A[p] - 1| of printed constants over the paper's interval; B in R/E1*^β."""
-    return largest_error(B * PRESSURES**beta, exact(Ra, Nbar))
-
-
 def largest_error(A: np.ndarray, true: np.ndarray) -> float:
     """Largest relative error of A at those PRESSURES for which the paper states errors, both ends included."""
     inside = np.isclose(PRESSURES, np.clip(PRESSURES, *numbers.ERROR_INTERVAL), rtol=1e-9)
@@ -73,7 +68,7 @@ def table1() -> list[tuple]:
     is in Ra/E1*^beta, is this over Ra/R."""
     rows = []
     for Ra, Nbar, B, beta in numbers.TABLE1:
-        found = printed_error(Ra, Nbar, B, beta)
+        found = largest_error(printed(Ra, Nbar), exact(Ra, Nbar))
         rows.append((Ra, Nbar, Nbar * Ra**2, B, beta, bound(Ra, Nbar), found, *fitted(Ra, Nbar)))
     return rows
 

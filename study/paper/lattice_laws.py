@@ -6,7 +6,6 @@ The law of the lattice takes each neighbour where it is; the paper's disc cell s
 import numpy as np
 import xarray as xr
 
-from solver.laws import LAWS
 from solver.laws.fit import least_squares
 
 from ..figures.annotate import name_curve
@@ -16,11 +15,6 @@ from .curves import PAPER, pressures
 from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, largest_error, printed
 
 DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
-
-
-def on_lattice(Ra: float, Nbar: float) -> np.ndarray:
-    """A/R at PRESSURES of asperities on a square lattice."""
-    return LAWS["square_lattice"].at(PRESSURES, 1.0, Nbar=Nbar, Ra=Ra).A
 
 
 @table(
@@ -41,7 +35,7 @@ def table1_lattice() -> list[tuple]:
     is in R/E1*^beta."""
     rows = []
     for Ra, Nbar, *_ in numbers.TABLE1:
-        true = on_lattice(Ra, Nbar)
+        true = exact(Ra, Nbar, "square_lattice")
         B, beta = least_squares(PRESSURES, true)
         errors = [largest_error(A, true) for A in (printed(Ra, Nbar), exact(Ra, Nbar))]
         rows.append((Ra, Nbar, Nbar * Ra**2, *errors, B, beta, largest_error(B * PRESSURES**beta, true)))
@@ -55,7 +49,7 @@ def laws(panels) -> Columns:
     p, columns = PRESSURES, {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
         for i, (Ra, Nbar) in enumerate(roughnesses):
-            A = {"lattice": on_lattice(Ra, Nbar), "disc": exact(Ra, Nbar), "paper": printed(Ra, Nbar)}
+            A = {"lattice": exact(Ra, Nbar, "square_lattice"), "disc": exact(Ra, Nbar), "paper": printed(Ra, Nbar)}
             lines = axes.plot(p, A["lattice"] * 1e4, "-", color=f"C{i}")
             lines += axes.plot(p, A["disc"] * 1e4, **EXACT_LAW)
             lines += axes.plot(p, A["paper"] * 1e4, color=f"C{i}", linestyle=PAPER["linestyle"], linewidth=1.3)

@@ -5,7 +5,8 @@ No study is needed: the exact law is a formula, Eqs (6) and (7), and a fit takes
 
 import numpy as np
 
-from solver import fit_power_law, micro
+from solver import fit_power_law
+from solver.laws import LAWS
 from solver.laws.fit import Fit
 
 from ..figures.annotate import name_curve
@@ -20,9 +21,9 @@ PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_0
 """Ra and N̄ of the curves in each panel of Figure 9."""
 
 
-def exact(Ra: float, Nbar: float) -> np.ndarray:
-    """A/R at PRESSURES by Eqs (6) and (7)."""
-    return micro.displacement(PRESSURES, 1.0, Nbar, Ra)
+def exact(Ra: float, Nbar: float, law: str = "disc_cell") -> np.ndarray:
+    """A/R at PRESSURES by Eqs (6) and (7), or by another law."""
+    return LAWS[law].at(PRESSURES, 1.0, Nbar=Nbar, Ra=Ra).A
 
 
 def fitted(Ra: float, Nbar: float) -> Fit:

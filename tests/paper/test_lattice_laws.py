@@ -78,5 +78,5 @@ def test_figure_10_shows_the_lattice_and_what_the_paper_is_off(drawing, results)
 
 
 def test_what_is_too_small_is_off_as_well():
-    true = lattice_laws.on_lattice(0.004, 62500)
+    true = lattice_laws.exact(0.004, 62500, "square_lattice")
     assert lattice_laws.largest_error(0.9 * true, true) == pytest.approx(0.1)

@@ -33,11 +33,6 @@ def verified_line(name: str, found: Condition) -> str:
     return f"{name}: {said.get(found.kind, found.reason)}"
 
 
-def count_lines(counts: dict[int, int]) -> list[str]:
-    """How many cases ended with which status, a line each."""
-    return [f"    {status_words()[value]}: {count}" for value, count in counts.items()]
-
-
 def cost_line(name: str, cost: Estimate) -> str:
     return f"{name}: {counted(cost.cases, 'case')}, {cost.present} of them computed; the others: {describe(cost)}"
 

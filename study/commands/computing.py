@@ -4,10 +4,11 @@ import sys
 from pathlib import Path
 
 from ..api import Study, load
+from ..data.dataset import status_words
 from ..files.examine import examine
 from ..terminal import answer, say
 from ..work.plan import status_values
-from .answers import cost_line, count_lines, failure_lines, report_line, state_line, verified_line
+from .answers import cost_line, failure_lines, report_line, state_line, verified_line
 from .arguments import STUDIES, packaged, study_file
 
 
@@ -32,7 +33,8 @@ def status(options, file: str) -> int:
     """Say what has been computed."""
     study = _opened(options, file)
     state = study.status(options.yes)
-    return answer(state_line(study.definition, state), *count_lines(state["counts"]))
+    counts = (f"    {status_words()[value]}: {count}" for value, count in state["counts"].items())
+    return answer(state_line(study.definition, state), *counts)
 
 
 def run(options, file: str) -> int:

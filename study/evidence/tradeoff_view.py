@@ -128,9 +128,9 @@ def rows(found: xr.Dataset) -> list[tuple]:
 def cheapest(found: xr.Dataset) -> list[tuple]:
     """Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
     none."""
-    table = []
+    table, ways = [], [way for way in found["way"].values.tolist() if way not in MODELS]
     for name in found["set"].values.tolist():
-        for way in found["way"].values[~np.isin(found["way"].values, list(MODELS))].tolist():
+        for way in ways:
             part = found.sel(set=name, way=way)
             if int(part["cases"]):
                 times = (time_to(part, target) for target in TARGETS)

@@ -202,9 +202,7 @@ def _is_another(path: Path, block: Block) -> bool:
     """Whether the path holds a block of other cases, or something that is no file."""
     try:
         there = read_block(path)
-    except FileNotFoundError:
-        return False
-    except Damaged:
+    except (FileNotFoundError, Damaged):
         return False
     except Unusable:  # a folder, a pipe or a device
         return True

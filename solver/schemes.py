@@ -8,7 +8,7 @@ from .contact import adaptive
 from .contact import picard as approximations
 from .contact.answer import answer
 from .numerics.ladder import start_nodes
-from .numerics.mesh import mesh
+from .numerics.mesh import mesh_of
 from .parameters import PARAMETERS
 from .scaling import as_cases
 from .solution import Solution
@@ -42,9 +42,9 @@ def picard(part, x):
     to need. `error` is their distance to one Newton step on the next finer mesh."""
     nodes = np.where(part.nodes > 0, part.nodes, start_nodes(part.rtol))
     groups = [(n, np.flatnonzero(nodes == n)) for n in np.unique(nodes).tolist()]
-    return Solution.join(len(nodes), len(x), [(i, _approximated(part.take(i), mesh(n), x)) for n, i in groups])
+    return Solution.join(len(nodes), len(x), [(i, _approximated(part.take(i), mesh_of(n), x)) for n, i in groups])
 
 
-def _approximated(part, grid, x):
-    iterated, status = approximations.solve(as_cases(part), grid, part.k, part.rtol, int(part.max_iterations[0]))
+def _approximated(part, mesh, x):
+    iterated, status = approximations.solve(as_cases(part), mesh, part.k, part.rtol, int(part.max_iterations[0]))
     return replace(answer(iterated, x).solution, status=status)

@@ -16,7 +16,7 @@ from solver import solve
 from solver.contact import adaptive
 from solver.contact.equation import State, evaluate
 from solver.contact.start import first_guess
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
 
 SIZES = (1e-3, 1e-4, 1e-6)
@@ -48,13 +48,13 @@ def started(known: dict, size: float | None = None):
     real, solve_on = adaptive.first_guess, adaptive.solve_on
     random = np.random.default_rng(0)
 
-    def key(cases, grid):
-        return grid.n, len(cases.value), float(cases.value.sum())
+    def key(cases, mesh):
+        return mesh.n, len(cases.value), float(cases.value.sum())
 
-    def begun(cases, grid, a):
-        state = known.get(key(cases, grid))
+    def begun(cases, mesh, a):
+        state = known.get(key(cases, mesh))
         if size is None or state is None:
-            return real(cases, grid, a)
+            return real(cases, mesh, a)
         y = state.y * (1 + size * random.standard_normal((len(state.y), 1)))
         return State(y, state.eta + size * random.standard_normal(len(state.eta)))
 
@@ -77,8 +77,8 @@ def predicted() -> list[dict]:
     for base in ("thin_layer", "layered"):
         for loads in LOADS:
             problem = dimensionless(load_axis(base, loads))
-            cases, grid = as_cases(problem), mesh(NODES)
-            found = adaptive.solve_on(evaluate(cases, first_guess(cases, grid), grid), 0).at.state.y
+            cases, mesh = as_cases(problem), mesh_of(NODES)
+            found = adaptive.solve_on(evaluate(cases, first_guess(cases, mesh), mesh), 0).at.state.y
             y, x = np.log(found).reshape(-1, loads, NODES), np.log(cases.value[:loads])
             cubic = [_missed(y, x, [k, k + 4, k + 8, k + 12], k + 6) for k in range(0, loads - 12, 4)]
             parabola = [_missed(y, x, [k, k + 1, k + 2], k + 3) for k in range(loads - 3)]

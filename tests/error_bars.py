@@ -23,7 +23,7 @@ from solver.contact.error import _BLIND, _RISEN, completed, estimate, refine
 from solver.contact.results import difference, quantities
 from solver.contact.start import first_guess
 from solver.numerics.ladder import MARGIN
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
 
 NODES = (6, 12, 22, 32)
@@ -35,7 +35,7 @@ def judged(base: str, law: str, size: int) -> dict[int, np.ndarray]:
     cases, found = as_cases(dimensionless(Problem.of(**case, base=base, micro=law))), {}
 
     def solved(n):
-        at = solve_on(evaluate(cases, first_guess(cases, mesh(n)), mesh(n)))
+        at = solve_on(evaluate(cases, first_guess(cases, mesh_of(n)), mesh_of(n)))
         own = quantities(at.at)
         refined = refine(at.at, own)
         return at, own, difference(own, refined.found), estimate(at.at, own, refined)

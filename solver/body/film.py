@@ -148,18 +148,18 @@ class Whole(NamedTuple):
         return (c @ self.table).reshape(len(c), *self.shape)
 
 
-def convolution(grid, points, cut):
+def convolution(mesh, points, cut):
     """The :class:`Convolution` at `points` (m,) in s, for the basis of a mesh.
 
     Each panel has rules of its own. A rule across the ends of panels would be right for smooth pressures only, and the
     discrete equation of a stiff film would have false solutions.
     """
-    low, high = np.array(grid.breaks[:-1]), np.array(grid.breaks[1:])
+    low, high = np.array(mesh.breaks[:-1]), np.array(mesh.breaks[1:])
     s = points[:, None]
     nearest = np.clip(s, low, high)
     farthest, shares, taus = np.where(s - low > high - s, low, high), [], []
     within, rough = _tau(s, nearest, nearest - s, cut) < REACH, _tau(s, farthest, farthest - s, cut) > _SMOOTH
-    for piece in pieces(points, grid.breaks, grid.order, within, rough):
+    for piece in pieces(points, mesh.breaks, mesh.order, within, rough):
         s = points[piece.row, None]
         point = s + piece.sign * piece.gap
         tau = _tau(s, point, piece.gap, cut)
@@ -168,10 +168,10 @@ def convolution(grid, points, cut):
         other = np.sqrt((1 - point) * (1 + point))
         values = weight * point / np.sqrt(other * np.sqrt((1 - s) * (1 + s)))  # of ∫ · sqrt(x'/x) dx'
         values, tau = np.where(tau < REACH, values, 0.0), np.where(tau < REACH, tau, 1.0)
-        columns = piece._replace(local=piece.local[:, felt]).basis(radau_nodes(grid.order))
+        columns = piece._replace(local=piece.local[:, felt]).basis(radau_nodes(mesh.order))
         shares.append(Share(piece.row, piece.panel, values, columns))
         taus.append(tau.ravel())
-    return Convolution((len(points), len(low), grid.order), shares, *_in_octaves(np.concatenate([[], *taus])))
+    return Convolution((len(points), len(low), mesh.order), shares, *_in_octaves(np.concatenate([[], *taus])))
 
 
 def _tau(s, point, shift, cut):

@@ -75,24 +75,24 @@ def _kept(make):
 
 
 @_kept
-def table(grid, octave, stiffness, many):
+def table(mesh, octave, stiffness, many):
     """The :class:`Table` of a mesh in an octave and a class of stiffness; `many` bool: for many cases, or for few."""
-    k, J, phi = _waves(grid, octave, stiffness % len(STIFFEST))
+    k, J, phi = _waves(mesh, octave, stiffness % len(STIFFEST))
     product, is_film = None, octave == FILM
     spread = np.pi / 2 * quadrature(octave, stiffness)[1] if is_film else _spread(octave, stiffness)
-    if is_film and many and J.size * grid.n <= _KEEP:
+    if is_film and many and J.size * mesh.n <= _KEEP:
         product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
-    elif not is_film and (many or grid.n <= _SMALL):
+    elif not is_film and (many or mesh.n <= _SMALL):
         product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
-    return Table(k, J, phi, spread, product, _film_table(grid, many) if is_film else None)
+    return Table(k, J, phi, spread, product, _film_table(mesh, many) if is_film else None)
 
 
 @_kept
-def _waves(grid, octave, stiffness):
+def _waves(mesh, octave, stiffness):
     """k, J and φ of a :class:`Table`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
     edge = j0(k)[:, None]
-    return k, np.hstack([j0(k[:, None] * grid.x) - edge, edge]), transform(grid, k)
+    return k, np.hstack([j0(k[:, None] * mesh.x) - edge, edge]), transform(mesh, k)
 
 
 @_kept
@@ -102,35 +102,35 @@ def _spread(octave, stiffness):
 
 
 @_kept
-def _film_table(grid, many):
-    near = felt(grid, grid.x)
-    return near, film_rows(grid, grid.s[near].tobytes(), many), film_rows(grid, np.zeros(1).tobytes(), True).table
+def _film_table(mesh, many):
+    near = felt(mesh, mesh.x)
+    return near, film_rows(mesh, mesh.s[near].tobytes(), many), film_rows(mesh, np.zeros(1).tobytes(), True).table
 
 
 @_kept
-def film_rows(grid, s_bytes, many):
+def film_rows(mesh, s_bytes, many):
     """The convolution at points s between the nodes: a :class:`film.Convolution` for few cases, a :class:`film.Whole`
     for many."""
-    found = film.convolution(grid, np.frombuffer(s_bytes), CUT)
+    found = film.convolution(mesh, np.frombuffer(s_bytes), CUT)
     return found.whole() if many else found
 
 
-def felt(grid, x):
+def felt(mesh, x):
     """Indices of the radii x where the convolution is felt: near the edge, and where panels resolve waves above CUT."""
-    ends = np.sqrt(1 - np.array(grid.breaks) ** 2)
+    ends = np.sqrt(1 - np.array(mesh.breaks) ** 2)
     home = np.clip(np.searchsorted(-ends, -x) - 1, 0, len(ends) - 2)
-    fine = (ends[home] - ends[home + 1]) * CUT < 16 * grid.order
+    fine = (ends[home] - ends[home + 1]) * CUT < 16 * mesh.order
     return np.flatnonzero(((1 - x) * CUT < film.REACH) | (fine & (x * CUT > film.REACH)))
 
 
-def transform(grid, k):
+def transform(mesh, k):
     """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
-    phi, order = np.empty((len(k), grid.n)), grid.order
+    phi, order = np.empty((len(k), mesh.n)), mesh.order
     count = next((most for most in _DEGREES if order <= most), order)
     of_legendre = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
     for stop in range(len(k), 0, -_ROWS):  # from the end: all classes of an octave have the last nodes in common
         part = slice(max(stop - _ROWS, 0), stop)
-        for i, ends in enumerate(pairwise(grid.breaks)):
+        for i, ends in enumerate(pairwise(mesh.breaks)):
             moments = _moments(*ends, count, k[part].tobytes())
             phi[part, i * order : (i + 1) * order] = moments[:, :order] @ of_legendre
     return phi

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..numerics.ladder import LADDER, climb, finer_mesh, first_rung
-from ..numerics.mesh import mesh
+from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
 from .answer import Answer, answer, hopeless, stuck
@@ -33,9 +33,9 @@ def solve_newton(cases, rtol, nodes, limit, x):
     work, before = np.zeros(size), np.full(size, np.inf)
 
     def on_mesh(index, n, start):
-        part, grid = cases.take(index), mesh(n)
-        begin = first_guess(part, grid, a[index]) if start is None else start
-        iterated = solve_on(evaluate(part, begin, grid), limit)
+        part, mesh = cases.take(index), mesh_of(n)
+        begin = first_guess(part, mesh, a[index]) if start is None else start
+        iterated = solve_on(evaluate(part, begin, mesh), limit)
         work[index] += iterated.count * part.body.work(a[index], n)[1]
         goes_on = free[index] & (n < LADDER[-1]) & (work[index] <= BUDGET)
         found = answer(iterated, x, np.where(goes_on, rtol[index], np.inf), before[index])

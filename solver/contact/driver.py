@@ -81,14 +81,14 @@ def solve_on(start, limit=0, budget=BUDGET):
 
     limit : most steps; 0: the method's own limit, and the search. budget : float, or (B,), the work left to each case.
     """
-    cases, grid = start.cases, start.mesh
-    most = steps_within(cases, np.exp(start.state.eta), grid.n, budget)
+    cases, mesh = start.cases, start.mesh
+    most = steps_within(cases, np.exp(start.state.eta), mesh.n, budget)
     found = _newton(start, np.minimum(limit or newton.LIMIT, most))
     failed = np.flatnonzero(~found.closed)
     if limit or not len(failed):
         return found
     rest = np.flatnonzero(found.closed)
-    again = _by_radius(cases.take(failed), grid, (most - found.count)[failed])
+    again = _by_radius(cases.take(failed), mesh, (most - found.count)[failed])
     parts, places = ([found.at.take(rest)], [rest]) if len(rest) else ([], [])
     at = again.at.join(cases, [*parts, again.at], [*places, failed])
     closed, count = found.closed.copy(), found.count.copy()
@@ -101,7 +101,7 @@ def _newton(start, limit=newton.LIMIT):
     return iterate(start.cases, start, newton.step, limit)
 
 
-def _by_radius(cases, grid, most):
+def _by_radius(cases, mesh, most):
     """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together.
 
     At each radius Newton's method starts from the smooth contact. The load under a very stiff film, for example, hardly
@@ -111,7 +111,7 @@ def _by_radius(cases, grid, most):
 
     def at_radius(eta, index):
         fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
-        found = _newton(smooth_start(fixed, grid), np.minimum(newton.LIMIT, (most - spent)[index]))
+        found = _newton(smooth_start(fixed, mesh), np.minimum(newton.LIMIT, (most - spent)[index]))
         np.add.at(spent, index, found.count)
         return found
 

@@ -53,34 +53,34 @@ def solve_on_panels(case, rtol, budget, at=None):
         if work + made + judged > budget:  # what is left is for estimating the error of the solution so far
             work = np.inf
             break
-        work, grid = work + made, panel_mesh(ORDER, breaks)
-        found = solve_on(evaluate(case, State(y, found.at.state.eta), grid, found.at.operator), budget=budget - work)
-        work += found.count[0] * case.body.work(radius, grid.n)[1][0]
+        work, mesh = work + made, panel_mesh(ORDER, breaks)
+        found = solve_on(evaluate(case, State(y, found.at.state.eta), mesh, found.at.operator), budget=budget - work)
+        work += found.count[0] * case.body.work(radius, mesh.n)[1][0]
     return found._replace(count=count + found.count), work
 
 
 def _first(case, rtol, budget):
     """:class:`.driver.Iterated` of one case on its first panels, and the work. If there is a body that is nearly the
     same and far cheaper, the first panels are those that resolve the contact with it."""
-    alike, start, grid, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
+    alike, start, mesh, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
     if alike is not None:
         found, work = solve_on_panels(case._replace(body=alike), rtol, budget)
         count = found.count
         if found.closed[0]:
-            grid, start = found.at.mesh, found.at.state
-    operator, step = case.body.work(guess_radius(case), grid.n)
+            mesh, start = found.at.mesh, found.at.state
+    operator, step = case.body.work(guess_radius(case), mesh.n)
     work += operator[0]
-    found = solve_on(evaluate(case, start or first_guess(case, grid), grid), budget=budget - work)
+    found = solve_on(evaluate(case, start or first_guess(case, mesh), mesh), budget=budget - work)
     return found._replace(count=count + found.count), work + found.count[0] * step[0]
 
 
 def resolve(ev, rtol):
     """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) at their nodes. If its own panels resolve
     it, these are returned."""
-    grid, law = ev.mesh, ev.cases.law
+    mesh, law = ev.mesh, ev.cases.law
     values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
-    scale = values @ grid.w * max(_SHARE * rtol, _FLOOR)
-    inside = dict(zip(pairwise(grid.breaks), np.split(ev.state.y, len(grid.breaks) - 1, axis=1), strict=True))
+    scale = values @ mesh.w * max(_SHARE * rtol, _FLOOR)
+    inside = dict(zip(pairwise(mesh.breaks), np.split(ev.state.y, len(mesh.breaks) - 1, axis=1), strict=True))
     done, room = {}, _MOST - len(inside)
     while inside:  # panel -> y at its nodes
         halves = []

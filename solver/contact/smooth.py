@@ -14,7 +14,7 @@ import numpy as np
 
 from ..closed_forms import hertz, hertz_pressure
 from ..numerics.ladder import MARGIN, climb, next_rung
-from ..numerics.mesh import mesh
+from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
 
@@ -47,11 +47,11 @@ class Modes(NamedTuple):
 
 @lru_cache(maxsize=32)
 def modes(n):
-    """:class:`Modes` of ``mesh(n)``."""
-    grid = mesh(n)
-    kappa, V = np.linalg.eig(grid.K)
-    nodal = (V * np.linalg.solve(V, grid.s**2)).real
-    return Modes(kappa.real[:, None], nodal, np.stack([grid.w @ nodal, grid.edge @ nodal, nodal[-1]]))
+    """:class:`Modes` of ``mesh_of(n)``."""
+    mesh = mesh_of(n)
+    kappa, V = np.linalg.eig(mesh.K)
+    nodal = (V * np.linalg.solve(V, mesh.s**2)).real
+    return Modes(kappa.real[:, None], nodal, np.stack([mesh.w @ nodal, mesh.edge @ nodal, nodal[-1]]))
 
 
 def half_space(control, value, x):
@@ -87,16 +87,16 @@ def _solution(arrays):
 def _on_mesh(control, value, C, n, x):
     """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes; `error` is the distance, to first order, to the
     solution on the next finer mesh, or the bound of :func:`_unseen` if that is larger."""
-    grid, modal = mesh(n), modes(n)
+    mesh, modal = mesh_of(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)
     P, D, p0 = (of_sums(a, S) for of_sums in _OF_SUMS.values())
     Xq = modal.nodal @ fractions
-    residual = np.abs(grid.K @ Xq + t * Xq - grid.s[:, None] ** 2).max(axis=0)
-    p = np.pi / 8 * a * np.maximum(grid.basis(np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
+    residual = np.abs(mesh.K @ Xq + t * Xq - mesh.s[:, None] ** 2).max(axis=0)
+    p = np.pi / 8 * a * np.maximum(mesh.basis(np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
     p[x == 1.0] = 0.0
     error = np.maximum(MARGIN * _distance(control, t, S, slopes, modes(next_rung(n))), 4 * n * np.finfo(float).eps)
-    error = np.maximum(error, _unseen(control, t, grid.s[0]))
+    error = np.maximum(error, _unseen(control, t, mesh.s[0]))
     names = ("a", "P", "D", "p0", "dP_dD", "p", "error", "residual", "nodes", "iterations")
     slope = P * slopes[0] / (D * slopes[1])
     return dict(zip(names, (a, P, D, p0, slope, p.T, error, residual, n, steps), strict=True))

@@ -46,22 +46,22 @@ def guess_pressure(cases, a, s):
     return 1 / (base + 1 / cases.law.sparse(s**2 / Z))
 
 
-def first_guess(cases, grid, a=None):
+def first_guess(cases, mesh, a=None):
     """:class:`State` on a mesh from :func:`guess_pressure` at the radii a (B,), or else at :func:`guess_radius`."""
     a = guess_radius(cases) if a is None else a
-    return State(cases.law.guess(guess_pressure(cases, a, grid.s)), np.log(a))
+    return State(cases.law.guess(guess_pressure(cases, a, mesh.s)), np.log(a))
 
 
-def smooth_start(cases, grid):
+def smooth_start(cases, mesh):
     """The equation at given radii (control "a"), at a first guess: its 1/q is the sum of those of the smooth contact
     and of the asperities alone."""
-    eta, s2 = np.log(cases.value), grid.s**2
+    eta, s2 = np.log(cases.value), mesh.s**2
     X, Y, Z = groups(cases, eta)
-    operator = cases.body.at(np.exp(eta), grid)
-    smooth = solve_stack(operator.K, Y / X * np.ones(grid.n), (s2 / X)[..., None])[..., 0]
+    operator = cases.body.at(np.exp(eta), mesh)
+    smooth = solve_stack(operator.K, Y / X * np.ones(mesh.n), (s2 / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
     y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(s2 / Z)))
-    return evaluate(cases, State(y, eta), grid, operator)
+    return evaluate(cases, State(y, eta), mesh, operator)
 
 
 def nodes_wanted(cases, rtol, a):

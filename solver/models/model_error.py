@@ -14,7 +14,7 @@ from ..contact.equation import State, evaluate
 from ..contact.error import nearby
 from ..contact.newton import advance
 from ..contact.results import difference, quantities
-from ..numerics.mesh import mesh
+from ..numerics.mesh import mesh_of
 from ..scaling import as_cases
 from ..solution import Solution
 from .thin_layer_error import largest_error
@@ -32,7 +32,7 @@ def judged(problem, x, solve):
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
         part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
-        found = solve(part, np.concatenate([x, mesh(NODES).x]))
+        found = solve(part, np.concatenate([x, mesh_of(NODES).x]))
         layered = replace(part, base=np.full(len(index), "layered"))
         error = first_order(as_cases(layered), found, found.p[:, len(x) :])
         shown = {"p": found.p[:, : len(x)], "lam": found.lam[:, : len(x)]}
@@ -50,7 +50,7 @@ def first_order(cases, cheap, p):
     cheap : Solution
         The cheap solution in the same units.
     p : (B, NODES) float, E2*
-        Its nominal pressure at the nodes ``mesh(NODES).x``.
+        Its nominal pressure at the nodes ``mesh_of(NODES).x``.
 
     Returns
     -------
@@ -58,7 +58,7 @@ def first_order(cases, cheap, p):
         NaN for a case whose cheap solution has no numbers, inf where the step fails.
     """
     state = State(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
-    ev = evaluate(cases, state, mesh(NODES))
+    ev = evaluate(cases, state, mesh_of(NODES))
     state, _ = advance(ev)
     exact = quantities(nearby(ev, state, cases.law.evaluate(state.y)))
     error = difference(cheap, exact)

@@ -3,7 +3,7 @@ error meets it."""
 
 import numpy as np
 
-from .mesh import mesh, panel_mesh
+from .mesh import mesh_of, panel_mesh
 
 LADDER = (6, 8, 12, 16, 22, 32, 48, 64, 96)
 #: (rtol, nodes): the mesh to begin on for this rtol and larger ones, where nothing else is known. Below the last: 32.
@@ -32,11 +32,11 @@ def next_rung(n):
     return next((m for m in LADDER if m > n), n + n // 2)
 
 
-def finer_mesh(grid):
+def finer_mesh(mesh):
     """The next finer :class:`.mesh.Mesh`: of the ladder; or, of several panels, these with a third more nodes."""
-    if len(grid.breaks) == 2:
-        return mesh(next_rung(grid.n))
-    return panel_mesh(grid.order + grid.order // 3, grid.breaks)
+    if len(mesh.breaks) == 2:
+        return mesh_of(next_rung(mesh.n))
+    return panel_mesh(mesh.order + mesh.order // 3, mesh.breaks)
 
 
 def climb(rtol, nodes, solve_on, first=None, order=None):

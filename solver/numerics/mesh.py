@@ -82,7 +82,7 @@ class Mesh:
 
 
 @lru_cache(maxsize=64)
-def mesh(n):
+def mesh_of(n):
     """The :class:`Mesh` of one panel with `n` nodes (n >= 2); cached, the arrays are read-only."""
     return _build(n, WHOLE)
 

@@ -17,7 +17,7 @@ from solver.contact.driver import solve_on
 from solver.contact.equation import evaluate
 from solver.contact.start import first_guess
 from solver.models.thin_layer_error import edge_shift
-from solver.numerics.mesh import mesh, panel_mesh
+from solver.numerics.mesh import mesh_of, panel_mesh
 from solver.scaling import as_cases, dimensionless
 
 MATERIALS = [(0.5, 0.3, False), (0.5, 0.3, True), (0.01, 0.45, True), (30.0, 0.2, True), (1e3, 0.3, False)]
@@ -37,36 +37,38 @@ def test_transform_of_a_kernel_known_in_closed_form(p):
     assert_allclose(c, np.log1p((p / tau) ** 2) / (2 * np.pi), rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("grid", [mesh(5), mesh(24), mesh(96), panel_mesh(12, (0.0, 1e-4, 0.01, 0.5, 0.53125, 1.0))])
-def test_transforms_at_all_k_of_films(grid):
+@pytest.mark.parametrize(
+    "mesh", [mesh_of(5), mesh_of(24), mesh_of(96), panel_mesh(12, (0.0, 1e-4, 0.01, 0.5, 0.53125, 1.0))]
+)
+def test_transforms_at_all_k_of_films(mesh):
     """Sonine's integral: of s^p, 2^(p/2) Γ(1 + p/2) J_(1 + p/2)(k)/k^(1 + p/2)."""
     k = np.geomspace(1e-2, CUT, 2000)
-    for p in (1, 3, min(grid.order, 41) - 2):
+    for p in (1, 3, min(mesh.order, 41) - 2):
         expected = 2 ** (p / 2) * gamma(1 + p / 2) * jv(1 + p / 2, k) / k ** (1 + p / 2)
-        assert_allclose(tables.transform(grid, k) @ grid.s**p, expected, rtol=0, atol=1e-14)
+        assert_allclose(tables.transform(mesh, k) @ mesh.s**p, expected, rtol=0, atol=1e-14)
 
 
 def test_the_convolution_on_narrow_panels():
     """Of pressures that jump from panel to panel, for c = e^-τ: against a rule of many points on every panel."""
-    grid, cut = panel_mesh(4, (0.0, 0.01, 0.02, 0.03, 0.05, 0.1, 1.0)), 1000.0
-    points = grid.s[[0, 5, 11, 15]]
+    mesh, cut = panel_mesh(4, (0.0, 0.01, 0.02, 0.03, 0.05, 0.1, 1.0)), 1000.0
+    points = mesh.s[[0, 5, 11, 15]]
     _, tau, _ = film.waves()
-    found = film.convolution(grid, points, cut).of(np.exp(-tau)[None])[0]
+    found = film.convolution(mesh, points, cut).of(np.exp(-tau)[None])[0]
     halves = 2.0 ** np.arange(-40, 0)  # towards every end, and every point
     fine = np.unique(np.concatenate([low + (high - low) * np.array([*halves, *(1 - halves)]) for low, high in
-                                     pairwise(np.unique([*grid.breaks, *points]))]))  # fmt: skip
+                                     pairwise(np.unique([*mesh.breaks, *points]))]))  # fmt: skip
     t, w = np.polynomial.legendre.leggauss(12)
     s = (fine[:-1, None] + np.diff(fine)[:, None] * (t + 1) / 2).ravel()
     w, x, at = (np.diff(fine)[:, None] * w / 2).ravel(), np.sqrt(1 - s**2), np.sqrt(1 - points**2)[:, None]
     kernel = np.exp(-cut * np.abs(x - at)) * (np.abs(x - at) * cut < film.REACH) * s / np.sqrt(x * at)
-    assert_allclose(found, (w * kernel) @ grid.basis(s), rtol=0, atol=1e-10 * np.abs(found).max())
+    assert_allclose(found, (w * kernel) @ mesh.basis(s), rtol=0, atol=1e-10 * np.abs(found).max())
 
 
 def test_a_panel_whose_rule_lies_beyond_the_reach():
     """Its near end is within reach, no point of the rule is: nothing is felt of it, and all of the others."""
-    grid = panel_mesh(4, (0.0, 0.1, 0.2, 0.3, 0.35, 1.0))
+    mesh = panel_mesh(4, (0.0, 0.1, 0.2, 0.3, 0.35, 1.0))
     cut = 0.9999 * film.REACH / (1 - np.sqrt(1 - 0.3**2))
-    found = film.convolution(grid, np.zeros(1), cut).of(np.ones((1, len(film.waves()[1]))))[0, 0]
+    found = film.convolution(mesh, np.zeros(1), cut).of(np.ones((1, len(film.waves()[1]))))[0, 0]
     assert np.all(found[12:] == 0) and np.all(found.reshape(5, 4)[:3].sum(axis=1) > 0)
 
 
@@ -81,11 +83,11 @@ def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
     pressures = []
     for width in (0.8, 0.65):
         ends = np.arange(0, 0.999 * s[-1] + width * np.sqrt(h), width * np.sqrt(h))
-        grid = panel_mesh(12, (*ends, *np.geomspace(ends[-1], 1.0, 9)[1:]))
+        mesh = panel_mesh(12, (*ends, *np.geomspace(ends[-1], 1.0, 9)[1:]))
         with np.errstate(divide="ignore"):
-            found = solve_on(evaluate(cases, first_guess(cases, grid), grid), 60)
+            found = solve_on(evaluate(cases, first_guess(cases, mesh), mesh), 60)
         assert found.closed[0]
-        pressures.append(grid.basis(s) @ found.at.state.y[0] / found.at.state.y[0, -1])
+        pressures.append(mesh.basis(s) @ found.at.state.y[0] / found.at.state.y[0, -1])
     assert np.all(pressures[0] > 0)
     assert pressures[0].max() > 4 * pressures[0][-1]
     assert_allclose(*pressures, rtol=0, atol=2e-3)
@@ -94,19 +96,19 @@ def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
 @pytest.mark.parametrize(("n", "nu", "bonded"), MATERIALS)
 def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
     """At h/a = 2^-8.5, with the half-space and all k to the end of the kernel: 1e-8 of the displacement."""
-    eta, grid = 2.0**-8.5, mesh(16)
+    eta, mesh = 2.0**-8.5, mesh_of(16)
     layer = Layered(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded, 0.0)))
-    found = layer.at(np.ones(1), grid)
+    found = layer.at(np.ones(1), mesh)
     assert found.parts[0].octave[0] == FILM
     k, weight = wave_rule.quadrature(FILM, found.parts[0].stiffness)
     W = weight * decaying_part(k * eta, n, nu, 0.3, np.array(bonded))[0]
-    table = tables.table(grid, FILM, found.parts[0].stiffness, True)
+    table = tables.table(mesh, FILM, found.parts[0].stiffness, True)
     whole = (table.J[:, :-1] * W[:, None]).T @ table.phi
     assert np.abs(decaying_part(np.array([CUT * eta]), n, nu, 0.3, np.array([bonded]))[0][0]) < 1e-5  # all of L - 1
     K = found.K[0]
-    for q in (grid.s, grid.s**3):
+    for q in (mesh.s, mesh.s**3):
         found = K @ q
-        expected = grid.K @ q + np.pi / 2 * whole @ q
+        expected = mesh.K @ q + np.pi / 2 * whole @ q
         assert_allclose(found, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
 
 

@@ -5,7 +5,7 @@ from solver_cases import difference
 
 from solver import Problem, Status, solve
 from solver.body.layered import _COUNTS, Layered
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 
 X = np.linspace(0, 1, 5)
 SIZE, RTOL = 1000, 1e-6
@@ -59,7 +59,7 @@ def layer(**given):
 def is_loose(rtol=RTOL, **given):
     """Whether the operator is at a = 1, and how many values of L it takes."""
     body = layer(**given).within(np.array([rtol]), np.ones(1))
-    (part,) = body.at(np.ones(1), mesh(5)).parts
+    (part,) = body.at(np.ones(1), mesh_of(5)).parts
     return bool(body.loose[0]), part.L1.shape[1]
 
 
@@ -77,7 +77,7 @@ def test_soft_layers_plates_and_films_do_not():
     assert not film.within(one, one).loose[0]
     # one that has become a film on the way to its radius
     loose = film._replace(loose=one > 0)
-    (part,), (other,) = (body.at(one, mesh(5)).parts for body in (film, loose))
+    (part,), (other,) = (body.at(one, mesh_of(5)).parts for body in (film, loose))
     assert part.film is not None and np.array_equal(part.L1, other.L1)
     assert loose.error(one, 5) == film.error(one, 5)
 
@@ -85,5 +85,5 @@ def test_soft_layers_plates_and_films_do_not():
 def test_a_stiff_film_that_is_none_at_its_radius():
     """At the radius that is guessed it is a film, of which the class of stiffness is another."""
     body = layer(h=1e-3, n=1e5).within(np.ones(1), np.ones(1))
-    (part,) = body.at(np.full(1, 0.1), mesh(5)).parts
+    (part,) = body.at(np.full(1, 0.1), mesh_of(5)).parts
     assert part.film is None and part.L1.shape[1] == 104

@@ -10,7 +10,7 @@ from solver.body.layered import Layered
 from solver.body.wave_rule import CUT, FILM, quadrature
 from solver.contact.start import smooth_start
 from solver.numerics.kept import Kept
-from solver.numerics.mesh import mesh, panel_mesh
+from solver.numerics.mesh import mesh_of, panel_mesh
 from solver.scaling import as_cases
 
 #: Panels towards the edge, as a film asks for.
@@ -48,33 +48,33 @@ def test_meshes_of_the_same_panels_have_their_bessel_functions_in_common(counted
     tables.transform(panel_mesh(12, PANELS), k)
     assert counted["j0"] == first
     for order in (8, 12, 32, 48):
-        tables.transform(mesh(order), k)
+        tables.transform(mesh_of(order), k)
     assert counted["j0"] < 2 * first + 3 * 2000 * len(k)
 
 
 def test_a_panel_that_is_near_has_as_many_points_as_its_distance_asks_for(counted):
     """2700 points of rules were taken for each point, however far it was."""
-    grid = panel_mesh(12, PANELS)
-    points = grid.s[tables.felt(grid, grid.x)]
-    film.convolution(grid, points, CUT)
+    mesh = panel_mesh(12, PANELS)
+    points = mesh.s[tables.felt(mesh, mesh.x)]
+    film.convolution(mesh, points, CUT)
     assert counted["c"] < 1800 * len(points)
 
 
 def test_fewer_points_are_as_good_as_all(monkeypatch):
     """Of a stiff film, with those that a point inside the panel would take."""
-    grid = panel_mesh(12, PANELS)
-    points, c = grid.s[tables.felt(grid, grid.x)], FILMS.at(np.ones(1), mesh(5)).parts[0].film
-    found = film.convolution(grid, points, CUT).of(c)[0]
+    mesh = panel_mesh(12, PANELS)
+    points, c = mesh.s[tables.felt(mesh, mesh.x)], FILMS.at(np.ones(1), mesh_of(5)).parts[0].film
+    found = film.convolution(mesh, points, CUT).of(c)[0]
     monkeypatch.setattr(film, "_SMOOTH", 0.0)
-    assert_allclose(found, film.convolution(grid, points, CUT).of(c)[0], rtol=0, atol=1e-11 * np.abs(found).max())
+    assert_allclose(found, film.convolution(mesh, points, CUT).of(c)[0], rtol=0, atol=1e-11 * np.abs(found).max())
 
 
 def test_a_lone_case_makes_no_table_for_many_on_a_fine_mesh(counted):
     """The product of a table is as much work as the matrices of 36 to 104 cases."""
     for h in (1e-4, 0.3):
-        grid, layer = mesh(32), FILMS._replace(h=np.array([h]))
-        layer.at(np.ones(1), grid)
-        layer.take(np.zeros(film.MANY, dtype=int)).at(np.ones(film.MANY), grid)
+        mesh, layer = mesh_of(32), FILMS._replace(h=np.array([h]))
+        layer.at(np.ones(1), mesh)
+        layer.take(np.zeros(film.MANY, dtype=int)).at(np.ones(film.MANY), mesh)
     made = [found for found in tables._tables.values() if isinstance(found, tables.Table)]
     assert sorted(found.product is None for found in made) == [False, False, True, True]
 
@@ -85,7 +85,8 @@ def test_the_operator_at_the_same_radius_is_made_once():
     again = FILMS.at(np.ones(1), first.mesh, first)
     assert again is first
     assert (
-        FILMS.at(np.ones(1), mesh(5), first) is not first and FILMS.at(np.full(1, 1.1), first.mesh, first) is not first
+        FILMS.at(np.ones(1), mesh_of(5), first) is not first
+        and FILMS.at(np.full(1, 1.1), first.mesh, first) is not first
     )
 
 
@@ -94,8 +95,8 @@ def test_a_search_for_the_radius_makes_one_operator_a_radius(monkeypatch):
     made, plain = [], layered._rows
     monkeypatch.setattr(layered, "_rows", lambda *arguments: made.append(1) or plain(*arguments))
     case = Problem.of(a=0.04, h=1e-5, n=1e3, Nbar=250000.0, Ra=0.004)
-    ev = smooth_start(as_cases(case), mesh(12))
-    assert len(made) == 1 and ev.operator.mesh == mesh(12)
+    ev = smooth_start(as_cases(case), mesh_of(12))
+    assert len(made) == 1 and ev.operator.mesh == mesh_of(12)
 
 
 def test_a_lone_stiff_film(counted):

@@ -10,7 +10,7 @@ from solver.contact.driver import solve_on
 from solver.contact.equation import _ROUNDING, Cases, Evaluation, State, evaluate
 from solver.contact.start import first_guess
 from solver.laws import LAWS, Curve
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases
 
 ONE = np.ones(1)
@@ -22,7 +22,7 @@ def evaluation(q, F, G):
     curve = Curve(q=q, g=np.full_like(q, 1e-3), dq=np.ones_like(q), dg=np.ones_like(q))
     body = BODIES["half_space"](ONE, ONE, ONE, ONE, ONE > 0, 0 * ONE)
     cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE)
-    return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh(2)), one, one, one, curve, q, q[:, 0], F)
+    return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh_of(2)), one, one, one, curve, q, q[:, 0], F)
 
 
 @pytest.mark.parametrize(("F", "G", "expected"), [([1e-3, -0.2], 0.1, 0.2), ([1e-3, -0.2], -0.5, 0.5)])
@@ -53,7 +53,7 @@ def test_rounding_of_soft_layers(nodes):
     h, n = 0.04 * 10 ** random.uniform(-2, 0, 200), 10 ** random.uniform(-6, -1, 200)
     layer = {"h": h, "n": n, "nu1": random.choice([0.3, 0.49, 0.5], 200), "bonding": ["bonded", "frictionless"] * 100}
     cases = as_cases(Problem.of(P=1e-5, **layer, micro="smooth", base="layered"))
-    at, found = solve_on(evaluate(cases, first_guess(cases, mesh(nodes)), mesh(nodes))).at, []
+    at, found = solve_on(evaluate(cases, first_guess(cases, mesh_of(nodes)), mesh_of(nodes))).at, []
     for _ in range(4):
         at = newton.step(at)
         found.append(at.residual * cases.body.softness(np.exp(at.state.eta)))

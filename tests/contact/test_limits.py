@@ -7,7 +7,7 @@ from scipy.linalg import solve as dense_solve
 from solver_cases import BASES, LOAD, MAIN, ROUGH_KINDS, difference, one
 
 from solver.closed_forms import hertz, thin_layer_on_rigid_base
-from solver.numerics.mesh import HERTZ, mesh
+from solver.numerics.mesh import HERTZ, mesh_of
 
 X = np.sin(np.pi / 2 * np.linspace(0, 1, 80))
 rough_kinds = pytest.mark.parametrize(("base", "law"), ROUGH_KINDS, ids=["-".join(kind) for kind in ROUGH_KINDS])
@@ -51,12 +51,12 @@ def test_smooth_half_space_is_hertz(control):
 
 def test_smooth_thin_layer_by_a_dense_solve():
     """The diagonalised operator against an ordinary solve of (X K + Y) q = s² on a mesh of its own, a given."""
-    grid, a, C = mesh(40), 0.04, MAIN["h"] / MAIN["n"]
-    p = dense_solve(8 / np.pi / a * grid.K + 2 * C / a**2 * np.eye(40), grid.s**2)
-    s = one(a=a, micro="smooth", rtol=1e-10, x=grid.x)
+    mesh, a, C = mesh_of(40), 0.04, MAIN["h"] / MAIN["n"]
+    p = dense_solve(8 / np.pi / a * mesh.K + 2 * C / a**2 * np.eye(40), mesh.s**2)
+    s = one(a=a, micro="smooth", rtol=1e-10, x=mesh.x)
     assert_allclose(s.p[0], p, rtol=0, atol=2e-10 * p.max())
-    assert_allclose(s.P[0], 2 * np.pi * a**2 * grid.w @ p, rtol=1e-10, atol=0)
-    assert_allclose(s.D[0], a**2 / 2 + 4 / np.pi * a * grid.edge @ p, rtol=1e-10, atol=0)
+    assert_allclose(s.P[0], 2 * np.pi * a**2 * mesh.w @ p, rtol=1e-10, atol=0)
+    assert_allclose(s.D[0], a**2 / 2 + 4 / np.pi * a * mesh.edge @ p, rtol=1e-10, atol=0)
 
 
 @pytest.mark.parametrize("bonding", ["frictionless", "bonded"])
@@ -91,7 +91,7 @@ def test_rough_thin_layer_tends_to_the_half_space():
 
 def test_hertz_is_one_row_of_the_operator():
     """What the first guess builds on. Its rule sums over 266 points on each side of a node: a few roundings."""
-    assert_allclose(mesh(8).K @ mesh(8).s, HERTZ * mesh(8).s ** 2, rtol=0, atol=3e-15)
+    assert_allclose(mesh_of(8).K @ mesh_of(8).s, HERTZ * mesh_of(8).s ** 2, rtol=0, atol=3e-15)
 
 
 @pytest.mark.parametrize("base", BASES)

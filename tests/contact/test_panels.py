@@ -8,7 +8,7 @@ from solver_cases import JUDGED, difference
 from solver import Problem, Status, solve
 from solver.body.tables import between, table
 from solver.laws.disc_cell import cell_radius
-from solver.numerics.mesh import HERTZ, mesh, panel_mesh
+from solver.numerics.mesh import HERTZ, mesh_of, panel_mesh
 
 BREAKS = (0.0, 0.01, 0.05, 0.3, 0.31, 0.32, 0.6, 1.0)
 #: Near full contact under a thin layer: the asperities saturate at s² = Z/3, inside the contact.
@@ -23,16 +23,16 @@ CORNER = {
 
 
 def test_the_half_space_on_panels():
-    grid = panel_mesh(12, BREAKS)
-    assert grid.n == 84 and grid.order == 12 and grid.s[-1] == 1
-    assert_allclose(grid.K @ grid.s, HERTZ * grid.s**2, rtol=0, atol=3e-15)
-    assert_allclose(grid.edge @ grid.s, HERTZ, rtol=1e-14, atol=0)
-    assert_allclose(grid.w @ grid.s**3, 1 / 5, rtol=1e-13, atol=0)
+    mesh = panel_mesh(12, BREAKS)
+    assert mesh.n == 84 and mesh.order == 12 and mesh.s[-1] == 1
+    assert_allclose(mesh.K @ mesh.s, HERTZ * mesh.s**2, rtol=0, atol=3e-15)
+    assert_allclose(mesh.edge @ mesh.s, HERTZ, rtol=1e-14, atol=0)
+    assert_allclose(mesh.w @ mesh.s**3, 1 / 5, rtol=1e-13, atol=0)
 
 
 def test_panels_and_one_polynomial_agree():
     """On a function that both resolve, between the nodes too."""
-    one, many, s = mesh(40), panel_mesh(12, BREAKS), np.linspace(0, 1, 23)
+    one, many, s = mesh_of(40), panel_mesh(12, BREAKS), np.linspace(0, 1, 23)
     values = np.sin(5 * s)
     assert_allclose(many.basis(s) @ np.sin(5 * many.s), values, rtol=0, atol=1e-11)
     assert_allclose(many.rows(s) @ np.sin(5 * many.s), one.rows(s) @ np.sin(5 * one.s), rtol=0, atol=1e-11)

@@ -8,7 +8,7 @@ from solver_cases import LOAD, MAIN, one
 from solver import Problem, Status
 from solver.contact import picard as scheme
 from solver.numerics.bracket import false_position
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
 
 
@@ -35,7 +35,7 @@ def solved(**case):
     problem = Problem.of(**(MAIN | {"P": LOAD, "micro": "power_law", "base": "thin_layer"} | case))
     cases = as_cases(dimensionless(problem))
     with np.errstate(all="ignore"):  # as `solver.solve` does
-        found, status = scheme.solve(cases, mesh(16), np.array([5.0]), np.array([1e-6]), 0)
+        found, status = scheme.solve(cases, mesh_of(16), np.array([5.0]), np.array([1e-6]), 0)
     return found.at.state, status[0], found.count[0]
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solver.contact import smooth
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 
 #: Compliances of springs under contacts of radius 1: from a half-space alone to springs alone.
 C, A = np.geomspace(1e-6, 1e6, 400), np.ones(400)
@@ -12,7 +12,7 @@ C, A = np.geomspace(1e-6, 1e6, 400), np.ones(400)
 
 def test_the_modes_are_real_and_well_conditioned():
     for n in (6, 96, 200):
-        kappa, V = np.linalg.eig(mesh(n).K)
+        kappa, V = np.linalg.eig(mesh_of(n).K)
         assert np.isrealobj(kappa) and kappa.min() > 0 and np.linalg.cond(V) < 20
 
 

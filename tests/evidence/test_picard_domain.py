@@ -5,14 +5,14 @@ import pytest
 import xarray as xr
 from conftest import opened
 from drawn import frame, legend, lines, ticks
-from drawn import mesh as mesh_of
+from drawn import mesh as drawn_mesh
 from matplotlib.colors import to_hex
 from numpy.testing import assert_allclose
 from solver_cases import MAIN
 
 from solver import Problem, Status, solve
 from solver.contact import picard
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
 from study.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
 from study.paper.uniform import uniform_mesh
@@ -25,7 +25,7 @@ CASE = (
 def approximations(k, count, nodes=32, **case):
     problem = Problem.of(**(CASE | {"beta": 0.5, "h": 0.02} | case), k=k, nodes=nodes)
     cases = as_cases(dimensionless(problem))
-    return picard.approximate(cases, np.log(cases.value), mesh(nodes), problem.k, np.zeros(1), count).at
+    return picard.approximate(cases, np.log(cases.value), mesh_of(nodes), problem.k, np.zeros(1), count).at
 
 
 def part_of(h, beta: float, **changes) -> xr.Dataset:
@@ -39,7 +39,7 @@ def test_the_largest_eigenvalue_is_that_of_the_operator():
     """Of any mesh that resolves a parabola."""
     for nodes in (16, 32, 64):
         # an eigenvalue to rounding
-        assert_allclose(np.linalg.eigvals(mesh(nodes).K).real.max(), LARGEST, rtol=1e-10)
+        assert_allclose(np.linalg.eigvals(mesh_of(nodes).K).real.max(), LARGEST, rtol=1e-10)
     # piecewise linear: an error of second order
     assert_allclose(np.linalg.eigvals(uniform_mesh(80).K).real.max(), LARGEST, rtol=1e-4)
 
@@ -74,8 +74,8 @@ def test_lines_of_the_asperities_are_the_slope_of_their_law():
 def test_pressures_below_the_line_cycle_and_those_above_do_not():
     """k = 0: A'(p) = C at p = 5e-5 E2*; one decade below all nodes swing, one above none."""
     problem = Problem.of(**CASE, beta=0.5, h=0.02, rtol=1e-9)
-    grid = mesh(64)
-    solution = solve(problem, grid.x).p[0]
+    mesh = mesh_of(64)
+    solution = solve(problem, mesh.x).p[0]
     critical = (0.5 * CASE["B"] * CASE["Ra"] / CASE["n"] ** 0.5 / 0.04) ** 2
     first, second = (approximations(0.0, count, nodes=64).q[0] * CASE["n"] for count in (1000, 1001))
     swing = np.abs(first - second)
@@ -128,7 +128,7 @@ def test_maps_show_the_size_of_the_cycle(drawing, results):
     parts = []
     for axes, (title, (beta, nodes)) in zip(figure.axes, MAPPED.items(), strict=False):
         size = sizes(found, beta, nodes)
-        image = mesh_of(axes)
+        image = drawn_mesh(axes)
         drawn = image.get_array().reshape(size.shape)
         np.testing.assert_array_equal(np.ma.getmaskarray(drawn), (size >= 0.1) | ~np.isfinite(size))
         known = ~np.ma.getmaskarray(drawn)
@@ -173,15 +173,15 @@ def test_lines_of_the_maps_are_those_of_the_theory(drawing, results):
 
 def test_two_iterates_are_drawn_about_the_solution(drawing):
     figure, _, _ = drawing("picard_domain")
-    axes, grid = figure.axes[5], mesh(64)
+    axes, mesh = figure.axes[5], mesh_of(64)
     first, second, solution = lines(axes)
-    shown = grid.x > 0.97
+    shown = mesh.x > 0.97
     for line, count in ((first, 1000), (second, 1001)):
         assert line.label == f"iterate {count}"
-        assert_allclose(line.x, grid.x[shown], rtol=1e-9)  # ten digits in the file
+        assert_allclose(line.x, mesh.x[shown], rtol=1e-9)  # ten digits in the file
         iterate = CASE["n"] * approximations(0.0, count, nodes=64).q[0]
         assert_allclose(line.y, 1e3 * iterate[shown], rtol=1e-7, atol=1e-9)  # cycles amplify rounding
-    exact = solve(Problem.of(**CASE, beta=0.5, h=0.02, rtol=1e-9, nodes=64), grid.x[shown])
+    exact = solve(Problem.of(**CASE, beta=0.5, h=0.02, rtol=1e-9, nodes=64), mesh.x[shown])
     assert solution.label == "solution" and solution.x[0] > 0.9999 and solution.x[-1] < 0.985
     assert_allclose(solution.y, 1e3 * exact.p[0], rtol=1e-8, atol=1e-12)
     assert list(legend(axes.get_legend())) == ["iterate 1000", "iterate 1001", "solution"]

@@ -11,7 +11,7 @@ import study
 from solver import Model, Problem, Status, solve
 from solver.laws.disc_cell import contact_fraction, largest_pressure
 from solver.models.model_error import NODES, first_order
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases
 from study.physical.study_file import read
 from study.spec.grid import columns
@@ -221,7 +221,7 @@ def test_a_step_of_first_order_that_fails_has_no_error():
     """From a pressure of NaN it has no numbers; a case without cheap numbers has no estimate at all."""
     problem = Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT)
     cases = as_cases(problem)
-    cheap = solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh(NODES).x)
+    cheap = solve(Problem.of(P=[1e-5, 1e-5, 1e-5], **CONTACT | {"base": "thin_layer"}), mesh_of(NODES).x)
     p = cheap.p.copy()
     p[1] = np.nan
     cheap.a[2] = np.nan

@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 
 from solver.body.layered import Layered
 from solver.numerics.linalg import solve_stack
-from solver.numerics.mesh import mesh
+from solver.numerics.mesh import mesh_of
 
 MANY = 300
 
@@ -14,10 +14,10 @@ MANY = 300
 def operators(n, base, random):
     """K (B or 1, n, n) of a half-space or of random layers."""
     if base == "half_space":
-        return mesh(n).K[None]
+        return mesh_of(n).K[None]
     h, stiffness = 10.0 ** random.uniform(-1, 1, MANY), 10.0 ** random.uniform(-3, 3, MANY)
     nu1, nu2, bonded = random.uniform(0, 0.49, MANY), np.full(MANY, 0.3), random.random(MANY) < 0.5
-    return Layered(h, stiffness, nu1, nu2, bonded, np.zeros(MANY)).at(np.ones(MANY), mesh(n)).K
+    return Layered(h, stiffness, nu1, nu2, bonded, np.zeros(MANY)).at(np.ones(MANY), mesh_of(n)).K
 
 
 @pytest.mark.parametrize("base", ["half_space", "layered"])
@@ -27,7 +27,7 @@ def test_solutions(n, base):
     random = np.random.default_rng(1)
     K = operators(n, base, random)
     slope = random.uniform(-2, 4, (MANY, 1))
-    diagonal = 10 ** random.uniform(-9, 3, (MANY, 1)) * mesh(n).s ** slope * random.uniform(0.5, 2, (MANY, n))
+    diagonal = 10 ** random.uniform(-9, 3, (MANY, 1)) * mesh_of(n).s ** slope * random.uniform(0.5, 2, (MANY, n))
     diagonal[:20] = 0.0
     rhs = random.standard_normal((MANY, n, 2))
     x = solve_stack(K, diagonal, rhs)
@@ -43,8 +43,8 @@ def test_solutions(n, base):
 def test_bad_members_alone_are_bad(count):
     """A singular matrix and one that is not a number give NaN, one that needs an exchange of rows its solution."""
     random = np.random.default_rng(2)
-    K = np.tile(mesh(6).K, (count, 1, 1))
-    K[0], K[1], K[2, 3, 3], K[3] = 0.0, np.eye(6)[::-1], np.nan, -mesh(6).K
+    K = np.tile(mesh_of(6).K, (count, 1, 1))
+    K[0], K[1], K[2, 3, 3], K[3] = 0.0, np.eye(6)[::-1], np.nan, -mesh_of(6).K
     rhs = random.standard_normal((count, 6, 1))
     x = solve_stack(K, np.zeros((count, 6)), rhs)
     assert np.isnan(x[0]).all()
@@ -56,7 +56,7 @@ def test_bad_members_alone_are_bad(count):
 
 def test_an_indefinite_member_of_a_shared_operator():
     """Its pivots are not all positive: it gets its solution nevertheless."""
-    random, K = np.random.default_rng(3), mesh(6).K
+    random, K = np.random.default_rng(3), mesh_of(6).K
     diagonal, rhs = random.random((MANY, 6)), random.standard_normal((MANY, 6, 2))
     diagonal[5] = -1.0
     x = solve_stack(K[None], diagonal, rhs)

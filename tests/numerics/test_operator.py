@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from scipy.special import beta, ellipe, factorial, hyp2f1
 
 from solver import Problem
-from solver.numerics.mesh import HERTZ, half_space_rows, mesh
+from solver.numerics.mesh import HERTZ, half_space_rows, mesh_of
 from solver.numerics.pieces import pieces
 from solver.numerics.quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
 from solver.scaling import as_cases, dimensionless
@@ -57,20 +57,20 @@ def test_hertz_and_the_next_pressure():
 
 @pytest.mark.parametrize("n", [4, 16, 64])
 def test_mesh_parts(n):
-    grid = mesh(n)
-    s = grid.s
-    assert grid.n == n
+    mesh = mesh_of(n)
+    s = mesh.s
+    assert mesh.n == n
     assert s[-1] == 1
-    assert grid.x[-1] == 0
+    assert mesh.x[-1] == 0
     assert np.all(np.diff(s) > 0)
     for m in {0, 1, 2, min(3, n - 1), n - 1, 2 * n - 3}:
-        assert_allclose(grid.w @ s**m, 1 / (m + 2), rtol=1e-14 * max(10, m), atol=0)
-    assert_allclose(grid.K @ s, HERTZ * s**2, rtol=0, atol=1e-14)
-    assert_allclose(grid.edge @ s, HERTZ, rtol=1e-14, atol=0)
-    assert_allclose(grid.K @ np.ones(n), ellipe(grid.x**2) - 1, rtol=0, atol=1e-13)
-    assert mesh(n) is grid
+        assert_allclose(mesh.w @ s**m, 1 / (m + 2), rtol=1e-14 * max(10, m), atol=0)
+    assert_allclose(mesh.K @ s, HERTZ * s**2, rtol=0, atol=1e-14)
+    assert_allclose(mesh.edge @ s, HERTZ, rtol=1e-14, atol=0)
+    assert_allclose(mesh.K @ np.ones(n), ellipe(mesh.x**2) - 1, rtol=0, atol=1e-13)
+    assert mesh_of(n) is mesh
     with pytest.raises(ValueError, match="read-only"):
-        grid.K[0, 0] = 0
+        mesh.K[0, 0] = 0
 
 
 def test_reciprocity():
@@ -108,10 +108,10 @@ def test_part_of_a_batch(base, size):
     """What the operator gives has a row for each case: no case of one leaves no row, whatever the batch shares."""
     problem = Problem.of(a=np.linspace(0.02, 0.04, size), h=0.02, n=0.5, Nbar=250000, Ra=0.004, base=base)
     cases = as_cases(dimensionless(problem))
-    grid, q = mesh(6), np.linspace(1, 2, size)[:, None] * mesh(6).s
-    whole = cases.body.at(cases.value, grid)
+    mesh, q = mesh_of(6), np.linspace(1, 2, size)[:, None] * mesh_of(6).s
+    whole = cases.body.at(cases.value, mesh)
     for index in (np.arange(0), np.array([size - 1])):
-        part, alone = whole.take(index), cases.body.take(index).at(cases.value[index], grid)
+        part, alone = whole.take(index), cases.body.take(index).at(cases.value[index], mesh)
         rows = (*part.products(q[index]), *part.slopes(q[index]))
         for found, expected in zip(rows, (*alone.products(q[index]), *alone.slopes(q[index])), strict=True):
             assert found.shape == expected.shape == (len(index), *(6,) * (found.ndim - 1))

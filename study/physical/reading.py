@@ -11,21 +11,21 @@ import xarray as xr
 
 from ..spec.definition import StudyError
 from ..spec.given import label_slips
-from ..spec.grid import MOVED, equal_values, twins
+from ..spec.grid import MOVED, equal_values
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
-from .bodies import BODIES, assumed, layered, with_materials
+from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
+from .checks import equal_cases, impossible, missing
 from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of
-from .scales import make_dimensionless, over_dimensions
+from .scales import make_dimensionless
 from .scene import STEP, Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
-_RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
 def _has_unit(given: Any) -> bool:
@@ -48,8 +48,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    given = [pair for table in (parameters, *rows) for pair in table.items()]
-    if not any(name in SCENE or name in BODIES or _has_unit(value) for name, value in given):
+    pairs = [pair for table in (parameters, *rows) for pair in table.items()]
+    if not any(name in SCENE or name in BODIES or _has_unit(value) for name, value in pairs):
         return None
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)
@@ -69,8 +69,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
                 errors.append(f"{error}{_material(name, given)}")
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, CaseValues) else given
-    errors += _missing(parameters)
-    errors += [] if errors else _impossible(scene) + (_equal_cases(scene) if rows else [])
+    errors += missing(parameters, {name for name, _ in pairs}, errors)
+    errors += [] if errors else impossible(scene) + (equal_cases(scene) if rows else [])
     if errors:
         raise StudyError(errors)
     scene.assumed = assumed(parameters, scene.given)
@@ -194,55 +194,6 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
-
-
-def _missing(parameters: dict) -> list[str]:
-    """Messages for what a physical scene cannot do without, and for what cannot be given together."""
-    pair = [name for name in ("R1", "R2") if name in parameters]
-    messages = [_RADIUS] if "R" not in parameters and not pair else []
-    if len(pair) == 1:
-        messages.append(f"{'R2' if pair == ['R1'] else 'R1'} is missing: R1 and R2 go together")
-    if pair and "R" in parameters:
-        messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
-    if "E2" not in parameters:
-        messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
-    if layered(parameters) and "E1" not in parameters and "n" not in parameters:
-        messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
-    for modulus, _, ratio in BODIES.values():
-        if modulus in parameters and ratio in parameters:
-            messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
-    if "nu_punch" in parameters and "E_punch" not in parameters:
-        messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
-    return messages
-
-
-def _equal_cases(scene: Scene) -> list[str]:
-    """A message for two of [[cases]] that are the same, in whatever units they are given."""
-    arrays = [v for table in (scene.given, scene.spreads, scene.parameters) for v in table.values()]
-    columns = [v.values.tolist() for v in arrays if isinstance(v, xr.DataArray) and v.dims == ("case",)]
-    columns += [texts for dim, texts in scene.names.values() if dim == "case"]
-    return [f"cases {i} and {j} are the same" for i, j in twins(list(zip(*columns, strict=True)))]
-
-
-def _impossible(scene: Scene) -> list[str]:
-    """Messages for bodies that cannot touch as they are given."""
-    given, messages = scene.given, []
-    if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
-        R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
-        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
-    rigid = np.isinf(given["E2"])
-    if not np.any(rigid):
-        return messages
-    if np.any(rigid & (over_dimensions(scene.parameters.get("base", "layered"), "base") == "half_space")):
-        swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
-        messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
-    if "n" in scene.parameters:
-        messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
-    return messages
-
-
-def _shown(value: Any) -> str:
-    return ", ".join(f"{one:g}" for one in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)
 
 
 def _move(scene: Scene) -> None:

@@ -13,12 +13,12 @@ import numpy as np
 
 from ..spec import definition
 from ..spec.definition import Definition, StudyError
-from ..spec.given import Draft, one_control
+from ..spec.given import Draft
 from ..spec.grid import axis_values
 from ..spec.identity import digest_of_array
 from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
-from ..spec.vocabulary import CONTROLS, NUMERICS, VOCABULARY, Parameter, si_unit
+from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
 from .bodies import BODIES, with_materials
@@ -72,9 +72,6 @@ def _check_the_rest(draft: Draft, parameters: dict, given: dict) -> None:
     for name, value in parameters.items():
         if name in VOCABULARY and VOCABULARY[name].own.choices:
             draft.checked(name, value if isinstance(value, list) else [value])
-    rows = given["cases"] if isinstance(given.get("cases"), list) else []
-    names = [name for table in (parameters, *rows) if isinstance(table, dict) for name in table]
-    draft.errors += one_control(names) if len({*CONTROLS} & {*names}) > 1 else []
     definition.settings(given, draft.errors)
 
 

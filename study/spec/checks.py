@@ -1,5 +1,6 @@
 """What can be wrong with a grid as a whole, though each of its parameters is right."""
 
+from collections.abc import Callable, Collection, Iterable
 from functools import partial
 
 import numpy as np
@@ -9,21 +10,46 @@ from .grid import Grid, along, on_rigid_base
 from .laws import smooth_laws
 from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, cases_with
 
+FITTED = ("B", "beta")
+"""Parameters that are fitted to Nbar and Ra where neither is given (`fitted.py`)."""
+
+
+def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: list[str]) -> list[str]:
+    """Messages for parameters without a default that are not given, though some case needs them.
+
+    given : names of the parameters that are; texts : name of a parameter, such as base -> its values
+    errors : where these have an unknown name or section, what is missing may be there
+    """
+    messages = []
+    if any("is not a parameter" in error or "is not a section" in error for error in errors):
+        return []
+    for name in PARAMETERS:
+        own = VOCABULARY[name].own
+        selector, words = own.needed_by
+        if name in given or name in CONTROLS or own.default is not None:
+            continue
+        values = texts(selector)
+        found = " or ".join(shown(word) for word in words if word in values)
+        if name in FITTED and not {*FITTED} & {*given}:
+            if found and name == FITTED[0] and not {"Nbar", "Ra"} <= {*given}:
+                messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
+        elif found:
+            messages.append(f"{name} is missing: {selector} = {found} needs it")
+    return messages
+
 
 def missing_parameters(grid: Grid) -> list[str]:
-    """Messages for parameters that some case needs and does not have."""
+    """Messages for parameters that are given, but not in some case that needs them."""
     messages = []
-    for name in PARAMETERS:
-        selector, words = VOCABULARY[name].own.needed_by
-        if VOCABULARY[name].own.default is not None or (name in CONTROLS and name not in grid.values):
-            continue
-        gaps = np.isnan(along(grid, name))
+    for name in grid.values:
+        gaps = np.isnan(along(grid, name)) if VOCABULARY[name].own.default is None else np.False_
         gaps = gaps & cases_with(name, partial(along, grid)) if gaps.any() else gaps
         if gaps.any():
-            case = np.argwhere(gaps)[0][list(grid.sizes).index("case")] if name in grid.values else ""
+            selector, words = VOCABULARY[name].own.needed_by
+            case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
             found = [shown(word) for word in words if word in along(grid, selector)]
             reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
-            messages.append(f"{name} is missing{f' in case {case}' if name in grid.values else ''}{reason}")
+            messages.append(f"{name} is missing in case {case}{reason}")
     return messages
 
 

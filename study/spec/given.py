@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..terminal import shown
-from .checks import missing_parameters, mixed_units, picard_for_nothing
+from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing
 from .fitted import fitted, wants_a_fit
 from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, twins
 from .laws import is_parameter, law_names, update_vocabulary
@@ -149,6 +149,7 @@ class Draft:
             selector, owners = own.needed_by
             if own.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
                 self.values[name] = (), np.array(own.default)
+        self.errors += not_given(self.sections, lambda name: self.values.get(name, ((), ()))[1], self.errors)
         grid = self._grid()
         if not self.errors and wants_a_fit(grid):
             laws, errors = fitted(grid)

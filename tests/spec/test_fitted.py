@@ -50,6 +50,16 @@ def test_in_physical_units():
     assert found.beta.item() == pytest.approx(fit_power_law(4.0).beta, rel=1e-9)
 
 
+def test_without_roughness_both_ways_are_said():
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(**LAYER)
+    assert caught.value.messages == (
+        'solve: Nbar is missing: micro = "power_law" needs it',
+        'solve: Ra is missing: micro = "power_law" needs it',
+        "solve: B and beta may be given; if neither is, they are fitted to Nbar and Ra",
+    )
+
+
 def test_one_of_the_two_is_not_fitted():
     for given in ({"B": 0.1}, {"beta": 0.5}):
         with pytest.raises(study.StudyError, match='is missing: micro = "power_law" needs it'):

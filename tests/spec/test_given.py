@@ -85,6 +85,14 @@ def test_what_is_missing_is_said_with_the_first_case_that_needs_it():
     assert grid.values["base"][1].tolist() == ["half_space", "layered"]
 
 
+def test_what_is_missing_is_said_beside_other_mistakes():
+    said = messages(model={"micro": "smooth", "P": -1, "bonding": "glued"}, axes={"n": []})
+    assert [text.split(":")[0] for text in said] == ["P = -1", 'bonding = "glued"', "n is empty", "h is missing"]
+    said = messages(model={"micro": "smooth", "P": 1, "n": 0.5, "hh": 0.1})  # it may be the thickness
+    assert said == ['[model] "hh" is not a parameter; did you mean "h"?']
+    assert len(messages(model={"base": "soft", "P": 1, "n": 0.5, "micro": "smooth"})) == 1
+
+
 def test_an_axis_that_only_some_points_need_is_asked_of_all():
     """Along another dimension than the base: a layered row needs h of every case."""
     rows, axes = [{"P": 1, "h": 0.1}, {"P": 2}], {"base": ["half_space", "layered"]}

@@ -76,6 +76,9 @@ def test_effective_radii():
     [
         ({"E2": "rigid", "base": "half_space"}, 'E2 is rigid and base = "half_space": no layer is there to yield'),
         ({"E2": "rigid", "E1": None, "n": 0.5}, "E2 is rigid and n is given: give E1"),
+        ({"E1": None, "n": 0}, 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'),
+        ({"E1": None, "n": [0.5, 0]}, 'n = 0 is a rigid base: give E2 = "rigid"'),
+        ({"E1": None, "n": "0.5"}, 'n = "0.5": must be a number'),
         ({"E1": "rigid"}, 'E1 = "rigid": must be a pressure'),
         ({"E2": "rigid ± 1 GPa"}, 'E2 = "rigid ± 1 GPa": must be a pressure'),
         ({"R": None, "R1": "5 mm"}, "R2 is missing: R1 and R2 go together"),

@@ -52,6 +52,8 @@ BROKEN = {
     "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "
     f"{derived.PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
 }
+WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of its radius), as in a cup that fits \
+closely: the bodies are no half-spaces there."
 
 
 class Summary(str):
@@ -195,4 +197,6 @@ def doubts(contact: xr.Dataset) -> list[str]:
             (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values, si="units" in v["Ra"].attrs
         )
         found += [sharp] if sharp else []
+    if all(name in v and v[name].attrs.get("units") == "m" for name in ("R1", "R2", "a")):
+        found += [WIDE] * bool((v["a"] > derived.STEEP * np.minimum(abs(v["R1"]), abs(v["R2"]))).any())
     return found + absurd(contact)

@@ -71,6 +71,18 @@ def test_effective_radii():
     np.testing.assert_allclose(spread.a_spread / spread.a, 0.2 / 3, rtol=1e-3)
 
 
+def test_a_cup_that_fits_closely_is_beyond_the_model():
+    """a = 4.1 mm of a ball of 10 mm, though only 0.004 of the effective radius: validity does not see it."""
+    given = {"R1": "10 mm", "E2": "1 GPa", "base": "half_space", "micro": "smooth", "P": "100 N"}
+    with pytest.warns(UserWarning, match=r"wide against the smaller body \(a > 0.2 of its radius\), as in a cup"):
+        found = study.solve(**given, R2=["-20 mm", "-10.1 mm"], x=2)
+    np.testing.assert_allclose(found.a[1], np.cbrt(0.75 * 100 * 1.01 * 0.91e-9), rtol=1e-6)  # Hertz
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        study.solve(**given | {"P": "1 N"}, R2="-20 mm", x=2)
+    assert "wide against" in study.summary(found.isel(R2=1)) and "wide" not in study.summary(found.isel(R2=0))
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

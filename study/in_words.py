@@ -81,7 +81,7 @@ def summary(contact: xr.Dataset) -> Summary:
     ------
     ValueError : the dataset is not one of contacts
     """
-    missing = [name for name in ("status", "model_used", "validity", *SHOWN) if name not in contact]
+    missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
     bare = [name for name in ("status", "model_used", "validity") if "flag_meanings" not in contact[name].attrs]

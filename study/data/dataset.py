@@ -107,7 +107,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
 
     Raises
     ------
-    ValueError : the array has none of these names, and no attribute `flag_meanings`
+    ValueError : the array has none of these names, and no attribute `flag_meanings`; its numbers are of no case, such
+        as the mean of several
 
     Examples
     --------
@@ -145,10 +146,12 @@ def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
 def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
     """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, NaN where no case is left.
 
-    There the status is that of a case that was not run, and all else is 0.
+    There the status is that of a case that was not run, and all else is 0. Raises ValueError for flags of no case.
     """
     if flags.dtype.kind in "iu":
         return flags
+    if flags.dtype.kind != "f" or (np.isfinite(flags) & (flags % 1 != 0)).any():
+        raise ValueError("these flags are of no case: they have been compared, averaged or interpolated")
     words = attributes["flag_meanings"].split()
     absent = np.atleast_1d(attributes["flag_values"])[words.index("not_run")] if "not_run" in words else 0
     return np.where(np.isfinite(flags), flags, absent).astype(int)

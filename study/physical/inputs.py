@@ -22,7 +22,7 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
 
     Left out are ν of a rigid body, and n and m where the moduli are given.
     """
-    if "base" not in contacts.coords:
+    if "base" not in contacts.variables:
         return []
 
     def values(name: str) -> np.ndarray:

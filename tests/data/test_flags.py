@@ -31,6 +31,18 @@ def test_names_survive_arithmetic_and_unknown_numbers_stay():
         study.decode(xr.DataArray([1.0], name="P"))
 
 
+def test_flags_of_no_case_have_no_names():
+    """The mean of the masks 0, 0 and 16, 5.3, was 5: layer_not_thin and spot_not_small_against_h."""
+    found = study.solve(P=[1e-6, 1e-5, 1e-4], h=0.01, n=0.5, Nbar=250000, Ra=0.004, x=2)
+    assert found.validity.values.tolist() == [0, 0, 16]
+    for flags in (found.validity.mean("P", keep_attrs=True), found.validity.interp(P=5e-5), found.validity > 0):
+        with pytest.raises(ValueError, match="flags are of no case: they have been compared, averaged or interpolated"):
+            study.decode(flags.rename("validity"))
+    with pytest.raises(ValueError, match="flags are of no case"):
+        study.summary(found.interp(P=5e-5))
+    assert study.decode(found.validity.where(found.P > 5e-5)).values.tolist() == ["", "", "spots_merging"]
+
+
 def test_objects_show_themselves_in_one_line(tmp_path):
     problem = Problem.of(P=[1e-6, 2e-5], micro="smooth", base="half_space")
     assert repr(problem) == "Problem(2 cases, P = 1e-06 ... 2e-05, base: half_space, micro: smooth)"

@@ -179,3 +179,11 @@ def test_stacked_cases_and_lost_attributes():
     assert "P      = 10 N" in study.summary(grid.assign_coords(nu1=grid.nu1).stack(case=["P"]))
     with pytest.raises(ValueError, match="status has lost its attributes"):
         study.summary(grid.drop_attrs())
+
+
+def test_inputs_that_xarray_has_made_variables_or_dropped():
+    """All inputs were said to be not used, and a missing one was a KeyError."""
+    one = quiet(**COATED, P="1 N", x=2)
+    assert str(study.summary(one.reset_coords())) == study.summary(one)
+    with pytest.raises(ValueError, match="not one of contacts: it has no micro"):
+        study.summary(one.drop_vars("micro"))

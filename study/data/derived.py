@@ -120,7 +120,7 @@ def quantity(name: str) -> Callable:
                 unit = variable.attrs.get("units", "1")
                 if own in VOCABULARY and unit not in ("1", VOCABULARY[own].unit):  # of study.readable
                     raise ValueError(f"{own} is in {unit}: {name} follows from results in SI units, or without units")
-            return named(formula(dataset), name)
+            return named(formula(dataset), name, _has_units(dataset))
 
         QUANTITIES[name] = computed
         return computed
@@ -235,14 +235,15 @@ def _given(values, name: str):
     return values.get(name, np.nan)
 
 
-def named(array: xr.DataArray, name: str) -> xr.DataArray:
-    """The array with a name of the vocabulary and its attributes, in SI units where its coordinates have units."""
+def named(array: xr.DataArray, name: str, in_si: bool = False) -> xr.DataArray:
+    """The array with a name of the vocabulary and its attributes."""
     array = array.rename(name)
     array.attrs = attributes(name, rigid="n" in array.coords and bool((array.coords["n"] == 0).any()))
-    if _has_units(array) and VOCABULARY[name].powers != (0, 0):
+    if in_si and VOCABULARY[name].powers != (0, 0):
         array.attrs = physical_attributes(name, array.attrs)
     return array
 
 
-def _has_units(found: xr.Dataset | xr.DataArray) -> bool:
-    return any(coordinate.attrs.get("units", "1") != "1" for coordinate in found.coords.values())
+def _has_units(dataset: xr.Dataset) -> bool:
+    """Whether the numbers are in SI units, also of a dataset without the coordinates that say it."""
+    return any(own.attrs.get("units", "1") != "1" for name, own in dataset.variables.items() if name in VOCABULARY)

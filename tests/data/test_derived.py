@@ -230,6 +230,8 @@ def test_multiples_of_units_are_not_taken_for_si():
     """The area of a contact of 70 µm was 15 403, in m²; and a in m was compared with 0.2 R."""
     found = study.solve(R="9 mm", E2="9 GPa", base="half_space", P="9 N", micro="smooth", x=3)
     assert derived.nominal_area(found) == np.pi * found.a**2
+    bare = derived.nominal_area(found[["a"]].reset_coords(drop=True))  # it was said to be in R^2
+    assert bare.attrs["units"] == "m^2" and "scale" not in bare.attrs
     for formula in derived.QUANTITIES.values():
         with pytest.raises(ValueError, match="follows from results in SI units, or without units"):
             formula(study.readable(found))

@@ -6,6 +6,7 @@ from pathlib import Path
 from ..api import Study, load
 from ..data.dataset import status_words
 from ..files.examine import examine
+from ..spec.definition import StudyError
 from ..terminal import answer, say
 from ..work.plan import status_values
 from .answers import cost_line, failure_lines, report_line, state_line, verified_line
@@ -17,7 +18,7 @@ def items(options) -> list:
     if options.command != "list":
         return options.items
     folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
-    files = sorted(folder.glob("*.toml"))
+    files = sorted(folder.glob("*.toml")) if folder.is_dir() else [folder]
     if not files:
         answer(f"no study files in {folder.as_posix()}")
     return files
@@ -25,6 +26,8 @@ def items(options) -> list:
 
 def list_(options, file: Path) -> int:
     """Say the size and the state of a study."""
+    if file.suffix != ".toml":
+        raise StudyError([f"{file.as_posix()}: is no folder"])
     study = load(file, options.results)
     return answer(state_line(study.definition, study.status()))
 

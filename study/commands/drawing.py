@@ -10,6 +10,7 @@ from ..data.provenance import command_line
 from ..evidence import tradeoff as measured
 from ..figures.lines import drawn
 from ..figures.style import style
+from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.grid import twins
@@ -31,10 +32,11 @@ def plot(options, name: str) -> int:
     try:
         return _write(options, name, catalogue.FIGURES, catalogue.draw)
     except StudyError:
-        if name in catalogue.FIGURES or name not in known_studies():
+        what = "file" if Path(name).suffix == ".nc" else "study"
+        if name in catalogue.FIGURES or not (what == "file" or name in known_studies()):
             raise
-        text = f"{name} is a study, not a figure: give --x and --y to draw curves of it, such as --x P --y a"
-        raise StudyError([text]) from None
+        how = "give --x and --y to draw curves of it, such as --x P --y a"
+        raise StudyError([f"{name} is a {what}, not a figure: {how}"]) from None
 
 
 def _curves(options, name: str) -> int:
@@ -46,7 +48,10 @@ def _curves(options, name: str) -> int:
     if Path(name).suffix == ".nc":
         if not Path(name).exists():
             raise StudyError([f"{name}: does not exist"])
-        found = open_results(name)
+        try:
+            found = open_results(name)
+        except Unusable as error:
+            raise StudyError(error.messages) if error.kind == "foreign" else error from None
     else:
         study = load(study_file(name), options.results)
         if options.run and (code := completed(study)):

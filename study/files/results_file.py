@@ -121,7 +121,11 @@ def open_results(path) -> xr.Dataset:
     found = examine(path)
     if found.kind != "foreign":  # a netCDF file of another program is read as it is
         found.raise_if_bad()
-    return _for_users(read(Path(path)))
+    try:
+        return _for_users(read(Path(path)))
+    except OSError:
+        found.raise_if_bad()
+        raise
 
 
 def open_lazily(path) -> xr.Dataset:

@@ -131,8 +131,11 @@ def test_list_and_status(capsys, studies):
     assert capsys.readouterr().out.split() == ["good", "3", "cases", "done", "a", "line", "converged:", "3"]
     (studies / "bad.toml").write_text("[", encoding="utf-8")
     assert main(["list"]) == 2
-    assert main(["list", "nowhere"]) == 0
-    assert "no study files in nowhere" in capsys.readouterr().out
+    (studies / "empty").mkdir()
+    assert main(["list", "studies/empty"]) == 0
+    assert "no study files in studies/empty" in capsys.readouterr().out
+    assert main(["list", "nowhere"]) == 2
+    assert capsys.readouterr().err == "nowhere: is no folder\n"
 
 
 def test_results_of_another_definition(studies, capsys):

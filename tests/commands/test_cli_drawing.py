@@ -50,6 +50,14 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     assert missing[0].endswith(f"make it with: python -m study run {study}")
 
 
+def test_a_file_that_holds_no_results_is_bad_input(capsys):
+    Path("junk.nc").write_text("junk", encoding="utf-8")
+    assert main(["plot", "junk.nc", "--x", "P", "--y", "a"]) == 2
+    assert capsys.readouterr().err == "junk.nc: is no netCDF file\n"
+    assert main(["plot", "junk.nc"]) == 2
+    assert capsys.readouterr().err.startswith("junk.nc is a file, not a figure: give --x and --y to draw curves of it")
+
+
 def test_the_command_to_type_is_the_one_that_was_started(monkeypatch, capsys):
     """From a wheel, `python` may be another one, which has no `study`."""
     monkeypatch.setattr(sys, "argv", ["/anywhere/bin/roughcoat", "plot", "fig10"])

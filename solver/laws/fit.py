@@ -23,7 +23,7 @@ def pressures(p_min, p_max, step, mesh):
 
 
 @one_blas_thread()
-def fit_power_law(Nbar_Ra2, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
+def fit_power_law(Nbar_Ra2, *, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
     """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1).
 
     Parameters

@@ -45,6 +45,13 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
             label = [number(one) for one in label] if isinstance(label, (list, tuple)) else number(label)
         return super().sel({name: label}, method=method, tolerance=number(tolerance))
 
+    def reindex_like(self, other, method=None, tolerance=None) -> dict:
+        """As that of other indexes of xarray. Raises ValueError for texts: they would be the new coordinate."""
+        texts = [one for one in other.index if isinstance(one, str)] if other.index.dtype.kind in "OTU" else ()
+        if texts:
+            raise ValueError(f'{other.dim}: give numbers in the SI unit here; texts such as "{texts[0]}" are for sel')
+        return super().reindex_like(other, method=method, tolerance=tolerance)
+
 
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""

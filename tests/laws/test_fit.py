@@ -86,3 +86,8 @@ def test_isolated_spots_are_fitted_by_hertz():
 def test_wrong_calls(arguments, message):
     with pytest.raises(ValueError, match=message.replace("(", r"\(")):
         fit_power_law(**({"Nbar_Ra2": 4.0} | arguments))
+
+
+def test_density_and_radius_are_not_taken_for_a_range_of_pressures():
+    with pytest.raises(TypeError):
+        fit_power_law(250000, 0.004)

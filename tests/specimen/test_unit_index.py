@@ -32,3 +32,10 @@ def test_texts_in_arrays_select(found):
     assert found.sel(P=found.P > 1.5).P.values.tolist() == [2.0, 5.0]
     with pytest.raises(ValueError, match="is a pressure"):
         found.sel(P=np.array(["5 N", "1 Pa"]))
+
+
+def test_texts_are_no_new_coordinates(found):
+    """They were, and all results NaN."""
+    for texts in (["1 N"], ["1 N", "3 N"], np.array(["1 N"], dtype=object)):
+        with pytest.raises(ValueError, match='P: give numbers in the SI unit here; texts such as "1 N" are for sel'):
+            found.reindex(P=texts)

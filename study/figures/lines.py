@@ -3,6 +3,8 @@
 from collections.abc import Callable
 from itertools import product
 from math import prod
+from numbers import Real
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -58,6 +60,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
     hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
     check_roles(found, x, y, hue)
+    found = found.sortby(x) if x in found.dims else found  # a curve through loads as they were given runs to and fro
     found = found.squeeze([dim for dim, size in found.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(found[x], found[y])
     if "validity" in found and not {*found["validity"].dims} <= {*pair[1].dims}:
@@ -145,9 +148,9 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
     return dataset
 
 
-def number(name: str, value: float | str, unit: str) -> float:
+def number(name: str, value: Any, unit: str) -> float:
     """A value as a number in the unit of the dataset: 2e-6, or "2 um" of physical results. Raises StudyError."""
-    if not isinstance(value, str):
+    if isinstance(value, Real):
         return value
     try:
         return quantity(name, value, unit).value

@@ -1,0 +1,28 @@
+"""What users give to `plot` beside texts and numbers, and in another order."""
+
+import numpy as np
+import pytest
+
+import study
+
+pint = pytest.importorskip("pint")
+
+
+@pytest.fixture(scope="module")
+def found():
+    given = {"R": "5 mm", "E2": "70 GPa", "base": "half_space", "micro": "smooth", "x": 2}
+    return study.solve(**given, P=["10 N", "1 N", "5 N"], nu2=[0.3, 0.2])
+
+
+def test_curves_run_from_left_to_right(found):
+    line = study.plot(found, "P", "a", hue="nu2").axes[0].lines[0]
+    assert line.get_xdata().tolist() == [1.0, 5.0, 10.0]
+    np.testing.assert_allclose(line.get_ydata(), 1e6 * found.a.sel(nu2=0.3, P=[1.0, 5.0, 10.0]), rtol=1e-12)
+
+
+def test_values_of_axes(found):
+    axes = study.plot(found, "nu2", "a", P=pint.UnitRegistry().Quantity(5, "N")).axes[0]
+    np.testing.assert_allclose(axes.lines[0].get_ydata(), 1e6 * found.a.sel(P="5 N")[::-1], rtol=1e-12)
+    for wrong in (["5 N"], None, slice(0, 1)):
+        with pytest.raises(study.StudyError, match="must be a force, such as"):
+            study.plot(found, "nu2", "a", P=wrong)

@@ -19,6 +19,9 @@ SKEWED = 0.8
 #: Mean squares of the slopes along x and y may differ by this factor. A surface stretched so far along one axis has N̄
 #: 18 % below, and Ra 5 % above, what the isotropic formulas give.
 ISOTROPIC = 2.0
+#: Mean curvature over the one by medians: at most 1.5 on random maps of any size, and beyond 2 on hardly a profile, of
+#: few peaks (tests/specimen/test_scans_as_they_come.py).
+SPIKED = 2.0
 
 
 @dataclass(frozen=True)
@@ -87,6 +90,8 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
     ValueError : an unknown method or form, a cutoff below three steps, a sphere smaller than the scan; after the filter
         fewer than 16 points in a direction, no heights, or no summits
     """
+    if not isinstance(scan, Scan):
+        raise ValueError("give a scan: that of study.roughness.read, or of height_map or profile, which take arrays")
     if method not in ("moments", "summits"):
         raise ValueError(f'{scan.name}: method = {method!r}; allowed are "moments" and "summits"')
     z, filtered = _filtered(scan, form, cutoff)
@@ -165,6 +170,13 @@ def _notes(z, steps, along, m, found):
     if expected < MANY:
         percent = (3 - z.ndim) * 100 / math.sqrt(expected)
         yield f"about {expected:.0f} asperities: N̄ is uncertain by some {percent:.0f} %"
+    usual = summits.usual_curvature(z, steps) if found.found is None else found.usual
+    if found.curvature > SPIKED * usual:
+        ratio = f"{found.curvature / usual:.2g} times" if usual > 0 else "far"
+        yield (
+            f"a few sharp points make Ra {ratio} smaller than the others do: spikes, dust, or heights in coarse steps; "
+            "take them out, or give a cutoff"
+        )
     slopes = [one.m2 for one in along]
     if max(slopes) > ISOTROPIC * min(slopes):
         ratio = math.sqrt(max(slopes) / min(slopes))

@@ -78,6 +78,8 @@ def cap_radius(height, width):
 def _positive(name: str, value):
     """The value, a list as an array. Raises ValueError if it is text, or not all of it is positive and finite."""
     value = np.asarray(value) if isinstance(value, list | tuple) else value
+    if getattr(value, "attrs", {}).get("units", "1") != "1":  # two of them may differ, and the answer would have it
+        raise ValueError(f"{name} is in {value.attrs['units']}: give numbers, all lengths in one unit")
     if isinstance(value, np.ndarray | np.generic) and value.dtype.kind in "iu":
         value = value.astype(float)  # squares of whole numbers of 32 bits overflow from 46,341 on
     if value is None or np.asarray(value).dtype.kind in "OSU" and not hasattr(value, "magnitude"):

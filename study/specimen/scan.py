@@ -72,6 +72,10 @@ def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") ->
         positive, an unknown unit, or heights so large that their unit must be another
     """
     dx = number(f"{name}: dx", dx, unit)
+    known = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
+    own = [abs(float(one[1] - one[0])) for one in known if one.dtype.kind in "iuf" and one.size > 1]
+    if dy is None and len(own) == 2 and not np.isclose(*own, rtol=UNEVEN, atol=0):
+        raise ValueError(f"{name}: the coordinates of z have steps of {own[0]:g} along x, {own[1]:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
     return _checked(z, (rows, dx), unit, height_unit, name)
 

@@ -56,6 +56,13 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
     if n >= FEWEST:
         if dx is None:
             raise ValueError(f"{path.name}: a map of {table.shape[0]} × {n} heights: give dx (and dy), their distance")
+        for two, line in ((table[:2], "row"), (table[:, :2].T, "column")):
+            first = two[0]
+            if _in_equal_steps(first) and not _in_equal_steps(two[-1]):
+                raise ValueError(
+                    f"{path.name}: the first {line} has equal steps, {first[0]:g}, {first[1]:g}, {first[2]:g} ...: "
+                    "positions or numbers, not heights; take it out of the file"
+                )
         return height_map(table, dx=dx, dy=dy, **units)
     if n > 2 or (n == 2) == (dx is not None) or dy is not None:
         given = "".join(f" with {name} = {value}" for name, value in (("dx", dx), ("dy", dy)) if value is not None)
@@ -70,12 +77,19 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
 def _as_headed(heading: str, given: dict[str, str], name: str) -> None:
     """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some."""
     said = [word for word in re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", heading) if word in UNITS]
+    of_heights = re.findall(r"Value units: *(\S+)", heading)  # as Gwyddion writes it; of lengths it says nothing
     for argument, unit in given.items():
-        if said and metres(unit, name) not in [UNITS[word] for word in said]:
+        said = of_heights if of_heights and argument == "height_unit" else said
+        if said and metres(unit, name) not in [UNITS.get(word) for word in said]:
             raise ValueError(
                 f'{name}: {argument} is {unit}, but the heading has {" and ".join(said)}: "{heading[:80]}". Give unit '
                 "and height_unit as the heading has them, or take its units out of it."
             )
+
+
+def _in_equal_steps(line: np.ndarray) -> bool:
+    steps = np.diff(line)
+    return bool(steps[0] != 0 and np.ptp(steps) <= 1e-6 * abs(steps[0]))
 
 
 def _picked(table: np.ndarray, columns: tuple, name: str) -> np.ndarray:

@@ -24,6 +24,7 @@ SHORTEST = 3.0
 SUMMITS_PER_AREA = 1 / (6 * math.pi * math.sqrt(3))  # times m4/m2
 CURVATURE = 8 / (3 * math.sqrt(math.pi))  # times √m4: 1/R with R = 0.375 √(π/m4)
 HEIGHTS = 1 + 16 / math.pi - 3 * math.sqrt(3)  # 0.8968: σ_s² = (1 - 0.8968/α) m0
+MEDIAN = 0.67449  # of |x| of a normal x, over its standard deviation
 #: The same of the peaks of a profile (Rice): √(m4/m2)/2π of them in a unit of length, of mean curvature √(π m4/2).
 PEAKS_PER_LENGTH = 1 / (2 * math.pi)
 PEAK_CURVATURE = math.sqrt(math.pi / 2)
@@ -39,12 +40,16 @@ class Moments(NamedTuple):
 
 
 class Asperities(NamedTuple):
-    """Number per area (m⁻²), mean curvature (m⁻¹), standard deviation of heights (m), and how many were counted."""
+    """Number per area (m⁻²), mean curvature (m⁻¹), standard deviation of heights (m), how many were counted.
+
+    usual : the curvature by medians (m⁻¹), to which a few spikes add nothing
+    """
 
     density: float
     curvature: float
     spread: float
     found: int | None = None
+    usual: float = math.nan
 
 
 def without_form(z: np.ndarray, steps: tuple, form: str | float) -> np.ndarray:
@@ -131,16 +136,23 @@ def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
     found = int(highest.sum())
     if found == 0:
         return None
-    second = (_second_differences(z, axis)[highest].mean() / step**2 for axis, step in enumerate(steps))
-    curvature = -sum(map(float, second)) / z.ndim
+    second = (_second_differences(z, axis)[highest] / step**2 for axis, step in enumerate(steps))
+    curvatures = -sum(second) / z.ndim
+    curvature, usual = float(curvatures.mean()), float(np.median(curvatures))
     density = found / (centre.size * math.prod(steps))
     variance = float(np.var(centre[highest]))
     if z.ndim == 1:
         (m,) = moments(z, steps)
         density = density**2 * SUMMITS_PER_AREA / PEAKS_PER_LENGTH**2
-        curvature *= CURVATURE / PEAK_CURVATURE
+        curvature, usual = (CURVATURE / PEAK_CURVATURE * one for one in (curvature, usual))
         variance = max(0.0, variance - (HEIGHTS - PEAK_HEIGHTS) * m.m2**2 / m.m4)
-    return Asperities(density, curvature, math.sqrt(variance), found)
+    return Asperities(density, curvature, math.sqrt(variance), found, usual)
+
+
+def usual_curvature(z: np.ndarray, steps: tuple) -> float:
+    """The curvature of `of_moments` with m4 from the median of the second differences, a Gaussian one of √m4."""
+    medians = [np.median(np.abs(np.diff(z, 2, axis=axis))) / step**2 for axis, step in enumerate(steps)]
+    return CURVATURE * math.sqrt(np.mean(np.square(medians))) / MEDIAN
 
 
 def _second_differences(z: np.ndarray, axis: int) -> np.ndarray:

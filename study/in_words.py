@@ -54,6 +54,8 @@ BROKEN = {
 }
 WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of its radius), as in a cup that fits \
 closely: the bodies are no half-spaces there."
+OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
+each R a table of its own, in cases."
 
 
 class Summary(str):
@@ -199,4 +201,7 @@ def doubts(contact: xr.Dataset) -> list[str]:
         found += [sharp] if sharp else []
     if all(name in v and v[name].attrs.get("units") == "m" for name in ("R1", "R2", "a")):
         found += [WIDE] * bool((v["a"] > derived.STEEP * np.minimum(abs(v["R1"]), abs(v["R2"]))).any())
+    tables = "R" in v and np.char.startswith(v["micro"].values.astype(str), "table:").any()
+    if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
+        found.append(OF_SEVERAL_RADII)
     return found + absurd(contact)

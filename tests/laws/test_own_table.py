@@ -1,6 +1,7 @@
 """A table of one's own as the micro law: its curves, its range, its mistakes, and how a study uses it."""
 
 import pickle
+import warnings
 from itertools import combinations
 from pathlib import Path
 
@@ -182,3 +183,17 @@ def test_it_travels_with_its_cases(table):
     del laws.LAWS["table:mine.csv"]
     laws._declare(laws.LAWS)
     assert compute(pickle.loads(sent))["status"] == 0
+
+
+def test_a_table_of_several_radii_is_doubted(table):
+    """A/R is of one R: A of a ball twice as large was that of asperities twice as large, without a word."""
+    pytest.importorskip("pint")
+    given = {"E2": "200 GPa", "base": "half_space", "P": "10 N", "micro": table(), "x": 2}
+    with pytest.warns(UserWarning, match="with several R its asperities grow with the punch"):
+        study.solve(**given, R=["5 mm", "10 mm"])
+    Path("own.csv").write_text("".join(Path("mine.csv").read_text().splitlines(True)[:-1]), encoding="utf-8")
+    rows = [{"R": "5 mm", "micro": given.pop("micro")}, {"R": "10 mm", "micro": "table:own.csv"}]
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        study.solve(**given, cases=rows)
+        study.solve(**given, **rows[0])

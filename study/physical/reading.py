@@ -94,7 +94,9 @@ def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
     """The parameters, with those of the rows as CaseValues. These come first, since `case` is the first dimension."""
     found = {}
     for name in dict.fromkeys(name for row in rows for name in row):
-        if name in parameters or not all(name in row for row in rows):
+        if name == "label":  # a case need not have one
+            found[name] = CaseValues([row.get(name, "") for row in rows])
+        elif name in parameters or not all(name in row for row in rows):
             errors.append(f"{name} must be given in every case, or once for all")
         else:
             found[name] = CaseValues([row[name] for row in rows])
@@ -110,14 +112,20 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
     materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
-    taken = {MOVED, *SCENE, *BODIES} - along_itself - set(materials)
+    with_units = {name for name in parameters if name in VOCABULARY and unit_of(name) != "1"}
+    taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)
     labels = {name: (name, arrays[name].values) for name in along_itself if name not in arrays[name].coords}
     labels |= materials
     lists = {name: given for name, given in parameters.items() if type(given) in (list, tuple, range, CaseValues)}
     lengths = {"case" if type(given) is CaseValues else name: (name, len(given)) for name, given in lists.items()}
     lengths |= {body: (body, len(texts)) for body, (_, texts) in materials.items()}
     for name, given in arrays.items():
-        errors += [f'{name}: a dimension cannot be called "{dim}" here' for dim in given.dims if dim in taken]
+        hint = ", unless that is a DataArray over itself"
+        errors += [
+            f'{name}: a dimension cannot be called "{dim}" here{hint * (dim in parameters)}'
+            for dim in given.dims
+            if dim in taken
+        ]
         for dim, length in given.sizes.items():
             other, expected = lengths.setdefault(dim, (name, length))
             if length != expected:

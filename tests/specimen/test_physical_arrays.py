@@ -31,7 +31,8 @@ def of(values, units: str, dim: str = "ball", labels=None) -> xr.DataArray:
             {"R": "1 mm", "punch": ["PTFE", "copper"], "P": of([3, 4], "N", "punch", ["copper", "PTFE"])},
             "P has other values of punch, or in another order, than punch",
         ),
-        ({"R": ["1 mm", "2 mm"], "P": of([3, 4], "N", "R")}, 'P: a dimension cannot be called "R" here'),
+        ({"R": ["1 mm", "2 mm"], "P": of([3, 4], "N", "R")}, 'P: a dimension cannot be called "R" here, unless that'),
+        ({"R": "1 mm", "Ra": ["1 um"], "P": of([3], "N", "Ra")}, 'P: a dimension cannot be called "Ra" here, unless'),
         ({"R": "1 mm", "P": of([3, 4], "N", "moved input")}, 'P: a dimension cannot be called "moved input" here'),
         ({"R": "1 mm", "P": of(["3", "4"], "N")}, "P: a DataArray must hold numbers"),
         ({"R": "1 mm", "P": of([True, True], "N")}, "P: a DataArray must hold numbers"),
@@ -57,3 +58,10 @@ def test_short_floats_do_not_overflow():
     """210 GPa of float16 became an infinite modulus in Pa, a rigid body."""
     found = study.solve(**BALL | {"R": "1 mm", "P": "1 N", "E2": of(np.array([210], np.float16), "GPa")})
     assert found.E2.values.tolist() == [210e9]
+
+
+def test_a_case_need_not_have_a_label():
+    """As without units; of one with a label and one without it was asked of every case."""
+    rows = [{"P": "1 N", "label": "soft"}, {"P": "2 N"}]
+    found = study.solve(**BALL, R="1 mm", cases=rows)
+    assert found.label.values.tolist() == ["soft", ""]

@@ -2,6 +2,7 @@
 
 import tempfile
 from dataclasses import dataclass, replace
+from numbers import Integral
 from pathlib import Path
 from typing import TextIO
 
@@ -11,6 +12,7 @@ from ..data.dataset import status_words
 from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
 from ..spec.definition import LARGE, Definition, StudyError
+from ..spec.grid import shown
 from ..spec.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses
 from ..store.earlier import statuses
@@ -68,6 +70,20 @@ class Order:
     yes: bool = False
     command: str = ""
     stream: TextIO | None = None
+
+    def __post_init__(self):
+        def whole(*values) -> bool:
+            return all(isinstance(value, Integral) and not isinstance(value, bool) for value in values)
+
+        wrong, pair = [], isinstance(self.part, tuple) and len(self.part) == 2
+        if not (pair and whole(*self.part) and 1 <= self.part[0] <= self.part[1]):
+            wrong.append(f"part = {shown(self.part)}: must be (I, N), whole numbers with 1 <= I <= N")
+        if self.workers is not None and not (whole(self.workers) and self.workers > 0):
+            wrong.append(f"workers = {shown(self.workers)}: must be a whole number, 1 or more")
+        if not (isinstance(self.retry, (tuple, list)) and whole(*self.retry)):
+            wrong.append(f"retry = {shown(self.retry)}: must be a tuple of values of status")
+        if wrong:
+            raise StudyError(wrong)
 
     @property
     def store(self) -> Store:

@@ -179,3 +179,20 @@ def test_a_block_size_of_one_part_does_not_change_which_cases_it_has(file):
     later = np.concatenate(cases.blocks_of(whole[whole % 2 == 0], 5, (2, 3)))
     assert set(later) == {case for case in shares[1] if case % 2 == 0}
     assert [len(block) for block in cases.blocks_of(whole, 5)] == [5, 5, 5, 5, 3]
+
+
+@pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        ({"part": (0, 2)}, r"part = \(0, 2\): must be \(I, N\), whole numbers with 1 <= I <= N"),
+        ({"part": (3, 2)}, r"part = \(3, 2\): must be"),
+        ({"part": "1/2"}, 'part = "1/2": must be'),
+        ({"retry": ("iteration_limit",)}, "must be a tuple of values of status"),
+        ({"workers": 2.5}, "workers = 2.5: must be a whole number, 1 or more"),
+        ({"workers": 0}, "workers = 0: must be"),
+    ],
+)
+def test_options_that_mean_nothing_are_refused(file, option, message):
+    """A part that is none computed nothing, without a word, and the names of statuses were tried by nobody."""
+    with pytest.raises(study.StudyError, match=message):
+        load(file).run(**option)

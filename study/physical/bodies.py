@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 
 from ..spec.grid import equal_values
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import VOCABULARY, finite
 from ..specimen import materials
 from ..specimen.quantities import Quantity
 from ..terminal import shown
@@ -27,7 +27,7 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
             continue
         given = found.pop(body)
         errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
-        given = given.tolist() if isinstance(given, np.ndarray) else given
+        given = given.tolist() if hasattr(given, "tolist") else given  # of numpy or pandas
         several = isinstance(given, (list, tuple))
         try:
             values = given if several else [given]
@@ -77,4 +77,6 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
     if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3)
     found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
+    if not all(map(finite, (found.E, found.nu, found.E_spread, found.nu_spread))):
+        raise LookupError(f"{shown(found.name)}: E, nu and their spreads must be finite numbers, E in Pa")
     return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)

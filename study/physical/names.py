@@ -30,6 +30,9 @@ class QuantityList(NamedTuple):
     quantities: list[Quantity]
     dim: str
 
+    def __str__(self) -> str:
+        return f"[{', '.join(map(str, self.quantities))}]"
+
 
 def dim_of(name: str) -> str:
     """The dimension along which several values of a parameter lie while the cases are solved.

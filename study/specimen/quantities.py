@@ -52,6 +52,9 @@ class Quantity:
     value: float
     spread: float = 0.0
 
+    def __str__(self) -> str:
+        return f"{self.value:g}"
+
 
 def has_unit(given: Any) -> bool:
     """Whether something is a quantity of pint, or a text of a number and, behind it, a unit or a spread."""

@@ -44,6 +44,8 @@ def test_several_materials_are_one_axis():
     names = ["PTFE", "PEEK", "PMMA"]
     found = study.solve(**COATED | {"layer": names, "body": ["rigid", "glass"]}, P="10 N", x=2)
     assert found.sizes == {"layer": 3, "body": 2, "x": 2} and found.layer.values.tolist() == names
+    series = pytest.importorskip("pandas").Series(names)
+    assert study.solve(**COATED | {"layer": series}, P="10 N", x=2).layer.values.tolist() == names
     alone = study.solve(**COATED | {"layer": "peek", "body": "rigid"}, P="10 N", x=2)
     chosen = found.sel(layer="PEEK", body="rigid")
     np.testing.assert_allclose([chosen.a, chosen.a_spread], [alone.a, alone.a_spread], rtol=1e-12)
@@ -82,6 +84,10 @@ def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
         ({"nu2": 0.3}, "body and nu2 are both given"),
         ({"m": 0.5}, "punch and m are both given"),
         ({"coating": "PTFE"}, '"coating" is not a parameter'),
+        ({"layer": materials.Material("mine", "1 GPa", 0.3, 0, 0)}, 'layer: "mine": E, nu and their spreads must be'),
+        ({"layer": materials.Material("mine", 1e9, float("nan"), 0, 0)}, 'layer: "mine": E, nu and their spreads must'),
+        ({"layer": materials.Material("mine", 1e9, 0.6, 0, 0)}, r"^nu1 = 0.6: must be in \(-1, 0.5\]$"),
+        ({"layer": [materials.Material("mine", 1e9, 0.6, 0, 0)]}, r"^nu1 = \[0.6\]: must be in \(-1, 0.5\]$"),
     ],
 )
 def test_slips_are_named(change, message):

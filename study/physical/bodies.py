@@ -27,7 +27,6 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
             continue
         given = found.pop(body)
         errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
-        given = given.tolist() if hasattr(given, "tolist") else given  # of numpy or pandas
         several = isinstance(given, (list, tuple))
         try:
             values = given if several else [given]

@@ -1,6 +1,7 @@
 """What can be wrong with a physical scene as a whole, though each of its inputs is right."""
 
 from functools import partial
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -61,8 +62,8 @@ def impossible(scene: Scene) -> list[str]:
     if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
         R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
         messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
-    n = np.asarray(scene.parameters.get("n", given.get("n", 1.0)))
-    if n.dtype.kind not in "iuf":
+    n = np.array(scene.parameters.get("n", given.get("n", 1.0)), dtype=object)
+    if not all(isinstance(one, Real) and not isinstance(one, bool) for one in n.ravel().tolist()):
         return [*messages, f"n = {shown(scene.parameters['n'])}: must be a number"]
     rigid = np.isinf(given["E2"])
     if not np.any(rigid):

@@ -37,6 +37,12 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
+def _plain(given: Any) -> Any:
+    """What is of numpy or pandas as a list, or as a single value; all else as it is."""
+    known = hasattr(given, "tolist") and not hasattr(given, "magnitude") and not isinstance(given, xr.DataArray)
+    return given.tolist() if known else given
+
+
 def read(parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True) -> Scene | None:
     """The physical scene that the parameters of `study.solve` describe; None if they are dimensionless.
 
@@ -48,6 +54,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
+    parameters, *rows = ({name: _plain(value) for name, value in table.items()} for table in (parameters, *rows))
     pairs = [pair for table in (parameters, *rows) for pair in table.items()]
     if not any(name in SCENE or name in BODIES or _has_unit(value) for name, value in pairs):
         return None
@@ -182,7 +189,6 @@ def _all(where: Any) -> bool:
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:
     """The quantities in a list, an array or a single value."""
-    given = given.tolist() if hasattr(given, "tolist") and np.ndim(given) == 1 else given  # of numpy or pandas
     given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
     if not isinstance(given, (list, tuple, range)):
         return si(name, given)

@@ -60,7 +60,7 @@ def _reduced(given: dict, name: str, nu: str) -> Any:
 
 def over_dimensions(given: Any, name: str) -> Any:
     """Values of a parameter without a unit, as an array over the dimension of its name where they are several."""
-    return xr.DataArray(list(given), dims=name) if isinstance(given, (list, tuple, range, np.ndarray)) else given
+    return xr.DataArray(list(given), dims=name) if isinstance(given, (list, tuple, range)) else given
 
 
 def parameters_from_si(given: Values) -> tuple[Values, Values]:

@@ -65,3 +65,18 @@ def test_a_case_need_not_have_a_label():
     rows = [{"P": "1 N", "label": "soft"}, {"P": "2 N"}]
     found = study.solve(**BALL, R="1 mm", cases=rows)
     assert found.label.values.tolist() == ["soft", ""]
+
+
+def test_series_and_indexes_of_words_and_ratios_are_axes():
+    """An Index of bases gave m a dimension of its own, with numbers of one base beside the other."""
+    pandas = pytest.importorskip("pandas")
+    words = ["half_space", "layered"]
+    given = BALL | {"R": "5 mm", "P": "1 N", "E1": "2 GPa", "E_punch": "3 GPa", "h": "20 um"}
+    expected = study.solve(**given | {"base": words})
+    for form in (pandas.Index, pandas.Series, np.array, tuple):
+        found = study.solve(**given | {"base": form(words)})
+        assert found.a.dims == ("base",) and (found.a == expected.a).all(), form
+    one = study.solve(**given | {"base": "layered", "E1": "1 GPa", "E_punch": "rigid"})
+    del given["E1"], given["E_punch"]
+    again = study.solve(**given | {"base": np.array("layered"), "n": np.array(1 / 210)})
+    np.testing.assert_allclose(again.a, one.a, rtol=1e-12)

@@ -194,7 +194,9 @@ def allowed(own: Parameter) -> str:
 def check(own: Parameter, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
     if own.choices:
-        return "" if isinstance(value, str) and value in own.choices else allowed(own)
+        table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
+        hint = f'; a table of your own is "table:{table}"' * bool(table)
+        return "" if isinstance(value, str) and value in own.choices else allowed(own) + hint
     if not finite(value):
         return f"must be a finite number, {allowed(own).removeprefix('must be ')}"
     if own.whole and value != int(value):

@@ -158,7 +158,8 @@ def test_pressures_in_another_unit_are_beyond_validity(table):
 
 
 def test_files_that_cannot_be_read(table):
-    for name, words in (("table:none.csv", "none.csv: cannot be read: No such"), ("table:a b.csv", "has a blank")):
+    told = (("table:none.csv", "none.csv: cannot be read: No such"), ("table:a b.csv", "has a blank"))
+    for name, words in (*told, ("a.csv", 'is "table:a.csv"$'), ("Table:a.csv", 'table of your own is "table:a.csv"$')):
         with pytest.raises(study.StudyError, match=words):
             study.solve(P=1e-5, **CASE, micro=name)
 

@@ -32,6 +32,7 @@ def _si(name: str, given: Any, unit: str) -> Any:
     if isinstance(given, xr.DataArray):
         size = quantity(name, f"1 {given.attrs['units']}", unit).value if "units" in given.attrs else 1.0
         return given.drop_attrs(deep=False) * size
+    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given  # of pint
     if hasattr(given, "tolist") and np.ndim(given) and np.asarray(given).dtype.kind in "OUT":  # texts
         given = given.tolist()
     if isinstance(given, (list, tuple)):
@@ -145,6 +146,8 @@ def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:
             found[name] = given
         else:
             value = _si(name, given, VOCABULARY[name].unit)
+            if np.asarray(value).dtype.kind not in "iuf":
+                quantity(name, given, VOCABULARY[name].unit)  # raises: it is no number, nor several
             array = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
             found[name] = array / factor(name, **scales)
     return found

@@ -167,7 +167,8 @@ def test_arrays_with_units_are_read_as_solve_reads_them():
     scale = {"R": xr.DataArray(10.0, attrs={"units": "mm"}), "E2_star": "230 GPa"}
     loads = xr.DataArray([1.0, 2.0], dims="P", attrs={"units": "mN"})
     expected = [1e-3 / (230e9 * 1e-4), 2e-3 / (230e9 * 1e-4)]
-    for P in (loads, np.array(["1 mN", "2 mN"])):
+    pint = pytest.importorskip("pint")
+    for P in (loads, np.array(["1 mN", "2 mN"]), pint.UnitRegistry().Quantity([1.0, 2.0], "mN")):
         found = study.from_physical(**scale, P=P)["P"]
         np.testing.assert_allclose(found, expected, rtol=1e-15, atol=0)  # a few roundings
     assert study.solve(**study.from_physical(**scale, P=loads), base="half_space", micro="smooth", x=2).a.dims == ("P",)
@@ -186,5 +187,8 @@ def test_wrong_calls():
             study.from_physical(R=1.0, E2_star=bad, P=1.0)
     with pytest.raises(ValueError, match='"p_max" is not a parameter'):
         study.from_physical(**SCALE, p_max=3)
+    for bad in (None, True, {"start": 1}, [1.0, None]):
+        with pytest.raises(ValueError, match='^P = .*: must be a force, such as "2 N"$'):
+            study.from_physical(**SCALE, P=bad)
     with pytest.raises(ValueError, match='"Nabr" is not a parameter; did you mean "Nbar"?'):
         study.from_physical(**SCALE, Nabr=3)

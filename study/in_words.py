@@ -37,7 +37,7 @@ MODELS = {
 BROKEN = {
     "layer_not_thin": f"The layer is not thin: the thin-layer equation errs by more than {derived.NOT_THIN:.0%} here. "
     'Take base = "layered".',
-    "few_spots": f"Fewer than {derived.FEW_SPOTS:.0f} asperities are in the contact: the model, which spreads them "
+    "few_spots": f"Fewer than {derived.FEW_SPOTS:.0f} asperities touch: the model, which spreads them "
     "evenly, describes an average over many contacts.",
     "spot_not_small_against_h": f"The contact spots are not small against the layer (b > {derived.SPOT_OVER_LAYER:g} "
     "h): they feel the body below, and the asperities' part is only roughly right.",

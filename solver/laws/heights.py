@@ -31,6 +31,10 @@ _KEPT, _AT_ONCE = 4096, 64
 #: with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves; A has 1e-4 there.
 ERROR, STEPPED = 2e-4, 5e-4
 
+#: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/test_touching.py), and how
+#: many cases have it at a time.
+_ENOUGH, _ROWS = 32, 10_000
+
 #: Standard deviation σ of the heights, in R; and c, the largest height above the mean, over σ.
 SIGMA = Parameter(interval="[0, 10]", powers=(0, 1))
 CUT = Parameter(4.0, interval="[3, 5]")
@@ -161,6 +165,21 @@ def _edge(density, field, sigma, cut):
     return np.where(spread_out, few, (np.pi / 2) ** (2 / 3)), np.where(spread_out, 0.4, 2 / 3)
 
 
+def _touching(density, A, sigma=1.0, cut=None, **_):
+    """Share of the summits within A of the highest, by quadrature over each piece of the density."""
+    A, sigma, cut = np.broadcast_arrays(A, sigma, (density.of or 0.0) if cut is None else cut)
+    with np.errstate(all="ignore"):
+        depths, cuts = (A / sigma).reshape(-1, 1), cut.reshape(-1, 1)
+    (x, weights), shares = np.polynomial.legendre.leggauss(_ENOUGH), []
+    for rows in (slice(first, first + _ROWS) for first in range(0, max(1, len(cuts)), _ROWS)):
+        depth, c = depths[rows], cuts[rows]
+        edges = density.edges(c)
+        width = np.clip(depth, edges[:, :-1], edges[:, 1:]) - edges[:, :-1]
+        at = density.at((edges[:, :-1, None] + width[:, :, None] * (x + 1) / 2)[:, None], c[:, :, None, None])
+        shares.append(((at @ weights)[:, 0] * width / 2).sum(axis=1))
+    return np.concatenate(shares).reshape(A.shape)
+
+
 def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
     p_star, A_star = disc_cell.scales(E, Nbar, Ra)
     return p_star, A_star, sigma / A_star, (density.of or 0.0) if cut is None else cut
@@ -171,7 +190,7 @@ def law(name, density, field=1.0, **known):
     parts = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge, "guess": _guess, "scales": _scales}
     parts = {key: partial(part, density, field) for key, part in parts.items()}
     own = ({} if density.of is None else {"sigma": SIGMA}) | ({density.of: CUT} if isinstance(density.of, str) else {})
-    known = {"error": ERROR} | known
+    known = {"error": ERROR, "touching": partial(_touching, density)} | known
     return Law(name=name, parameters=disc_cell.PARAMETERS | own, rise=1.1, corners=True, **parts, **known)
 
 

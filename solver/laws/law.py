@@ -64,6 +64,7 @@ class Law:
         above `most`, gets no numbers
     corners : whether λ(y) has corners, for example where the lowest summits touch; Ar/An then has its own quadrature
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
+    touching : (A, **parameters) -> share of the summits that touch where the displacement is A; None: all do
     rise : how much the displacement of the asperities saves nodes on the mesh to begin with: 0.5 for power laws, 1.1
         for a law that saturates, fitted to random cases. A wrong value costs time; `error` does not depend on it
 
@@ -88,6 +89,7 @@ class Law:
     most: float = np.inf
     corners: bool = False
     smears: bool = True
+    touching: Callable | None = None
     rise: float = 0.5
     from_pressure: Callable | None = None
     from_displacement: Callable | None = None

@@ -17,7 +17,7 @@ from ..spec.vocabulary import VOCABULARY, attributes
 from .units import physical_attributes, reduced_modulus, without_unit
 
 FEW_SPOTS = 100.0
-"""The model spreads the asperities evenly: with fewer spots than this in the nominal area, N̄πa², they are not many."""
+"""The model spreads the asperities evenly: with fewer in touch than this, N̄πa² of equal heights, they are not many."""
 SPOT_OVER_LAYER = 0.1
 """The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0
@@ -54,11 +54,11 @@ ASSUMPTIONS = {
 def validity(dataset: xr.Dataset) -> xr.DataArray:
     """Assumptions that each case violates, a sum of masks; 0: all hold.
 
-    1 model error of a thin layer > NOT_THIN; 2 N̄πa² < FEW_SPOTS; 4 b(0) > SPOT_OVER_LAYER h on a layer of any kind;
-    8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16 λ(0) > MERGING, but on a lattice; 32
-    a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra, or p_max as of such a spot; 128
-    1/sqrt(N̄) > PITCH_OVER_LAYER h on a layer of any kind. A case without numbers (see `status`) only gets the masks
-    that need none. int32 over the dimensions of `status`.
+    1 model error of a thin layer > NOT_THIN; 2 N̄πa², of random heights those in touch, < FEW_SPOTS; 4 b(0) >
+    SPOT_OVER_LAYER h on a layer of any kind; 8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16
+    λ(0) > MERGING, but on a lattice; 32 a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra, or
+    p_max as of such a spot; 128 1/sqrt(N̄) > PITCH_OVER_LAYER h on a layer of any kind. A case without numbers (see
+    `status`) only gets the masks that need none. int32 over the dimensions of `status`.
 
     Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
     """
@@ -84,7 +84,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
     thin = sum(v["model_used"] == value for value, word in models if word.endswith("thin_layer")) > 0
     violated = {
         1: thin & (v["model_error"] > NOT_THIN),
-        2: rough & (_spots(v) < FEW_SPOTS),
+        2: rough & (_spots(v) * _touching(v) < FEW_SPOTS),
         4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _have("smears", v["micro"]) & (v["lam0"] > MERGING),
@@ -220,6 +220,15 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
 def _have(feature: str, micro):
     """Whether the laws of the cases are "rough", or have another feature. One that is not registered is taken to."""
     return sum(micro == name for name, law in LAWS.items() if not getattr(law, feature)) == 0
+
+
+def _touching(values):
+    """Share of the summits in the centre that touch: 1 of equal heights."""
+    share = np.ones(())
+    for law in [law for name, law in LAWS.items() if law.touching and np.any(values["micro"] == name)]:
+        touch = law.touching(values["A0"], **{name: _given(values, name) for name in law.parameters})
+        share = np.where(values["micro"] == law.name, touch, share)
+    return share
 
 
 def _spots(values):

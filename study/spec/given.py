@@ -99,8 +99,9 @@ class Draft:
         for name in dict.fromkeys(name for row in rows for name in row):
             if name == "label":
                 labels = [row.get("label", "") for row in rows]
-                self.errors += label_slips(labels)
-                self.labels["label"] = ("case",), np.array(labels, dtype=str)
+                slips = label_slips(labels)
+                self.errors += slips
+                self.labels["label"] = ("case",), np.array([] if slips else labels, dtype=str)
             elif self._accept(name, "[[cases]]"):
                 default = VOCABULARY[name].own.default
                 raw = [default if row.get(name) is None else row[name] for row in rows]

@@ -94,7 +94,8 @@ def test_cases_and_their_gaps(tmp_path):
     swapped = text.replace("h = 0.02", "").replace("nu1", "h = 0.02\n    nu1")
     assert messages(tmp_path, swapped) == ['h is missing in case 0: base = "layered" needs it']
     assert messages(tmp_path, text.replace("P = 2e-5", "")) == ["P is missing in case 1"]
-    assert messages(tmp_path, text.replace('"layer"', "3")) == ["[[cases]] label: must be text"]
+    for no_text in ("3", '["a", "b"]', "0x" + 5000 * "f"):
+        assert messages(tmp_path, text.replace('"layer"', no_text)) == ["[[cases]] label: must be text"]
     twins = (
         "[[cases]]\nP = 1\nlabel = 'u'\n[[cases]]\nlabel = 'v'\nP = 1\n[model]\nmicro = 'smooth'\nbase = 'half_space'"
     )

@@ -27,7 +27,7 @@ _CLOSED, _OF_OPERATOR = 1e-13, 1e-2
 _OPEN = 1e-5
 #: Rounding of the residual of a soft layer, times its softness. In its operator the terms of the half-space and L - 1
 #: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
-#: from step to step: half are below 0.5 eps, 2 in 800 above 20 eps (tests/contact/test_equation.py).
+#: from step to step: half are below 0.5 eps, few above 20 eps (tests/contact/test_equation.py).
 _ROUNDING = 20 * np.finfo(float).eps
 
 

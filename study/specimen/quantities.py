@@ -146,7 +146,7 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
         found = registry.Quantity(text)
     except Exception as error:  # pint raises many kinds of errors
         raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
-    if unit != "1" and found.dimensionless:
+    if unit != "1" and found.unitless:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
     if unit != "1" and "%" in text:  # "9 um %" were 0.09 um
         raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
@@ -172,6 +172,8 @@ def _size(word: str, unit: str) -> Decimal | None:
 
 def _understood(found: Any) -> str:
     """What a quantity of the wrong dimension is, in words: "a force"."""
+    if found.dimensionless:
+        return "an angle or a ratio"
     for unit, (what, _) in READABLE.items():
         if found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
             return what

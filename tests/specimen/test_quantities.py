@@ -65,6 +65,7 @@ def test_spreads(sign):
         ("3 N", "m", 'h = "3 N" is a force: must be a length'),
         ("3 Pa", "N", 'h = "3 Pa" is a pressure: must be a force'),
         ("3 kg", "N", 'h = "3 kg" is in kilogram: must be a force'),
+        ("3 mil", "m", 'h = "3 mil" is an angle or a ratio: must be a length'),  # 1/1000 inch is a thou
         ("3 flarp", "m", 'h = "3 flarp": no unit is called like this; must be a length'),
         ("3 um", "1", 'h = "3 um" is a length: must be a number without a unit'),
         ("3 ± x um", "m", "behind ± must be a number"),

@@ -8,8 +8,9 @@ from solver import Status
 from .data import derived
 from .data.dataset import broken, decode
 from .physical.bodies import BODIES
-from .physical.bounds import absurd
+from .physical.bounds import INPUTS, absurd
 from .physical.inputs import is_rigid, used_inputs
+from .physical.names import unit_of
 from .physical.scene import ASSUMED
 from .spec.laws import smooth_laws
 from .spec.vocabulary import CONTROLS, VOCABULARY
@@ -204,4 +205,5 @@ def doubts(contact: xr.Dataset) -> list[str]:
     tables = "R" in v and np.char.startswith(v["micro"].values.astype(str), "table:").any()
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         found.append(OF_SEVERAL_RADII)
-    return found + absurd(contact)
+    given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == unit_of(name)}
+    return found + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})

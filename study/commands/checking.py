@@ -4,6 +4,7 @@ import numpy as np
 
 from ..physical.study_file import read
 from ..spec.definition import Definition
+from ..spec.grid import MOVED
 from ..spec.vocabulary import VOCABULARY
 from ..terminal import answer
 from .arguments import study_file
@@ -13,7 +14,7 @@ def check(_, file: str) -> int:
     """Read a study file and say its size."""
     definition = read(study_file(file))
     size = f"{file}: {definition.cases}, digest {definition.digest[:16]}"
-    return answer(size, *law_lines(definition), *assumed_lines(definition))
+    return answer(size, *law_lines(definition), *assumed_lines(definition), *doubtful_lines(definition))
 
 
 def assumed_lines(definition: Definition) -> list[str]:
@@ -21,6 +22,18 @@ def assumed_lines(definition: Definition) -> list[str]:
     names = definition.scene.assumed if definition.scene else ()
     texts = [f"{name} = {VOCABULARY[name if name in VOCABULARY else 'nu1'].own.default}" for name in names]
     return ["    assumed, as not given: " + ", ".join(texts)] * bool(texts)
+
+
+def doubtful_lines(definition: Definition) -> list[str]:
+    """A line for each input of a study with units that no body has, such as 210 TPa, or whose spread is too wide."""
+    if not definition.scene:
+        return []
+    from ..physical.bounds import INPUTS, absurd  # here: it imports xarray
+
+    given = {name: value for name, value in definition.scene.given.items() if name in INPUTS}
+    given = {name: v.isel({MOVED: 0}) if MOVED in getattr(v, "dims", ()) else v for name, v in given.items()}
+    spreads = {name: one for name, one in definition.scene.spreads.items() if name in INPUTS}
+    return [f"    beware: {text}" for text in absurd(given, spreads)]
 
 
 def law_lines(definition: Definition) -> list[str]:

@@ -23,6 +23,9 @@ _REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa 
 _REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
 _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
 
+#: What has a unit and cannot be zero.
+INPUTS = ("P", "a", "D", "h", "Nbar", "Ra", "sigma", "R", "R1", "R2", "E1", "E2", "E_punch")
+
 Place = dict[str, int]
 """Dimension -> index along it."""
 
@@ -44,17 +47,28 @@ def beyond_bounds(scene: Scene, given: dict) -> list[str]:
     return messages
 
 
-def absurd(contacts: xr.Dataset) -> list[str]:
-    """A sentence for each input in SI units that no body has. Their contacts are solved all the same."""
-    found, variables = [], contacts.variables
+def absurd(given: dict, spreads: dict) -> list[str]:
+    """A sentence for each input in SI units that no body has, or whose spread is too wide. They are solved.
+
+    given, spreads : name -> numbers, labelled (DataArray or Variable) where they are several
+    """
+    found = []
     for name, (low, high, words) in _REAL.items():
-        if name not in variables or variables[name].attrs.get("units") != unit_of(name):
-            continue
-        values = variables[name].values
+        values = np.ravel(given.get(name, np.nan))
         outside = ((values < low) | (values > high)) & np.isfinite(values)
         if outside.any():
             one = readable(float(values[outside][0]), unit_of(name))
             found.append(f"{name} = {one}: {words}; is its unit right?")
+    for name, spread in spreads.items():
+        value, most = given[name], 1.0
+        if name in ("R1", "R2"):
+            most = abs(value / given["R"])  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+        with np.errstate(invalid="ignore"):  # rigid: inf
+            value, spread, most = (np.ravel(0 * (value + spread + most) + one) for one in (value, spread, most))
+        wide = np.flatnonzero((spread > 0) & (spread >= abs(value) * np.minimum(most, 1)))
+        if len(wide):
+            text = readable(float(value[wide[0]]), unit_of(name), float(spread[wide[0]]))
+            found.append(f"{name} = {text}: too wide a spread for the ± of results, which is to first order")
     return found
 
 

@@ -14,7 +14,7 @@ from ..spec.vocabulary import VOCABULARY
 from ..terminal import shown
 from .bodies import BODIES, layered
 from .scales import over_dimensions
-from .scene import Scene
+from .scene import STEP, Scene
 
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
@@ -59,9 +59,12 @@ def equal_cases(scene: Scene) -> list[str]:
 def impossible(scene: Scene) -> list[str]:
     """Messages for bodies that cannot touch as they are given."""
     given, messages = scene.given, []
-    if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
+    up = {name: given[name] + STEP * scene.spreads.get(name, 0.0) for name in ("R1", "R2") if name in given}
+    if up and not np.all(1 / up["R1"] + 1 / up["R2"] > 0):
         R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
-        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
+        too = ", with their spreads too" * bool({*up} & {*scene.spreads})
+        wider = f"a cup (the negative radius) must be wider than its ball{too}"
+        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: {wider}")
     n = np.array(scene.parameters.get("n", given.get("n", 1.0)), dtype=object)
     if not all(isinstance(one, Real) and not isinstance(one, bool) for one in n.ravel().tolist()):
         return [*messages, f"n = {shown(scene.parameters['n'])}: must be a number"]

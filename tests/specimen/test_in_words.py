@@ -128,12 +128,15 @@ def test_cases_that_xarray_took_out_are_not_there():
             {"micro": "disc_cell", "Nbar": "1 1/um^2", "Ra": "40 nm"},
             "Ra = 40 nm is small for Nbar = 1 1/µm²: the asperities",
         ),
+        ({"h": ["2 um", "1 ± 2 um"]}, "h = 1.0 ± 2.0 µm: too wide a spread for the ± of results"),
+        ({"R": None, "R1": "10 ± 1 mm", "R2": ["-30 mm", "-11 mm"]}, "R1 = 10.0 ± 1.0 mm: too wide a spread"),
     ],
 )
 def test_slips_of_a_prefix_are_noticed(change, sentence):
     """mPa for MPa, Mm for mm: the right kind of unit, and a contact that can be solved."""
     with pytest.warns(UserWarning) as warned:
-        found = study.solve(**COATED | {"P": "10 N", "x": 2} | change)
+        given = COATED | {"P": "10 N", "x": 2} | change
+        found = study.solve(**{name: value for name, value in given.items() if value is not None})
     assert sentence in str(warned[0].message)
     assert f"Beware: {sentence}" in study.summary(found)
 

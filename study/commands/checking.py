@@ -33,7 +33,7 @@ def doubtful_lines(definition: Definition) -> list[str]:
     given = {name: value for name, value in definition.scene.given.items() if name in INPUTS}
     given = {name: v.isel({MOVED: 0}) if MOVED in getattr(v, "dims", ()) else v for name, v in given.items()}
     spreads = {name: one for name, one in definition.scene.spreads.items() if name in INPUTS}
-    return [f"    beware: {text}" for text in absurd(given, spreads)]
+    return [f"{definition.name}: beware: {text}" for text in absurd(given, spreads)]
 
 
 def law_lines(definition: Definition) -> list[str]:

@@ -11,6 +11,7 @@ from ..terminal import answer, say
 from ..work.plan import status_values
 from .answers import cost_line, failure_lines, report_line, state_line, verified_line
 from .arguments import STUDIES, packaged, study_file
+from .checking import doubtful_lines
 
 
 def items(options) -> list:
@@ -43,6 +44,8 @@ def status(options, file: str) -> int:
 def run(options, file: str) -> int:
     """Compute what is missing, or say what that would cost."""
     study = _opened(options, file)
+    for line in doubtful_lines(study.definition):
+        say(line, sys.stderr)
     if options.dry_run:
         return _dry_run(study, options)
     return _compute(study, options, part=options.part, force=options.force)

@@ -166,16 +166,19 @@ def test_check_says_what_is_assumed(tmp_path, capsys):
         assert capsys.readouterr().out.splitlines()[1:] == [said]
 
 
-def test_check_doubts_slips_of_a_prefix_and_wide_spreads(tmp_path, capsys):
-    """As `study.solve` does; the commands `run`, `status` and `plot` say nothing of it."""
+def test_slips_of_a_prefix_and_wide_spreads_are_doubted(tmp_path, capsys):
+    """By `check` and by `run`, as by `study.solve`."""
     path = tmp_path / "mine.toml"
     text = TEXT.replace('"200 GPa"', '"200 TPa"').replace('"2 um", ', '"2 ± 3 um", ')
     path.write_text(text, encoding="utf-8")
     assert main(["check", str(path)]) == 0
-    assert capsys.readouterr().out.splitlines()[2:] == [
-        "    beware: E1 = 2e+05 GPa: materials have 1 Pa to 2 TPa; is its unit right?",
-        "    beware: h = 2.0 ± 3.0 µm: too wide a spread for the ± of results, which is to first order",
+    doubts = [
+        "mine: beware: E1 = 2e+05 GPa: materials have 1 Pa to 2 TPa; is its unit right?",
+        "mine: beware: h = 2.0 ± 3.0 µm: too wide a spread for the ± of results, which is to first order",
     ]
+    assert capsys.readouterr().out.splitlines()[2:] == doubts
+    assert main(["run", str(path), "--dry-run"]) == 0
+    assert capsys.readouterr().err.splitlines() == doubts
 
 
 @pytest.mark.parametrize(

@@ -109,7 +109,8 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     head, *spread = _SPREAD.split(text)
     said = f'{name} = "{on_one_line(text, LONGEST)}"'
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
-        raise ValueError(f"{said}: {wanted}")
+        bare = '; without brackets, as in "3 ± 0.2 mm"' * (bool(spread) and text.startswith("("))
+        raise ValueError(f"{said}: {wanted}{bare}")
     if _AMBIGUOUS.search(text):
         raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
     if not spread:

@@ -69,6 +69,7 @@ def test_spreads(sign):
         ("3 flarp", "m", 'h = "3 flarp": no unit is called like this; must be a length'),
         ("3 um", "1", 'h = "3 um" is a length: must be a number without a unit'),
         ("3 ± x um", "m", "behind ± must be a number"),
+        ("(3 ± 0.2) um", "m", 'must be a length, such as "2 mm"; without brackets'),
         ("3 ± 4 ± 5 um", "m", "must be a length"),
         ("um", "m", "must be a length"),
         ("1e999 m", "m", "must be finite"),

@@ -19,6 +19,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import erf
 
+from ..numerics.quadrature import gauss_legendre
 from ..parameters import Parameter
 from . import disc_cell, spread
 from .law import Curve, Law
@@ -166,17 +167,18 @@ def _edge(density, field, sigma, cut):
 
 
 def _touching(density, A, sigma=1.0, cut=None, **_):
-    """Share of the summits within A of the highest, by quadrature over each piece of the density."""
+    """Share of the summits within A of the highest, of the shape of A and the parameters together, by quadrature over
+    each piece of the density."""
     A, sigma, cut = np.broadcast_arrays(A, sigma, (density.of or 0.0) if cut is None else cut)
     with np.errstate(all="ignore"):
         depths, cuts = (A / sigma).reshape(-1, 1), cut.reshape(-1, 1)
-    (x, weights), shares = np.polynomial.legendre.leggauss(_ENOUGH), []
+    (t, weights), shares = gauss_legendre(_ENOUGH), []
     for rows in (slice(first, first + _ROWS) for first in range(0, max(1, len(cuts)), _ROWS)):
         depth, c = depths[rows], cuts[rows]
         edges = density.edges(c)
         width = np.clip(depth, edges[:, :-1], edges[:, 1:]) - edges[:, :-1]
-        at = density.at((edges[:, :-1, None] + width[:, :, None] * (x + 1) / 2)[:, None], c[:, :, None, None])
-        shares.append(((at @ weights)[:, 0] * width / 2).sum(axis=1))
+        at = density.at((edges[:, :-1, None] + width[:, :, None] * t)[:, None], c[:, :, None, None])
+        shares.append(((at @ weights)[:, 0] * width).sum(axis=1))
     return np.concatenate(shares).reshape(A.shape)
 
 

@@ -79,10 +79,10 @@ def _as_headed(heading: str, given: dict[str, str], name: str) -> None:
     said = [word for word in re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", heading) if word in UNITS]
     of_heights = re.findall(r"Value units: *(\S+)", heading)  # as Gwyddion writes it; of lengths it says nothing
     for argument, unit in given.items():
-        said = of_heights if of_heights and argument == "height_unit" else said
-        if said and metres(unit, name) not in [UNITS.get(word) for word in said]:
+        own = of_heights if of_heights and argument == "height_unit" else said
+        if own and metres(unit, name) not in [UNITS.get(word) for word in own]:
             raise ValueError(
-                f'{name}: {argument} is {unit}, but the heading has {" and ".join(said)}: "{heading[:80]}". Give unit '
+                f'{name}: {argument} is {unit}, but the heading has {" and ".join(own)}: "{heading[:80]}". Give unit '
                 "and height_unit as the heading has them, or take its units out of it."
             )
 

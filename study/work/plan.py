@@ -12,10 +12,10 @@ from ..data.dataset import status_words
 from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
 from ..spec.definition import LARGE, Definition, StudyError
-from ..spec.grid import shown
 from ..spec.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses
 from ..store.earlier import statuses
+from ..terminal import shown
 from .cost import PER_CASE, describe, estimate
 
 

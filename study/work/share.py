@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 #: time than in a single batch; in blocks of 4000 they take 15 % more.
 BLOCK = 10_000
 SLOW_BLOCK = 2000  # the same where a case may take some milliseconds
-#: Seconds of work that must be left for each process that is started: it answers after 0.4 to 2 s, by the machine, and
+#: Seconds of work that must be left for each process that is started. It answers after up to 2 s (`processes.py`), and
 #: meanwhile the calling thread goes on.
 START = 1.0
 

@@ -1,4 +1,4 @@
-"""Random bit flips over results and block files of five studies; seeded, a few minutes:
+"""Random bit flips over results and block files of five studies; seeded, 10,000 by default, which takes an hour:
 
     python tests/fuzz_files.py [FLIPS [SEED]]
 

@@ -28,7 +28,7 @@ RUN := $(VENV)/bin/python -m study
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
 TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain literature validate \
-  test check kernels mutants fuzz bench speed lint clean
+  test check kernels lowest mutants fuzz bench speed lint clean
 
 .DEFAULT_GOAL := help
 .PHONY: $(TARGETS) always
@@ -89,6 +89,13 @@ check: $(READY) lint ## for the inner loop: ruff, and tests that take half a min
 kernels: $(READY) ## the tests of the rooms that compute, under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
 	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $(NUMERIC) || exit 1; done
+
+lowest: ## all tests with the lowest versions that pyproject.toml allows, installed into .venv-lowest
+	$(PYTHON) -m venv .venv-lowest
+	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: $$($(PYTHON) tests/lowest.py)
+	.venv-lowest/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
+	@touch .venv-lowest/.ready
+	@$(MAKE) --no-print-directory test VENV=.venv-lowest
 
 mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md

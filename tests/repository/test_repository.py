@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT, STUDIES
+from lowest import lowest
 
 from study.catalogue import FIGURES, SCHEMES, TABLES
 
@@ -18,8 +19,8 @@ MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
-           "picard_domain", "literature", "validate", "test", "check", "kernels", "mutants", "fuzz", "bench", "speed",
-           "lint", "clean")  # fmt: skip
+           "picard_domain", "literature", "validate", "test", "check", "kernels", "lowest", "mutants", "fuzz", "bench",
+           "speed", "lint", "clean")  # fmt: skip
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
@@ -159,6 +160,15 @@ def test_the_lock_pins_everything_and_names_no_machine():
     lines = [line for line in LOCK.splitlines() if line and not line.lstrip().startswith("#")]
     assert len(lines) == len(pins), "every line is a pin"
     assert not re.search(r"://|@|^-|/", "\n".join(lines), flags=re.MULTILINE)
+
+
+def test_the_lowest_versions_are_exact_and_below_the_pinned():
+    pins = dict(re.findall(r"^([a-z0-9_.-]+)==(\S+)$", LOCK, flags=re.MULTILINE))
+    found = dict(re.fullmatch(r"([A-Za-z0-9_.-]+)==([0-9.]+)", one).groups() for one in lowest(PROJECT))
+    assert {"setuptools", "numpy", "netCDF4", "distributed", "pytest"} <= set(found)
+    for name, version in found.items():
+        least, pinned = (tuple(map(int, re.findall(r"\d+", v))) for v in (version, pins[name.lower()]))
+        assert least <= pinned, name
 
 
 def test_versions_agree():

@@ -108,7 +108,7 @@ def solve(
         "uniform_heights" has sigma alone
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
-    R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative
+    R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative, a flat body "flat"
     punch, layer, body : materials, or names of some (docs/materials.md), in place of their moduli and Poisson ratios
     nu_punch : Poisson ratio of the punch, 0.3 if not given
     scheme, k : how it is solved, and the relaxation of "picard"

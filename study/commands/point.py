@@ -10,7 +10,7 @@ import xarray as xr
 from ..data.dataset import decode
 from ..in_words import SHOWN, summary
 from ..physical.inputs import all_inputs
-from ..physical.names import RIGID, RIGID_TEXTS
+from ..physical.names import INFINITE
 from ..solving import solve
 from ..spec.definition import StudyError
 from ..terminal import answer
@@ -59,12 +59,12 @@ def as_numbers(found: xr.Dataset) -> dict:
 
 
 def described(found: xr.Dataset, name: str) -> dict | str:
-    """Value, unit and spread of a variable; a text as it is, and "rigid" in place of an infinite modulus."""
+    """Value, unit and spread of a variable; a text as it is, and "rigid" or "flat" in place of an infinite number."""
     array = found[name]
     if array.dtype.kind in "UO":
         return str(array.values)
-    if name in RIGID and math.isinf(array):
-        return RIGID_TEXTS[0]
+    if name in INFINITE and math.isinf(array):
+        return INFINITE[name][0]
     unit = array.attrs.get("scale") or array.attrs.get("units", "1")
     spread = {"spread": number(found[f"{name}_spread"])} if f"{name}_spread" in found else {}
     return {"value": number(array), "unit": unit} | spread

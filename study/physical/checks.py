@@ -27,7 +27,8 @@ def missing(parameters: dict, names: set[str], errors: list[str]) -> list[str]:
     pair = [name for name in ("R1", "R2") if name in parameters]
     messages = [_RADIUS] if "R" not in parameters and not pair else []
     if len(pair) == 1:
-        messages.append(f"{'R2' if pair == ['R1'] else 'R1'} is missing: R1 and R2 go together")
+        other = "R2" if pair == ["R1"] else "R1"
+        messages.append(f'{other} is missing: R1 and R2 go together; of a flat body {other} = "flat"')
     if pair and "R" in parameters:
         messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
     if "E2" not in parameters:

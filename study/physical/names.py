@@ -10,14 +10,16 @@ from ..specimen.quantities import Quantity, quantity
 SCENE = {
     "R": ("m", "radius of the punch"),
     "R1": ("m", "radius of one body"),
-    "R2": ("m", "radius of the other body, negative: a cup"),
+    "R2": ("m", "radius of the other body, negative: a cup, inf: flat"),
     "E1": ("Pa", "Young's modulus of the layer"),
     "E2": ("Pa", "Young's modulus of the body under the layer"),
     "E_punch": ("Pa", "Young's modulus of the punch"),
     "nu_punch": ("1", "Poisson ratio of the punch"),
 }
-#: What may be rigid, and the texts that say so; its modulus is then infinite.
-RIGID, RIGID_TEXTS = ("E2", "E_punch"), ("rigid", "inf", "infinite")
+#: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
+RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
+#: What may be infinite, and the texts that say so.
+INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS}
 
 
 class CaseValues(list):
@@ -58,6 +60,6 @@ def si(name: str, given: Any, called: str = "") -> Quantity:
 
     Raises ValueError as `quantity` does.
     """
-    if name in RIGID and (given.lower() in RIGID_TEXTS if isinstance(given, str) else given == math.inf):
+    if name in INFINITE and (given.lower() in INFINITE[name] if isinstance(given, str) else given == math.inf):
         return Quantity(math.inf)
     return quantity(called or name, given, unit_of(name))

@@ -213,7 +213,7 @@ def readable(value: float, unit: str, spread: float = 0.0) -> str:
     value, spread : in the SI `unit`, one of READABLE; a spread of less than 1e-5 of the value is left out
     """
     if not math.isfinite(value):
-        return "unknown"
+        return "infinite" if value > 0 else "unknown"
     name, size = multiple(abs(value), unit)
     number, spread = value / size, spread / size
     if spread > _SURE * abs(number):

@@ -71,6 +71,19 @@ def test_effective_radii():
     np.testing.assert_allclose(spread.a_spread / spread.a, 0.2 / 3, rtol=1e-3)
 
 
+@pytest.mark.parametrize("flat", ["flat", "inf", np.inf])
+def test_a_flat_body_has_an_infinite_radius(flat, tmp_path):
+    given = {"E2": "210 GPa", "P": "10 N", "base": "half_space", "micro": "smooth"}
+    found = quiet(**given, R1=flat, R2=["5 mm", "6 mm"])
+    np.testing.assert_array_equal(found.a, quiet(**given, R=["5 mm", "6 mm"]).a)
+    assert "Given: a rigid punch, R1 = infinite, R2 = 5 mm" in study.summary(found.isel(R2=0))
+    found.to_netcdf(tmp_path / "flat.nc")
+    with xr.open_dataset(tmp_path / "flat.nc") as back:
+        assert np.isinf(back.R1)
+    with pytest.raises(study.StudyError, match=r"R1 = inf m, R2 = inf m: 1/R1 \+ 1/R2 must be > 0"):
+        study.solve(**given, R1=flat, R2="flat")
+
+
 def test_a_cup_that_fits_closely_is_beyond_the_model():
     """a = 4.1 mm of a ball of 10 mm, though only 0.004 of the effective radius: validity does not see it."""
     given = {"R1": "10 mm", "E2": "1 GPa", "base": "half_space", "micro": "smooth", "P": "100 N"}
@@ -93,7 +106,7 @@ def test_a_cup_that_fits_closely_is_beyond_the_model():
         ({"E1": None, "n": "0.5"}, 'n = "0.5": must be a number'),
         ({"E1": "rigid"}, 'E1 = "rigid": must be a pressure'),
         ({"E2": "rigid ± 1 GPa"}, 'E2 = "rigid ± 1 GPa": must be a pressure'),
-        ({"R": None, "R1": "5 mm"}, "R2 is missing: R1 and R2 go together"),
+        ({"R": None, "R1": "5 mm"}, 'R2 is missing: R1 and R2 go together; of a flat body R2 = "flat"'),
         ({"R1": "5 mm", "R2": "-8 mm"}, "R and R1 are both given"),
         ({"R": None, "R1": "5 mm", "R2": "-4 mm"}, "R1 = 0.005 m, R2 = -0.004 m: 1/R1 .* must be > 0: a cup"),
         ({"R": None, "R1": "5 ± 1 mm", "R2": "-5.05 mm"}, "a cup .* wider than its ball, with their spreads too$"),

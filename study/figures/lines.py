@@ -33,8 +33,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
     ----------
     dataset : of `study.solve`, or the results of a study
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
-    hue : name of a dimension, or "label" of the cases
-    **where : values of dimensions to be drawn alone, such as bonding="bonded"
+    hue : name of a dimension, or "label" of the cases; **where : values to be drawn alone, such as bonding="bonded"
 
     Returns
     -------
@@ -43,7 +42,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
 
     Raises
     ------
-    StudyError : it is no dataset, a name is not there, a value neither, or there are more than 12 panels
+    StudyError : it is no dataset, or a stacked one, a name is not there, a value neither, or there are more than 12 panels
     """
     from matplotlib import pyplot
 
@@ -55,6 +54,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     """What `plot` draws on a `new` figure, and the numbers that it shows: (Figure, Columns)."""
     if not isinstance(dataset, xr.Dataset):
         raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
+    if stacked := [dim for dim, index in dataset.indexes.items() if index.nlevels > 1 and dim in dataset.dims]:
+        raise StudyError([f'{stacked[0]} is several axes in one: give dataset.unstack("{stacked[0]}")'])
     bare = [dim for dim in dataset.dims if dim in (x, y, hue, *where) and dim not in dataset.coords]
     dataset = dataset.assign_coords({dim: np.arange(dataset.sizes[dim]) for dim in bare})  # they are numbered
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
@@ -78,8 +79,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = found.assign(whole)  # without coordinates: it has them, and xarray 2026.2 refuses to align them
     columns = 2 if count == 4 else min(count, 3)
     rows = -(-count // columns)
-    size = max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), 2.2 * rows + 0.4
-    figure = new(figsize=size, layout="constrained")
+    figure = new(figsize=(max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), 2.2 * rows + 0.4), layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     parts = []
     for axes, place in zip(panels, product(*(range(found.sizes[dim]) for dim in rest)), strict=False):

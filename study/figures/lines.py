@@ -42,7 +42,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
 
     Raises
     ------
-    StudyError : it is no dataset, or a stacked one, a name is not there, a value neither, or there are more than 12 panels
+    StudyError : no dataset, or a stacked one, a name is not there, a value neither, or there are more than 12 panels
     """
     from matplotlib import pyplot
 

@@ -50,12 +50,14 @@ class Estimate:
 
 def estimate(definition: Definition, workers: int | None = None, present: int = 0) -> Estimate:
     """The cost of the cases that are not present. The time is that of a sample spread over all cases."""
-    count, cases = workers or available_workers(), definition.grid.size
+    cases = definition.grid.size
     missing = cases - present
+    blocks = -(-missing // definition.block)
+    count = max(1, min(workers or available_workers(), blocks))  # there is no work for more
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    processes = processes_for(count, -(-missing // definition.block))
+    processes = processes_for(count, blocks)
     memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
@@ -67,8 +69,8 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
     memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes or 1) * TABLES * exact
     # the results file and the blocks of the missing cases: both are on disk when the file is complete
-    blocks = missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
-    return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + blocks if missing else 0.0)
+    stored = missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
+    return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + stored if missing else 0.0)
 
 
 def seconds_per_case(definition: Definition) -> float:

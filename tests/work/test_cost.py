@@ -73,6 +73,15 @@ def test_estimated_memory_counts_worker_processes(file):
     assert two - alone > 2 * estimates.WORKER
 
 
+def test_no_more_workers_count_than_there_are_blocks(file, monkeypatch):
+    """On 64 processors a study of three cases took 6 GB."""
+    monkeypatch.setattr(estimates, "seconds_per_case", lambda _: 1.0)
+    opened = load(file)
+    blocks = -(-23 // opened.definition.block)
+    few, many = (opened.dry_run(workers=count) for count in (blocks, 64))
+    assert many == few and few.seconds == 23 / blocks
+
+
 MODELS = {
     "half-space": ({"base": "half_space"}, False),
     "thin layer": ({"base": "thin_layer"}, False),
@@ -140,7 +149,7 @@ def test_estimated_memory_is_the_sum_of_its_parts(monkeypatch, points, block, dt
 def test_time_is_of_the_missing_cases_over_the_workers(monkeypatch):
     tables = {"model": {"base": "half_space", "micro": "smooth"}, "axes": {"P": [1e-6, 2e-6, 3e-6, 4e-6, 5e-6]}}
     monkeypatch.setattr(estimates, "seconds_per_case", lambda _: 60.0)
-    definition = from_tables(tables, "s", "", "s")
+    definition = from_tables(tables | {"numerics": {"block": 1}}, "s", "", "s")
     assert [estimates.estimate(definition, 2, present).seconds for present in (0, 3, 5)] == [150.0, 60.0, 0.0]
 
 

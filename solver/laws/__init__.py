@@ -9,7 +9,7 @@ from ..parameters import CONTROL, PARAMETERS
 from . import disc_cell, heights, lattice, own_table, power_law, smooth
 from .law import Bound, Curve, Law, Spots
 
-__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "named", "register"]
+__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "name_in", "named", "register"]
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
@@ -31,7 +31,7 @@ def register(law):
     """
     if LAWS.get(law.name) is law:
         return law
-    if LAWS.get(law.name, law) in BUILT_IN or not re.fullmatch(rf"[A-Za-z]\w*|{own_table.PREFIX}\S+", law.name):
+    if LAWS.get(law.name, law) in BUILT_IN or not re.fullmatch(rf"[A-Za-z]\w*|{own_table.PREFIX}.+", law.name):
         raise ValueError(f'micro law "{law.name}": must have a name of its own, of letters, digits and _')
     if not (law.version and isinstance(law.version, str)):
         raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
@@ -100,6 +100,11 @@ def identity(name):
     """Text that tells the law of this name from all others: its name, and its version if it has one."""
     law = LAWS.get(name)
     return f"{name} {law.version}" if law and law.version else name
+
+
+def name_in(identity):
+    """The name in a text of :func:`identity`. The path of a table may have blanks, the version of another law too."""
+    return identity.rpartition(" ")[0] if identity.startswith(own_table.PREFIX) else identity.partition(" ")[0]
 
 
 BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW)

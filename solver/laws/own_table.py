@@ -47,8 +47,8 @@ def read(name):
     """
     file = name.removeprefix(PREFIX)
     try:
-        if any(letter.isspace() for letter in file):
-            raise ValueError("the path has a blank; give the file another name")
+        if "\n" in file:
+            raise ValueError("the path has a line break; give the file another name")
         return _of_text(name, Path(file).expanduser().read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ValueError(f"{file}: cannot be read: {error.strerror}") from None

@@ -7,6 +7,7 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 from solver.laws import identity as law_identity
+from solver.laws import name_in
 
 from ..data.dataset import not_run
 from ..data.units import PHYSICAL_SCALE
@@ -140,7 +141,7 @@ def _grid_in(file: File) -> tuple[Grid, Grid | None]:
     versions = str(file.attribute("micro_laws")).split("\n") if "micro_laws" in file.attributes() else []
     if "micro" in values:  # a law of another version than the registered one is another law
         own, words = values["micro"]
-        old = {text.split()[0]: text for text in versions if law_identity(text.split()[0]) != text}
+        old = {name_in(text): text for text in versions if law_identity(name_in(text)) != text}
         values["micro"] = own, np.array([old.get(word, word) for word in words.ravel().tolist()]).reshape(words.shape)
     sizes = {dim: file.sizes[dim] for dim in dims["status"]}
     if PHYSICAL_SCALE not in file.attributes():

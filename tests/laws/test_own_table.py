@@ -158,7 +158,7 @@ def test_pressures_in_another_unit_are_beyond_validity(table):
 
 
 def test_files_that_cannot_be_read(table):
-    told = (("table:none.csv", "none.csv: cannot be read: No such"), ("table:a b.csv", "has a blank"))
+    told = (("table:none.csv", "none.csv: cannot be read: No such"), ("table:a\nb.csv", "has a line break"))
     for name, words in (*told, ("a.csv", 'is "table:a.csv"$'), ("Table:a.csv", 'table of your own is "table:a.csv"$')):
         with pytest.raises(study.StudyError, match=words):
             study.solve(P=1e-5, **CASE, micro=name)
@@ -175,6 +175,21 @@ def test_keys_carry_the_numbers(table):
         found.append((definition.digest, case_keys(definition.grid).tolist()))
     assert found[0] == found[1] and found[0][0] != found[2][0]
     assert found[0][1][0] != found[2][1][0] and found[0][1][1] == found[2][1][1]
+
+
+def test_a_path_with_blanks(table):
+    """In /home/me/My Data: what is computed is found again, and computed again when a number of the table changes."""
+    table()
+    text = Path("mine.csv").read_text(encoding="utf-8")
+    own, found = Path("My Data", "mine  2.csv"), []
+    own.parent.mkdir()
+    for P, rows in (("[1e-5]", 40), ("[1e-5, 2e-5]", 40), ("[1e-5, 2e-5]", 39)):
+        own.write_text("".join(text.splitlines(keepends=True)[: 2 + rows]), encoding="utf-8")
+        model = f'h = 0.02\nn = 0.5\nmicro = "table:{own}"'
+        Path("s.toml").write_text(f"[model]\n{model}\n[axes]\nP = {P}\n", encoding="utf-8")
+        found.append(study.load("s.toml").run(force=True).computed)
+    assert found == [1, 1, 2]
+    assert study.load("s.toml").open().micro == f"table:{own}"
 
 
 def test_it_travels_with_its_cases(table):

@@ -53,10 +53,17 @@ BROKEN = {
     "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "
     f"{derived.PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
 }
+NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers). \
+Yield strengths and adhesion are not checked (Limits)."
 WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of its radius), as in a cup that fits \
 closely: the bodies are no half-spaces there."
 OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
 each R a table of its own, in cases."
+
+
+#: A body under a sphere yields where p(0) exceeds 1.6 times its yield strength (Johnson, Contact Mechanics, 1985), and
+#: that is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share of E.
+YIELD, STIFF = 0.03, 1e10
 
 
 class Summary(str):
@@ -184,7 +191,7 @@ def _sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
     if not beyond and word == "converged":
-        found.append("None of the assumptions that are checked is violated (docs/model.md, Four answers).")
+        found.append(NOT_VIOLATED)
     return found
 
 
@@ -206,4 +213,27 @@ def doubts(contact: xr.Dataset) -> list[str]:
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         found.append(OF_SEVERAL_RADII)
     given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == unit_of(name)}
-    return found + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
+    return found + yielding(v) + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
+
+
+def yielding(v) -> list[str]:
+    """A sentence if a body of a scene in SI units is pressed so hard that a metal would yield; of the worst case.
+
+    What lies under a layer has p(0) where the contact is wide against that, and less elsewhere.
+    """
+    moduli = {name: v[name] for name, _, _ in BODIES.values() if name in v and v[name].attrs.get("units") == "Pa"}
+    stiff = [E[(E >= STIFF) & np.isfinite(E)] for E in (own.values for own in moduli.values())]
+    least = min((E.min() for E in stiff if E.size), default=np.inf)
+    if v["p_max"].attrs.get("units") != "Pa" or not (v["p_max"] > YIELD * least).any():
+        return []
+    bare, shares = v["base"] == "half_space", {}
+    under = v["p_max"].where(bare, v["p0"].where(v["a"] > v["h"]) if "h" in v else np.nan)
+    pressures = {"punch": v["p_max"], "layer": v["p_max"].where(~bare), "body": under}
+    for body, (name, _, _) in BODIES.items():
+        E = moduli.get(name, xr.Variable((), np.inf))
+        shares[body] = (pressures[body] / E.where(E >= STIFF)).fillna(0)
+    body = max(shares, key=lambda one: shares[one].max())
+    beyond = sum(share > YIELD for share in shares.values()) > 0
+    of_all = f"{beyond.values.sum()} of {beyond.size} cases: " if beyond.size > 1 else ""
+    share = f"The pressure on the {body} comes to {float(shares[body].max()):.2g} of its Young's modulus"
+    return [f"{of_all}{share}: metals yield before that, which the model leaves out."] * bool(beyond.any())

@@ -149,6 +149,42 @@ def test_no_real_system_is_absurd():
         study.solve(R="6 m", E1="1 MPa", E2="210 GPa", h="1 m", P="1 N", micro="smooth", x=2)
 
 
+STEEL = {"R": "5 mm", "punch": "steel 52100", "body": "steel 52100", "micro": "smooth", "x": 2}
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            {"layer": "DLC a-C:H", "h": "2 um", "P": ["10 N", "10 kN"]},
+            "1 of 2 cases: The pressure on the layer comes to 0.05 of",
+        ),
+        ({"base": "half_space", "punch": "PEEK", "P": "10 MN"}, "on the body comes to 0.055 of"),
+        ({"base": "half_space", "body": "alumina", "R": "0.1 mm", "P": "10 N"}, "on the punch comes to 0.078 of"),
+        (
+            {"layer": "diamond", "h": "1 um", "R": "0.1 mm", "P": "10 N", "punch": "rigid"},
+            "on the body comes to 0.1 of",
+        ),
+        (
+            {"base": "half_space", "micro": "disc_cell", "Nbar": "0.1 1/um^2", "Ra": "2 um", "P": "10 N"},
+            "comes to 0.087 of",
+        ),
+        ({"layer": "diamond", "h": "1 mm", "R": "0.1 mm", "P": "0.1 N", "punch": "rigid"}, ""),
+        ({"layer": "DLC a-C:H", "h": "2 um", "P": "100 N"}, ""),
+        ({"layer": "PTFE", "h": "0.2 mm", "P": "50 N"}, ""),
+    ],
+)
+def test_pressures_at_which_metals_yield_are_noticed(change, sentence):
+    """A steel ball under 10 kN had 10 GPa and no warning. Plastics and what lies deep under a hard layer have none."""
+    found = quiet(**STEEL | change)
+    said = [line for line in study.summary(found).splitlines() if "metals yield" in line]
+    assert [sentence.split(": ")[-1] in line for line in said] == [True] * bool(sentence)
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always")
+        study.solve(**STEEL | change)
+    assert any("metals yield" in str(one.message) and sentence in str(one.message) for one in caught) == bool(sentence)
+
+
 def test_every_flag_and_model_has_its_words():
     assert set(BROKEN) == set(ASSUMPTIONS.values())
     found = study.solve(P=1e-5, base="half_space", micro="smooth", x=2)

@@ -106,7 +106,9 @@ class Study:
         if belongs(self.definition, found):
             return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
         if partial:
-            return partial_dataset(self.definition, self.results)
+            with suppress(FileNotFoundError):
+                return partial_dataset(self.definition, self.results)
+            return self.open()  # a run has ended meanwhile, and removed its blocks
         if found.good or found.kind == "missing":
             reason = "holds results of another definition" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])

@@ -104,7 +104,10 @@ def parsed(path) -> tuple[dict, str, str, str]:
         raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
     except RecursionError:
         raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
-    except ValueError as error:  # wrong TOML, wrong UTF-8
+    except UnicodeDecodeError as error:
+        wrong = f"is not UTF-8 (byte {error.start}): save it with the encoding UTF-8, which TOML has"
+        raise StudyError([f"{where}: {wrong}"]) from None
+    except ValueError as error:  # wrong TOML
         reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
         more = hint(text, reason) if isinstance(error, tomllib.TOMLDecodeError) else ""
         raise StudyError([f"{where}: is not valid TOML: {reason}{more}"]) from None

@@ -110,7 +110,6 @@ def test_many_wrong_values_of_an_axis_are_counted(tmp_path):
         (b"[model\nh = 1\n", "line 1"),
         (b"[model]\nh = 1\nh = 2\n", "line 3"),
         (b"h = 1" + b"0" * 5000, "a whole number has more than 4300 digits"),
-        (b"title = '\xff'", "utf-8"),
         (b"a = " + b"[" * 5000, "nested too deep"),
     ],
     ids=lambda value: str(value)[:20],
@@ -119,6 +118,15 @@ def test_malformed_toml_names_file_and_place(tmp_path, content, reason):
     path = tmp_path / "fig99.toml"
     path.write_bytes(content)
     with pytest.raises(study.StudyError, match=f"fig99.toml: is not valid TOML: .*{reason}"):
+        study_file.read(path)
+
+
+@pytest.mark.parametrize("content", ["title = 'größer'".encode("cp1252"), "title = 'größer'".encode("utf-16")])
+def test_another_encoding_is_answered_with_the_right_one(tmp_path, content):
+    """ "'utf-8' codec can't decode byte 0xb5" was called TOML that is not valid."""
+    path = tmp_path / "fig99.toml"
+    path.write_bytes(content)
+    with pytest.raises(study.StudyError, match=r"fig99.toml: is not UTF-8 \(byte \d+\): save it with"):
         study_file.read(path)
 
 

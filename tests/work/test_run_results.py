@@ -44,6 +44,17 @@ def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
     assert load(file).status()["state"] == "new"
 
 
+def test_a_run_that_ends_while_one_asks_for_partial_results(file, monkeypatch):
+    """The blocks that were found were removed before they were read."""
+
+    def ended(*_):
+        assert load(file).run().complete
+        raise FileNotFoundError("a block")
+
+    monkeypatch.setattr(study.api, "partial_dataset", ended)
+    assert (load(file).open(partial=True).status == 0).all()
+
+
 @pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
 def test_a_file_that_is_no_result_is_kept(file, content):

@@ -63,6 +63,12 @@ def axis_label(name: str, array: xr.DataArray) -> str:
     return f"${over_scale(mathtext(plain_symbol(name)), VOCABULARY[name].powers, units, TIMES)}$"
 
 
+def with_units(columns: dict, dataset: xr.Dataset) -> dict:
+    """Columns of numbers of a dataset whose names say the unit of physical numbers: "P", or "P [N]"."""
+    units = {name: dataset[name].attrs.get("units", "1") for name in columns if name in dataset}
+    return {name if units.get(name, "1") == "1" else f"{name} [{units[name]}]": own for name, own in columns.items()}
+
+
 def value_text(name: str, array: xr.DataArray, value) -> str:
     """A value with its name: "$h/R$ = 0.02", "$h$ = 2 µm"; a text as it is."""
     if isinstance(value, str):

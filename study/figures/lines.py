@@ -17,7 +17,7 @@ from ..data.derived import QUANTITIES
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
-from .labels import axis_label, multiple, stated, value_text, wrapped, written
+from .labels import axis_label, multiple, stated, value_text, with_units, wrapped, written
 from .registry import Columns, joined
 from .style import style
 
@@ -89,7 +89,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     for axes in panels[count:]:
         axes.set_visible(False)
     decorate(figure, panels[:count], found, (x, y, hue))
-    return figure, joined(parts)
+    return figure, with_units(joined(parts), found)
 
 
 def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:

@@ -76,10 +76,11 @@ def test_physical_results_have_units_that_are_read_easily(physical):
     figure, columns = shown(physical, "P", "a", "h")
     assert frame(figure.axes[0])[0:3:2] == ("$P$, N", "$a$, µm")
     np.testing.assert_allclose(lines(figure.axes[0])[0].y, physical.a.sel(h="2 um") * 1e6, rtol=1e-14)  # one product
-    np.testing.assert_array_equal(columns["a"][:2], physical.a.sel(h=2e-6))
+    np.testing.assert_array_equal(columns["a [m]"][:2], physical.a.sel(h=2e-6))
+    assert list(columns) == ["h [m]", "P [N]", "a [m]", "valid"], "the .csv had no units, and the axes have others"
     assert list(legend(figure.legends[0]))[:2] == ["2", "5"]
     assert figure.legends[0].get_title().get_text() == "$h$, µm"
-    assert shown(physical, "P", "a", h="2 um")[1]["a"].tolist() == physical.a.sel(h=2e-6).values.tolist()
+    assert shown(physical, "P", "a", h="2 um")[1]["a [m]"].tolist() == physical.a.sel(h=2e-6).values.tolist()
 
 
 def test_a_band_shows_the_spread_of_what_is_drawn():
@@ -90,7 +91,7 @@ def test_a_band_shows_the_spread_of_what_is_drawn():
     edges = band.get_paths()[0].vertices[:, 1]
     np.testing.assert_allclose(edges.min(), 1e6 * (found.a - found.a_spread).min(), rtol=1e-12)
     np.testing.assert_allclose(edges.max(), 1e6 * (found.a + found.a_spread).max(), rtol=1e-12)
-    np.testing.assert_array_equal(columns["a_spread"], found.a_spread)
+    np.testing.assert_array_equal(columns["a_spread [m]"], found.a_spread)
     assert list(legend(figure.legends[0])) == ["± one standard\ndeviation"]
     assert not shown(found, "P", "iterations")[0].axes[0].collections, "which has no spread"
 
@@ -177,7 +178,7 @@ def test_texts_of_pandas_name_concatenated_results(physical):
     joined = xr.concat([physical] * 2, pd.Index(["one", "two"], name="coating"), coords="minimal")
     figure, columns = shown(joined, "P", "a", "coating", h="2 um")
     assert list(legend(figure.legends[0]))[:2] == ["one", "two"] and columns["coating"].dtype.kind in "UO"
-    assert len(shown(joined, "P", "a", "h", coating="two")[1]["a"]) == 4
+    assert len(shown(joined, "P", "a", "h", coating="two")[1]["a [m]"]) == 4
 
 
 def test_axes_of_one_value_and_inputs_over_fewer_axes_than_the_results(found):

@@ -8,7 +8,7 @@ from argparse import ArgumentTypeError
 import xarray as xr
 
 from ..data.dataset import decode
-from ..in_words import SHOWN, summary
+from ..in_words import SHOWN, doubts, summary
 from ..physical.inputs import all_inputs
 from ..physical.names import INFINITE
 from ..solving import solve
@@ -55,7 +55,7 @@ def as_numbers(found: xr.Dataset) -> dict:
     shown |= {name: number(found[name]) for name in ("error", "model_error")}
     shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(found["validity"]).item().split()
-    return shown
+    return shown | {"beware": doubts(found)}
 
 
 def described(found: xr.Dataset, name: str) -> dict | str:

@@ -56,7 +56,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
     parameters, *rows = ({name: _plain(value) for name, value in table.items()} for table in (parameters, *rows))
     pairs = [pair for table in (parameters, *rows) for pair in table.items()]
-    if not any(name in SCENE or name in BODIES or _has_unit(value) for name, value in pairs):
+    signs = [(name, one) for name, one in pairs if name in SCENE or name in BODIES or _has_unit(one)]
+    if not signs:
         return None
     scene, errors = Scene(), []
     parameters = _with_rows(parameters, rows, errors)
@@ -79,7 +80,9 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     errors += missing(parameters, {name for name, _ in pairs}, errors)
     errors += [] if errors else impossible(scene) + (equal_cases(scene) if rows else [])
     if errors:
-        raise StudyError(errors)
+        name, one = min(signs, key=lambda sign: isinstance(sign[1], (list, tuple)))  # a single value rather than a list
+        hint = f" ({name} = {shown(one)} makes this a study with units)"
+        raise StudyError([f"{message}{hint * ('has no unit' in message)}" for message in errors])
     scene.assumed = assumed(parameters, scene.given)
     scene.spreads = scene.spreads if spreads else {}
     _move(scene)

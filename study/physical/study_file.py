@@ -38,8 +38,7 @@ def read(path) -> Definition:
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
-    sign = _sign_of_units(tables)
-    if not sign:
+    if not _has_units(tables):
         return definition.from_tables(tables, name, text, where)
     from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
 
@@ -53,8 +52,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     try:
         scene = read_scene(parameters, tables.get("cases"), spreads is True, bounds=len(errors) == before)
     except StudyError as error:
-        hint = f" ({sign} makes this a study with units)"
-        errors += [f"{message}{hint * ('has no unit' in message)}" for message in error.messages]
+        errors += error.messages
     if not isinstance(spreads, bool):
         errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
     if scene and scene.spreads and given["output"].get("dtype") == "float32":
@@ -90,15 +88,15 @@ def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options)
     return replace(definition.complete(draft, *about, **options), scene=scene)
 
 
-def _sign_of_units(tables: dict) -> str:
-    """The first parameter that makes this a study with units, as `NAME = VALUE`; "" if there is none."""
+def _has_units(tables: dict) -> bool:
+    """Whether a parameter has a unit, or only a study with units has it."""
     rows = tables["cases"] if isinstance(tables.get("cases"), list) else []
     for table in (tables.get("model"), tables.get("axes"), tables.get("sample"), *rows):
         for name, given in table.items() if isinstance(table, dict) else ():
             values = given.values() if isinstance(given, dict) else given if isinstance(given, list) else [given]
             if name in SCENE or name in BODIES or (name in VOCABULARY and any(map(has_unit, values))):
-                return f"{name} = {shown(given)}"
-    return ""
+                return True
+    return False
 
 
 def _parameters(draft: Draft, given: dict) -> dict:

@@ -7,6 +7,7 @@ import pytest
 
 import study
 from study.__main__ import main
+from study.in_words import BROKEN
 
 BALL = {"R": "5 mm", "E_punch": "210 GPa", "E2": "70 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
 
@@ -43,9 +44,17 @@ def test_a_rigid_body_is_the_word_that_says_so(capsys):
     assert printed["E2"] == printed["E_punch"] == "rigid" and printed["E1"]["value"] == 5e9
 
 
+def test_what_validity_has_no_mask_for_is_in_the_numbers_too(capsys):
+    """A modulus in mPa, say: a program that reads them saw nothing of what the words say."""
+    assert main(["point", "--json", *words(**BALL | {"E2": "70 mPa"}, P="1 pN")]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["validity"] == [] and printed["beware"][0].startswith("E2 = 0.07 Pa: materials have 1 Pa to 2 TPa")
+
+
 def test_what_the_model_does_not_describe_is_said_and_is_no_traceback(capsys):
     assert main(["point", "--json", *words(P=1e-5, h=0.02, n=0.5, Nbar=25000, Ra=0.004)]) == 0
-    assert json.loads(capsys.readouterr().out)["validity"] == ["few_spots"]
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["validity"] == ["few_spots"] and printed["beware"] == [BROKEN["few_spots"]]
     steep = words(**BALL, P="1 MN")
     assert main(["point", *steep]) == 0
     assert "Beware: The strain is not small" in capsys.readouterr().out
@@ -84,6 +93,10 @@ def test_materials_by_name_bring_their_spreads(capsys):
         ),
         (["body=steel 52100", "E2=210 GPa"], ["body and E2 are both given: E2 follows from body"]),
         (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"?']),
+        (
+            ["P=1e-5", "h=0.02", "n=0.5", "accuracy=5%", "micro=smooth", "R=2 mm", "E2=5 GPa"],
+            ['P = 1e-05 has no unit: must be a force, such as "2 N" (accuracy = "5%" makes this a study with units)'],
+        ),
         (["P=1e-5", "mirco=smooth"], ['solve: "mirco" is not a parameter; did you mean "micro"?']),
     ],
 )

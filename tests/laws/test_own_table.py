@@ -204,7 +204,7 @@ def test_it_travels_with_its_cases(table):
 def test_a_table_of_several_radii_is_doubted(table):
     """A/R is of one R: A of a ball twice as large was that of asperities twice as large, without a word."""
     pytest.importorskip("pint")
-    given = {"E2": "200 GPa", "base": "half_space", "P": "10 N", "micro": table(), "x": 2}
+    given = {"E2": "2 GPa", "base": "half_space", "P": "0.1 N", "micro": table(), "x": 2}
     with pytest.warns(UserWarning, match="with several R its asperities grow with the punch"):
         study.solve(**given, R=["5 mm", "10 mm"])
     Path("own.csv").write_text("".join(Path("mine.csv").read_text().splitlines(True)[:-1]), encoding="utf-8")

@@ -6,6 +6,7 @@ from pathlib import Path
 from ..api import Study, load
 from ..data.dataset import status_words
 from ..files.examine import examine
+from ..in_words import doubts
 from ..spec.definition import StudyError
 from ..terminal import answer, say
 from ..work.plan import status_values
@@ -95,4 +96,9 @@ def completed(study: Study, **options) -> int:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1
     answer(report_line(report, name))
+    if study.definition.scene and report.complete and report.computed:  # what study.solve would warn of
+        said = doubtful_lines(study.definition)  # by `run`, before it computed
+        for line in (f"{name}: beware: {text}" for text in doubts(study.open())):
+            if line not in said:
+                say(line, sys.stderr)
     return 0

@@ -181,6 +181,21 @@ def test_slips_of_a_prefix_and_wide_spreads_are_doubted(tmp_path, capsys):
     assert capsys.readouterr().err.splitlines() == doubts
 
 
+def test_a_run_says_what_the_model_does_not_describe(tmp_path, monkeypatch, capsys):
+    """As `study.solve` does; it was seen in figures alone. What was said of the inputs is not said again."""
+    monkeypatch.chdir(tmp_path)
+    text = TEXT.replace('stop = "100 N"', 'stop = "1 MN"').replace('"200 GPa"', '"200 TPa"')
+    (tmp_path / "mine.toml").write_text(text, encoding="utf-8")
+    assert main(["run", "mine.toml"]) == 0
+    lines = [line for line in capsys.readouterr().err.splitlines() if "beware" in line]
+    starts = ["E1 = 2e+05 GPa: materials", "4 of 12 cases: The strain is", "6 of 12 cases: The pressure"]
+    assert [
+        line.removeprefix("mine: beware: ")[: len(start)] for line, start in zip(lines, starts, strict=True)
+    ] == starts
+    assert main(["run", "mine.toml"]) == 0
+    assert len([line for line in capsys.readouterr().err.splitlines() if "beware" in line]) == 1
+
+
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [

@@ -76,6 +76,8 @@ def value_text(name: str, array: xr.DataArray, value) -> str:
     unit = array.attrs.get("units", "1")
     if unit in READABLE and unit != "1":
         return f"{symbol(name)} = {readable(float(value), unit)}"
+    if unit != "1":  # of study.readable
+        return f"{symbol(name)} = {written(float(value))} {unit}"
     return f"{axis_label(name, array)} = {written(float(value))}"
 
 

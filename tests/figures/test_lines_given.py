@@ -26,3 +26,9 @@ def test_values_of_axes(found):
     for wrong in (["5 N"], None, slice(0, 1)):
         with pytest.raises(study.StudyError, match="must be a force, such as"):
             study.plot(found, "nu2", "a", P=wrong)
+
+
+def test_what_study_readable_made_is_stated_with_its_units(found):
+    """It was "$R$, mm = 5"."""
+    figure = study.plot(study.readable(found), "nu2", "a", P="5 N")
+    assert figure.get_suptitle() == "$R$ = 5 mm, $E_2$ = 70 GPa, $P$ = 5 N"

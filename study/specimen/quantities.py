@@ -39,6 +39,8 @@ _AMBIGUOUS = re.compile(
     r"[^\w\s.+\-*/^()·×%°±⁻]|[¼-¾⅐-⅞]|\.\d*\.|\d[eE][-+]?\d+\.|[\w)]\s*\(\s*[-+]?[\d.]|\)\s*[\d.]"
     r"|(?<!\+)/\s*-\s*[\d.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]"
 )
+#: What a German data sheet means by 210 GPa, and pint by 210 MPa.
+_THOUSANDS = re.compile(r"(\d{2,3})\.000[^A-Za-z\d]*(?:[\d.]+\s*)?(?:N/mm|MPa)")
 #: The minus sign of printed texts where it can be no dash of a range: before the number, or in an exponent.
 _MINUS = re.compile(r"^−|(?<=\d[eE])−|(?<=\^)−")
 #: A power without ^, as in "mm2" and "mm-2". The letters must not follow a digit: the e of "1e2" is no unit.
@@ -113,6 +115,9 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
         raise ValueError(f"{said}: {wanted}{bare}")
     if _AMBIGUOUS.search(text):
         raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
+    if thousands := _THOUSANDS.match(text):
+        one = thousands[1]
+        raise ValueError(f"{said}: the point may be one of thousands: write {one} or {one}e3: {wanted}")
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])

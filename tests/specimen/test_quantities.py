@@ -78,6 +78,8 @@ def test_spreads(sign):
         ([1], "m", "must be a length"),
         ("1 " + "m*" * 100 + "m", "m", "must be a length"),
         ("9**9**9**9 m", "m", "no unit is called like this"),
+        ("210.000 N/mm²", "Pa", 'h = "210.000 N/mm²": the point may be one of thousands: write 210 or 210e3'),
+        ("70.000 ± 5.000 MPa", "Pa", "one of thousands: write 70 or 70e3"),
         ("5 mm ± 0.1", "m", 'the spread of h = "0.1" has no unit: must be a length'),
         ("5 mm ± 2 % mm", "m", "behind % may only stand the unit of the number"),
         ("5 ± 2 %% mm", "m", "behind % may only stand the unit of the number"),

@@ -189,7 +189,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         fixed = {
             name: np.full(len(up), array.item())
             for name, array in one.coords.items()
-            if name in whole.dims and not array.ndim
+            if (name in whole.dims or name == "label") and not array.ndim
         }
         known = {"valid": valid.astype(int)} if "validity" in one else {}
         parts.append(fixed | {x: across, y: up} | spread | known)

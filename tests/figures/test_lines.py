@@ -101,7 +101,7 @@ def test_labels_of_cases_and_gaps_of_failed_ones():
     found = study.solve(cases=rows, P=[1e-6, 1e-5], n=0.5, base="thin_layer", micro="smooth", x=2)
     figure, columns = shown(found, "P", "D", "label")
     assert list(legend(figure.legends[0]))[:2] == ["thin", "incompressible"]
-    assert columns["label"].tolist() == ["thin"] * 2 + ["incompressible"] * 2, "the .csv had the number of the case alone"
+    assert columns["label"].tolist() == ["thin"] * 2 + ["incompressible"] * 2, "not numbers alone"
     assert np.isnan(lines(figure.axes[0])[2].y).all() and np.isfinite(lines(figure.axes[0])[0].y).all()
 
 

@@ -21,6 +21,7 @@ def assumed_lines(definition: Definition) -> list[str]:
     """A line about what a study with units does not give, though it counts; otherwise none."""
     names = definition.scene.assumed if definition.scene else ()
     texts = [f"{name} = {VOCABULARY[name if name in VOCABULARY else 'nu1'].own.default}" for name in names]
+    texts += ["a rigid punch"] * bool(definition.scene and "E_punch" not in definition.scene.given)
     return ["    assumed, as not given: " + ", ".join(texts)] * bool(texts)
 
 

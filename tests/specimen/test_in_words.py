@@ -16,7 +16,7 @@ def test_a_physical_contact():
     found = quiet(**COATED | {"h": "2 um ± 0.1 um"}, P="10 N", x=2)
     text = study.summary(found)
     assert "R = 5 mm, E1 = 200 GPa, nu1 = 0.25, E2 = 210 GPa, nu2 = 0.3, h = 2.00 ± 0.10 µm, frictionless" in text
-    assert "a rigid punch" in text
+    assert "Given: a rigid punch (assumed), R" in text
     number, spread = re.search(r"a +=? *= ([\d.]+) ± ([\d.]+) µm", text).groups()
     assert float(number) == pytest.approx(found.a.item() * 1e6, rel=1e-4)
     assert float(spread) == pytest.approx(found.a_spread.item() * 1e6, rel=0.06), "two digits"
@@ -32,9 +32,12 @@ def test_what_was_not_given_is_said_where_it_counts():
     text = study.summary(quiet(**given, E2="210 GPa", E_punch="70 GPa"))
     for name in ("nu1 = 0.3", "nu2 = 0.3", "nu_punch = 0.3", "frictionless"):
         assert f"{name} (assumed)" in text
-    text = study.summary(quiet(**given, nu1=0.3, body="rigid", bonding="frictionless"))
+    text = study.summary(quiet(**given, nu1=0.3, punch="rigid", body="rigid", bonding="frictionless"))
+    assert "Given: a rigid punch, a rigid base" in text
     assert "nu1 = 0.3, h = 2 µm, frictionless\n" in text and "assumed" not in text
-    half_space = study.summary(quiet(R="5 mm", E2="70 GPa", nu2=0.3, base="half_space", micro="smooth", P="1 N"))
+    half_space = study.summary(
+        quiet(R="5 mm", E2="70 GPa", nu2=0.3, punch="rigid", base="half_space", micro="smooth", P="1 N")
+    )
     assert "assumed" not in half_space
 
 

@@ -29,7 +29,9 @@ def test_a_rigid_base_is_the_limit_of_stiff_ones():
     assert np.isinf(rigid.E2) and rigid.n == 0 and inside.p0.attrs["scale"] == "E1*"
     assert study.derived.mean_pressure(inside).attrs["scale"] == "E1*"
     text = study.summary(rigid)
-    assert "a rigid punch, a rigid base, R = 5 µm, E1 = 5 kPa" in text and "E2" not in text and "nu2" not in text
+    assert (
+        "a rigid punch (assumed), a rigid base, R = 5 µm, E1 = 5 kPa" in text and "E2" not in text and "nu2" not in text
+    )
 
 
 @pytest.mark.parametrize("word", ["rigid", "Rigid", "inf", "infinite", np.inf])
@@ -76,7 +78,7 @@ def test_a_flat_body_has_an_infinite_radius(flat, tmp_path):
     given = {"E2": "210 GPa", "P": "10 N", "base": "half_space", "micro": "smooth"}
     found = quiet(**given, R1=flat, R2=["5 mm", "6 mm"])
     np.testing.assert_array_equal(found.a, quiet(**given, R=["5 mm", "6 mm"]).a)
-    assert "Given: a rigid punch, R1 = infinite, R2 = 5 mm" in study.summary(found.isel(R2=0))
+    assert "Given: a rigid punch (assumed), R1 = infinite, R2 = 5 mm" in study.summary(found.isel(R2=0))
     found.to_netcdf(tmp_path / "flat.nc")
     with xr.open_dataset(tmp_path / "flat.nc") as back:
         assert np.isinf(back.R1)

@@ -159,10 +159,15 @@ def test_float32_and_partial_results(tmp_path, monkeypatch):
 
 def test_check_says_what_is_assumed(tmp_path, capsys):
     path = tmp_path / "mine.toml"
-    for text, words in ((TEXT, ""), (TEXT.replace("nu1 = 0.25\n", ""), "nu1 = 0.3, ")):
+    bare = TEXT.replace('E_punch = "210 GPa"\nnu_punch = 0.3\n', "")
+    for text, words, more in (
+        (TEXT, "", ""),
+        (TEXT.replace("nu1 = 0.25\n", ""), "nu1 = 0.3, ", ""),
+        (bare, "", ", a rigid punch"),
+    ):
         path.write_text(text, encoding="utf-8")
         assert main(["check", str(path)]) == 0
-        said = f"    assumed, as not given: {words}nu2 = 0.3, bonding = frictionless"
+        said = f"    assumed, as not given: {words}nu2 = 0.3, bonding = frictionless{more}"
         assert capsys.readouterr().out.splitlines()[1:] == [said]
 
 

@@ -145,6 +145,10 @@ def solve(
     """
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
+    ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
+    if ranges:
+        hint = "a range stands in study files; here give its values, as of numpy.geomspace"
+        raise StudyError([f"{name}: {hint}" for name in ranges])
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])

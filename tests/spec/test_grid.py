@@ -213,3 +213,10 @@ def chunked_definition():
         "output": {"x": 3},
     }
     return from_tables(tables, "chunks", "", "chunks.toml")
+
+
+@pytest.mark.parametrize(("start", "stop"), [(1e-6, 1e-5), ("1 N", "2 N")])
+def test_a_range_of_a_study_file_is_answered_with_what_python_takes(start, stop):
+    """It "must be a finite number", or "must be a force"."""
+    with pytest.raises(study.StudyError, match="P: a range stands in study files; here give its values, as of numpy"):
+        study.solve(P={"start": start, "stop": stop, "num": 3}, h=0.02, n=0.5, micro="smooth")

@@ -108,13 +108,17 @@ def _tables(density, field, sigma, cut):
         some = missing[begin : begin + _AT_ONCE]
         s, c = np.array([key[2:] for key in some]).T[:, :, None]
         at = partial(_at, density.at, c[..., None, None])
-        made = spread.tables(density.edges(c), at, field, s, density.mean(c) * s + 1 / 3)
+        made = spread.tables(density.edges(c), at, field, s, _relief(density, s, c))
         rows.update(zip(some, np.moveaxis(made, 1, 0), strict=True))
     if missing:
         if len(_TABLES) + len(missing) > _KEPT:
             _TABLES.clear()
         _TABLES.update((key, rows[key]) for key in missing)
     return np.array([rows[key] for key in keys]).reshape(-1, 2, spread.KNOTS), group.ravel()
+
+
+def _relief(density, sigma, cut):
+    return density.mean(cut) * sigma + 1 / 3
 
 
 def _at(density, c, x):
@@ -129,9 +133,12 @@ def _looked_up(density, field, which, y, sigma, cut):
 
 
 def _curve(density, field, y, sigma, cut):
-    q, slope = _looked_up(density, field, 0, y, sigma, cut)
-    root, dq = y / (1 + q), slope * q / y
-    found = Curve(q, root**2, dq, 2 * root * (1 - root * dq) / (1 + q))
+    q, slope = _looked_up(density, field, 0, np.minimum(y, spread.LAST), sigma, cut)
+    relief = _relief(density, sigma, cut)
+    if (y > spread.LAST).any():
+        q, slope = spread.beyond(y, q, slope, relief)
+    (delta, w), dq = spread.depth(y, q, relief), slope * q / y
+    found = Curve(q, delta, dq, 2 * delta / y * (1 - y * dq / (w + q)))
     if (sigma > 0).all():
         return found
     return Curve(*(np.where(sigma > 0, own, one) for own, one in zip(found, disc_cell.spot_curve(y), strict=True)))
@@ -143,7 +150,8 @@ def _guess(density, field, q, sigma, cut):
     one = disc_cell.spot_guess(np.maximum(q, 0.0))
     alike = disc_cell.spot_curve(np.maximum(one, 1e-300)).g
     few = (1.25 * np.pi * sigma / density.top(cut) * np.maximum(q, 0.0)) ** 0.4
-    return np.where(sigma > 0, np.sqrt(np.clip(few, alike, alike + density.mean(cut) * sigma)) * (1 + q), one)
+    delta = np.clip(few, alike, alike + density.mean(cut) * sigma)
+    return np.where(sigma > 0, spread.unknown(delta, q, _relief(density, sigma, cut)), one)
 
 
 def _area(density, field, y, q, sigma, cut):
@@ -153,7 +161,7 @@ def _area(density, field, y, q, sigma, cut):
 
 def _peak(density, field, y, q, sigma, cut):
     """p_max/p* under the highest summit. Where its cell is filled, the middle of a flat punch adds its pressure."""
-    delta, k = (y / (1 + q)) ** 2, field * (2 / 3) * q
+    delta, k = spread.depth(y, q, _relief(density, sigma, cut))[0], field * (2 / 3) * q
     v = np.clip((1 - delta) / (k + np.sqrt(np.maximum(k * k + 1 - delta, 0.0))), 0.0, 1.0)
     c = np.sqrt(np.clip((delta + 2 * k) * (1 + v) / (1 + v + 2 * k), 0.0, 1.0))
     found = 3 / np.pi * c + field * (2 / np.pi) * q * np.arctan2(c, v) + 1.5 / np.pi * np.maximum(delta - 1, 0.0)

@@ -12,7 +12,8 @@ cells are filled, δ is the mean relief <ζ> + 1/3, as it must be.
 The nominal pressure is the mean over the density of ζ, q = <f>. At given spots f is linear in q, so that
 <f> = P + (1 - S) q, and the equation is P = q S, in which nothing cancels.
 
-The unknown is y = sqrt(δ) (1 + q): δ = (y/(1 + q))² is then explicit, and P - q S falls with q at any y.
+The unknown is y = sqrt(δ/u) (1 + q/w): δ = u (y/(1 + q/w))² is then explicit, and P - q S falls with q at any y. w and
+u are 1, and larger where heights spread far beyond A*, so that y has a range that the tables cover: :func:`depth`.
 """
 
 from typing import NamedTuple
@@ -27,8 +28,13 @@ _SPOTS, _FILLED = 24, 16
 #: below _NEAR is taken even if it leaves the bracket of the root, which then is rounding; the largest change.
 _STEPS, _LAST, _NEAR, _LONGEST = 60, 1e-9, 1e-6, 2.0
 #: Knots of a table in ln y: the first, their distance, their number. A quintic through six of them errs by less than
-#: 5e-6 in q and 2e-4 in λ (tests/laws/test_heights.py).
-FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 672
+#: 5e-6 in q and 2e-4 in λ, and at the last knot δ is as near to its limit (tests/laws/test_heights.py).
+FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 992
+#: The largest y that a table knows; the last three knots are beyond it.
+LAST = np.exp(FIRST + STEP * (KNOTS - 3))
+#: The relief <ζ> + 1/3 above which w is not 1, and the one above which u is not: the tables then begin where δ is 1e-16
+#: of the relief.
+_FAR, _FARTHEST = 10.0, 1e8
 
 
 #: Every sixth knot is solved first. The others begin at what is interpolated between these, and take fewer steps.
@@ -44,6 +50,26 @@ class Means(NamedTuple):
     area: np.ndarray
     c: np.ndarray
     fall: np.ndarray
+
+
+def depth(y, q, relief):
+    """δ at y and q; and w, with d ln δ/dq = -2/(w + q) at constant y."""
+    w = np.maximum(1.0, relief / _FAR)
+    return np.maximum(1.0, relief / _FARTHEST) * (y / (1 + q / w)) ** 2, w
+
+
+def unknown(delta, q, relief):
+    """y at δ and q."""
+    return np.sqrt(delta / depth(1.0, q, relief)[0])
+
+
+def beyond(y, q, slope, relief):
+    """q and d ln q/d ln y, from those at LAST where y is larger: w + q goes on as the power of y that it is there. That
+    is nearly the first power, so that δ is nearly constant."""
+    w = depth(1.0, q, relief)[1]
+    power, ratio = slope * q / (w + q), np.maximum(y / LAST, 1.0)
+    more = q + (w + q) * np.expm1(power * np.log(ratio))
+    return more, power * (w + more) / more
 
 
 def means(edges, density, field, q, delta, sigma):
@@ -95,15 +121,16 @@ def pressure(edges, density, field, y, sigma, relief, q=None):
     relief : (B, 1), the limit of δ; q : the first guess, or None; the rest as for :func:`means`
     """
     if q is None:
-        at = means(edges, density, field, np.zeros_like(y), y * y, sigma)
-        q = np.clip(at.load / at.rest, 1e-300, y / np.sqrt(relief))
+        few, w = depth(y, 0.0, relief)
+        at = means(edges, density, field, np.full_like(y, 1e-300), few, sigma)  # at 0, 0/0 is possible
+        q = np.clip(at.load / at.rest, 1e-300, w * np.sqrt(few / relief))
     low, high = np.zeros_like(y), np.full_like(y, np.inf)
     for _ in range(_STEPS):
-        delta = (y / (1 + q)) ** 2
+        delta, w = depth(y, q, relief)
         at = means(edges, density, field, q, delta, sigma)
         more = at.load > q * at.rest
         low, high = np.where(more, q, low), np.where(more, high, q)
-        slope = -at.fall - (6 / np.pi) * at.c * delta / (1 + q)  # of P - q S
+        slope = -at.fall - (6 / np.pi) * at.c * delta / (w + q)  # of P - q S
         step = np.clip((at.load / q - at.rest) / -slope, -_LONGEST, _LONGEST)
         new = q * np.exp(step)
         astray = (low > 0) & (high < np.inf) & (np.abs(step) > _NEAR) & ((new <= low) | (new >= high))

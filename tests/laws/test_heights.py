@@ -49,7 +49,7 @@ def test_the_tables(sigma, cut):
     own = bound(sigma, cut)
     found = own.evaluate(y)
     assert_allclose(found.q, q, rtol=5e-6, atol=0)
-    assert_allclose(found.g, (y / (1 + q)) ** 2, rtol=5e-6, atol=0)
+    assert_allclose(found.g, spread.depth(y, q, cut * sigma + 1 / 3)[0], rtol=5e-6, atol=0)
     assert_allclose(own.area(y, q), at.area, rtol=heights.ERROR, atol=0)
     assert (found.dq > 0).all() and (found.dg > 0).all()
     assert_allclose(found.g[0, -1], cut * sigma + 1 / 3, rtol=1e-3)  # the mean relief

@@ -66,7 +66,7 @@ def first_order(cases, cheap, p):
 
 
 def closed_form(problem, a):
-    """Estimated relative error (B,) of the thin-layer model, as if there were no asperities; nothing is solved for it.
+    """Estimated relative error (B,) of the thin-layer model, as if asperities did not yield; nothing is solved for it.
 
     `a` (B,) are its contact radii, in the unit of `problem.h`. NaN where the thin-layer equation does not apply. The
     estimate, :func:`~solver.models.thin_layer_error.largest_error`, is made for a rigid punch. Under an elastic one its
@@ -74,7 +74,9 @@ def closed_form(problem, a):
     """
 
     def error(part, radius, control):
-        return largest_error(control, part.h / radius, part.n, part.nu1, part.nu2, part.bonding == "bonded")
+        return largest_error(
+            control, part.h / radius, part.n, part.nu1, part.nu2, part.bonding == "bonded", part.rough()
+        )
 
     found, yields = error(problem, a, problem.control), np.flatnonzero(problem.m > 0)
     if len(yields):

@@ -131,8 +131,7 @@ class Problem:
             raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
         ((control, value),) = given.items()
         parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
-        if not laws.known(parameters, parameters["micro"]):
-            laws.load()
+        laws.load(parameters, parameters["micro"])
         unknown = sorted(set(parameters) - set(PARAMETERS))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")

@@ -7,7 +7,7 @@ import numpy as np
 from .body import BODIES
 from .body.springs import STIFF, layer_modulus, local_compliance, thin_layer_coefficients
 from .contact.equation import Cases
-from .laws import LAWS
+from .laws import LAWS, try_out
 from .parameters import PARAMETERS, allowed
 from .status import Status
 
@@ -96,9 +96,14 @@ def as_cases(part):
 
 
 def law_of(part):
-    """:class:`~solver.laws.Bound`: the one law of the cases, with their numbers."""
+    """:class:`~solver.laws.Bound`: the one law of the cases, with their numbers.
+
+    Raises ValueError for a law of somebody else's with a slip that :func:`~solver.laws.try_out` finds.
+    """
     law = LAWS[str(part.micro[0])]
-    return law.bind(layer_modulus(part.n) / (1 + part.m), **{name: getattr(part, name) for name in law.parameters})
+    E, given = layer_modulus(part.n) / (1 + part.m), {name: getattr(part, name) for name in law.parameters}
+    try_out(law, E, given)
+    return law.bind(E, **given)
 
 
 def _layer(problem):

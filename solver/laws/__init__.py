@@ -2,19 +2,36 @@
 
 import re
 from functools import cache
+from weakref import WeakSet
 
 import numpy as np
 
 from ..parameters import CONTROL, PARAMETERS
-from . import disc_cell, heights, lattice, own_table, power_law, smooth
+from . import disc_cell, heights, lattice, own_table, power_law, smooth, trial
 from .law import Bound, Curve, Law, Spots
 
-__all__ = ["LAWS", "Bound", "Curve", "Law", "Spots", "identity", "known", "load", "name_in", "named", "register"]
+__all__ = [
+    "LAWS",
+    "Bound",
+    "Curve",
+    "Law",
+    "Spots",
+    "identity",
+    "known",
+    "load",
+    "name_in",
+    "named",
+    "register",
+    "try_out",
+]
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
-#: Names that no parameter of a law can have; study/spec/laws.py adds the names of results.
-RESERVED = {*CONTROL, "control", "value", "more"}
+#: Names that no parameter of a law can have: those of attributes of a Problem, and E, which `scales` gets. The package
+#: `study` adds those of results, and of what else it is told.
+RESERVED = {*CONTROL, "E", "control", "value", "more", "of", "take", "rough", "invalid", "without_scheme"}
+#: Laws whose functions have been tried.
+_TRIED = WeakSet()
 
 
 def register(law):
@@ -26,8 +43,8 @@ def register(law):
     Raises
     ------
     ValueError
-        The name is not allowed, or is that of a law of this package; there is no version; a parameter has the name of
-        another parameter, of one of another law with other bounds, or of a result.
+        The name is not allowed, or is that of a law of this package; there is no version; a parameter is declared
+        wrongly, or has the name of something else, or of one of another law with other bounds.
     """
     if LAWS.get(law.name) is law:
         return law
@@ -35,9 +52,18 @@ def register(law):
         raise ValueError(f'micro law "{law.name}": must have a name of its own, of letters, digits and _')
     if not (law.version and isinstance(law.version, str)):
         raise ValueError(f"micro law {law.name}: version must be a text, which changes whenever its numbers may")
+    if wrong := trial.declaration(law):
+        raise ValueError(f"micro law {law.name}: {wrong}")
     _declare(LAWS | {law.name: law})
     LAWS[law.name] = law
     return law
+
+
+def try_out(law, E, given):
+    """Try the functions of a law that is not of this package at some of its cases, once: see :func:`.trial.tried`."""
+    if law.version and not law.name.startswith(own_table.PREFIX) and law not in _TRIED:
+        trial.tried(law, E, given)
+        _TRIED.add(law)
 
 
 def _declare(laws):
@@ -49,9 +75,11 @@ def _declare(laws):
     for law in laws.values():
         for name, own in law.parameters.items():
             known, names = declared.get(name, (own, ()))
-            taken = name in RESERVED or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro"
-            if taken or own != known:
+            if name in RESERVED or name in PARAMETERS and PARAMETERS[name].needed_by[0] != "micro":
                 raise ValueError(f"micro law {law.name}: the name of the parameter {name} is that of something else")
+            if own != known:
+                reason = f"another interval, default, unit or words than that of {names[0]}: give it another name"
+                raise ValueError(f"micro law {law.name}: the parameter {name} has {reason}")
             declared[name] = known, (*names, law.name)
     for name in [name for name, own in PARAMETERS.items() if own.needed_by[0] == "micro" and name not in declared]:
         del PARAMETERS[name]  # of a law that has been replaced
@@ -60,22 +88,43 @@ def _declare(laws):
     return laws
 
 
-@cache
-def load():
-    """Register the laws of installed packages, once. Each entry point is a :class:`Law`, or a list of them.
+def load(parameters, micro):
+    """Register the laws of installed packages, if some of the `parameters` (names), or of the words of `micro` (one, or
+    an array), is not known. A law of the same name that the program has registered stays.
 
     Raises
     ------
     ValueError
-        One of them cannot be loaded or registered.
+        It is still not known, and an entry point cannot be loaded or registered, or two have laws of one name.
     """
+    if not known(parameters, micro) and (wrong := _load_installed()) and not known(parameters, micro):
+        raise ValueError("\n".join(wrong))
+
+
+@cache
+def _load_installed():
+    """Register the laws of all entry points, each a :class:`Law` or a list of them; texts of what is wrong."""
     from importlib.metadata import entry_points  # takes a while, and most studies have no need of it
 
-    for found in entry_points(group=GROUP):
+    wrong, found, own = [], {}, set(LAWS)
+    for entry in entry_points(group=GROUP):
+        where = f"entry point {entry.name} = {entry.value} of {GROUP}"
         try:
-            named(found.load())
+            laws = entry.load()
+            for law in laws if isinstance(laws, (list, tuple)) else [laws]:
+                found.setdefault(law.name, {}).setdefault(law, where)
         except Exception as error:
-            raise ValueError(f"entry point {found.name} = {found.value} of {GROUP}: {error}") from error
+            wrong.append(f"{where}: {error}")
+    for name, places in found.items():
+        if len(places) > 1:
+            wrong.append(f"{' and '.join(places.values())} have laws of one name, {name}: one must go")
+        elif name not in own:
+            ((law, where),) = places.items()
+            try:
+                register(law)
+            except ValueError as error:
+                wrong.append(f"{where}: {error}")
+    return wrong
 
 
 def named(given):
@@ -92,7 +141,7 @@ def named(given):
 
 
 def known(parameters, micro):
-    """Whether all `parameters` (names) and all words of `micro` (one, or an array) are known without :func:`load`."""
+    """Whether all `parameters` (names) and all words of `micro` (one, or an array) are known."""
     return set(parameters) <= set(PARAMETERS) and set(np.ravel(micro).tolist()) <= set(LAWS)
 
 

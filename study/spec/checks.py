@@ -5,6 +5,10 @@ from functools import partial
 
 import numpy as np
 
+from solver import Problem
+from solver.laws import LAWS
+from solver.scaling import dimensionless, law_of
+
 from ..terminal import shown
 from .grid import Grid, along, on_rigid_base
 from .laws import smooth_laws
@@ -77,3 +81,18 @@ def picard_for_nothing(grid: Grid) -> list[str]:
     others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
     names = " or ".join(map(shown, smooth))
     return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']
+
+
+def slips_of_laws(grid: Grid) -> list[str]:
+    """Messages for micro laws of somebody else's that fail when they are tried at a few cases of the grid."""
+    messages, (dims, micro) = [], grid.values["micro"]
+    for word in sorted(word for word in set(micro.ravel().tolist()) if LAWS[word].version):
+        having = np.argwhere(micro == word)
+        few = {dim: having[np.linspace(0, len(having) - 1, 3).astype(int), axis] for axis, dim in enumerate(dims)}
+        few = {dim: few.get(dim, np.linspace(0, size - 1, 3).astype(int)) for dim, size in grid.sizes.items()}
+        given = {name: array[tuple(few[dim] for dim in own)] for name, (own, array) in grid.values.items()}
+        try:
+            law_of(dimensionless(Problem.of(**given)))
+        except ValueError as error:
+            messages.append(str(error))
+    return messages

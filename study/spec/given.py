@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..terminal import shown
-from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing
+from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing, slips_of_laws
 from .fitted import fitted, wants_a_fit
 from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, twins
 from .laws import is_parameter, law_names, update_vocabulary
@@ -160,6 +160,7 @@ class Draft:
         if not self.errors:
             self.errors += missing_parameters(grid) + picard_for_nothing(grid)
             self.errors += [] if self.physical else mixed_units(grid)
+        self.errors += [] if self.errors else slips_of_laws(grid)
         return grid
 
     def _grid(self) -> Grid:

@@ -7,7 +7,9 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 
 from .vocabulary import PARAMETERS, VOCABULARY, Entry, names
 
-laws.RESERVED.update(set(VOCABULARY) - set(SOLVER_PARAMETERS))  # a law must not call a parameter like a result
+# A law must not call a parameter like a result, or like what `study.solve` is told beside parameters.
+laws.RESERVED.update({*VOCABULARY, "cases", "profiles", "title", "workers"} - set(SOLVER_PARAMETERS))
+laws.RESERVED.update(f"{name}_spread" for name in VOCABULARY)
 
 
 def update_vocabulary() -> None:
@@ -30,8 +32,7 @@ def law_names(given: list) -> list:
     If a name is not known, the laws of installed packages are loaded. Raises ValueError for a law that cannot be used.
     """
     found = laws.named(given)
-    if not laws.known((), [word for word in found if isinstance(word, str)]):
-        laws.load()
+    laws.load((), [word for word in found if isinstance(word, str)])
     update_vocabulary()
     return found
 
@@ -40,7 +41,7 @@ def is_parameter(name: str) -> bool:
     """Whether a name is that of a parameter. If it is not known, the laws of installed packages are loaded first."""
     if name not in PARAMETERS:
         with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
-            laws.load()
+            laws.load([name], ())
         update_vocabulary()
     return name in PARAMETERS
 

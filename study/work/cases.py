@@ -4,6 +4,7 @@ This module imports neither xarray nor netCDF4: without them a worker process st
 less.
 """
 
+import pickle
 import traceback
 from dataclasses import dataclass
 
@@ -49,8 +50,26 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     """The parcel of the cases numbered `index` (n,), n > 0."""
     found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
-    own = tuple(laws.LAWS[name] for name in set(found["micro"].tolist()) if laws.LAWS[name].version)
+    own = tuple(own_laws(found["micro"]))
     return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION, own)
+
+
+def own_laws(micro: np.ndarray) -> list[Law]:
+    """The laws among the words of `micro` that are not of this package."""
+    return [law for law in map(laws.LAWS.get, set(micro.ravel().tolist())) if law not in laws.BUILT_IN]
+
+
+def can_travel(definition: Definition) -> bool:
+    """Whether another process can have the micro laws of a study: functions with a name, in a module that it can
+    import, which the program itself is not."""
+    for law in own_laws(definition.grid.values["micro"][1]):
+        if any(getattr(part, "__module__", "") == "__main__" for part in vars(law).values() if callable(part)):
+            return False
+        try:
+            pickle.dumps(law)
+        except (pickle.PicklingError, AttributeError, TypeError):
+            return False
+    return True
 
 
 def compute(wanted: Parcel) -> dict[str, np.ndarray]:

@@ -20,7 +20,7 @@ from ..store.earlier import check_replaceable, earlier
 from ..store.tidy import tidy, withdraw
 from ..store.writer import writing
 from ..terminal import say
-from .cases import Failure, blocks_of, guarded, parcel
+from .cases import Failure, blocks_of, can_travel, guarded, parcel
 from .cost import Estimate, estimate
 from .plan import Order, Report, check_countable, check_size, check_writable, look
 from .progress import Progress
@@ -128,7 +128,7 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
         return failures
     size = order.definition.grid.size
     shown = Progress(order.definition.name, size, order.stream, size - len(known.missing))
-    many = len(blocks) if order.processes else 0
+    many = len(blocks) if order.processes and can_travel(order.definition) else 0
     with closing(shown) as progress, engine(order.workers, order.scheduler, many) as workers:
         tasks = (parcel(order.definition, index) for index in blocks)
         for number, result in as_they_come(workers, guarded, tasks):

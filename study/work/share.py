@@ -21,7 +21,7 @@ import numpy as np
 
 from ..spec.block_size import USUAL, usual_block
 from ..spec.definition import Definition
-from .cases import Failure, Parcel, compute, guarded, parcel
+from .cases import Failure, Parcel, can_travel, compute, guarded, parcel
 from .processes import Processes
 from .workers import available_workers
 
@@ -97,14 +97,12 @@ def blocks_of_grid(definition: Definition) -> list[np.ndarray]:
 def _processes_allowed(definition: Definition, workers: int | None) -> int:
     """How many processes may compute beside the calling thread.
 
-    It is 0 where Python cannot start another Python, and for a micro law that only this program knows. If the user does
+    It is 0 where Python cannot start another Python, and for a micro law that it cannot have. If the user does
     not say `workers`, it is 0 in threads and processes of programs that divide work themselves, such as dask.
     """
-    own = parcel(definition, np.arange(1)).laws
-    parts = [part for law in own for part in vars(law).values() if callable(part)]
     # a program that has Python inside would start itself anew
     python = "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
-    if not python or any(getattr(part, "__module__", "") == "__main__" for part in parts):
+    if not python or not can_travel(definition):
         return 0
     if workers is not None:
         return workers - 1
@@ -149,7 +147,7 @@ def _in_process(call: Callable, wanted: Parcel) -> dict[str, np.ndarray] | Failu
     """The columns of a block, computed in a process."""
     try:
         return call(guarded, wanted)
-    except Exception as error:  # a law that cannot be sent, say
+    except Exception as error:  # the block is then computed here
         return Failure(str(error), "")
 
 

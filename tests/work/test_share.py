@@ -164,7 +164,8 @@ def test_where_there_are_no_processes(monkeypatch):
         with monkeypatch.context() as patch:
             patch.setattr(sys, name, value, raising=False)
             assert share._processes_allowed(ordinary, 2) == 0
-    mine = replace(laws.LAWS["disc_cell"], name="mine_alone", version="1", curve=own_curve)
+    named = {"curve": own_curve, "edge": own_edge, "area": own_area}
+    mine = replace(laws.LAWS["disc_cell"], name="mine_alone", version="1", **named)
     rough = definition(micro=mine, base="half_space", Nbar=250000.0, Ra=0.004)
     assert share._processes_allowed(rough, 2) == 1
     monkeypatch.setattr(own_curve, "__module__", "__main__")
@@ -173,6 +174,14 @@ def test_where_there_are_no_processes(monkeypatch):
 
 def own_curve(y):
     return laws.disc_cell.spot_curve(y)
+
+
+def own_edge():  # those of the disc cell are `lambda`, and cannot be sent
+    return laws.LAWS["disc_cell"].edge()
+
+
+def own_area(y, q):
+    return laws.disc_cell.spot_area(y)
 
 
 SCRIPT = """

@@ -1,0 +1,149 @@
+"""What is wrong with a law of somebody else's: with its declaration, and with its functions at a few of its cases."""
+
+import traceback
+from pathlib import Path
+
+import numpy as np
+
+from ..parameters import Parameter, allowed, ends
+from .law import Curve
+
+#: The y (cases, points) of a trial: three cases, at different y. At _ZERO times these, q and g must be below _NEAR
+#: times what they are there: they rise as y², or faster. Numbers below _TINY may have fewer digits than others.
+_Y = np.array([[0.9], [1.0], [1.1]]) * np.geomspace(1e-3, 10, 13)
+_ZERO, _NEAR, _TINY = 1e-6, 1e-3, 1e-290
+#: Half the step of ln y over which a derivative is compared, and the largest relative error of it: the laws of this
+#: package have less than 1e-5 (tests/laws/test_trial.py).
+_STEP, _WRONG = 1e-3, 1e-3
+#: A curve that changes by less over the step is flat, and its derivative is rounding; one that falls by less is.
+_FLAT, _ROUNDING = 1e-6, 1e-9
+#: The part of the points that must be wrong, since a curve may have a corner near some.
+_PART = 0.25
+#: Largest relative error of q or g of an inverse.
+_INVERSE = 1e-6
+
+
+def declaration(law):
+    """What is wrong with the declaration of the parameters of a law: a text, "" for nothing."""
+    if not isinstance(law.parameters, dict):
+        return "parameters must be a dictionary, name -> Parameter"
+    for name, own in law.parameters.items():
+        if not (isinstance(name, str) and name.isidentifier() and name[0] != "_"):
+            return f"the parameter {name!r} must have a name of letters, digits and _"
+        if not isinstance(own, Parameter) or own.choices or not _is_interval(own.interval):
+            return f'the parameter {name} must be a Parameter with an interval such as "(0, 1.57)", and no choices'
+        if not (own.default is None or allowed(own, own.default)):
+            return f"the parameter {name} has the default {own.default}, outside {own.interval}"
+        if not (isinstance(own.powers, tuple) and [type(power) for power in own.powers] == [int, int]):
+            return f"the parameter {name} must have powers of two whole numbers, (i, j) of E2*^i R^j"
+    return ""
+
+
+def _is_interval(text):
+    try:
+        low, high, *_ = ends(text)
+    except (TypeError, ValueError):
+        return False
+    return low < high and text[0] in "[(" and text[-1] in "])"
+
+
+@np.errstate(all="ignore")
+def tried(law, E, given):
+    """Try a law at three of its cases: of modulus E (B,) and its parameters, name -> (B,).
+
+    It finds slips that would make a wrong number look right, or end deep in the solver. NaN is no slip: a case with NaN
+    gets a status.
+
+    Raises
+    ------
+    ValueError
+        A function of the law raises, or gives something of a wrong shape; q or g do not increase from 0; a derivative
+        or an inverse is not that of the curve.
+    """
+    places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
+    E, given = E[places], {name: given[name][places] for name in law.parameters}
+    bound, curve, area = _shapes(law, E, given)
+    # beyond full contact, and where p is above E, no contact is, and a law may be what it likes
+    here = (area <= 1) & (bound.p_star[:, None] * curve.q <= E[:, None])
+    small, above, below = (_curve(law, y, bound.own) for y in (_ZERO * _Y, _Y * np.exp(_STEP), _Y * np.exp(-_STEP)))
+    for name, inverse in (("q", "from_pressure"), ("g", "from_displacement")):
+        at, falls = getattr(curve, name), np.zeros(_Y.shape, bool)
+        falls[:, 1:] = here[:, 1:] & here[:, :-1] & (at[:, 1:] < at[:, :-1] * (1 - _ROUNDING))
+        falls |= here & (getattr(small, name) > _NEAR * at)
+        if falls.any():
+            _refuse(law, f"curve: {name} must increase from 0 at y = 0", given, falls)
+        slope = np.log(getattr(above, name) / getattr(below, name)) / (2 * _STEP)  # of ln q over ln y
+        numbers, known = (slope, _Y * getattr(curve, f"d{name}") / at, _WRONG), here & (at > _TINY)
+        rising = known & (slope > _FLAT / _STEP)
+        _compare(law, f"curve: d{name} must be the derivative of {name} by y", numbers, rising, given)
+        if getattr(law, inverse):
+            again = _curve(law, _of_shape(law, inverse, at, *bound.own), bound.own)
+            numbers = at, getattr(again, name), _INVERSE
+            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, known, given)
+
+
+def _shapes(law, E, given):
+    """The law bound to its cases, and curve and area at _Y, if all of its functions return what they must."""
+    found = _called(law, "scales", E, **given)
+    if not (isinstance(found, (tuple, list)) and len(found) >= 2 and all(np.shape(v) in ((), E.shape) for v in found)):
+        _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")
+    bound = law.bind(E, **given)
+    curve, edge = _curve(law, _Y, bound.own), _called(law, "edge", *bound.own)
+    if not (isinstance(edge, (tuple, list)) and len(edge) == 2):
+        _refuse(law, "edge must return two values, gamma and beta")
+    for name, value in (("edge", edge[0]), ("edge", edge[1]), ("peak", _called(law, "peak", _Y, curve.q, *bound.own))):
+        _broadcasts(law, name, value, _Y)
+    if law.touching:
+        A = bound.A_star * curve.g[:, 0]
+        _broadcasts(law, "touching", _called(law, "touching", A, **given), A)
+    return bound, curve, _of_shape(law, "area", _Y, curve.q, *bound.own)
+
+
+def _compare(law, rule, numbers, known, given):
+    """Refuse a law if too many of the points where two arrays are `known` differ."""
+    right, stated, most = numbers
+    known = known & np.isfinite(right) & np.isfinite(stated)
+    wrong = known & (np.abs(stated - right) > most * np.abs(right))
+    if wrong.sum() > _PART * known.sum():
+        _refuse(law, rule, given, wrong)
+
+
+def _curve(law, y, own):
+    found = _called(law, "curve", y, *own)
+    if not isinstance(found, Curve) or any(np.shape(values) != y.shape for values in found):
+        _refuse(law, "curve must return a Curve of four arrays of the shape of y, (cases, points)")
+    return found
+
+
+def _of_shape(law, name, y, *further):
+    found = _called(law, name, y, *further)
+    if np.shape(found) != y.shape:
+        _refuse(law, f"{name} must return an array of the shape of y, (cases, points)")
+    return found
+
+
+def _broadcasts(law, name, found, y):
+    try:
+        right = np.broadcast_shapes(np.shape(found), y.shape) == y.shape and np.asarray(found).dtype.kind in "fiub"
+    except ValueError:
+        right = False
+    if not right:
+        _refuse(law, f"{name} must return numbers, one for all or one for each of what it is given")
+
+
+def _called(law, name, *given, **named):
+    try:
+        return getattr(law, name)(*given, **named)
+    except Exception as error:
+        at = traceback.extract_tb(error.__traceback__)[-1]
+        where = f" ({Path(at.filename).name}, line {at.lineno})" * (at.filename != __file__)
+        raise ValueError(f"micro law {law.name}: {name} raises {type(error).__name__}: {error}{where}") from error
+
+
+def _refuse(law, reason, given=None, where=None):
+    """Raise the ValueError of a slip, of the first case and the first y of `where`."""
+    if given is not None:
+        case, point = np.argwhere(where)[0]
+        numbers = {"y": _Y[case, point]} | {name: values[case] for name, values in given.items()}
+        reason += " (at " + ", ".join(f"{name} = {value:.3g}" for name, value in numbers.items()) + ")"
+    raise ValueError(f"micro law {law.name}: {reason}")

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import xarray as xr
 
+from solver import NUMERICS_VERSION
+
 from .data.provenance import command_line
 from .files.access import Unusable
 from .files.examine import Condition
@@ -110,7 +112,8 @@ class Study:
                 return partial_dataset(self.definition, self.results)
             return self.open()  # a run has ended meanwhile, and removed its blocks
         if found.good or found.kind == "missing":
-            reason = "holds results of another definition" if found.good else "does not exist"
+            other = "another definition" if found.numerics == NUMERICS_VERSION else "another version of the numerics"
+            reason = f"holds results of {other}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
         again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)

@@ -13,7 +13,7 @@ import solver
 from . import evidence, figures, literature, paper
 from .figures.formats import as_csv, as_latex, as_text, csv_text, write_text
 from .figures.labels import stated, wrapped
-from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
+from .figures.registry import FIGURES, TABLES, Columns, NotMade, entry, open_studies
 from .figures.style import style
 
 SCHEMES = {
@@ -63,13 +63,17 @@ def outdated(name: str, known: dict, results, folder) -> bool:
 def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     """A figure as it will be written, the columns of numbers that it shows, and the title that its files carry.
 
-    Raises StudyError when there is no such figure, or a study it needs has no results.
+    Raises StudyError when there is no such figure, or a study it needs has no results; NotMade if the function does not
+    return columns.
     """
     recipe, datasets = entry(name, FIGURES), open_studies(name, FIGURES, results)
     digests = [dataset.attrs["study_digest"][:16] for dataset in datasets]
     with style():
         figure = Figure(figsize=recipe.size, layout="constrained")
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
+        shapes = {np.shape(column) for column in columns.values()} if isinstance(columns, dict) else {()}
+        if len(shapes) > 1 or not all(len(shape) == 1 for shape in shapes):
+            raise NotMade([f"{name}: the function must return its numbers: heading -> column, all of one length"])
         if not figure.get_suptitle():
             figure.suptitle(wrapped(stated(datasets), LETTERS * recipe.size[0]), fontsize=7)
     return figure, columns, f"{name}, studies {' '.join(digests)}".removesuffix(", studies ")
@@ -111,11 +115,12 @@ def copied(name: str, folder: Path) -> list[Path]:
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
     """Write what `compose` gives as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-    write_text(stem.with_suffix(".csv"), csv_text(columns, rows))
+    stem.parent.mkdir(parents=True, exist_ok=True)
     for suffix, dated in ((".png", {}), (".pdf", {"CreationDate": None})):
         with style():
             figure.savefig(stem.with_suffix(suffix), metadata={"Title": title} | dated)
             figure.set_layout_engine(None)  # the second keeps the layout, which takes long to find for many axes
+    write_text(stem.with_suffix(".csv"), csv_text(columns, rows))  # last: a text in the figure may be wrong
     return [stem.with_suffix(f".{kind}") for kind in FIGURE]
 
 
@@ -123,5 +128,7 @@ def tabulate(name: str, results="results", folder="tables") -> list[Path]:
     """Write a table as FOLDER/NAME.txt, .csv and .tex; returns the three paths. Raises as `compose` does."""
     table, datasets = entry(name, TABLES), open_studies(name, TABLES, results)
     rows = table.rows(*datasets)
+    if not isinstance(rows, list) or any(len(row) != len(table.columns) for row in rows):
+        raise NotMade([f"{name}: the function must return a list of tuples of {len(table.columns)} cells, one a row"])
     texts = {"txt": as_text(table, rows), "csv": as_csv(table, rows), "tex": as_latex(table, rows)}
     return [write_text(Path(folder) / f"{name}.{suffix}", text) for suffix, text in texts.items()]

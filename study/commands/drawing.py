@@ -1,5 +1,6 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
+import logging
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -9,14 +10,17 @@ from ..api import load
 from ..data.provenance import command_line
 from ..evidence import tradeoff as measured
 from ..figures.lines import drawn
+from ..figures.registry import NotMade
 from ..figures.style import style
 from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.grid import twins
-from ..terminal import answer
+from ..terminal import answer, on_one_line
 from .arguments import known_studies, study_file
 from .computing import completed
+
+log = logging.getLogger(__name__)
 
 
 def items(options) -> list[str]:
@@ -83,7 +87,14 @@ def _write(options, name: str, known: dict, make) -> int:
         code = max((_ready(options, study) for study in catalogue.needed(name, known)), default=0)
         if code or not catalogue.outdated(name, known, options.results, options.folder):
             return code
-    answer(*make(name, options.results, options.folder))
+    try:
+        answer(*make(name, options.results, options.folder))
+    except (StudyError, OSError):
+        raise
+    except Exception as error:  # of the function of the figure or table; the others are made
+        log.info("%s", name, exc_info=True)
+        reason = f"{type(error).__name__}: {on_one_line(str(error), 300)}"
+        raise NotMade([f"{name}: its function fails: {reason}; -v before the command shows where"]) from error
     return 0
 
 

@@ -162,8 +162,8 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the middle.
 
     The two differ on a hard coating with a > h, which bends like a plate and presses most near the edge. Needs the
-    profile p; NaN for a law that is not registered. Raises ValueError for results with units that have not R and E2 in
-    SI units: the laws take their parameters in R and E2*.
+    profile p; NaN for a law that is not registered in the version of the results. Raises ValueError for results with
+    units that have not R and E2 in SI units: the laws take their parameters in R and E2*.
     """
     if "p" not in dataset:
         raise ValueError("p_peak needs the profile p, which profiles = false leaves out")
@@ -171,7 +171,10 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
+    versions = dict(line.split(" ", 1) for line in dataset.attrs.get("micro_laws", "").splitlines())
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
+        if versions.get(law.name, law.version) != law.version:
+            continue
         given = [without_unit(_given(dataset, name), VOCABULARY[name].powers, unit, R) for name in law.parameters]
         p = dataset["p"] / unit
         spots = xr.apply_ufunc(_largest(law), p, E1, *given, dask="parallelized", output_dtypes=[float])

@@ -26,6 +26,12 @@ def joined(parts: list[Columns]) -> Columns:
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
+class NotMade(StudyError):
+    """The results are right, the function of a figure or table is not."""
+
+    code = 1
+
+
 class Figure(NamedTuple):
     """See `figure`."""
 
@@ -68,6 +74,7 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
+        check_new(name, draw, FIGURES)
         FIGURES[name] = Figure(studies, draw, size, panels, caption_of(draw, caption))
         return draw
 
@@ -84,11 +91,21 @@ def table(name: str, *studies: str, columns: str, caption: str = ""):
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
+        check_new(name, rows, TABLES)
         heads = tuple(column(line) for line in columns.strip().split("\n"))
         TABLES[name] = Table(studies, rows, caption_of(rows, caption), heads)
         return rows
 
     return register
+
+
+def check_new(name: str, function: Callable, known: dict) -> None:
+    """Raise ValueError if another function has the name. In a notebook a function may be defined anew."""
+    own = getattr(function, "func", function)  # of a partial
+    other = known[name][1] if name in known else own
+    other = getattr(other, "func", other)
+    if (other.__module__, other.__name__) != (own.__module__, own.__name__):
+        raise ValueError(f'"{name}" is that of {other.__module__}.{other.__name__} already: take another name')
 
 
 def caption_of(function: Callable, given: str = "") -> str:

@@ -10,6 +10,7 @@ from xarray.conventions import encode_dataset_coordinates
 
 from ..data.dataset import without_fill_values
 from ..physical.index import searchable
+from ..spec.laws import recall
 from .atomic import replacing, target
 from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head
 from .examine import examine
@@ -138,6 +139,7 @@ def open_lazily(path) -> xr.Dataset:
 
 
 def _for_users(dataset: xr.Dataset) -> xr.Dataset:
-    """The dataset without the checksums: they would be wrong in a file that a user makes of it."""
+    """The dataset without the checksums: they would be wrong in a file that a user makes of it. Its laws are known."""
     dataset.attrs.pop(ATTRIBUTE, None)
+    recall(dataset.attrs.get("micro_laws", ""))
     return searchable(without_fill_values(dataset))

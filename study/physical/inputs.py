@@ -3,6 +3,8 @@
 import numpy as np
 import xarray as xr
 
+from solver.laws import LAWS
+
 from ..spec.laws import smooth_laws
 from ..spec.vocabulary import CONTROLS, VOCABULARY, matters, names
 from .bodies import BODIES
@@ -20,7 +22,8 @@ def all_inputs() -> list[str]:
 def used_inputs(contacts: xr.Dataset) -> list[str]:
     """The inputs in a dataset that the answer of some contact depends on; [] for a dataset without contacts.
 
-    Left out are ν of a rigid body, and n and m where the moduli are given.
+    Left out are ν of a rigid body, and n and m where the moduli are given. A law that is not registered may depend on
+    all that there is of asperities.
     """
     if "base" not in contacts.variables:
         return []
@@ -34,13 +37,14 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     hidden |= {"n", "body", "E2", "nu2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1"} if (values("base") == "half_space").all() else set()
     hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
+    counting = set() if np.isin(values("micro"), list(LAWS)).all() else set(names("roughness"))
     with_modulus = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
     return [
         name
         for name in all_inputs()
         if name in contacts.variables
         and name not in hidden
-        and (name not in VOCABULARY or name in with_modulus or matters(name, values))
+        and (name not in VOCABULARY or name in (*with_modulus, *counting) or matters(name, values))
     ]
 
 

@@ -37,6 +37,14 @@ def law_names(given: list) -> list:
     return found
 
 
+def recall(versions: str) -> None:
+    """Register laws of results, a line "NAME VERSION" for each, that are not known but installed, or a table."""
+    for line in versions.splitlines():
+        if (name := line.split()[0]) not in laws.LAWS:
+            with suppress(ValueError):  # then it stays unknown
+                law_names([name])
+
+
 def is_parameter(name: str) -> bool:
     """Whether a name is that of a parameter. If it is not known, the laws of installed packages are loaded first."""
     if name not in PARAMETERS:

@@ -4,12 +4,14 @@ import os
 import sys
 from pathlib import Path
 
+import numpy as np
 import pytest
 from test_cli import GOOD, studies  # noqa: F401
 from test_cli_options import tree
 
 from study import api, catalogue
 from study.__main__ import main
+from study.figures import registry
 from study.work.plan import Report
 
 pytestmark = pytest.mark.usefixtures("studies")
@@ -48,6 +50,57 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     study = "reference_load" if command == "table" else "spot_density"
     assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
     assert missing[0].endswith(f"make it with: python -m study run {study}")
+
+
+def test_a_function_that_fails_does_not_keep_the_next_from_its_turn(results, tmp_path, monkeypatch, capsys):
+    """`make figures` ended with a traceback at the first figure whose function raised."""
+    given = ["--results", str(results)]
+
+    def no_variable(axes, main):
+        return {"P": main["nosuch"].values}
+
+    def no_columns(axes, main):
+        axes.plot([1, 2])
+
+    def wrong_text(axes, main):
+        axes.set_xlabel(r"$\nosuch$")
+        return {"a": np.arange(2)}
+
+    figures = no_variable, no_columns, wrong_text, lambda axes, main: {"a": [1, 2], "b": [1]}
+    for name, function in zip(("raises", "none", "text", "unequal"), figures, strict=True):
+        monkeypatch.setitem(registry.FIGURES, name, registry.Figure(("main_case",), function, (3, 3), (1, 1), ""))
+    assert main(["plot", "raises", "none", "text", "unequal", "fig01", *given, "--figures", str(tmp_path)]) == 1
+    assert sorted(path.name for path in tmp_path.iterdir() if path.suffix == ".csv") == []
+    printed = capsys.readouterr()
+    assert printed.out.endswith("fig01.png\n")
+    raised, nothing, text, unequal = printed.err.splitlines()
+    assert raised.startswith("raises: its function fails: KeyError: \"No variable named 'nosuch'")
+    assert raised.endswith("; -v before the command shows where")
+    assert nothing == "none: the function must return its numbers: heading -> column, all of one length"
+    assert unequal == nothing.replace("none", "unequal")
+    assert text.startswith("text: its function fails: ValueError: \\n\\nosuch")
+
+
+def test_a_table_that_fails_says_what_it_must_return(results, tmp_path, monkeypatch, capsys):
+    cells = {"short": [("a",)], "nothing": None, "none": [("a", None)], "empty": []}
+    columns = tuple(map(registry.column, ("a", "b | .3f")))
+    for name, rows in cells.items():
+        table = registry.Table(("main_case",), lambda main, rows=rows: rows, "", columns)
+        monkeypatch.setitem(registry.TABLES, name, table)
+    assert main(["table", *cells, "--results", str(results), "--tables", str(tmp_path)]) == 1
+    printed = capsys.readouterr()
+    assert [Path(line).name for line in printed.out.splitlines()] == ["empty.txt", "empty.csv", "empty.tex"]
+    short, nothing, none = printed.err.splitlines()
+    assert short == "short: the function must return a list of tuples of 2 cells, one a row"
+    assert nothing == short.replace("short", "nothing")
+    assert none.startswith("none: its function fails: TypeError: unsupported format string")
+
+
+def test_a_figure_does_not_take_the_name_of_another():
+    with pytest.raises(ValueError, match='"fig03" is that of study.paper.curves.* already: take another name'):
+        registry.figure("fig03", "main_case")(lambda axes, main: {})
+    with pytest.raises(ValueError, match='"table1" is that of study.* already: take another name'):
+        registry.table("table1", "main_case", columns="a")(lambda main: [])
 
 
 def test_a_file_that_holds_no_results_is_bad_input(capsys):

@@ -17,6 +17,7 @@ from solver.parameters import PARAMETERS, Parameter, ends
 from study.__main__ import main
 from study.spec.definition import from_tables
 from study.work.cases import can_travel, compute, parcel
+from study.work.run import run
 
 CASE = {"P": [1e-6, 1e-5], "base": "half_space", "Nbar": 250_000.0, "alpha": 1.3, "x": 3}
 AT = " (at y = 0.0009, Nbar = 2.5e+05, alpha = 1.3)"
@@ -220,3 +221,25 @@ def test_a_law_that_the_program_registered_stays(entries):
     entries(theirs=[dataclasses.replace(mine, version="theirs"), dataclasses.replace(mine, name="more")])
     study.solve(**CASE, micro="more")
     assert laws.LAWS["named_twice"] is mine
+
+
+def test_results_find_their_law_again(tmp_path, entries):
+    """In a program that has not named it: `p_peak` was NaN, and `Nbar` was told as not used."""
+    tables = {"model": {name: CASE[name] for name in ("base", "Nbar", "alpha")} | {"micro": "cones", "P": 1e-5}}
+    laws.register(cones.CONES)
+    run(from_tables(tables, "mine", "", "mine.toml"), tmp_path)
+    same = study.derived.peak_pressure(study.solve(**CASE | {"P": 1e-5}, micro="cones"))
+
+    def opened(**installed):
+        del laws.LAWS["cones"]
+        laws._declare(laws.LAWS)
+        entries(**installed)
+        return study.open_results(tmp_path / "mine.nc")
+
+    found = opened(cones=cones.CONES)
+    assert_array_equal(study.derived.peak_pressure(found), same)
+    assert "Not used" not in str(study.summary(found)) and "alpha = 1.3" in str(study.summary(found))
+    newer = opened(cones=dataclasses.replace(cones.CONES, version="2"))
+    assert np.isnan(study.derived.peak_pressure(newer))
+    unknown = opened()
+    assert np.isnan(study.derived.peak_pressure(unknown)) and "Not used" not in str(study.summary(unknown))

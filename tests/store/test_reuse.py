@@ -133,10 +133,11 @@ def test_wrong_outputs_are_named(load):
 
 
 def renumber(monkeypatch, version: str) -> None:
+    from study import api
     from study.data import provenance
     from study.work import cases
 
-    for module in (identity, blocks, earlier, cases, provenance):
+    for module in (identity, blocks, earlier, cases, provenance, api):
         monkeypatch.setattr(module, "NUMERICS_VERSION", version)
 
 
@@ -145,6 +146,8 @@ def test_another_version_of_the_numerics_is_refused_with_a_choice(load, monkeypa
     renumber(monkeypatch, "next")
     with pytest.raises(study.StudyError, match=r"of version \S+ of the numerics, this is next: --force computes them"):
         load(MORE).run()
+    with pytest.raises(study.StudyError, match="holds results of another version of the numerics; run the study first"):
+        load().open()
     assert load(MORE).run(force=True).computed == 8
 
 

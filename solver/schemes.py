@@ -24,7 +24,13 @@ def scheme(solve):
     `max_iterations`, in units R = E2* = 1, and the radii x (m,). ``as_cases(part)`` is the equation, of which
     :mod:`solver.contact` has the residual and the derivatives; docs/extending.md shows one. A case whose error is above
     its rtol is ``Status.TOLERANCE_NOT_MET``, whatever the scheme says.
+
+    Raises ValueError for the name of a scheme of another module: its results on disk would be taken for those of this
+    one.
     """
+    other = SCHEMES.get(solve.__name__, solve)
+    if other.__module__ != solve.__module__:
+        raise ValueError(f"scheme {solve.__name__}: {other.__module__} has one of this name: take another name")
     SCHEMES[solve.__name__] = solve
     PARAMETERS["scheme"] = PARAMETERS["scheme"]._replace(choices=tuple(SCHEMES))
     return solve

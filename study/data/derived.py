@@ -111,7 +111,12 @@ def _along(dims: tuple, variable: xr.Variable):
 
 
 def quantity(name: str) -> Callable:
-    """Decorator of a formula: its result has the name and attributes of the vocabulary, and QUANTITIES holds it."""
+    """Decorator of a formula: its result has the name and attributes of the vocabulary, and QUANTITIES holds it.
+
+    Raises ValueError for a name without a row.
+    """
+    if name not in VOCABULARY:
+        raise ValueError(f"{name} has no row in study/spec/vocabulary.py: a quantity needs one")
 
     def register(formula: Callable) -> Callable:
         @wraps(formula)

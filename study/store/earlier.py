@@ -150,6 +150,11 @@ def _grid_in(file: File) -> tuple[Grid, Grid | None]:
     return Grid(sizes, values), Grid(sizes, scales)
 
 
+def other(found: Condition) -> str:
+    """Of what the results in a file are that are not those of a study."""
+    return "another definition" if found.numerics == NUMERICS_VERSION else "another version of the numerics"
+
+
 def statuses(path: Path) -> np.ndarray:
     """The statuses in a results file of a contact study, an array over its grid."""
     with File(path) as file:

@@ -34,3 +34,14 @@ def test_a_scheme_of_ones_own(base):
     assert own.status.tolist() == [Status.CONVERGED, Status.TOLERANCE_NOT_MET]
     assert_allclose(own.P, newton.P, rtol=1e-11, atol=0)
     assert own.error[1] > 1e-14
+
+
+def test_a_scheme_does_not_take_the_name_of_another():
+    """Results on disk that Newton's method has made would be taken for those of another scheme."""
+
+    def newton(part, x):
+        raise NotImplementedError
+
+    with pytest.raises(ValueError, match="scheme newton: solver.schemes has one of this name: take another name"):
+        schemes.scheme(newton)
+    assert schemes.SCHEMES["newton"] is schemes.newton

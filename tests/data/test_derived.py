@@ -237,3 +237,8 @@ def test_multiples_of_units_are_not_taken_for_si():
             formula(study.readable(found))
     with pytest.raises(ValueError, match="validity follows from results without units"):
         derived.validity(found)
+
+
+def test_a_quantity_without_a_row_is_refused():
+    with pytest.raises(ValueError, match="P_spot has no row in study/spec/vocabulary.py: a quantity needs one"):
+        derived.quantity("P_spot")

@@ -14,7 +14,7 @@ SCALE = {"R": 5e-3, "E2_star": 2e11}
 
 # SI sizes of dimensionless ones on a sphere of 5 mm on 200 GPa.
 FACTORS = {
-    **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0", "A_exact", "A_fit"), 5e-3),  # m
+    **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0"), 5e-3),  # m
     **dict.fromkeys(("p0", "p_max", "p", "p_mean", "p_peak", "E_eff"), 2e11),  # Pa
     "P": 5e6,  # N: 2e11 Pa (5e-3 m)²
     "Nbar": 4e4,  # 1/(5 mm)²

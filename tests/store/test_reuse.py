@@ -133,11 +133,10 @@ def test_wrong_outputs_are_named(load):
 
 
 def renumber(monkeypatch, version: str) -> None:
-    from study import api
     from study.data import provenance
     from study.work import cases
 
-    for module in (identity, blocks, earlier, cases, provenance, api):
+    for module in (identity, blocks, earlier, cases, provenance):
         monkeypatch.setattr(module, "NUMERICS_VERSION", version)
 
 

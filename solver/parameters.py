@@ -44,7 +44,7 @@ class Parameter(NamedTuple):
 
 
 #: The conditions that a case has a layer, and that it is bonded.
-LAYERED = ("base", ("thin_layer", "layered", "auto"))
+LAYERED = ("base", tuple(base for base in BASES if base != "half_space"))
 BONDED = ("bonding", ("bonded",))
 
 #: What controls a case: one of these is given.

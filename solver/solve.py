@@ -93,7 +93,7 @@ def _routes(problem, solvable):
     is_smooth = ~problem.rough()
     yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
     yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
-    iterated = solvable & (~is_smooth | (problem.base == "layered"))
+    iterated = solvable & ~(is_smooth & np.isin(problem.base, ("half_space", "thin_layer")))
     kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
     present = ([(word, words == word) for word in known if np.any(words == word)] for known, words in kinds)
     for (_, of_law), (_, on_body), (scheme, by_scheme) in product(*present):

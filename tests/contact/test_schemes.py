@@ -10,7 +10,7 @@ from solver_cases import MAIN
 from solver import Problem, Status, schemes, solve
 from solver.parameters import PARAMETERS
 
-_, SECTION = pages.read("docs/extending.md").split("\n## A scheme\n")
+SECTION = pages.read("docs/extending.md").split("\n## A scheme\n")[1].split("\n## ")[0]
 (CODE,) = re.findall(r"^```python\n(.*?)^```", SECTION, re.DOTALL | re.MULTILINE)
 
 

@@ -13,7 +13,7 @@ from ..terminal import counted, on_one_line, shown
 from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
 from .grid import MOVED, Grid
-from .identity import digest_of
+from .identity import digest_of, law_versions
 from .toml_text import hint, text_in
 from .vocabulary import NUMERICS, finite, names, suggest
 
@@ -48,6 +48,7 @@ class Definition:
     dtype : "float64" or "float32", of the stored numbers
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
+    laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
     scene : of a study with units, a `study.physical.scene.Scene`; its grid is dimensionless, its results are in SI
     """
 
@@ -60,6 +61,7 @@ class Definition:
     dtype: str
     block: int
     digest: str
+    laws: tuple[str, ...] = ()
     scene: Any = None
 
     def __repr__(self) -> str:
@@ -169,7 +171,7 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
         )
     if errors:
         raise refusal(where, errors)
-    return replace(made, digest=digest_of(made))
+    return replace(made, digest=digest_of(made), laws=tuple(law_versions(grid)))
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:

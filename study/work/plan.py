@@ -12,6 +12,7 @@ from ..data.dataset import status_words
 from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
 from ..spec.definition import LARGE, Definition, StudyError
+from ..spec.identity import law_versions
 from ..spec.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses
 from ..store.earlier import statuses
@@ -82,6 +83,9 @@ class Order:
             wrong.append(f"workers = {shown(self.workers)}: must be a whole number, 1 or more")
         if not (isinstance(self.retry, (tuple, list)) and whole(*self.retry)):
             wrong.append(f"retry = {shown(self.retry)}: must be a tuple of values of status")
+        name, laws = self.definition.name, ", ".join(self.definition.laws)
+        if ", ".join(law_versions(self.definition.grid)) != laws:  # its numbers would be those of another digest
+            wrong.append(f"{name}: {laws} was registered anew after the study was loaded: load it again")
         if wrong:
             raise StudyError(wrong)
 

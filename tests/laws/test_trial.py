@@ -243,3 +243,14 @@ def test_results_find_their_law_again(tmp_path, entries):
     assert np.isnan(study.derived.peak_pressure(newer))
     unknown = opened()
     assert np.isnan(study.derived.peak_pressure(unknown)) and "Not used" not in str(study.summary(unknown))
+
+
+def test_a_loaded_study_does_not_run_with_a_law_of_another_version(tmp_path):
+    """Its results would have the digest of the former version, and be taken for those."""
+    definition = defined(cones.CONES)
+    laws.register(dataclasses.replace(cones.CONES, version="2"))
+    with pytest.raises(
+        study.StudyError, match="^mine: cones 1 was registered anew after the study was loaded: load it again"
+    ):
+        run(definition, tmp_path)
+    assert run(defined(cones.CONES), tmp_path).computed == 4

@@ -11,18 +11,8 @@ from . import disc_cell, heights, lattice, own_table, power_law, smooth, trial
 from .law import Bound, Curve, Law, Spots
 
 __all__ = [
-    "LAWS",
-    "Bound",
-    "Curve",
-    "Law",
-    "Spots",
-    "identity",
-    "known",
-    "load",
-    "name_in",
-    "named",
-    "register",
-    "try_out",
+    *("LAWS", "Bound", "Curve", "Law", "Spots"),
+    *("identity", "load", "name_in", "named", "register", "try_out", "untried"),
 ]
 
 #: Entry points of this group are laws of installed packages.
@@ -59,9 +49,14 @@ def register(law):
     return law
 
 
+def untried(law):
+    """Whether a law is somebody else's, and its functions have not been tried."""
+    return bool(law.version) and not law.name.startswith(own_table.PREFIX) and law not in _TRIED
+
+
 def try_out(law, E, given):
-    """Try the functions of a law that is not of this package at some of its cases, once: see :func:`.trial.tried`."""
-    if law.version and not law.name.startswith(own_table.PREFIX) and law not in _TRIED:
+    """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`."""
+    if untried(law):
         trial.tried(law, E, given)
         _TRIED.add(law)
 
@@ -97,7 +92,7 @@ def load(parameters, micro):
     ValueError
         It is still not known, and an entry point cannot be loaded or registered, or two have laws of one name.
     """
-    if not known(parameters, micro) and (wrong := _load_installed()) and not known(parameters, micro):
+    if not _known(parameters, micro) and (wrong := _load_installed()) and not _known(parameters, micro):
         raise ValueError("\n".join(wrong))
 
 
@@ -140,7 +135,7 @@ def named(given):
     return register(given).name if isinstance(given, Law) else given
 
 
-def known(parameters, micro):
+def _known(parameters, micro):
     """Whether all `parameters` (names) and all words of `micro` (one, or an array) are known."""
     return set(parameters) <= set(PARAMETERS) and set(np.ravel(micro).tolist()) <= set(LAWS)
 

@@ -6,7 +6,7 @@ from functools import partial
 import numpy as np
 
 from solver import Problem
-from solver.laws import LAWS
+from solver.laws import LAWS, untried
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
@@ -86,7 +86,7 @@ def picard_for_nothing(grid: Grid) -> list[str]:
 def slips_of_laws(grid: Grid) -> list[str]:
     """Messages for micro laws of somebody else's that fail when they are tried at a few cases of the grid."""
     messages, (dims, micro) = [], grid.values["micro"]
-    for word in sorted(word for word in set(micro.ravel().tolist()) if LAWS[word].version):
+    for word in sorted(word for word in set(micro.ravel().tolist()) if untried(LAWS[word])):
         having = np.argwhere(micro == word)
         few = {dim: having[np.linspace(0, len(having) - 1, 3).astype(int), axis] for axis, dim in enumerate(dims)}
         few = {dim: few.get(dim, np.linspace(0, size - 1, 3).astype(int)) for dim, size in grid.sizes.items()}

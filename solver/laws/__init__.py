@@ -11,8 +11,18 @@ from . import disc_cell, heights, lattice, own_table, power_law, smooth, trial
 from .law import Bound, Curve, Law, Spots
 
 __all__ = [
-    *("LAWS", "Bound", "Curve", "Law", "Spots"),
-    *("identity", "load", "name_in", "named", "register", "try_out", "untried"),
+    "LAWS",
+    "Bound",
+    "Curve",
+    "Law",
+    "Spots",
+    "identity",
+    "load",
+    "name_in",
+    "named",
+    "register",
+    "try_out",
+    "untried",
 ]
 
 #: Entry points of this group are laws of installed packages.

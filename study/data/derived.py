@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from solver.body.springs import layer_modulus
-from solver.laws import LAWS
+from solver.laws import LAWS, identity, name_in
 
 from ..spec.vocabulary import VOCABULARY, attributes
 from .units import physical_attributes, reduced_modulus, without_unit
@@ -176,9 +176,9 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
-    versions = dict(line.split(" ", 1) for line in dataset.attrs.get("micro_laws", "").splitlines())
+    stated = {name_in(line): line for line in dataset.attrs.get("micro_laws", "").splitlines()}
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
-        if versions.get(law.name, law.version) != law.version:
+        if stated.get(law.name, identity(law.name)) != identity(law.name):
             continue
         given = [without_unit(_given(dataset, name), VOCABULARY[name].powers, unit, R) for name in law.parameters]
         p = dataset["p"] / unit

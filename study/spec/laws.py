@@ -40,7 +40,7 @@ def law_names(given: list) -> list:
 def recall(versions: str) -> None:
     """Register laws of results, a line "NAME VERSION" for each, that are not known but installed, or a table."""
     for line in versions.splitlines():
-        if (name := line.split()[0]) not in laws.LAWS:
+        if (name := laws.name_in(line)) not in laws.LAWS:
             with suppress(ValueError):  # then it stays unknown
                 law_names([name])
 

@@ -47,7 +47,7 @@ BROKEN = {
     "spots_merging": f"The contact spots merge (λ(0) > {derived.MERGING:g}): the micro law, which spreads the pressure "
     "around a spot evenly, overestimates what the asperities yield by 10 % or more.",
     "strain_not_small": f"The strain is not small (a > {derived.STEEP:g} R, or the layer gives way by more than "
-    f"{derived.COMPRESSED:.0%}): linear elasticity is roughly right at best.",
+    f"{derived.COMPRESSED:.0%}, or is stretched like a membrane): linear elasticity is roughly right at best.",
     "asperity_strain_not_small": f"The strain under the asperities is not small (b > {derived.STEEP_SPOT:g} Ra, or "
     "pmax as of such a spot): most materials yield before that, and pmax is larger than any real pressure.",
     "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "

@@ -34,6 +34,9 @@ r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
 COMPRESSED = 0.1
 """Largest compressive strain of the layer; linear elasticity errs by about as much as the strain. It is D/h where the
 layer gives way, and where the body below does, no more than p(0)/E1*."""
+STRETCHED = 0.1
+"""Largest part of p(0) that the tension of a layer bent to the sphere bears, which linear elasticity leaves out: with a
+free edge at r = a it is E1* h a²/(8 R³) if h < a (Föppl's equations; tests/data/test_validity_stretched.py)."""
 STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
@@ -56,9 +59,9 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
     1 model error of a thin layer > NOT_THIN; 2 N̄πa², of random heights those in touch, < FEW_SPOTS; 4 b(0) >
     SPOT_OVER_LAYER h on a layer of any kind; 8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16
-    λ(0) > MERGING, but on a lattice; 32 a/R > STEEP, or both D/h and p(0)/E1* > COMPRESSED; 64 b(0) > STEEP_SPOT Ra, or
-    p_max as of such a spot; 128 1/sqrt(N̄) > PITCH_OVER_LAYER h on a layer of any kind. A case without numbers (see
-    `status`) only gets the masks that need none. int32 over the dimensions of `status`.
+    λ(0) > MERGING, but on a lattice; 32 a/R > STEEP, both D/h and p(0)/E1* > COMPRESSED, or the layer is STRETCHED;
+    64 b(0) > STEEP_SPOT Ra, or p_max as of such a spot; 128 1/sqrt(N̄) > PITCH_OVER_LAYER h on a layer of any kind. A
+    case without numbers (see `status`) only gets the masks that need none. int32 over the dimensions of `status`.
 
     Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
     """
@@ -80,6 +83,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
     # No more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
     steep = np.pi / 2 * (_given(v, "p_max") - v["p0"]) / E1
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
+    stretched = layer_modulus(n) * np.minimum(h, v["a"]) * v["a"] ** 2 > 8 * STRETCHED * v["p0"]
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
     thin = sum(v["model_used"] == value for value, word in models if word.endswith("thin_layer")) > 0
     violated = {
@@ -88,7 +92,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         4: layered & rough & (_spot_radius(v) > SPOT_OVER_LAYER * h),
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _have("smears", v["micro"]) & (v["lam0"] > MERGING),
-        32: (v["a"] > STEEP) | layered & compressed,
+        32: (v["a"] > STEEP) | layered & (compressed | stretched),
         64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (steep > STEEP_SPOT)),
         128: layered & rough & (_given(v, "Nbar") * (PITCH_OVER_LAYER * h) ** 2 < 1),
     }
@@ -213,16 +217,6 @@ def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
     shape of the smooth punch, since dP/dD at p(a) = 0 does not change with a; roughness lowers it.
     """
     return dataset["dP_dD"] / (2 * dataset["a"])
-
-
-def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
-    """Relative error of a quantity on the thin layer against the exact layer; `base` is a dimension of the dataset.
-
-    NaN where the thin-layer equation does not apply.
-    """
-    error = dataset[name].sel(base="thin_layer", drop=True) / dataset[name].sel(base="layered", drop=True) - 1
-    error.attrs = {"long_name": f"{VOCABULARY[name].long_name}: thin layer over exact layer, less 1"}
-    return error
 
 
 def _have(feature: str, micro):

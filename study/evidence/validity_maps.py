@@ -8,7 +8,6 @@ from matplotlib.ticker import NullFormatter
 
 from solver.models.thin_layer_error import thin_layer_error
 
-from ..data.derived import from_layered
 from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 from ..literature.compared import safe_range
 from ..spec.vocabulary import VOCABULARY
@@ -89,6 +88,16 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
 def materials(dataset: xr.Dataset) -> list[xr.Dataset]:
     """The dataset of each material."""
     return [dataset.isel(case=i) for i in range(dataset.sizes["case"])]
+
+
+def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
+    """Relative error of a quantity on the thin layer against the exact layer; `base` is a dimension of the dataset.
+
+    NaN where the thin-layer equation does not apply.
+    """
+    error = dataset[name].sel(base="thin_layer", drop=True) / dataset[name].sel(base="layered", drop=True) - 1
+    error.attrs = {"long_name": f"{VOCABULARY[name].long_name}: thin layer over exact layer, less 1"}
+    return error
 
 
 def error_over_thickness(case: xr.Dataset, quantity: str) -> tuple[xr.DataArray, xr.DataArray]:

@@ -7,6 +7,7 @@ import xarray as xr
 import study
 from solver import Model
 from study.data import dataset, derived
+from study.evidence import validity_maps
 from study.spec.vocabulary import attributes
 
 
@@ -150,7 +151,7 @@ def test_peak_pressure_of_a_smooth_study_needs_no_roughness():
 
 def test_error_of_the_thin_layer():
     both = xr.Dataset({"D": ("base", [1.03e-3, 1e-3])}, {"base": ["thin_layer", "layered"]})
-    found = derived.from_layered(both, "D")
+    found = validity_maps.from_layered(both, "D")
     assert found.item() == pytest.approx(0.03, rel=1e-12)  # 1e-14 of a difference from 1
     assert found.attrs == {"long_name": "indentation depth: thin layer over exact layer, less 1"}
 

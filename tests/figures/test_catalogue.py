@@ -13,7 +13,8 @@ from scipy.integrate import simpson
 
 from study import StudyError
 from study.catalogue import FIGURES, SCHEMES, draw, save
-from study.data.derived import effective_modulus, from_layered, peak_pressure
+from study.data.derived import effective_modulus, peak_pressure
+from study.evidence.validity_maps import from_layered
 from study.figures.registry import pick
 from study.paper.curves import CURVES, EXACT_LAYER
 

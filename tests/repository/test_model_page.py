@@ -70,6 +70,7 @@ def test_the_masks_and_thresholds_are_those_of_the_code():
         "STEEP",
         "COMPRESSED",
         "COMPRESSED",
+        "STRETCHED",
         "STEEP_SPOT",
         "PITCH_OVER_LAYER",
     )

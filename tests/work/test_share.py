@@ -169,6 +169,7 @@ def test_where_there_are_no_processes(monkeypatch):
     rough = definition(micro=mine, base="half_space", Nbar=250000.0, Ra=0.004)
     assert share._processes_allowed(rough, 2) == 1
     monkeypatch.setattr(own_curve, "__module__", "__main__")
+    monkeypatch.setattr(sys.modules["__main__"], "own_curve", own_curve, raising=False)  # so it can be sent
     assert share._processes_allowed(rough, 2) == 0
 
 

@@ -1,6 +1,7 @@
 """Where blocks are computed: threads or processes of this machine, or workers of a dask cluster; one interface."""
 
 import os
+import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
@@ -62,6 +63,7 @@ def processes_for(workers: int, blocks: int) -> int:
 @contextmanager
 def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
     client = connected(scheduler, CONNECT)
+    handing, ended = threading.Lock(), threading.Event()
 
     def width() -> int:
         try:
@@ -72,12 +74,20 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
 
     def submit(function: Callable, task: object) -> Future:
         found = Future()
-        client.submit(function, task, pure=False).add_done_callback(partial(_hand_over, found))
+        client.submit(function, task, pure=False).add_done_callback(partial(hand_over, found))
         return found
+
+    def hand_over(found: Future, computed) -> None:
+        with handing:
+            if not ended.is_set():
+                _hand_over(found, computed)
 
     try:
         yield Engine(submit, width)
     finally:
+        ended.set()
+        if handing.acquire(timeout=CONNECT):  # of a client that is closed, dask's thread waits for a result for ever
+            handing.release()
         client.close(timeout=1)
 
 

@@ -56,6 +56,44 @@ def test_a_task_that_raises_is_a_failure():
     assert found == {0: 1, 1: Failure("ZeroDivisionError: integer division or modulo by zero", ""), 2: 1}
 
 
+def test_a_cluster_is_left_when_no_thread_waits_for_it(monkeypatch):
+    """A run on a cluster did not end: dask's thread asked a client that was closed for a result, and waits for ever."""
+    asked, go, callbacks, threads = threading.Event(), threading.Event(), [], []
+
+    class Client:
+        closed = False
+
+        def submit(self, function, task, pure):
+            return SimpleNamespace(add_done_callback=callbacks.append)
+
+        def close(self, timeout):
+            self.closed = True
+            go.set()
+
+    def result():
+        asked.set()
+        go.wait(0.3)  # the result comes after a while
+        assert not client.closed
+        return "here"
+
+    def of_dask(callback):
+        done.append(callback(SimpleNamespace(result=result, cancelled=lambda: False)))
+
+    client, done = Client(), []
+    monkeypatch.setattr(workers, "connected", lambda *_: client)
+    with engine(2, "tcp://there") as found:
+        first, second = (found.submit(int, task) for task in (1, 2))
+        threads = [threading.Thread(target=of_dask, args=(callback,)) for callback in callbacks]
+        threads[0].start()
+        assert asked.wait(PATIENCE)
+    asked.clear()
+    threads[1].start()
+    for thread in threads:
+        thread.join(PATIENCE)
+    assert first.result(0) == "here" and client.closed
+    assert len(done) == 2 and not asked.is_set() and not second.done(), "the second is not asked for any more"
+
+
 def test_threads_for_each_processor_unless_told_otherwise(monkeypatch):
     monkeypatch.setattr(workers, "available_workers", lambda: 5)
     for count, expected in ((None, 5), (2, 2)):

@@ -214,10 +214,10 @@ def doubts(contact: xr.Dataset) -> list[str]:
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         found.append(OF_SEVERAL_RADII)
     given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == unit_of(name)}
-    return found + yielding(v) + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
+    return found + _yielding(v) + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
 
 
-def yielding(v) -> list[str]:
+def _yielding(v) -> list[str]:
     """A sentence if a body of a scene in SI units is pressed so hard that a metal would yield; of the worst case.
 
     What lies under a layer has p(0) where the contact is wide against that, and less elsewhere.

@@ -148,6 +148,12 @@ def computed_in(log: Path) -> list[int]:
     return [case for first, last in blocks for case in range(int(first), int(last) + 1)]
 
 
+def joined(process: multiprocessing.Process) -> None:
+    """Wait until the process of a run has ended, not only said its answer."""
+    process.join(PATIENCE)
+    assert not process.is_alive(), "a thread of it still waits for something"
+
+
 def stored(folder: Path) -> int:
     """How many blocks are on disk."""
     return len(list(folder.rglob("*.block")))

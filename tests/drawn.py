@@ -34,7 +34,7 @@ WORDS = {  # of the legend, by the masks of `validity`
     4: r"spots not small, $b > 0.1\,h$",
     8: r"layer not soft, $n \geq 1$",
     16: r"spots merge, $\lambda(0) > 0.4$",
-    32: r"$a > 0.2\,R$ or strain $> 0.1$",
+    32: r"$a > 0.2\,R$ or layer strained",
     64: r"spots steep, $b > 0.5\,R_a$",
     128: r"asperities far apart, pitch $> 2\,h$",
 }

@@ -33,7 +33,7 @@ FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 992
 #: The largest y that a table knows; the last three knots are beyond it.
 LAST = np.exp(FIRST + STEP * (KNOTS - 3))
 #: The relief <ζ> + 1/3 above which w is not 1, and the one above which u is not: the tables then begin where δ is 1e-16
-#: of the relief.
+#: of the relief. tests/laws/test_heights_far.py has heights below, between and above both.
 _FAR, _FARTHEST = 10.0, 1e8
 
 

@@ -13,7 +13,7 @@ ASSUMPTION_TEXT = {
     "spot_not_small_against_h": rf"spots not small, $b > {derived.SPOT_OVER_LAYER:g}\,h$",
     "n_not_below_one": r"layer not soft, $n \geq 1$",
     "spots_merging": rf"spots merge, $\lambda(0) > {derived.MERGING:g}$",
-    "strain_not_small": rf"$a > {derived.STEEP:g}\,R$ or strain $> {derived.COMPRESSED:g}$",
+    "strain_not_small": rf"$a > {derived.STEEP:g}\,R$ or layer strained",
     "asperity_strain_not_small": rf"spots steep, $b > {derived.STEEP_SPOT:g}\,R_a$",
     "pitch_not_small_against_h": rf"asperities far apart, pitch $> {derived.PITCH_OVER_LAYER:g}\,h$",
 }

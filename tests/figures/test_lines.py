@@ -168,13 +168,6 @@ def test_a_dimension_without_a_coordinate_is_numbered(found):
     np.testing.assert_array_equal(shown(bare, "P", "a", n=1)[1]["a"], bare.a.isel(n=1))
 
 
-def test_an_array_is_no_dataset_and_a_stacked_one_is_to_be_unstacked(found):
-    with pytest.raises(StudyError, match=r'z is several axes in one: give dataset.unstack\("z"\)'):
-        shown(found.stack(z=("P", "n")), "P", "a")
-    with pytest.raises(StudyError, match="a figure is of a dataset of contacts, not of a DataArray"):
-        shown(found.a, "P", "a")
-
-
 def test_texts_of_pandas_name_concatenated_results(physical):
     joined = xr.concat([physical] * 2, pd.Index(["one", "two"], name="coating"), coords="minimal")
     figure, columns = shown(joined, "P", "a", "coating", h="2 um")

@@ -32,3 +32,10 @@ def test_what_study_readable_made_is_stated_with_its_units(found):
     """It was "$R$, mm = 5"."""
     figure = study.plot(study.readable(found), "nu2", "a", P="5 N")
     assert figure.get_suptitle() == "$R$ = 5 mm, $E_2$ = 70 GPa, $P$ = 5 N"
+
+
+def test_an_array_is_no_dataset_and_a_stacked_one_is_to_be_unstacked(found):
+    with pytest.raises(study.StudyError, match=r'z is several axes in one: give dataset.unstack\("z"\)'):
+        study.plot(found.stack(z=("P", "nu2")), "P", "a")
+    with pytest.raises(study.StudyError, match="a figure is of a dataset of contacts, not of a DataArray"):
+        study.plot(found.a, "P", "a")

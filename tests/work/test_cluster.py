@@ -15,7 +15,7 @@ from pathlib import Path
 from threading import Thread
 
 import pytest
-from children import PATIENCE, PROCESSES, held, holding, stored, wait_for
+from children import PATIENCE, PROCESSES, held, holding, joined, stored, wait_for
 from children import started as launched
 from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, written
 from same import assert_same, assert_same_numbers
@@ -106,12 +106,6 @@ def started(cluster: Cluster, opened: study.Study, tmp_path: Path):
     return process, answers
 
 
-def join(process: multiprocessing.Process) -> None:
-    """Wait until the process of a run has ended, not only said its answer."""
-    process.join(PATIENCE)
-    assert not process.is_alive(), "it waits for a thread of dask"
-
-
 @pytest.mark.skipif(not shutil.which("openssl"), reason="openssl makes the certificate")
 def test_walk_through_of_the_documentation(tmp_path):
     walk, tunnel, slurm = re.findall(r"```sh\n(.*?)```", WALK, flags=re.DOTALL)
@@ -138,7 +132,7 @@ def test_a_killed_worker_costs_its_blocks_only(cluster, tmp_path, undisturbed):
     wait_for(lambda: len(held(tmp_path)) == 2)
     workers[0].kill()
     (tmp_path / "go").touch()
-    join(process)
+    joined(process)
     code, errors = answers.get(timeout=PATIENCE)
     assert code == 0, errors
     assert_ends_well(opened, undisturbed, 0)
@@ -150,7 +144,7 @@ def test_a_killed_scheduler_costs_nothing_that_is_on_disk(cluster, tmp_path, und
     process, answers = started(cluster, opened, tmp_path)
     wait_for(lambda: stored(tmp_path) == 3)
     cluster.processes[0].kill()
-    join(process)
+    joined(process)
     code, errors = answers.get(timeout=PATIENCE)
     assert code == 1
     said = "line.toml: the scheduler is gone; finished blocks are kept, the same command goes on from there\n"
@@ -228,7 +222,7 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
     with distributed.Client(cluster.address, set_as_default=False) as client:
         client.wait_for_workers(2, timeout=PATIENCE)
     (tmp_path / "go").touch()
-    join(process)
+    joined(process)
     assert answers.get(timeout=PATIENCE)[0] == 0
     assert_same_numbers(opened.open().sel(h=undisturbed.h), undisturbed)
 

@@ -74,7 +74,7 @@ def test_estimated_memory_counts_worker_processes(file):
 
 
 def test_no_more_workers_count_than_there_are_blocks(file, monkeypatch):
-    """On 64 processors a study of three cases took 6 GB."""
+    """Memory and time of a small study are not those of all processors of the machine."""
     monkeypatch.setattr(estimates, "seconds_per_case", lambda _: 1.0)
     opened = load(file)
     blocks = -(-23 // opened.definition.block)

@@ -9,7 +9,7 @@ from .status import Status
 
 #: Numbers of a converged case, in units R = E2* = 1: those that are positive, and those that may also be 0.
 _POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
-_NOT_NEGATIVE = ("A0", "residual", "error")
+_NOT_NEGATIVE = ("A0", "residual", "error", "profile_error")
 _PROFILES = ("p", "lam")
 #: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
@@ -56,7 +56,9 @@ class Solution:
     residual : >= 0
         Largest residual of the discrete equation, relative to its right-hand side.
     error : in [0, rtol]
-        Estimated relative error: the largest over a, P, D, p0, p_max, Ar_An. Profiles between the nodes are not in it.
+        Estimated relative error: the largest over a, P, D, p0, p_max, Ar_An.
+    profile_error : >= error
+        Estimated error of the profiles at any radius, over the largest p or λ. It may exceed rtol.
     model_error : >= 0
         Estimated relative error, over the same six, of the model used against the exact layer with its asperities. 0
         for the exact layer, and for a half-space that was asked for by name; with "auto" at most `accuracy`. The error
@@ -83,6 +85,7 @@ class Solution:
     dP_dD: np.ndarray
     residual: np.ndarray
     error: np.ndarray
+    profile_error: np.ndarray
     model_error: np.ndarray
     status: np.ndarray
     model_used: np.ndarray

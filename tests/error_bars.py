@@ -19,7 +19,7 @@ from solver_cases import EXTREMES, ROUGH_KINDS, random_cases
 from solver import Problem
 from solver.contact.driver import solve_on
 from solver.contact.equation import evaluate
-from solver.contact.error import _BLIND, _RISEN, completed, estimate, refine
+from solver.contact.error import _BLIND, _RISEN, completed, estimate, margin, refine
 from solver.contact.results import difference, quantities
 from solver.contact.start import first_guess
 from solver.numerics.ladder import MARGIN
@@ -30,7 +30,8 @@ NODES = (6, 12, 22, 32)
 
 
 def judged(base: str, law: str, size: int) -> dict[int, np.ndarray]:
-    """Nodes -> rows of cases: truth, difference of two meshes, estimate, error bar, error of Ar/An over its ring."""
+    """Nodes -> rows of cases: truth, difference of two meshes, estimate, error bar, error of Ar/An over its ring, and
+    the factor of the estimate."""
     case = random_cases(size, 1, EXTREMES) | {"beta": np.random.default_rng(1).uniform(0.3, 0.95, size)}
     cases, found = as_cases(dimensionless(Problem.of(**case, base=base, micro=law))), {}
 
@@ -48,7 +49,7 @@ def judged(base: str, law: str, size: int) -> dict[int, np.ndarray]:
         truth, area = difference(own, true), np.abs(own.Ar_An / true.Ar_An - 1)
         bar = completed(ev, own.Ar_An, error, np.arange(size))[1]
         known = closed & fine.closed & (own_error < 0.1 * truth) & (truth > 1e-9)
-        found[n] = np.stack([truth, moved, error, bar, area / ring], axis=1)[known]
+        found[n] = np.stack([truth, moved, error, bar, area / ring, margin(ev)], axis=1)[known]
     return found
 
 
@@ -56,9 +57,9 @@ def main(size: int = 2000) -> None:
     np.seterr(all="ignore")
     parts = [judged(base, law, size) for base, law in ROUGH_KINDS]
     for n in NODES:
-        truth, moved, error, bar, rings = np.concatenate([part[n] for part in parts]).T
-        blind = error > 1.01 * MARGIN * moved
-        seen = [f"{np.mean(truth[blind] > factor * MARGIN * moved[blind]):.1%}" for factor in (1, _BLIND)]
+        truth, moved, error, bar, rings, factor = np.concatenate([part[n] for part in parts]).T
+        blind = factor > MARGIN
+        seen = [f"{np.mean(truth[blind] > times * MARGIN * moved[blind]):.1%}" for times in (1, _BLIND)]
         needed = rings[np.isfinite(rings) & (truth > error)]
         above = truth / bar
         print(

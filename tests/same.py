@@ -2,7 +2,8 @@
 
 import xarray as xr
 
-OF_ROUNDING = ("error", "residual")  # differences of nearly equal numbers: rounding is what is in their last digits
+# Differences of nearly equal numbers: rounding is what is in their last digits.
+OF_ROUNDING = ("error", "profile_error", "residual")
 OF_THE_RUN = ("history", "created", "command", "git_commit")
 
 

@@ -8,7 +8,7 @@ from ..solution import Solution
 from ..status import Status
 from . import newton
 from .equation import State
-from .error import completed, estimate, refine
+from .error import completed, estimate, of_profiles, refine
 from .results import profiles, quantities
 
 #: If the error of a case is below this, p(0) < 0 is real and no error of the mesh.
@@ -89,13 +89,16 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     own.Ar_An[done], error[done] = completed(ev, own.Ar_An, error, done)
     p, lam = np.full((2, len(error), len(x)), np.nan)
     p[done], lam[done] = profiles(ev, x, done)
+    between = np.full(len(error), np.nan)
+    between[done] = of_profiles(ev, refined, done)
     gap = ev.gap.max(axis=1) > _GAP
     error = np.where(gap, np.maximum(error, 1.0), error)
     status = np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT)
-    rest = {"dP_dD": slope, "residual": ev.residual, "error": error, "p": p, "lam": lam, "status": status}
+    errors = {"residual": ev.residual, "error": error, "profile_error": np.maximum(error, between)}
+    rest = errors | {"dP_dD": slope, "p": p, "lam": lam, "status": status}
     ends = {"nodes": ev.mesh.n, "iterations": count}
     solution = Solution.of(len(error), len(x), **own._asdict(), **rest, **ends)
     # there can be tension only where the equation is linear: without asperities
     q, w = ev.curve.q, ev.mesh.w
     tension = np.where(finite, np.maximum(-q, 0.0) @ np.abs(w) / np.abs(q @ w), 0.0)
-    return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, ev.floor, refined.state)
+    return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, ev.floor, refined.end.state)

@@ -10,6 +10,9 @@ from ..numerics.quadrature import gauss_legendre, lagrange
 
 #: Most Newton steps for y between the nodes. A few are enough, except near full contact.
 _STEPS = 40
+#: Where s is below this, the pressure of a smooth punch is taken to be proportional to s. Nearer to the edge, rounding
+#: in the equation would be larger than this pressure.
+_APART = 1e-4
 #: For a law with corners: the number of Gauss points between two nodes to which y is interpolated, and that of points
 #: at which λ is looked up; and the relative `tolerance` of the interpolated y.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
@@ -162,8 +165,9 @@ def profiles(ev, x, rows):
     """p (b, m) in E2* and λ (b, m) of the cases `rows` (b,) at the radii x (m,); 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner, law = s > 0, ev.cases.law.take(rows)
-    y = interpolate(ev, s[inner], rows=rows)
-    q = law.evaluate(y).q
+    apart = s[inner] if law.rough else np.maximum(s[inner], _APART)
+    y = interpolate(ev, apart, rows=rows)
+    q = law.evaluate(y).q * (s[inner] / apart)
     p, lam = np.zeros((2, len(q), len(s)))
     p[:, inner] = law.p_star[:, None] * q
     lam[:, inner] = law.area(y, q)

@@ -15,6 +15,7 @@ import numpy as np
 from ..closed_forms import hertz, hertz_pressure
 from ..numerics.ladder import MARGIN, climb, next_rung
 from ..numerics.mesh import mesh_of
+from ..numerics.quadrature import lagrange
 from ..solution import Solution
 from ..status import Status
 
@@ -57,8 +58,9 @@ def modes(n):
 def half_space(control, value, x):
     """:class:`~solver.solution.Solution` of Hertz's contacts in units R = E2* = 1; value (B,), x (m,)."""
     H = hertz(**{control: value})
-    rest = {"p": hertz_pressure(x, H.p0[:, None]), "dP_dD": 2 * H.a, "residual": 0.0, "error": 4 * np.finfo(float).eps}
-    return _solution(H._asdict() | rest | {control: value})
+    rest = {"p": hertz_pressure(x, H.p0[:, None]), "dP_dD": 2 * H.a, "residual": 0.0}
+    errors = dict.fromkeys(("error", "profile_error"), 4 * np.finfo(float).eps)
+    return _solution(H._asdict() | rest | errors | {control: value})
 
 
 def thin_layer(control, value, C, rtol, nodes, x):
@@ -93,13 +95,13 @@ def _on_mesh(control, value, C, n, x):
     P, D, p0 = (of_sums(a, S) for of_sums in _OF_SUMS.values())
     Xq = modal.nodal @ fractions
     residual = np.abs(mesh.K @ Xq + t * Xq - mesh.s[:, None] ** 2).max(axis=0)
-    p = np.pi / 8 * a * np.maximum(mesh.basis(np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
-    p[x == 1.0] = 0.0
+    p = np.pi / 8 * a * np.maximum(_to_edge(mesh, np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
     error = np.maximum(MARGIN * _distance(control, t, S, slopes, modes(next_rung(n))), 4 * n * np.finfo(float).eps)
     error = np.maximum(error, _unseen(control, t, mesh.s[0]))
-    names = ("a", "P", "D", "p0", "dP_dD", "p", "error", "residual", "nodes", "iterations")
+    between = np.maximum(error, MARGIN * _between(mesh, Xq, t, next_rung(n)))
+    names = ("a", "P", "D", "p0", "dP_dD", "p", "error", "profile_error", "residual", "nodes", "iterations")
     slope = P * slopes[0] / (D * slopes[1])
-    return dict(zip(names, (a, P, D, p0, slope, p.T, error, residual, n, steps), strict=True))
+    return dict(zip(names, (a, P, D, p0, slope, p.T, error, between, residual, n, steps), strict=True))
 
 
 def _sums(a, C, modal):
@@ -117,6 +119,20 @@ def _distance(control, t, S, slopes, finer):
         return np.abs(change).max(axis=0)
     shift = -change[_ROWS[control]] / slopes[_ROWS[control]]
     return np.maximum(np.abs(shift), np.abs(change + slopes * shift).max(axis=0))
+
+
+def _between(mesh, Xq, t, finer):
+    """Largest difference (B,) of the pressure, over its largest, to that under the same radius on `finer` nodes. Most
+    of these lie between those of the mesh."""
+    modal = modes(finer)
+    fine = modal.nodal @ (1 / (modal.kappa + t))
+    return np.abs(_to_edge(mesh, mesh_of(finer).s) @ Xq - fine).max(axis=0) / fine.max(axis=0)
+
+
+def _to_edge(mesh, points):
+    """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others and the edge,
+    where there is no pressure."""
+    return lagrange(np.append(0.0, mesh.s), points)[:, 1:]
 
 
 def _unseen(control, t, s1):

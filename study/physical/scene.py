@@ -19,7 +19,7 @@ from .names import SCENE, unit_of
 STEP = 0.1
 ASSUMED = "not given: the default"
 #: Results that get no spread.
-_WITHOUT_SPREAD = ("error", "model_error", "residual")
+_WITHOUT_SPREAD = ("error", "profile_error", "model_error", "residual")
 
 
 @dataclass

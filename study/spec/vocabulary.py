@@ -118,6 +118,7 @@ _ENTRIES = (
     Entry("lam", "λ(r)", "relative contact area", "profile", equation="(11)"),
     Entry("status", "", "how the solution of the case ended", "flag"),
     Entry("error", "", "estimated relative error of a, P, D, p(0), pmax and Ar/An", "result"),
+    Entry("profile_error", "", "estimated error of the profiles of p and λ, over their largest values", "result"),
     Entry("model_error", "", "estimated relative error of the model used, against the exact layered one", "result"),
     Entry("model_used", "", "model that the case was solved with", "flag"),
     Entry("residual", "", "relative residual of the discrete equation", "result"),

@@ -16,7 +16,8 @@ TABLES = {
     "axes": {"P": [1e-5, 2e-5, 4e-5], "nu1": [0.2, 0.3]},
     "output": {"x": 5},
 }
-FLOATS = {"a", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "lam0", "error", "model_error", "residual", "p", "lam"}
+FLOATS = {"a", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "lam0", "error", "profile_error",
+          "model_error", "residual", "p", "lam"}  # fmt: skip
 SCALE = {"R": 5e-3, "E2_star": 2e11}
 
 

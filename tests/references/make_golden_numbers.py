@@ -22,7 +22,7 @@ MAIN = {
 TEXT = {name for name, value in MAIN.items() if isinstance(value, str)}
 WHOLE = {"nodes", "max_iterations"}
 EXACT = ("status", "model_used", "nodes_used", "iterations")
-ERRORS = ("error", "model_error")
+ERRORS = ("error", "profile_error", "model_error")
 NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", *(f"{name}_{x:g}" for name in ("p", "lam") for x in X))
 
 SMOOTH, POWER = {"micro": "smooth"}, {"micro": "power_law"}

@@ -41,8 +41,9 @@ UNITS = {
 # fmt: off
 PURE = {
     "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "cut", "scheme", "k", "rtol", "accuracy",
-    "model_check", "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "model_error", "model_used",
-    "residual", "iterations", "nodes_used", "validity", "An_ratio", "spots", "x", "case", "label",
+    "model_check", "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "profile_error",
+    "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio", "spots", "x",
+    "case", "label",
 }
 # fmt: on
 

@@ -102,8 +102,8 @@ def columns(definition: Definition, size: int = 4) -> dict[str, np.ndarray]:
     return not_run(definition, size)
 
 
-COLUMNS = {"P", "a", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "lam0", "error", "model_error", "residual", "status",
-           "model_used", "iterations", "nodes_used", "p", "lam"}  # fmt: skip
+COLUMNS = {"P", "a", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "lam0", "error", "profile_error", "model_error",
+           "residual", "status", "model_used", "iterations", "nodes_used", "p", "lam"}  # fmt: skip
 
 
 def test_a_block_has_every_column(wanted):

@@ -33,7 +33,7 @@ def missing(parameters: dict, names: set[str], errors: list[str]) -> list[str]:
         messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
     if "E2" not in parameters:
         messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
-    if layered(parameters) and "E1" not in parameters and "n" not in parameters:
+    if layered(parameters) and not {"E1", "n", "layer"} & {*parameters, *names}:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
     for modulus, _, ratio in BODIES.values():
         if modulus in parameters and ratio in parameters:

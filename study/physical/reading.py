@@ -28,6 +28,10 @@ _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1,
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 
 
+#: What a case without a layer may leave out.
+_OF_LAYER = ("layer", "E1", "h", "nu1", "bonding")
+
+
 def _has_unit(given: Any) -> bool:
     """Whether a parameter, or one of its values, has a unit or a spread."""
     if isinstance(given, xr.DataArray):
@@ -101,15 +105,20 @@ def _material(name: str, given: Any) -> str:
 
 
 def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
-    """The parameters, with those of the rows as CaseValues. These come first, since `case` is the first dimension."""
+    """The parameters, with those of the rows as CaseValues. These come first, since `case` is the first dimension. What
+    a case without a layer leaves out is that of another case: it has no use."""
+    bare = [row.get("base", parameters.get("base")) == "half_space" for row in rows]
     found = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         if name == "label":  # a case need not have one
             found[name] = CaseValues([row.get(name, "") for row in rows])
-        elif name in parameters or not all(name in row for row in rows):
+        elif name in parameters or not all(
+            name in row or (name in _OF_LAYER and none) for row, none in zip(rows, bare, strict=True)
+        ):
             errors.append(f"{name} must be given in every case, or once for all")
         else:
-            found[name] = CaseValues([row[name] for row in rows])
+            given = [row[name] for row in rows if name in row]
+            found[name] = CaseValues([row.get(name, given[0]) for row in rows])
     return found | {name: given for name, given in parameters.items() if name not in found}
 
 

@@ -76,6 +76,19 @@ def test_cases_with_units():
         study.solve(cases=[rows[0], {"E1": "1 GPa", "label": "x"}], **common, P="10 N")
 
 
+@pytest.mark.parametrize("layer", [{"E1": "200 GPa", "nu1": 0.2}, {"layer": "DLC a-C:H"}])
+def test_a_case_without_a_layer_needs_none(layer):
+    """The same numbers as each alone. A layer without a thickness is asked for one."""
+    common = {"R": "5 mm", "E_punch": "210 GPa", "body": "steel 52100", "P": "10 N", "micro": "smooth", "x": 2}
+    bare, coated = {"base": "half_space"}, {"base": "layered", "h": "2 um", "bonding": "bonded"} | layer
+    found = quiet(cases=[bare, coated], **common)
+    alone = [quiet(**common, **case).D.item() for case in (bare, coated)]
+    np.testing.assert_allclose(found.D, alone, rtol=1e-12)
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(cases=[coated, {"base": "layered", "bonding": "bonded"} | layer], **common)
+    assert caught.value.messages == ("h must be given in every case, or once for all",)
+
+
 @pytest.mark.parametrize(
     ("rows", "message"),
     [

@@ -52,6 +52,8 @@ def read(name):
         return _of_text(name, Path(file).expanduser().read_text(encoding="utf-8-sig"))
     except OSError as error:
         raise ValueError(f"{file}: cannot be read: {error.strerror}") from None
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{file}: is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
     except ValueError as error:
         raise ValueError(f"{file}: {error}") from None
 

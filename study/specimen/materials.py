@@ -137,6 +137,8 @@ def read(path) -> dict[str, Material]:
     path = Path(path)
     try:
         sections = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path.name} is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
     except (ValueError, RecursionError) as error:
         raise ValueError(f"{path.name} is no TOML file: {error}") from None
     return _materials(sections, path.name)

@@ -159,6 +159,8 @@ def test_pressures_in_another_unit_are_beyond_validity(table):
 
 def test_files_that_cannot_be_read(table):
     told = (("table:none.csv", "none.csv: cannot be read: No such"), ("table:a\nb.csv", "has a line break"))
+    Path("latin.csv").write_bytes("# p in µN/µm²\n".encode("latin-1"))
+    told += (("table:latin.csv", r"latin.csv: is not UTF-8 \(byte 7\): save it with the encoding UTF-8"),)
     for name, words in (*told, ("a.csv", 'is "table:a.csv"$'), ("Table:a.csv", 'table of your own is "table:a.csv"$')):
         with pytest.raises(study.StudyError, match=words):
             study.solve(P=1e-5, **CASE, micro=name)

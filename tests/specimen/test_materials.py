@@ -141,7 +141,7 @@ def test_a_bad_value_is_named_with_what_is_allowed(mine, old, new, message):
     [
         ("E = 210e9", 'mine.toml: ["E"] = 2.1e+11: must be a section with the keys E, nu, E_spread, nu_spread'),
         ("[steel\n", "mine.toml is no TOML file: "),
-        (b"\xff\xfe", "mine.toml is no TOML file: "),
+        (b"\xff\xfe", "mine.toml is not UTF-8 (byte 0): "),
         ("x = " + "[" * 5000, "mine.toml is no TOML file: "),
         (
             STEEL + STEEL.replace("my steel", "other") + 'also = ["My-Steel"]',

@@ -10,7 +10,7 @@ from .contact import smooth
 from .laws import LAWS
 from .models import auto
 from .models.model_error import closed_form, judged
-from .models.range_of_law import outside_law
+from .models.range_of_law import RADII, edge_error, has_range, outside_law
 from .scaling import as_cases, dimensionless, refused, restore, with_a_stiff_base, with_rigid_punch, without_springs
 from .schemes import SCHEMES
 from .solution import Solution
@@ -72,6 +72,7 @@ def _solved(given, x, invalid):
     scaled = dimensionless(problem)
     no_springs = ~invalid & without_springs(scaled)
     status = np.select([invalid, no_springs], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)
+    wanted, x = len(x), np.append(x, RADII) if has_range(problem) else x
     size = len(problem), len(x)
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
     for index, solver in _routes(problem, ~(invalid | no_springs)):
@@ -81,6 +82,7 @@ def _solved(given, x, invalid):
     found.status[missed] = Status.TOLERANCE_NOT_MET
     solution = _with_models(given, restore(found, problem))
     solution = solution.refused(outside_law(given, solution), Status.OUTSIDE_LAW)
+    solution = replace(solution, p=solution.p[:, :wanted], lam=solution.lam[:, :wanted])
     return replace(solution, **{given.control: given.value * 1.0})  # exactly as given, also where a case is refused
 
 
@@ -132,5 +134,6 @@ def _with_models(problem, solution):
     if len(judged):
         error[judged] = closed_form(problem.take(judged), solution.a[judged])
     error += sum(law.error * (named & (problem.micro == name)) for name, law in LAWS.items())
+    error = np.maximum(error, edge_error(problem, solution))
     used = np.where(named, auto.model_of(problem), solution.model_used)
     return replace(solution, model_used=used, model_error=error)

@@ -3,10 +3,10 @@
 ``micro = "table:mine.csv"``, where mine.csv has a heading with the columns p, A, lam, p_max, and a row for each nominal
 pressure: that pressure over E, the additional displacement over R, the relative contact area λ, and the largest real
 pressure over E. E is E1* (E2* without a layer), of base and punch together. Smooth curves are laid near the rows; the
-law's `error` is the largest distance of a row from the curve fitted to the other rows. Below the first row A goes on as
-the power of p that the first two rows have. Every contact has its edge there, so begin the table at a thousandth of
-p(0) or below. A contact whose p(0) is below the first row, or with pressures above the last one, gets no numbers:
-``Status.OUTSIDE_LAW``.
+law's `error` is the largest distance of a row from the curve fitted to the other rows, or, between the rows, of the
+curve from one of a lower degree. Below the first row A goes on as the power of p that the first two rows have. Every
+contact has its edge there, so begin the table at a thousandth of p(0) or below. A contact whose p(0) is below the first
+row, or with pressures above the last one, gets no numbers: ``Status.OUTSIDE_LAW``.
 
 With the columns z and share it is a histogram of the heights of the summits, in R, in equal steps, and the law is that
 of ``heights.py``; it then has the parameters Nbar and Ra.
@@ -31,6 +31,10 @@ HEIGHTS, _MOST = ("z", "share"), 32
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
 #: The lowest degree counts whose distance is below this times that of the best degree: higher ones follow the noise.
 _HARDLY = 1.5
+#: Between rows a curve is as wrong as this times its distance from the curve of the degree below, which is taken at
+#: _STEPS points a gap; and the largest ratio of the pressures of two rows. In wider gaps both curves are wrong alike.
+#: (tests/laws/test_own_table_range.py)
+_APART, _STEPS, _GAP = 2.0, 8, 30.0
 #: Largest exponent of A(p) over the rows. That of a contact is at most 1; the rest is left to noise.
 _BENT = 1.05
 #: Where λ is below _LIGHT and A rises with an exponent below _ROUND (2/3 of round summits, 1 of flat ones), λ rises
@@ -112,6 +116,7 @@ def _check(p, A, lam, p_max):
     """Raise ValueError where the rows cannot be those of a law."""
     rules = (
         ("p", p[1:] > p[:-1], 2, "must be larger than that of the row before"),
+        ("p", p[1:] <= _GAP * p[:-1], 2, f"is over {_GAP:g} times that of the row before: add rows between them"),
         ("A", A[1:] > A[:-1], 2, "must be larger than that of the row before"),
         ("lam", lam[1:] >= lam[:-1], 2, "must not be smaller than that of the row before"),
         ("lam", lam <= 1, 1, "must be at most 1"),
@@ -162,18 +167,26 @@ def _scales(p_star, A_star, E):
 
 
 def _curve(column, t, q, X, power):
-    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,), and its largest error at one of them.
+    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,), and its largest error at and between them.
 
     Its degree is the lowest that is near enough. Raises ValueError where every degree is too far away, or falls.
     """
-    degrees = range(1, min(_DEGREE, len(t) - 2) + 1)
+    degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
+    apart, tried = _apart([found for found, _ in tried], t), tried[1:]
     far = np.array([error[1:-1].max() for _, error in tried])  # without the ends: no curve through the others says them
     if far.min() > _FAR:
         row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
         raise ValueError(
             f"column {column}, row {row}: is {100 * far.min():.0f} % off a smooth curve through the other rows: "
             f"at most {100 * _FAR:.0f} % are allowed"
+        )
+    far = np.maximum(far, apart.max(axis=1))
+    if far.min() > _FAR:
+        row = int(np.argmax(apart[far.argmin()])) // _STEPS + 1
+        raise ValueError(
+            f"column {column}, rows {row} and {row + 1}: smooth curves through the rows differ by "
+            f"{100 * far.min():.0f} % between them: at most {100 * _FAR:.0f} % are allowed: add rows there"
         )
     falls = np.array([column == "A" and _falls(found, t) for found, _ in tried])
     good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= _FAR)
@@ -183,6 +196,14 @@ def _curve(column, t, q, X, power):
         )
     best = int(np.argmax(good))
     return tried[best][0], float(far[best])
+
+
+def _apart(curves, t):
+    """Errors (k - 1, m) of k curves of ascending degrees, but for the first, at _STEPS points a gap of the rows t."""
+    rows = np.arange(len(t))
+    points = np.exp(np.interp(np.arange(0, len(t) - 1, 1 / _STEPS), rows, np.log(t)))
+    V = np.array([curve.exponent(points)[0] for curve in curves])
+    return _APART * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))
 
 
 def _falls(found, t):

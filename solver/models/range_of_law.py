@@ -1,9 +1,23 @@
-"""Cases whose pressures a micro law does not know."""
+"""Cases whose pressures a micro law does not know, in part or in all."""
 
 import numpy as np
 
 from ..body.springs import layer_modulus
 from ..laws import LAWS
+
+#: Radii r/a at which the pressure is compared with the range, whatever profile is asked for. They are denser near the
+#: edge, where a hard film presses most.
+_S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
+RADII = np.sqrt((1 - _S) * (1 + _S))
+#: Where p is below the first row of a table, near the edge, A is a guess. With the first row at p1 this changes a, P,
+#: D, p(0), p_max and Ar/An by at most _GUESSED (p1/p(0))^1.5, as found with tables of the laws of this package
+#: (tests/laws/test_own_table_range.py).
+_GUESSED = 0.2
+
+
+def has_range(problem):
+    """Whether the problem has a micro law that does not know all pressures."""
+    return bool(_laws(problem))
 
 
 def outside_law(problem, solution):
@@ -12,12 +26,31 @@ def outside_law(problem, solution):
     `solution` is in the units of `problem`. NaN counts as within the range.
     """
     outside = np.zeros(len(problem), dtype=bool)
-    present = set(problem.micro.tolist())
-    for law in LAWS.values():
-        if law.name in present and (law.least > 0 or law.most < np.inf):
-            index = np.flatnonzero(problem.micro == law.name)
-            part, p0 = problem.take(index), solution.p0[index]
-            E = part.E2 * np.where(part.base == "half_space", 1.0, layer_modulus(part.n)) / (1 + part.m)
-            largest = np.maximum(p0, solution.p[index].max(axis=1, initial=0.0))
-            outside[index] = (p0 < law.least * E) | (largest > law.most * E)
+    for law in _laws(problem):
+        index, p0, E = _of_law(problem, solution, law)
+        largest = np.maximum(p0, solution.p[index].max(axis=1, initial=0.0))
+        outside[index] = (p0 < law.least * E) | (largest > law.most * E)
     return outside
+
+
+def edge_error(problem, solution):
+    """(B,): relative error of the contacts whose law begins at a pressure > 0, because it does; 0 of the others."""
+    error = np.zeros(len(problem))
+    for law in _laws(problem):
+        index, p0, E = _of_law(problem, solution, law)
+        error[index] = _GUESSED * (law.least * E / p0) ** 1.5
+    return error
+
+
+def _laws(problem):
+    """The laws of the problem that have a range."""
+    present = set(problem.micro.tolist())
+    return [law for law in LAWS.values() if law.name in present and (law.least > 0 or law.most < np.inf)]
+
+
+def _of_law(problem, solution, law):
+    """Index, p(0) and the modulus E that the asperities feel, of the cases of a law."""
+    index = np.flatnonzero(problem.micro == law.name)
+    part = problem.take(index)
+    E = part.E2 * np.where(part.base == "half_space", 1.0, layer_modulus(part.n)) / (1 + part.m)
+    return index, solution.p0[index], E

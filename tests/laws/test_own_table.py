@@ -118,6 +118,8 @@ WRONG = {
     "\n".join([HEAD, *ROWS[:4], "0.005,5,1.05,0.5"]): "column lam, row 5: 1.05: must be at most 1",
     "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.004"]): "column p_max, row 5: 0.004: must be larger than p",
     "\n".join([HEAD, *ROWS[:4], "0.005,5,0.05,0.09"]): "column p_max, row 5: 0.09: must be at least p/lam, the mean",
+    "\n".join([HEAD, "0.00001,0.1,0.001,0.01", *ROWS]): "column p, row 2: 0.001: is over 30 times that of the row",
+    "\n".join([HEAD, ROWS[0], *(f"{0.02 * i},{2 * 20**0.9 * i**0.5},0.5,0.9" for i in range(1, 6))]): "add rows there",
     "\n".join(
         [HEAD, *ROWS[:4], "0.005,50,0.05,0.5"]
     ): " % off a smooth curve through the other rows: at most 5 % are allowed",

@@ -1,0 +1,61 @@
+"""A table of one's own as the micro law: what it does not say, between its rows and beyond them."""
+
+import numpy as np
+import pytest
+
+import study
+from solver import Status, laws
+from solver.laws import own_table
+
+ASPERITIES = {"Nbar": 250_000.0, "Ra": 0.004}
+CASE = {"h": 0.02, "n": 0.5, "x": 3}
+
+
+@pytest.mark.parametrize("law", ["disc_cell", "square_lattice"])
+@pytest.mark.parametrize(
+    ("first", "last", "rows"), [(1e-4, 0.02, 8), (1e-3, 0.3, 15), (1e-4, 0.1, 40), (2e-4, 0.1, 25)]
+)
+def test_the_error_covers_rows_of_equal_steps(law, first, last, rows):
+    """The second pressure is 20 to 30 times the first: curves of high degree went astray between them, up to 1900 times
+    farther than `error`. A factor of 5 is left, where two curves are wrong alike."""
+
+    def truth(p):
+        return laws.LAWS[law].at(p, 1.0, **ASPERITIES)
+
+    p, between = np.linspace(first, last, rows), np.geomspace(first, last, 3000)
+    own_table._check(p, *truth(p))
+    found = own_table.of_columns("table:steps.csv", p, *truth(p))
+    far = max(np.abs(a / b - 1).max() for a, b in zip(found.at(between, 1.0), truth(between), strict=True))
+    assert far < 5 * found.error
+
+
+def limited(folder, law, more, first, last):
+    """The name of a table of a law from one pressure over E to another, 60 rows."""
+    p, file = np.geomspace(first, last, 60), folder / "mine.csv"
+    rows = np.transpose([p, *laws.LAWS[law].at(p, 1.0, **ASPERITIES, **more)])
+    np.savetxt(file, rows, fmt="%.17g", delimiter=",", header="p,A,lam,p_max", comments="")
+    return f"table:{file}"
+
+
+@pytest.mark.parametrize("ratio", [1.5, 10, 100])
+@pytest.mark.parametrize(("law", "more"), [("disc_cell", {}), ("normal_heights", {"sigma": 7e-6, "cut": 3.0})])
+def test_what_the_table_does_not_say_of_the_edge(tmp_path, law, more, ratio):
+    """A table that begins at p(0)/ratio: what it leaves open is in `model_error`, for every base."""
+    for base in ("half_space", "layered", "auto"):
+        given = {"P": 1e-5, "base": base, **CASE}
+        true = study.solve(**given, micro=law, **ASPERITIES, **more)
+        top = float(true.p0) / (1.0 if base == "half_space" else CASE["n"])
+        found = study.solve(**given, micro=limited(tmp_path, law, more, top / ratio, 30 * top))
+        far = max(abs(float(found[name] / true[name]) - 1) for name in ("a", "D", "p0", "p_max", "Ar_An"))
+        assert found.status == 0 and far < found.model_error < 0.12
+
+
+@pytest.mark.parametrize("x", [2, 51])
+def test_a_ring_above_its_range(tmp_path, x):
+    """A hard film presses most near its edge: whether the table knows that is not a matter of the radii asked for."""
+    film = {"P": 1e-4, "h": 0.005, "n": 300.0}
+    true = study.solve(**film, micro="disc_cell", **ASPERITIES, x=201)
+    assert true.p.max() > 3 * true.p0
+    top = float(np.sqrt(true.p.max() * true.p0)) / 300.0
+    found = study.solve(**film, micro=limited(tmp_path, "disc_cell", {}, top / 1e4, top), x=x)
+    assert found.status == Status.OUTSIDE_LAW and found.sizes["x"] == x

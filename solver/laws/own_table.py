@@ -31,9 +31,9 @@ HEIGHTS, _MOST = ("z", "share"), 32
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
 #: The lowest degree counts whose distance is below this times that of the best degree: higher ones follow the noise.
 _HARDLY = 1.5
-#: Between rows a curve is as wrong as this times its distance from the curve of the degree below, which is taken at
-#: _STEPS points a gap; and the largest ratio of the pressures of two rows. In wider gaps both curves are wrong alike.
-#: (tests/laws/test_own_table_range.py)
+#: The error of a curve between the rows is taken to be this times its distance from the curve one degree lower, at
+#: _STEPS points a gap. p may rise by the factor _GAP from row to row: in wider gaps both curves are wrong alike
+#: (tests/laws/test_own_table_range.py).
 _APART, _STEPS, _GAP = 2.0, 8, 30.0
 #: Largest exponent of A(p) over the rows. That of a contact is at most 1; the rest is left to noise.
 _BENT = 1.05

@@ -75,7 +75,9 @@ def value_text(name: str, array: xr.DataArray, value) -> str:
         return value.replace("_", " ") + " interface" * (name == "bonding")
     unit = array.attrs.get("units", "1")
     if unit in READABLE and unit != "1":
-        return f"{symbol(name)} = {readable(float(value), unit)}"
+        text = readable(float(value), unit)  # "5e+05 1/mm²"
+        text = re.sub(r"(\d)e([+-]\d+)", lambda found: rf"{found[1]}$\times10^{{{int(found[2])}}}$", text)
+        return f"{symbol(name)} = {text}"
     if unit != "1":  # of study.readable
         return f"{symbol(name)} = {written(float(value))} {unit}"
     return f"{axis_label(name, array)} = {written(float(value))}"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 import study
 from study.__main__ import main
-from study.figures.labels import axis_label, stated, written
+from study.figures.labels import axis_label, stated, value_text, written
 from study.figures.lines import drawn, spaced_by_factors
 from study.spec.definition import StudyError
 
@@ -234,9 +234,11 @@ def test_names_and_numbers_of_labels(found):
     wanted = {"h": "$h/R$", "Nbar": "$\\bar N\\,R^2$", "n": "$n$", "dP_dD": "$(dP/dD)/(E_2^*\\,R)$", "x": "$r/a$"}
     assert {name: axis_label(name, found[name]) for name in wanted} == wanted
     assert axis_label("iterations", found["iterations"]) == "iterations"
-    assert axis_label("a", study.to_physical(found, R=0.01, E2_star=2e11)["a"]) == "$a$, µm"
+    physical = study.to_physical(found, R=0.01, E2_star=2e11)
+    assert axis_label("a", physical["a"]) == "$a$, µm"
     numbers = {0.02: "0.02", 250000.0: "250000", 2.7040777e-5: "$2.704\\times10^{-5}$", 1e-6: "$10^{-6}$"}
     assert {value: written(value) for value in numbers} == numbers
+    assert value_text("Nbar", physical["Nbar"], 5e11) == "$\\bar N$ = 5$\\times10^{5}$ 1/mm²"
 
 
 def test_only_what_is_used_is_stated():

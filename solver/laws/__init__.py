@@ -40,11 +40,8 @@ def register(law):
     It travels to worker processes with the cases; for that its functions must have a name in a module that can be
     imported there. A law of the same name that was registered before is replaced.
 
-    Raises
-    ------
-    ValueError
-        The name is not allowed, or is that of a law of this package; there is no version; a parameter is declared
-        wrongly, or has the name of something else, or of one of another law with other bounds.
+    Raises ValueError: the name is not allowed, or is that of a law of this package; there is no version; a parameter is
+    declared wrongly, or has the name of something else, or of one of another law with other bounds.
     """
     if LAWS.get(law.name) is law:
         return law
@@ -97,10 +94,8 @@ def load(parameters, micro):
     """Register the laws of installed packages, if some of the `parameters` (names), or of the words of `micro` (one, or
     an array), is not known. A law of the same name that the program has registered stays.
 
-    Raises
-    ------
-    ValueError
-        It is still not known, and an entry point cannot be loaded or registered, or two have laws of one name.
+    Raises ValueError where it is still not known, and an entry point cannot be loaded or registered, or two have laws
+    of one name.
     """
     if not _known(parameters, micro) and (wrong := _load_installed()) and not _known(parameters, micro):
         raise ValueError("\n".join(wrong))

@@ -136,22 +136,13 @@ LAW = Law(
 
 
 def displacement(p, E, Nbar, Ra):
-    """Additional displacement A[p] of the asperities, Eq. (6) with (7).
+    """Additional displacement A[p] of the asperities, Eq. (6) with (7), in the unit of Ra.
 
-    Parameters
-    ----------
-    p : array, unit of E
-        Nominal pressure, >= 0.
-    E, Nbar, Ra : array or float
-        E1* (E2* without a layer), asperities per unit area and asperity radius, all > 0.
+    Its relative accuracy is 1e-13 from isolated spots to full contact, where it tends to B̄²/(3 Ra).
 
-    Returns
-    -------
-    array, unit of Ra
-        Relative accuracy 1e-13 from isolated spots to full contact, where it tends to B̄²/(3 Ra).
+    p : nominal pressure >= 0, in the unit of E
+    E, Nbar, Ra : E1* (E2* without a layer), asperities per unit area and their radius, all > 0
 
-    Examples
-    --------
     >>> round(float(displacement(0.01, 0.5, 250000, 0.004)), 9)
     5.375e-05
     """

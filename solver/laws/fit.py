@@ -24,31 +24,15 @@ def pressures(p_min, p_max, step, mesh):
 
 @one_blas_thread()
 def fit_power_law(Nbar_Ra2, *, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
-    """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1).
+    """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1): a :class:`Fit`.
 
-    Parameters
-    ----------
-    Nbar_Ra2 : float, > 0
-        N̄ Ra²: B in Ra/E1*^β and β depend on nothing else.
-    p_min, p_max, step : float, unit E1*
-        Range and spacing of the abscissas, 0 < p_min < p_max, 0 < step <= p_max - p_min.
-    mesh : "uniform" or "graded"
-        Equal steps as in the paper, or as many points in geometric progression.
-    check : (float, float), unit E1*
-        Interval, 0 < low < high, over which `max_error` is taken (2001 points).
+    Nbar_Ra2 : N̄ Ra² > 0; B in Ra/E1*^β and β depend on nothing else
+    p_min, p_max, step : range and spacing of the abscissas in E1*, 0 < p_min < p_max, 0 < step <= p_max - p_min
+    mesh : "uniform", equal steps as in the paper, or "graded", as many points in geometric progression
+    check : interval in E1*, 0 < low < high, over which `max_error` is taken (2001 points)
 
-    Returns
-    -------
-    Fit
-        B (unit Ra/E1*^β), beta, max_error (relative).
+    Raises ValueError for what is outside these bounds.
 
-    Raises
-    ------
-    ValueError
-        For a range, step, mesh or interval outside the bounds above.
-
-    Examples
-    --------
     >>> B, beta, _ = fit_power_law(4.0)
     >>> print(f"{B:.4f} {beta:.4f}")
     0.0919 0.4908

@@ -43,27 +43,52 @@ CUT = Parameter(4.0, interval="[3, 5]")
 UNIFORM = np.sqrt(3.0)
 
 
-class Density(NamedTuple):
-    """A density of the heights. It depends on x, the depth below the highest summit over σ, and on a number c (B, 1).
+class Symmetric(NamedTuple):
+    """A density of heights from c σ below their mean to c σ above it. x is the depth below the highest summit over σ.
 
-    at : (x (B, m, pieces, n), c (B, 1, 1, 1)) -> density; top : c -> density at x = 0; mean : c -> mean x
-    edges : c -> (B, pieces + 1), where its smooth pieces end
-    of : the name of the parameter that c is; or the value of c; or None for a histogram, whose x is in R and σ is 1
+    shape : (x, c) -> density, of any shapes that broadcast; of : the name of the parameter that c is, or its value
     """
 
-    at: Callable
-    top: Callable
-    edges: Callable
-    mean: Callable
-    of: str | float | None
+    shape: Callable
+    of: str | float
+
+    def at(self, x, cut):
+        """The density at x (B, m, pieces, n) for c (B, 1, 1, 1)."""
+        return self.shape(x, cut)
+
+    def top(self, cut):
+        """The density (B, 1) at x = 0, for c (B, 1)."""
+        return self.shape(np.zeros_like(cut), cut)
+
+    def edges(self, cut):
+        """(B, pieces + 1): where its smooth pieces end."""
+        return np.concatenate([np.zeros_like(cut), 2 * cut], axis=1)
+
+    def mean(self, cut):
+        """The mean x (B, 1)."""
+        return cut
 
 
-def _both_sides(c):
-    return np.concatenate([np.zeros_like(c), 2 * c], axis=1)
+class Histogram(NamedTuple):
+    """The same of a histogram: the density in each of its bins of the width `step`, from the highest summits down, and
+    the mean `depth`. x is in R and σ is 1; there is no c."""
 
+    shares: tuple[float, ...]
+    step: float
+    depth: float
+    of = None
 
-def _middle(c):
-    return c
+    def at(self, x, cut):
+        return np.array(self.shares)[:, None] * np.ones_like(x)
+
+    def top(self, cut):
+        return np.full_like(cut, self.shares[0])
+
+    def edges(self, cut):
+        return np.tile(self.step * np.arange(len(self.shares) + 1), (len(cut), 1))
+
+    def mean(self, cut):
+        return np.full_like(cut, self.depth)
 
 
 def _normal(x, cut):
@@ -72,26 +97,6 @@ def _normal(x, cut):
 
 def _uniform(x, cut):
     return np.ones_like(x) / (2 * cut)
-
-
-def _top_of(at, c):
-    return at(np.zeros_like(c), c)
-
-
-def _steps(shares, x, c):
-    return np.array(shares)[:, None] * np.ones_like(x)
-
-
-def _first_step(shares, c):
-    return np.full_like(c, shares[0])
-
-
-def _bins(ends, c):
-    return np.tile(ends, (len(c), 1))
-
-
-def _given(value, c):
-    return np.full_like(c, value)
 
 
 _TABLES: dict[tuple, np.ndarray] = {}
@@ -107,7 +112,7 @@ def _tables(density, field, sigma, cut):
     for begin in range(0, len(missing), _AT_ONCE):
         some = missing[begin : begin + _AT_ONCE]
         s, c = np.array([key[2:] for key in some]).T[:, :, None]
-        at = partial(_at, density.at, c[..., None, None])
+        at = partial(density.at, cut=c[..., None, None])
         made = spread.tables(density.edges(c), at, field, s, _relief(density, s, c))
         rows.update(zip(some, np.moveaxis(made, 1, 0), strict=True))
     if missing:
@@ -119,10 +124,6 @@ def _tables(density, field, sigma, cut):
 
 def _relief(density, sigma, cut):
     return density.mean(cut) * sigma + 1 / 3
-
-
-def _at(density, c, x):
-    return density(x, c)
 
 
 def _looked_up(density, field, which, y, sigma, cut):
@@ -208,16 +209,11 @@ def histogram(name, z, share, version):
     """:class:`~solver.laws.law.Law` of summits whose heights z (n,), in R, have the shares `share` (n,). z ascends in
     equal steps; around each z there is a bin of that width, evenly filled."""
     step = (z[-1] - z[0]) / (len(z) - 1)
-    depth, steps = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
-    ends = step * np.arange(len(z) + 1)
-    shares, mean = tuple(steps.tolist()), float(depth @ steps * step)
-    bins = Density(
-        partial(_steps, shares), partial(_first_step, shares), partial(_bins, ends), partial(_given, mean), None
-    )
+    depth, shares = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
+    bins = Histogram(tuple(shares.tolist()), step, float(depth @ shares * step))
     return law(name, bins, version=version, error=STEPPED)
 
 
-NORMAL = Density(_normal, partial(_top_of, _normal), _both_sides, _middle, "cut")
+NORMAL, EVEN = Symmetric(_normal, "cut"), Symmetric(_uniform, UNIFORM)
 LAW = law("normal_heights", NORMAL, version="2")
-EVEN = Density(_uniform, partial(_top_of, _uniform), _both_sides, _middle, UNIFORM)
 UNIFORM_LAW = law("uniform_heights", EVEN)

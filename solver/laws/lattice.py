@@ -80,14 +80,8 @@ def _quantity(t, q, X, power, rate, limit, first):
 
 
 def _law(name):
-    known = {
-        "parameters": disc_cell.PARAMETERS,
-        "scales": disc_cell.scales,
-        "error": ERROR,
-        "smears": False,
-        "rise": 1.1,
-    }
-    return law_of(_table(name), name=f"{name}_lattice", **known)
+    own = {"parameters": disc_cell.PARAMETERS, "scales": disc_cell.scales, "error": ERROR, "smears": False, "rise": 1.1}
+    return law_of(_table(name), name=f"{name}_lattice", **own)
 
 
 SQUARE, HEX = _law("square"), _law("hex")

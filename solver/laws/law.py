@@ -48,8 +48,6 @@ class Law:
 
     To travel to worker processes a law must be picklable: of functions that have a name in a module.
 
-    Attributes
-    ----------
     name : what a user writes for ``micro``
     parameters : name -> Parameter, with bounds, default, unit and words; each is an argument of `scales`
     scales : (E, **parameters) -> (p*, A*, *own); all (B,), in units R = E2* = 1. E is E1*, or E2* without a layer

@@ -80,8 +80,11 @@ def _histogram(name, z, share):
         raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")
     if not (steps > 0).all() or np.ptp(steps) > 1e-6 * steps.mean():
         raise ValueError("column z: must ascend in equal steps")
-    digest = hashlib.sha256(np.stack([z, share]).astype("<f8").tobytes()).hexdigest()[:16]
-    return heights.histogram(name, z, share, digest)
+    return heights.histogram(name, z, share, _digest(z, share))
+
+
+def _digest(*columns):
+    return hashlib.sha256(np.stack(columns).astype("<f8").tobytes()).hexdigest()[:16]
 
 
 def _columns(text, names, fewest):
@@ -100,9 +103,9 @@ def _columns(text, names, fewest):
 
 def _number(name, i, row, heading):
     """The number of the column `name` in the row i."""
-    cell = row[heading.index(name)].strip() if len(row) == len(heading) else None
-    if cell is None:
+    if len(row) != len(heading):
         raise ValueError(f"row {i}: has {len(row)} cells, the heading {len(heading)}")
+    cell = row[heading.index(name)].strip()
     try:
         number = float(cell)
     except ValueError:
@@ -140,19 +143,15 @@ def _check(p, A, lam, p_max):
 
 def of_columns(name, p, A, lam, p_max):
     """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked."""
-    digest = hashlib.sha256(np.stack([p, A, lam, p_max]).astype("<f8").tobytes()).hexdigest()[:16]
     beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
     s, q = 2 / beta - 1, p / p[-1]
     t = t_of(q, s)
-    curves = [
-        _curve("A", t, q, A / A[-1], 2),
-        _curve("lam", t, q, lam, 2),
-        _curve("p_max", t, q, (p_max - p) / p[-1], 1),
-    ]
+    quantities = (("A", A / A[-1], 2), ("lam", lam, 2), ("p_max", (p_max - p) / p[-1], 1))
+    curves = [_curve(column, t, q, X, power) for column, X, power in quantities]
     return law_of(
         Table(*(curve for curve, _ in curves), s),
         name=name,
-        version=digest,
+        version=_digest(p, A, lam, p_max),
         scales=partial(_scales, p[-1], A[-1]),
         error=max(error for _, error in curves),
         least=p[0],

@@ -54,11 +54,8 @@ def tried(law, E, given):
     It finds slips that would make a wrong number look right, or end deep in the solver. NaN is no slip: a case with NaN
     gets a status.
 
-    Raises
-    ------
-    ValueError
-        A function of the law raises, or gives something of a wrong shape; q or g do not increase from 0; a derivative
-        or an inverse is not that of the curve.
+    Raises ValueError: a function of the law raises, or gives something of a wrong shape; q or g do not increase from 0;
+    a derivative or an inverse is not that of the curve.
     """
     places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
     E, given = E[places], {name: given[name][places] for name in law.parameters}

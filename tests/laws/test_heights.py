@@ -225,7 +225,7 @@ def test_the_tables_of_a_histogram(classes, width):
     one, y = np.ones(1), np.exp(np.linspace(np.log(1e-3), np.log(500), 301))[None]
     own = law.bind(one, Nbar=one / np.pi, Ra=one)  # A* = 1
     bins, c = law.curve.args[0], np.zeros((1, 1))
-    q, at = spread.pressure(bins.edges(c), partial(bins.at, c=c), 1.0, y, one[None], bins.mean(c) + 1 / 3)
+    q, at = spread.pressure(bins.edges(c), partial(bins.at, cut=c), 1.0, y, one[None], bins.mean(c) + 1 / 3)
     found = own.evaluate(y)
     assert_allclose(found.q, q, rtol=1e-4, atol=0)
     assert_allclose(own.area(y, q), at.area, rtol=heights.STEPPED, atol=0)

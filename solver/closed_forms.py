@@ -3,8 +3,6 @@
 All arguments are in one consistent set of units (m, Pa and N, say) and so are the answers; with R = E = 1, the default,
 they are dimensionless like those of :func:`solver.solve`. Arrays broadcast.
 
-References
-----------
 Johnson, Contact Mechanics (1985), ch. 4 (Hertz) and 5.8 (elastic layers); Popov, Heß & Willert, Handbook of Contact
 Mechanics (2019).
 """
@@ -26,25 +24,11 @@ class SmoothContact(NamedTuple):
 def hertz(P=None, a=None, D=None, p0=None, R=1.0, E=1.0):
     """Smooth sphere on a homogeneous half-space: P, a, D and p(0) from any one of them.
 
-    Parameters
-    ----------
-    P, a, D, p0 : array, > 0; exactly one of them
-        Load, contact radius, indentation depth, pressure in the centre.
-    R, E : array, > 0
-        Radius of the sphere, and reduced modulus E* of the half-space.
+    :class:`SmoothContact`: P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R).
 
-    Returns
-    -------
-    SmoothContact
-        P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R).
+    P, a, D, p0 : load, contact radius, indentation depth, pressure in the centre; exactly one of them (ValueError)
+    R, E : radius of the sphere, and reduced modulus E* of the half-space
 
-    Raises
-    ------
-    ValueError
-        If not exactly one of P, a, D, p0 is given.
-
-    Examples
-    --------
     >>> print(f"{hertz(P=2.70408e-5).D:.5e}")
     7.43681e-04
     """
@@ -72,30 +56,15 @@ def thin_layer_on_rigid_base(P=None, a=None, D=None, *, h, nu1=0.3, bonded=False
     The layer is a foundation of springs: each place gives way by C p(r) under its own pressure. That is the leading
     order for a layer much thinner than the contact, h << a, and Eq. (3) of the model for n -> 0.
 
-    Parameters
-    ----------
-    P, a, D : array, > 0; exactly one of them
-        Load, contact radius, indentation depth.
-    h : array, > 0
-        Thickness of the layer.
-    nu1 : array, (-1, 0.5); used when bonded
-        Poisson ratio of the layer. At 0.5 a bonded layer is no foundation of springs: P and p0 are infinite at given a
-        or D, and NaN at given P.
-    bonded : bool
-        Perfect bond of layer and base, or a frictionless interface.
-    R, E : array, > 0
-        Radius of the sphere, and reduced modulus E1* of the layer.
+    :class:`SmoothContact`: P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²).
+    C = 2 A2 h/E, with A2 of Eq. (2) at n = 0: 1/2 without friction, (1 - 2 nu1)/(2 (1 - nu1)²) bonded.
 
-    Returns
-    -------
-    SmoothContact
-        P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²). C = 2 A2 h/E, with A2 of
-        Eq. (2) at n = 0: 1/2 without friction, (1 - 2 nu1)/(2 (1 - nu1)²) bonded.
-
-    Raises
-    ------
-    ValueError
-        If not exactly one of P, a, D is given.
+    P, a, D : load, contact radius, indentation depth; exactly one of them (ValueError)
+    h : thickness of the layer
+    nu1 : Poisson ratio of the layer, used when bonded. At 0.5 a bonded layer is no foundation of springs: P and p0 are
+        infinite at given a or D, and NaN at given P
+    bonded : perfect bond of layer and base, or a frictionless interface
+    R, E : radius of the sphere, and reduced modulus E1* of the layer
     """
     if sum(v is not None for v in (P, a, D)) != 1:
         raise ValueError("thin_layer_on_rigid_base: give exactly one of P, a, D")

@@ -13,57 +13,38 @@ class Problem:
     """A batch of B cases; every field but `control` is an array (B,). Build it with :meth:`of`.
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
-    1 these are the units of the paper, in which the bounds of the numbers are given (solver/parameters.py). A number
-    behind a name below is its default. What has no default must be given where a case needs it.
+    1 these are the units of the paper. The bounds are in solver/parameters.py. What has a default below may be left
+    out; the rest must be given where a case needs it.
 
-    Attributes
-    ----------
-    control : "P", "a" or "D"
-        The quantity that is given.
-    value
-        Its value: load, radius of the nominal contact area or indentation depth.
-    h, n : needed by every base but "half_space"
-        Thickness of the layer, and ratio of the reduced moduli E1*/E2*. n = 0 is a rigid base. Its E2* is infinite, so
-        E1* is the unit of moduli in its place, and `E2` means E1*.
-    m : 0
-        Ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
-        displacements of both bodies add; D is the approach of their distant points.
-    nu1, nu2 : 0.3
-        Poisson ratios of layer and half-space. Without friction between them these change nothing.
-    bonding : "frictionless" (default) or "bonded"
-        The interface between layer and half-space.
-    Nbar, Ra : needed by the micro laws that declare them; of this package's all but "smooth"
-        Asperities per unit area, and their radius.
-    base : "half_space", "thin_layer", "layered" (default) or "auto"
-        The half-space alone, with the thin layer of Eq. (3), with the exact layer, or the cheapest that is accurate
-        enough.
-    accuracy : 0.01
-        Allowed relative model error of the base "auto".
-    model_check : "closed_form" (default) or "first_order"
-        How `model_error` of the base "thin_layer" is estimated: free of cost, or by one step of the exact layer.
-    micro : "smooth", "disc_cell" (default), "power_law", "square_lattice", "hex_lattice", "normal_heights" or
-        "uniform_heights"
-        No asperities, the law of Eqs (6) and (7), A = B Ra (p/E1*)^beta (E2* without a layer), asperities on a lattice,
-        or of random heights; or the name of a registered law, or such a :class:`~solver.laws.Law` itself.
-    B, beta : needed by the micro law "power_law"
-        Coefficient, without unit, and exponent.
-    sigma, cut : "normal_heights" needs both, cut = 4; "uniform_heights" needs sigma
-        Standard deviation of the heights; and the largest height above their mean, over sigma. Both are in `more`.
-    scheme : "newton" (default) or "picard"
-        Newton's method, or the paper's successive approximations, Eqs (8) and (10). These are for asperities: a smooth
-        case that asks for them is not solved.
-    k : 1
-        Relaxation of the successive approximations.
-    rtol : 1e-6
-        Wanted relative error of a, P, D, p0, p_max, Ar_An.
-    nodes : 0
-        Number of nodes; 0: chosen by `rtol`.
-    max_iterations : 0
-        Most steps on a mesh, or approximations at one radius; 0: the limit of the scheme.
-    R, E2 : 1
-        Radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units.
-    more : name -> (B,)
-        The parameters of laws that are not fields of their own; each is an attribute as well.
+    control, value : the quantity that is given, "P", "a" or "D", and its value: load, radius of the nominal contact
+        area or indentation depth
+    h, n : thickness of the layer, and ratio of the reduced moduli E1*/E2*; needed by every base but "half_space".
+        n = 0 is a rigid base. Its E2* is infinite, so E1* is the unit of moduli in its place, and `E2` means E1*
+    m = 0 : ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
+        displacements of both bodies add; D is the approach of their distant points
+    nu1, nu2 = 0.3 : Poisson ratios of layer and half-space. Without friction between them these change nothing
+    bonding = "frictionless" : the interface between layer and half-space, or "bonded"
+    Nbar, Ra : asperities per unit area, and their radius; needed by the micro laws that declare them, of this package's
+        all but "smooth"
+    base = "layered" : with the exact layer; "half_space", that alone; "thin_layer", with the thin layer of Eq. (3);
+        "auto", the cheapest that is accurate enough
+    accuracy = 0.01 : allowed relative model error of the base "auto"
+    model_check = "closed_form" : `model_error` of the base "thin_layer" is estimated free of cost; "first_order", by
+        one step of the exact layer
+    micro = "disc_cell" : the law of Eqs (6) and (7); "smooth", no asperities; "power_law", A = B Ra (p/E1*)^beta (E2*
+        without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; or the name of a
+        registered law, or such a :class:`~solver.laws.Law` itself
+    B, beta : coefficient, without unit, and exponent, of the "power_law"
+    sigma, cut = 4 : standard deviation of random heights; and of the "normal_heights" the largest above their mean,
+        over sigma. Both are in `more`
+    scheme = "newton" : Newton's method; "picard", the paper's successive approximations, Eqs (8) and (10), which are
+        for asperities: a smooth case that asks for them is not solved
+    k = 1 : relaxation of the successive approximations
+    rtol = 1e-6 : wanted relative error of a, P, D, p0, p_max, Ar_An
+    nodes = 0 : number of nodes; 0: chosen by `rtol`
+    max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
+    R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
+    more : name -> (B,), the parameters of laws that are not fields of their own; each is an attribute as well
     """
 
     control: str
@@ -109,17 +90,10 @@ class Problem:
         Exactly one of P, a, D is given; the other parameters are fields of :class:`Problem`. One that is not given has
         its default, or is NaN where no case needs it.
 
-        Raises
-        ------
-        TypeError
-            A parameter that does not exist.
-        ValueError
-            Not exactly one control; a parameter missing that some case needs; shapes that do not broadcast to (B,); a
-            text outside its choices. A number out of bounds, NaN, and the scheme "picard" of a smooth case are no
-            errors: that case gets ``Status.INVALID_INPUT``.
+        Raises TypeError for a parameter that does not exist; ValueError: not exactly one control, a parameter missing
+        that some case needs, shapes that do not broadcast to (B,), a text outside its choices. A number out of bounds,
+        NaN, and the scheme "picard" of a smooth case are no errors: that case gets ``Status.INVALID_INPUT``.
 
-        Examples
-        --------
         >>> Problem.of(P=[1e-5, 2e-5], Nbar=250000, Ra=0.004, base="half_space").h
         array([nan, nan])
         >>> Problem.of(P=1e-5, n=0.5, Nbar=250000, Ra=0.004)

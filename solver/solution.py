@@ -40,39 +40,22 @@ class Solution:
     A case that fails raises nothing: `status` says why, and whether the last numbers are kept. A case without numbers
     has NaN everywhere but in the quantity that was given. The bounds below are those of a converged case.
 
-    Attributes
-    ----------
-    a, P, D : > 0
-        Radius of the nominal contact area (unit R), load (E2 R²), indentation depth (14) (R).
-    p0, p_max : > 0
-        Nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a smooth punch
-        (E2).
-    Ar_An : in (0, 1]
-        Real over nominal contact area (12); 1 for a smooth punch.
-    A0 : >= 0
-        Additional displacement A[p(0)] of the asperities (6) (R).
-    dP_dD : > 0
-        Contact stiffness (E2 R).
-    residual : >= 0
-        Largest residual of the discrete equation, relative to its right-hand side.
-    error : in [0, rtol]
-        Estimated relative error: the largest over a, P, D, p0, p_max, Ar_An.
-    profile_error : >= error
-        Estimated error of the profiles at any radius, over the largest p or λ. It may exceed rtol.
-    model_error : >= 0
-        Estimated relative error, over the same six, of the model used against the exact layer with its asperities. 0
-        for the exact layer, and for a half-space that was asked for by name; with "auto" at most `accuracy`. The error
-        of a law that comes from a table is part of it.
-    status : int8
-        A :class:`~solver.status.Status`.
-    model_used : int8
-        A :class:`Model`.
-    iterations, nodes : int32
-        Iterations in all, and nodes of the last mesh; 0 nodes: a closed form.
-    p : (B, m)
-        Nominal pressure at the radii (E2).
-    lam : (B, m), in [0, 1]
-        Relative contact area λ (11) at the radii; 1 inside the contact of a smooth punch.
+    a, P, D : > 0; radius of the nominal contact area (unit R), load (E2 R²), indentation depth (14) (R)
+    p0, p_max : > 0; nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a
+        smooth punch (E2)
+    Ar_An : in (0, 1]; real over nominal contact area (12), 1 for a smooth punch
+    A0 : >= 0; additional displacement A[p(0)] of the asperities (6) (R)
+    dP_dD : > 0; contact stiffness (E2 R)
+    residual : >= 0; largest residual of the discrete equation, relative to its right-hand side
+    error : in [0, rtol]; estimated relative error, the largest over a, P, D, p0, p_max, Ar_An
+    profile_error : >= error; estimated error of the profiles at any radius, over the largest p or λ. It may exceed rtol
+    model_error : >= 0; estimated relative error, over the same six, of the model used against the exact layer with its
+        asperities. 0 for the exact layer, and for a half-space that was asked for by name; with "auto" at most
+        `accuracy`. The error of a law that comes from a table is part of it
+    status, model_used : int8; a :class:`~solver.status.Status` and a :class:`Model`
+    iterations, nodes : int32; iterations in all, and nodes of the last mesh; 0 nodes: a closed form
+    p : (B, m); nominal pressure at the radii (E2)
+    lam : (B, m), in [0, 1]; relative contact area λ (11) at the radii, 1 inside the contact of a smooth punch
     """
 
     a: np.ndarray

@@ -21,34 +21,17 @@ from .threads import one_blas_thread
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
 def solve(problem, x=(0.0, 1.0)):
-    """Solve a batch of cases.
+    """:class:`~solver.solution.Solution` of a batch of cases: one row a case, in the order of the problem and in its
+    units. A case that cannot be solved is a status and NaN.
 
-    Parameters
-    ----------
-    problem : Problem
-        B cases of any mixture of bases, micro laws, bondings and schemes.
-    x : (m,) float, [0, 1]
-        Radii r/a at which the profiles p and λ are wanted.
+    problem : :class:`~solver.problem.Problem`, cases of any mixture of bases, micro laws, bondings and schemes
+    x : (m,), radii r/a in [0, 1] at which the profiles p and λ are wanted (else ValueError)
 
-    Returns
-    -------
-    Solution
-        One row a case, in the order of the problem and in its units. A case that cannot be solved is a status and NaN.
-
-    Raises
-    ------
-    ValueError
-        If x is not one-dimensional or leaves [0, 1].
-
-    Notes
-    -----
     Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
     exact layer, iterate by their scheme. Successive approximations are for asperities: a smooth case with the scheme
     "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets `accuracy`. That may be a
     smooth punch, to which the asperities are added afterwards: then `scheme` has no effect.
 
-    Examples
-    --------
     >>> from solver import Problem
     >>> layer, asperities = {"h": 0.02, "n": 0.5, "base": "thin_layer"}, {"Nbar": 250000, "Ra": 0.004}
     >>> case = Problem.of(a=0.04, **layer, **asperities, micro="power_law", B=0.1, beta=0.5)

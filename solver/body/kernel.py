@@ -23,27 +23,16 @@ class Kernel(NamedTuple):
 
 
 def layered_kernel(u, n, nu1, nu2, bonded):
-    """L(u) of a layer on a half-space for any Poisson ratios.
+    """:class:`Kernel` of a layer on a half-space for any Poisson ratios; the arguments broadcast.
 
-    Parameters
-    ----------
-    u : array, >= 0
-        Wave number times thickness; broadcast against the others.
-    n : array, >= 0
-        E1*/E2*; 0 on a rigid base, where L(0) = 0.
-    nu1, nu2 : array, (-1, 0.5]
-        Poisson ratios of layer and half-space; not used without friction.
-    bonded : array of bool
-        Perfect bond, or a frictionless interface.
+    L and L - 1 are right to a relative 1e-13 (L - 1 relative to its largest term where it changes sign), u dL/du to
+    1e-13 of the larger of |L - 1| and itself.
 
-    Returns
-    -------
-    Kernel
-        L and L - 1 to a relative 1e-13 (L - 1 relative to its largest term where it changes sign), u dL/du to 1e-13 of
-        the larger of |L - 1| and itself.
+    u : wave number times thickness, >= 0
+    n : E1*/E2* >= 0; 0 on a rigid base, where L(0) = 0
+    nu1, nu2 : Poisson ratios of layer and half-space, in (-1, 0.5]; not used without friction
+    bonded : perfect bond, or a frictionless interface
 
-    Examples
-    --------
     >>> print(f"{float(layered_kernel(0.01, 0.5, 0.3, 0.3, False).L):.6f}")
     0.505000
     """

@@ -16,12 +16,8 @@ from ..numerics.mesh import Mesh
 class Operator(Protocol):
     """K of B cases at given radii, on a mesh of n nodes.
 
-    Attributes
-    ----------
-    K : (B, n, n), or (1, n, n) where all cases share it
-        The matrix of K at the nodes: the displacement less that of the edge.
-    edge : (B or 1, n)
-        The row that gives the displacement of the edge itself: edge @ q.
+    K : (B, n, n), or (1, n, n) where all cases share it: the displacement at the nodes less that of the edge
+    edge : (B or 1, n), the row that gives the displacement of the edge itself, edge @ q
     """
 
     mesh: Mesh
@@ -48,12 +44,8 @@ class Operator(Protocol):
 class Body(Protocol):
     """What lies under the punch in B cases.
 
-    Attributes
-    ----------
-    E : (B,)
-        Modulus of the half-space to which K is relative.
-    C : (B,)
-        Compliance of springs on the surface, in R/E2*; 0: none.
+    E : (B,), modulus of the half-space to which K is relative
+    C : (B,), compliance of springs on the surface, in R/E2*; 0: none
     """
 
     E: np.ndarray

@@ -15,31 +15,14 @@ STIFF = 1e-50
 
 
 def thin_layer_coefficients(n, nu1, nu2, bonded):
-    """Coefficients A1 and A2 of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios.
+    """Coefficients A1 and A2 (B,) of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios.
 
-    Parameters
-    ----------
-    n : (B,) float, >= 0
-        E1*/E2*; 0 on a rigid base.
-    nu1, nu2 : (B,) float, (-1, 0.5]
-        Poisson ratios of the layer and of the half-space; not used without friction.
-    bonded : (B,) bool
-        Perfect bond, or a frictionless interface.
+    A1 = n; A2 = 1/2 without friction. Bonded, with alpha = G1/G2 = n (1 - nu1)/(1 - nu2), it is
+    (1 + alpha (1 - 2 nu2)) (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 that is the paper's Eq. (2).
+    A2 <= 0 (nu1 = 1/2, or alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the thin-layer equation does not apply.
 
-    Returns
-    -------
-    A1, A2 : (B,) float
-        A1 = n; A2 = 1/2 without friction. A2 <= 0 (bonded: nu1 = 1/2, or alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means
-        that the thin-layer equation does not apply.
+    Arguments as those of :func:`~solver.body.kernel.layered_kernel`, (B,) each.
 
-    Notes
-    -----
-    With alpha = G1/G2 = n (1 - nu1)/(1 - nu2):
-    A2 = (1 + alpha (1 - 2 nu2)) (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 it is the paper's
-    Eq. (2).
-
-    Examples
-    --------
     >>> A1, A2 = thin_layer_coefficients(0.5, 0.3, 0.3, True)
     >>> print(float(A1), round(float(A2), 12))
     0.5 0.244897959184

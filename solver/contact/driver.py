@@ -33,16 +33,11 @@ class Iterated(NamedTuple):
 def iterate(cases, start, step, limit):
     """Repeat `step` on a batch: :class:`Iterated`. A case that has closed or is lost leaves it, the others go on.
 
-    Parameters
-    ----------
-    cases : Cases
     start : the batch at its start, an :class:`.equation.Evaluation` or an :class:`.picard.Approximation`:
         ``start.closed`` and ``start.lost`` (B,) bool; ``start.take(index)`` a sub-batch; ``start.join(cases, parts,
-        places)`` the batch of sub-batches at their places.
-    step : callable
-        ``step(now) -> next``.
-    limit : int, or (B,) int
-        Most steps.
+        places)`` the batch of sub-batches at their places
+    step : ``step(now) -> next``
+    limit : most steps, int or (B,) int
     """
     size = len(cases.value)
     limit = np.broadcast_to(limit, size)

@@ -41,21 +41,11 @@ def judged(problem, x, solve):
 
 
 def first_order(cases, cheap, p):
-    """Estimated relative error (B,) of a cheap solution against the exact model `cases`, to first order.
+    """Estimated relative error (B,) of a cheap solution against the exact model `cases`, to first order. It is
+    NaN for a case whose cheap solution has no numbers, inf where the step fails.
 
-    Parameters
-    ----------
-    cases : Cases
-        The exact equation of the B cases in units R = E2* = 1.
-    cheap : Solution
-        The cheap solution in the same units.
-    p : (B, NODES) float, E2*
-        Its nominal pressure at the nodes ``mesh_of(NODES).x``.
-
-    Returns
-    -------
-    (B,) float
-        NaN for a case whose cheap solution has no numbers, inf where the step fails.
+    cases : the exact equation in units R = E2* = 1; cheap : the cheap solution in the same units, and p (B, NODES) its
+        nominal pressure at the nodes ``mesh_of(NODES).x``
     """
     state = State(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
     ev = evaluate(cases, state, mesh_of(NODES))

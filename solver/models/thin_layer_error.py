@@ -51,23 +51,9 @@ class ThinLayerError(NamedTuple):
 def edge_shift(n, nu1, nu2, bonded):
     """κ: by how many thicknesses h the contact of the thin layer is wider than that of the exact layer, for h << a.
 
-    Parameters
-    ----------
-    n : array, >= 0
-        E1*/E2*; 0 on a rigid base.
-    nu1, nu2 : array, (-1, 0.5]; used when bonded
-        Poisson ratios of layer and half-space.
-    bonded : array of bool
-        Perfect bond or frictionless interface.
+    To about 1e-6. Negative where the contact of the thin layer is the narrower one. NaN where the thin-layer equation
+    does not apply (A2 <= 0). Arguments as those of :func:`~solver.body.kernel.layered_kernel`.
 
-    Returns
-    -------
-    array
-        κ to about 1e-6, without unit. Negative where the contact of the thin layer is the narrower one. NaN where the
-        thin-layer equation does not apply (A2 <= 0).
-
-    Examples
-    --------
     >>> print(f"{edge_shift(0.5, 0.3, 0.3, False):.4f} {edge_shift(0.5, 0.3, 0.3, True):.4f}")
     0.2326 0.1447
     """
@@ -111,28 +97,18 @@ def _integrated(n, nu1, nu2, bonded):
 def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
     """Estimated relative errors of the thin-layer model for a smooth sphere: of P at given a, and of a at given P.
 
-    Parameters
-    ----------
-    h_a : array, > 0
-        x = h/a, thickness of the layer over the true contact radius.
-    n, nu1, nu2, bonded
-        The layer, as in :func:`edge_shift`; all broadcast.
+    :class:`ThinLayerError`: P_thin/P - 1 at given a and a_thin/a - 1 at given P; NaN where the thin-layer equation does
+    not apply.
 
-    Returns
-    -------
-    ThinLayerError
-        P_thin/P - 1 at given a and a_thin/a - 1 at given P; NaN where the thin-layer equation does not apply.
+    h_a : x = h/a > 0, thickness of the layer over the true contact radius
+    n, nu1, nu2, bonded : the layer, as in :func:`edge_shift`; all broadcast
 
-    Notes
-    -----
     P/P_thin = 1 + x (m κ x0 + g x)/(x0 + x) and a_thin/a = (P/P_thin)^(1/m), with g = 32 A2/(3π),
     m = 3 + g x/(n + g x), and x0 fitted: 1.55 - 1.16 n without friction, 1.5 + 2.3 κ bonded, at least 0.3. Both
     limits are exact. Over h/a from 0.01 to 20 and n from 0.01 to 0.95, P_thin/P is right to 5 % without friction, 8 %
     bonded with ν <= 0.3, 13 % bonded with ν = 0.45, and 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the
     edge: with them the error at h/a < 0.3 is smaller.
 
-    Examples
-    --------
     >>> error = thin_layer_error(0.5, 0.5)
     >>> print(f"{error.P:.2f} {error.a:.2f}")
     -0.36 0.13
@@ -145,24 +121,13 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
 def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
     """Estimated relative error of the thin-layer model: the largest over a, P, D, p(0), p_max and Ar/An.
 
-    Parameters
-    ----------
-    control : "P", "a" or "D"
-        The quantity that is given, which has no error itself.
-    h_a, n, nu1, nu2, bonded
-        As in :func:`thin_layer_error`.
-    rough : array of bool
-        The punch has asperities.
+    NaN where the thin-layer equation does not apply. For true errors from 0.001 to 1 of a smooth sphere, 0.23 to 5
+    times the true one (tests/models/test_thin_layer_error.py and test_auto.py), most often 1 to 2 times. Under
+    asperities it is too large, a hundred times and more where these yield more than the layer.
 
-    Returns
-    -------
-    array, >= 0
-        NaN where the thin-layer equation does not apply. For true errors from 0.001 to 1 of a smooth sphere, 0.23 to
-        5 times the true one (tests/models/test_thin_layer_error.py and test_auto.py), most often 1 to 2 times. Under
-        asperities it is too large, a hundred times and more where these yield more than the layer.
+    control : "P", "a" or "D", the quantity that is given, which has no error itself
+    h_a, n, nu1, nu2, bonded : as in :func:`thin_layer_error`; rough : whether the punch has asperities
 
-    Notes
-    -----
     P/P_thin - 1 has a term of the edge and a term of thick layers, which may have different signs. Their sizes are
     added: where they cancel in P, the other quantities are still wrong. The term of the edge counts in full at given a,
     where it changes the load. At given P or D it changes the radius, and counts 1/m times. Where the contact of the

@@ -6,21 +6,13 @@ import numpy as np
 def false_position(evaluate, start, tolerance, steps=80):
     """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`.
 
-    Parameters
-    ----------
-    evaluate : callable
-        ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), which may hold a case twice. NaN means that
-        there is no value; the case is then given up.
-    start : (B,) float
-        Where to begin. The bracket begins as start ± 0.1; its ends move outwards, by steps that double, until they
-        enclose the root.
-    tolerance : (B,) float
-        A case is done when abs(g) or the width of its bracket is below this. It is then not evaluated again.
+    Returns the last x (B,) of each case, and the function there (B,).
 
-    Returns
-    -------
-    x, g : (B,) float
-        The last x of each case, and the function there.
+    evaluate : ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), which may hold a case twice. NaN means
+        that there is no value; the case is then given up
+    start : (B,); the bracket begins as start ± 0.1, and its ends move outwards, by steps that double, until they
+        enclose the root
+    tolerance : (B,); a case is done, and not evaluated again, when abs(g) or the width of its bracket is below this
     """
     (low, high), (g_low, g_high) = _outwards(evaluate, start)
     x, g = high.copy(), g_high.copy()

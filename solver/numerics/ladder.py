@@ -40,27 +40,18 @@ def finer_mesh(mesh):
 
 
 def climb(rtol, nodes, solve_on, first=None, order=None):
-    """Let every case climb to the mesh that meets its tolerance.
+    """Let every case climb to the mesh that meets its tolerance rtol (B,).
 
-    Parameters
-    ----------
-    rtol : (B,) float
-    nodes : (B,) int
-        A fixed mesh, or 0: begin on `first`.
-    solve_on : callable
-        ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. `start` is the `finer`
-        of the mesh before, or None on the first mesh. error (b,): estimated errors, NaN where there is no use in going
-        on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and ``finer.join(others)``; or
-        None. found: the answer, which is passed on.
-    first : (B,) int, optional
-        The mesh to begin on; else chosen by rtol.
-    order : (B,) int, optional
-        Permutation of the cases; neighbours in it are solved together.
+    Returns a list of (index, found), one of each stack that was solved. The answer of a case is in the last stack that
+    has it.
 
-    Returns
-    -------
-    list of (index, found)
-        One of each stack that was solved. The answer of a case is in the last stack that has it.
+    nodes : (B,) int, a fixed mesh, or 0: begin on `first`
+    solve_on : ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. `start` is the
+        `finer` of the mesh before, or None on the first mesh. error (b,): estimated errors, NaN where there is no use
+        in going on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and
+        ``finer.join(others)``; or None. found: the answer, which is passed on
+    first : (B,) int, the mesh to begin on; None: chosen by rtol
+    order : (B,) int, permutation of the cases; neighbours in it are solved together
     """
     rung = np.where(nodes > 0, nodes, start_nodes(rtol) if first is None else first)
     order = np.arange(len(rtol)) if order is None else order

@@ -29,19 +29,12 @@ class Mesh:
     The number of nodes and the panels determine all the rest. Meshes that agree in these are equal: what is kept for
     one (solver/body/tables.py) serves the other.
 
-    Attributes
-    ----------
-    breaks : tuple of float
-        Ends of the panels in s, from 0 to 1.
-    s, x : (n,) float
-        Nodes sqrt(1 - x²), ascending, the last one the centre s = 1; and the radii x = r/a.
-    w : (n,) float
-        Weights of ∫₀¹ q x dx; exact for polynomials in s (on each panel).
-    K : (n, n) float
-        Half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(k)/(x + x') x' dx' of Eq. (3), K(k) the
-        complete elliptic integral of the first kind. For q = s it is (π²/16) s².
-    edge : (n,) float
-        H[q](1): the displacement at the edge of the contact, which gives D without an interpolation.
+    breaks : ends of the panels in s, from 0 to 1
+    s, x : (n,), nodes sqrt(1 - x²), ascending, the last one the centre s = 1; and the radii x = r/a
+    w : (n,), weights of ∫₀¹ q x dx; exact for polynomials in s (on each panel)
+    K : (n, n), half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(k)/(x + x') x' dx' of Eq. (3), K(k)
+        the complete elliptic integral of the first kind. For q = s it is (π²/16) s²
+    edge : (n,), H[q](1): the displacement at the edge of the contact, which gives D without an interpolation
     """
 
     breaks: tuple
@@ -133,24 +126,9 @@ def piecewise_lagrange(nodes, points, breaks=WHOLE):
 
 
 def half_space_rows(nodes, s_out, breaks=WHOLE):
-    """Half-space operator H[q](x), Eq. (3), against the Lagrange basis in s.
+    """Rows (m, n) that give the half-space operator H[q](x), Eq. (3), at the points s_out (m,) in s from q at `nodes`
+    (n,) in s, as many on each of the panels between `breaks`.
 
-    Parameters
-    ----------
-    nodes : (n,) float
-        Nodes in s of the basis.
-    s_out : (m,) float, [0, 1]
-        Where the displacement is wanted, s = sqrt(1 - x²).
-    breaks : tuple of float
-        Ends of the panels of the basis, as many nodes on each.
-
-    Returns
-    -------
-    (m, n) float
-        Rows that give H[q] at the points from q at the nodes.
-
-    Notes
-    -----
     With x_< and x_> the smaller and the larger of x, x', K(k)/(x + x') is K(x_</x_>)/x_> (Landen): so the only
     singularity of the integrand is log|s - s'| (a root at the centre). Panels farther from it than their length have a
     plain Gauss rule. The others are split there, and each side has panels that shrink towards it (:mod:`.pieces`). The

@@ -1,8 +1,6 @@
 """Nodes, weights, interpolation and singular product integration on [0, 1]; nothing about contact.
 
-References
-----------
-Berrut & Trefethen, SIAM Review 46 (2004) 501 (barycentric interpolation).
+Barycentric interpolation is that of Berrut & Trefethen, SIAM Review 46 (2004) 501.
 """
 
 from functools import lru_cache

@@ -27,7 +27,7 @@ class Parameter(NamedTuple):
     needed_by : (name of another parameter, some of its choices), a condition: the cases that meet it need this
         parameter. For these it is checked, and must be given if it has no default. EVERY: all need it.
     used_by : a second condition: the answer depends on the parameter in those cases only that meet both.
-    powers : (i, j), its unit is E2*^i R^j; for parameters that laws declare.
+    powers : (i, j), its unit is E2*^i R^j.
     symbol, long_name : what tables and figures call a parameter that a registered law declares.
     """
 
@@ -49,16 +49,16 @@ BONDED = ("bonding", ("bonded",))
 
 #: What controls a case: one of these is given.
 CONTROL = {
-    "P": Parameter(interval="[1e-24, 1e3]"),
-    "a": Parameter(interval="[1e-9, 1e3]"),
-    "D": Parameter(interval="[1e-18, 1e3]"),
+    "P": Parameter(interval="[1e-24, 1e3]", powers=(1, 2)),
+    "a": Parameter(interval="[1e-9, 1e3]", powers=(0, 1)),
+    "D": Parameter(interval="[1e-18, 1e3]", powers=(0, 1)),
 }
 
 #: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
 #: `laws.register` adds them here, and the name of the law to the choices of `micro`. `schemes` adds those of `scheme`.
 #: Keys of cases leave defaults out (study/store/keys.py): whoever changes a default changes `NUMERICS_VERSION`.
 PARAMETERS = {
-    "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED),
+    "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
     "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base
     "m": Parameter(0.0, interval="[0, 1e9]"),
     "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),

@@ -1,6 +1,6 @@
 """What is asked: arrays over a batch of cases."""
 
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,7 +10,8 @@ from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
 
 @dataclass(frozen=True)
 class Problem:
-    """A batch of B cases; every field but `control` is an array (B,). Build it with :meth:`of`.
+    """A batch of B cases: `value` and each of the `parameters`, which are attributes too, are arrays (B,). Made by
+    :meth:`of`.
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
     1 these are the units of the paper. The bounds are in solver/parameters.py. What has a default below may be left
@@ -36,7 +37,7 @@ class Problem:
         registered law, or such a :class:`~solver.laws.Law` itself
     B, beta : coefficient, without unit, and exponent, of the "power_law"
     sigma, cut = 4 : standard deviation of random heights; and of the "normal_heights" the largest above their mean,
-        over sigma. Both are in `more`
+        over sigma
     scheme = "newton" : Newton's method; "picard", the paper's successive approximations, Eqs (8) and (10), which are
         for asperities: a smooth case that asks for them is not solved
     k = 1 : relaxation of the successive approximations
@@ -44,33 +45,13 @@ class Problem:
     nodes = 0 : number of nodes; 0: chosen by `rtol`
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
     R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
-    more : name -> (B,), the parameters of laws that are not fields of their own; each is an attribute as well
+
+    Registered laws have others besides.
     """
 
     control: str
     value: np.ndarray
-    h: np.ndarray
-    n: np.ndarray
-    m: np.ndarray
-    nu1: np.ndarray
-    nu2: np.ndarray
-    bonding: np.ndarray
-    Nbar: np.ndarray
-    Ra: np.ndarray
-    base: np.ndarray
-    accuracy: np.ndarray
-    model_check: np.ndarray
-    micro: np.ndarray
-    B: np.ndarray
-    beta: np.ndarray
-    scheme: np.ndarray
-    k: np.ndarray
-    rtol: np.ndarray
-    nodes: np.ndarray
-    max_iterations: np.ndarray
-    R: np.ndarray
-    E2: np.ndarray
-    more: dict[str, np.ndarray] = field(default_factory=dict)
+    parameters: dict[str, np.ndarray]
 
     def __repr__(self):
         given = f"{self.control} = {self.value.min():g} ... {self.value.max():g}" if len(self) else self.control
@@ -78,17 +59,16 @@ class Problem:
         return f"Problem({len(self)} cases, {given}, base: {kinds[0]}, micro: {kinds[1]})"
 
     def __getattr__(self, name):
-        """A parameter of `more`; NaN if its law was registered after this batch was made."""
+        """A parameter; NaN if its law was registered after this batch was made."""
         if name not in PARAMETERS:
             raise AttributeError(f"Problem has no {name}")
-        return self.more.get(name, np.full(len(self), np.nan))
+        return self.parameters.get(name, np.full(len(self), np.nan))
 
     @classmethod
     def of(cls, *, P=None, a=None, D=None, **parameters):
         """Broadcast scalars and (B,) arrays to a batch.
 
-        Exactly one of P, a, D is given; the other parameters are fields of :class:`Problem`. One that is not given has
-        its default, or is NaN where no case needs it.
+        Exactly one of P, a, D is given. What else is not given has its default, or is NaN where no case needs it.
 
         Raises TypeError for a parameter that does not exist; ValueError: not exactly one control, a parameter missing
         that some case needs, shapes that do not broadcast to (B,), a text outside its choices. A number out of bounds,
@@ -118,16 +98,19 @@ class Problem:
         if missing:
             raise ValueError("; ".join(missing))
         arrays = {name: np.broadcast_to(v, shape) for name, v in arrays.items()}
-        own = [f.name for f in fields(cls) if f.name in arrays]
-        return cls(control, *(arrays.pop(name) for name in own), more=arrays)
+        return cls(control, arrays.pop("value"), arrays)
 
     def __len__(self):
         return len(self.value)
 
     def take(self, index):
         """The sub-batch at `index`."""
-        more = {name: values[index] for name, values in self.more.items()}
-        return Problem(self.control, *(getattr(self, f.name)[index] for f in fields(self)[1:-1]), more)
+        return Problem(self.control, self.value[index], {name: own[index] for name, own in self.parameters.items()})
+
+    def but(self, **parameters):
+        """The batch with other values of some parameters, (B,) or one for all cases."""
+        new = {name: np.broadcast_to(own, len(self)) for name, own in parameters.items()}
+        return Problem(self.control, self.value, self.parameters | new)
 
     def rough(self):
         """(B,) bool: the case has asperities."""

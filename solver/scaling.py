@@ -8,7 +8,8 @@ from .body import BODIES
 from .body.springs import STIFF, layer_modulus, local_compliance, thin_layer_coefficients
 from .contact.equation import Cases
 from .laws import LAWS, try_out
-from .parameters import PARAMETERS, allowed
+from .parameters import CONTROL, PARAMETERS, allowed
+from .problem import Problem
 from .status import Status
 
 #: Power of R and of E2* in the unit of each quantity.
@@ -26,20 +27,17 @@ _UNITS = {
 
 def dimensionless(problem):
     """The problem in units R = E2* = 1; n is 1 on the half-space alone."""
-    R, E2 = problem.R, problem.E2
-    value = _without_unit(problem.value, (1, 2) if problem.control == "P" else (0, 1), R, E2)
-    n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
-    more = {name: _without_unit(v, PARAMETERS[name].powers, R, E2) for name, v in problem.more.items()}
-    own = {name: _without_unit(getattr(problem, name), PARAMETERS[name].powers, R, E2) for name in ("Nbar", "Ra")}
-    return replace(problem, value=value, h=problem.h / R, n=n, R=one, E2=one, **own, more=more)
 
+    def number(values, own):
+        """The values over E2^i R^j, divided one by one: R² may overflow where the quotient does not."""
+        for unit, power in zip((problem.R, problem.E2), own.powers[::-1], strict=True):
+            for _ in range(abs(power)):
+                values = values / unit if power > 0 else values * unit
+        return values
 
-def _without_unit(value, powers, R, E2):
-    """`value` over E2^i R^j, (i, j) = `powers`. It divides one by one: R² may overflow where the quotient does not."""
-    for unit, power in zip((R, E2), powers[::-1], strict=True):
-        for _ in range(abs(power)):
-            value = value / unit if power > 0 else value * unit
-    return value
+    parameters = {name: number(values, PARAMETERS[name]) for name, values in problem.parameters.items()}
+    scaled = Problem(problem.control, number(problem.value, CONTROL[problem.control]), parameters)
+    return scaled.but(n=np.where(problem.base != "half_space", problem.n, 1.0), R=1.0, E2=1.0)
 
 
 def with_rigid_punch(problem):
@@ -57,8 +55,7 @@ def with_rigid_punch(problem):
     _, A2 = thin_layer_coefficients(n, problem.nu1, problem.nu2, problem.bonding == "bonded")
     thin = (base == "thin_layer") & (A2 > 0) & (problem.model_check != "first_order")
     moved = (m > 0) & ((base == "half_space") | thin)
-    return replace(
-        problem,
+    return problem.but(
         E2=np.where(moved, problem.E2 * layer_modulus(n) / (n + m), problem.E2),
         n=np.where(moved, (n + m) / (1 + m), problem.n),
         h=np.where(moved, 2 * A2 * problem.h / (1 + m), problem.h),
@@ -75,7 +72,7 @@ def with_a_stiff_base(problem):
     stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
     if not stiff.any():
         return problem
-    return replace(problem, n=np.where(stiff, STIFF, problem.n), E2=np.where(stiff, problem.E2 / STIFF, problem.E2))
+    return problem.but(n=np.where(stiff, STIFF, problem.n), E2=np.where(stiff, problem.E2 / STIFF, problem.E2))
 
 
 def refused(problem, scaled):

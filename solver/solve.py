@@ -1,6 +1,7 @@
 """``solve(problem, x) -> Solution``: each case goes the cheapest way that solves it."""
 
 from dataclasses import replace
+from functools import partial
 from itertools import product
 
 import numpy as np
@@ -58,8 +59,10 @@ def _solved(given, x, invalid):
     wanted, x = len(x), np.append(x, RADII) if has_range(problem) else x
     size = len(problem), len(x)
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
-    for index, solver in _routes(problem, ~(invalid | no_springs)):
-        pieces.append((index, solver(scaled.take(index), x)))
+    for mask, solver in _routes(problem, ~(invalid | no_springs)):
+        if mask.any():
+            index = np.flatnonzero(mask)
+            pieces.append((index, solver(scaled.take(index), x)))
     found = Solution.join(*size, pieces)
     missed = (found.status == Status.CONVERGED) & ~(found.error <= problem.rtol)
     found.status[missed] = Status.TOLERANCE_NOT_MET
@@ -70,34 +73,20 @@ def _solved(given, x, invalid):
 
 
 def _routes(problem, solvable):
-    """(index, solver) for each kind of case present."""
-    judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
-    yield from _route(solvable & judged, _judged)
-    yield from _route(solvable & (problem.base == "auto"), _auto)
-    solvable = solvable & ~judged & (problem.base != "auto")
-    is_smooth = ~problem.rough()
-    yield from _route(solvable & is_smooth & (problem.base == "half_space"), _smooth_half_space)
-    yield from _route(solvable & is_smooth & (problem.base == "thin_layer"), _smooth_layer)
-    iterated = solvable & ~(is_smooth & np.isin(problem.base, ("half_space", "thin_layer")))
+    """(mask (B,), solver) of each way to solve: the mask is True for its cases."""
+    half_space, thin, is_auto = (problem.base == base for base in ("half_space", "thin_layer", "auto"))
+    is_judged, is_smooth = thin & (problem.model_check == "first_order"), ~problem.rough()
+    yield solvable & is_judged, partial(judged, solve=_of_a_model)
+    yield solvable & is_auto, partial(auto.cheapest, solve=_of_a_model)
+    yield solvable & is_smooth & half_space, _smooth_half_space
+    yield solvable & is_smooth & thin & ~is_judged, _smooth_layer
+    iterated = solvable & ~is_judged & ~is_auto & ~(is_smooth & (half_space | thin))
     kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
     present = ([(word, words == word) for word in known if np.any(words == word)] for known, words in kinds)
     for (_, of_law), (_, on_body), (scheme, by_scheme) in product(*present):
         chosen = iterated & of_law & on_body & by_scheme
         for limit in np.unique(problem.max_iterations[chosen]):
-            yield from _route(chosen & (problem.max_iterations == limit), SCHEMES[scheme])
-
-
-def _route(mask, solver):
-    if mask.any():
-        yield np.flatnonzero(mask), solver
-
-
-def _auto(part, x):
-    return auto.cheapest(part, x, _of_a_model)
-
-
-def _judged(part, x):
-    return judged(part, x, _of_a_model)
+            yield chosen & (problem.max_iterations == limit), SCHEMES[scheme]
 
 
 def _smooth_half_space(part, x):

@@ -29,7 +29,7 @@ __all__ = [
 GROUP = "roughcoat.laws"
 #: Names that no parameter of a law can have: those of attributes of a Problem, and E, which `scales` gets. The package
 #: `study` adds those of results, and of what else it is told.
-RESERVED = {*CONTROL, "E", "control", "value", "more", "of", "take", "rough", "invalid", "without_scheme"}
+RESERVED = {*CONTROL, "E", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
 #: Laws whose functions have been tried.
 _TRIED = WeakSet()
 

@@ -70,7 +70,7 @@ def cheapest(problem, x, solve):
                 left[index[chosen[good]]] = False
     rest = np.flatnonzero(left)
     if len(rest):
-        pieces.append((rest, solve(_with(problem.take(rest), base="layered"), x)))
+        pieces.append((rest, solve(problem.take(rest).but(base="layered"), x)))
     return Solution.join(len(problem), len(x), pieces)
 
 
@@ -80,7 +80,7 @@ def bounds(part):
     Closed forms at the first guess of the contact radius; the cheapest model comes first. tests/models/test_auto.py
     holds them against the exact layer.
     """
-    cases = as_cases(_with(part, base="layered"))
+    cases = as_cases(part.but(base="layered"))
     a = guess_radius(cases)
     x, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")
     alone, thin = np.full((2, len(part)), np.inf)
@@ -101,12 +101,12 @@ def bounds(part):
 def _on_model(model, part, x, solve):
     """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
-    base = _with(part, base="thin_layer") if thin else replace(_with(part, base="half_space"), E2=layer_modulus(part.n))
+    base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n))
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
         return solve(base, x)
     s, weight = _area_rule()
     at_area = np.sqrt((1 - s) * (1 + s))
-    found = solve(_with(base, micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, at_area]))
+    found = solve(base.but(micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, at_area]))
     p, p_area = np.split(found.p, [len(x)], axis=1)
     law = law_of(part)
     centre = law.at(found.p0[:, None])
@@ -118,7 +118,3 @@ def _area_rule():
     """Nodes s and weights of ∫₀¹ λ s ds; s = t³ because λ of a smooth punch rises like s^(2/3) from the edge."""
     t, w = gauss_legendre(24)
     return t**3, 3 * w * t**5
-
-
-def _with(part, **texts):
-    return replace(part, **{name: np.full(len(part), text) for name, text in texts.items()})

@@ -31,10 +31,9 @@ def judged(problem, x, solve):
     pieces = []
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
-        part = replace(problem.take(index), model_check=np.full(len(index), "closed_form"))
+        part = problem.take(index).but(model_check="closed_form")
         found = solve(part, np.concatenate([x, mesh_of(NODES).x]))
-        layered = replace(part, base=np.full(len(index), "layered"))
-        error = first_order(as_cases(layered), found, found.p[:, len(x) :])
+        error = first_order(as_cases(part.but(base="layered")), found, found.p[:, len(x) :])
         shown = {"p": found.p[:, : len(x)], "lam": found.lam[:, : len(x)]}
         pieces.append((index, replace(found, **shown, model_error=error)))
     return Solution.join(len(problem), len(x), pieces)

@@ -21,9 +21,8 @@ def scheme(solve):
     """Decorator: make a function a scheme of its name, and the name a choice of the parameter `scheme`.
 
     ``solve(part, x) -> Solution`` gets a :class:`~solver.problem.Problem` of one micro law, one body and one
-    `max_iterations`, in units R = E2* = 1, and the radii x (m,). ``as_cases(part)`` is the equation, of which
-    :mod:`solver.contact` has the residual and the derivatives; docs/extending.md shows one. A case whose error is above
-    its rtol is ``Status.TOLERANCE_NOT_MET``, whatever the scheme says.
+    `max_iterations`, in units R = E2* = 1, and the radii x (m,); docs/extending.md shows one. A case whose error is
+    above its rtol is ``Status.TOLERANCE_NOT_MET``, whatever the scheme says.
 
     Raises ValueError for the name of a scheme of another module: its results on disk would be taken for those of this
     one.

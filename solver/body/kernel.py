@@ -140,7 +140,8 @@ def _bonded_below(u, e, rest, bond):
     a, b, one_a, one_b, _, _ = bond
     hard = b > 0  # 1 - b e may nearly vanish at small u: then the denominator is written in 1 - a, 1 - b and s² - u²
     if not np.all(hard):
-        soft = _one_minus(a, one_a, e, rest) * (1 - b * e) - 4 * b * u * u * e
+        one_ae = np.where(a > 0, one_a + a * rest, 1 - a * e)  # 1 - a e, in which nothing cancels for a of either sign
+        soft = one_ae * (1 - b * e) - 4 * b * u * u * e
         d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)
         if not np.any(hard):
             return soft, d_soft
@@ -167,11 +168,6 @@ def _bonded(u, n, nu1, nu2):
     d_above = e * (4 * b * (1 + 2 * u) + 4 * a * b * e) - 2 * above
     L1 = above / below
     return L1, u * (d_above - L1 * d_below) / below
-
-
-def _one_minus(a, one_a, e, rest):
-    """1 - a e without cancellation for a of either sign."""
-    return np.where(a > 0, one_a + a * rest, 1 - a * e)
 
 
 def _gap_and_excess(u, e, rest):

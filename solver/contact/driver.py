@@ -63,21 +63,16 @@ def newton_steps(nodes):
     return np.maximum(_FEWEST, (_STEPS * share).astype(int))
 
 
-def steps_within(cases, a, nodes, budget):
-    """Most Newton steps (B,) of cases of about the radius a on a mesh of `nodes` nodes, if each has `budget` (B,) left.
-    The last step may spend a little more than that."""
-    left = np.where(budget > 0, budget // cases.body.work(a, nodes)[1] + 1, 0)
-    return np.minimum(newton_steps(nodes), left).astype(int)
-
-
 def solve_on(start, limit=0, budget=BUDGET):
     """:class:`Iterated` of Newton's method from the equation at its `start`; where that fails, of a search for the
     radius.
 
-    limit : most steps; 0: the method's own limit, and the search. budget : float, or (B,), the work left to each case.
+    limit : most steps; 0: the method's own limit, and the search. budget : float, or (B,), the work left to each case;
+        the last step may spend a little more
     """
     cases, mesh = start.cases, start.mesh
-    most = steps_within(cases, np.exp(start.state.eta), mesh.n, budget)
+    left = np.where(budget > 0, budget // cases.body.work(np.exp(start.state.eta), mesh.n)[1] + 1, 0)
+    most = np.minimum(newton_steps(mesh.n), left).astype(int)
     found = _newton(start, np.minimum(limit or newton.LIMIT, most))
     failed = np.flatnonzero(~found.closed)
     if limit or not len(failed):

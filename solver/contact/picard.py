@@ -1,10 +1,7 @@
 """The paper's successive approximations, Eqs (8) and (10), and the load or depth by a search on the contact radius.
 
-Where there are springs, Eq. (8): p̂ = ((a² - r²)/(2R) - half-space part - A[p])/C. Else, Eq. (10): p̂ is the pressure
-whose A[p̂] is (a² - r²)/(2R) - half-space part. Either is relaxed with the paper's k, p_new = (p̂ + k p)/(1 + k), from
-p = 0, until |p̂ - p| is below rtol/10 of the largest pressure. The slope of A ~ p^β, β < 1, is infinite at the edge.
-Where A'(p) > (1 + 2k) C the iterates of (8) end in a cycle of two: the pressure there never settles, while the load
-settles to 3 or 4 digits. On a finer mesh the node next to the edge is nearer to it, and a larger k is needed.
+They begin at p = 0, and end when |p̂ - p| is below rtol/10 of the largest pressure, or in a cycle (docs/model.md). On a
+finer mesh the node next to the edge is nearer to it, where A'(p) is larger, and a larger k is needed.
 """
 
 from dataclasses import dataclass, replace

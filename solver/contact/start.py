@@ -17,25 +17,18 @@ def guess_radius(cases):
         return cases.value
     if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
         return np.sqrt(1.5 * cases.value)
-    hertz, springs, spots = _one_term_radii(cases)
+    hertz = np.cbrt(0.75 * cases.value / cases.body.E)
+    springs = (4 * cases.body.C * cases.value / np.pi) ** 0.25
+    gamma, beta = cases.law.edge()  # asperities of A ~ p^β
+    e = 1 / beta
+    alone = cases.value / (2 * np.pi * cases.law.p_star) * (2 * cases.law.A_star * gamma) ** e * (2 * e + 2)
+    spots = alone ** (1 / (2 + 2 * e))
     a = (hertz**4 + springs**4 + spots**4) ** 0.25
     for _ in range(6):  # the modulus that the contact feels depends on its radius
         before, a = a, ((hertz * np.cbrt(cases.body.softness(a))) ** 4 + springs**4 + spots**4) ** 0.25
         if np.array_equal(a, before):
             break
     return a
-
-
-def _one_term_radii(cases):
-    """Three radii (B,) under the load: on a half-space alone, on springs of compliance C alone, and with asperities of
-    A ~ p^β alone."""
-    gamma, beta = cases.law.edge()
-    e = 1 / beta
-    hertz = np.cbrt(0.75 * cases.value / cases.body.E)
-    springs = (4 * cases.body.C * cases.value / np.pi) ** 0.25
-    alone = cases.value / (2 * np.pi * cases.law.p_star) * (2 * cases.law.A_star * gamma) ** e * (2 * e + 2)
-    spots = alone ** (1 / (2 + 2 * e))
-    return hertz, springs, spots
 
 
 def guess_pressure(cases, a, s):

@@ -2,11 +2,8 @@
 
 As in the disc cell, Eqs (6) and (7), a spot feels the others as a mean field: the uniform pressure p outside its cell.
 Each summit has its own approach and its own spot, and p is the mean over them: ``spread.py``. A is counted from the
-touch of the highest summit. Without a spread, σ = 0, the law is the disc cell.
-
-Few summits touch at the edge of the contact: p ~ A^(5/2) there, until A is about σ/c. A normal density without a cut
-has no highest summit, so the contact would have no edge. The cut c decides where it is: a grows with c, and D grows by
-c σ. The pressures tend to a limit as c grows, and so does the load at a given depth of the mean plane.
+touch of the highest summit. Without a spread, σ = 0, the law is the disc cell. Few summits touch at the edge of the
+contact: p ~ A^(5/2) there, until A is about σ/c. Without a cut c there is no highest summit, and so no edge.
 
 q is the root of an equation at each y. So a law is tabulated when it is first used, once for each σ/A* and c. Many
 cases with one spread are fast; a batch in which each case has a spread of its own waits for as many tables.

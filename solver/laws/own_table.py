@@ -1,15 +1,9 @@
-"""A micro law from a table of one's own: a measurement, or another code.
+"""A micro law from a table of one's own, ``micro = "table:mine.csv"``; docs/model.md says what stands in the file.
 
-``micro = "table:mine.csv"``, where mine.csv has a heading with the columns p, A, lam, p_max, and a row for each nominal
-pressure: that pressure over E, the additional displacement over R, the relative contact area λ, and the largest real
-pressure over E. E is E1* (E2* without a layer), of base and punch together. Smooth curves are laid near the rows; the
-law's `error` is the largest distance of a row from the curve fitted to the other rows, or, between the rows, of the
-curve from one of a lower degree. Below the first row A goes on as the power of p that the first two rows have. Every
-contact has its edge there, so begin the table at a thousandth of p(0) or below. A contact whose p(0) is below the first
-row, or with pressures above the last one, gets no numbers: ``Status.OUTSIDE_LAW``.
-
-With the columns z and share it is a histogram of the heights of the summits, in R, in equal steps, and the law is that
-of ``heights.py``; it then has the parameters Nbar and Ra.
+Smooth curves are laid near the rows; the law's `error` is the largest distance of a row from the curve fitted to the
+other rows, or, between the rows, of the curve from one of a lower degree. Below the first row A goes on as the power of
+p that the first two rows have. With the columns z and share the law is that of ``heights.py`` with this histogram, and
+has the parameters Nbar and Ra.
 """
 
 import csv

@@ -104,7 +104,8 @@ def _on_model(model, part, x, solve):
     base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n))
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
         return solve(base, x)
-    s, weight = _area_rule()
+    t, weight = gauss_legendre(24)
+    s, weight = t**3, 3 * weight * t**5  # of ∫₀¹ λ s ds: λ of a smooth punch rises like s^(2/3) from the edge
     at_area = np.sqrt((1 - s) * (1 + s))
     found = solve(base.but(micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, at_area]))
     p, p_area = np.split(found.p, [len(x)], axis=1)
@@ -112,9 +113,3 @@ def _on_model(model, part, x, solve):
     centre = law.at(found.p0[:, None])
     spots = {"A0": centre.A[:, 0], "p_max": centre.p_max[:, 0], "Ar_An": 2 * law.at(p_area).lam @ weight}
     return replace(found, **spots, p=p, lam=law.at(p).lam)
-
-
-def _area_rule():
-    """Nodes s and weights of ∫₀¹ λ s ds; s = t³ because λ of a smooth punch rises like s^(2/3) from the edge."""
-    t, w = gauss_legendre(24)
-    return t**3, 3 * w * t**5

@@ -1,15 +1,12 @@
 """How far the thin-layer model is from the exact layer, for a smooth punch: a closed form that can be worked by hand.
 
-For h << a the two models differ near the edge only. There the exact kernel L and A1 + A2 u each give a half-plane
-problem, which the Wiener-Hopf method solves: the contact of the thin layer is wider by κ h,
+docs/accuracy.md has the formula, and how right it is. For h << a the contact of the thin layer is wider by κ h,
 
-    κ = (1/π) ∫₀^∞ ln[(A1 + A2 u)/L(u)] du/u².
+    κ = (1/π) ∫₀^∞ ln[(A1 + A2 u)/L(u)] du/u²,
 
-So at given load the radius is wrong by κ h/a, while depth and central pressure have no error of first order. At given
-radius the load is wrong by -m κ h/a, with m = d ln P/d ln a. For h >> a the true load is that of a half-space of E1*,
-(4/3) E1* a³/R, and the load of the thin layer tends to (3π/(32 A2)) (a/h) of it. The estimate is the simplest fraction
-with both limits. docs/accuracy.md shows it with a table of κ; tests/models/test_thin_layer_error.py compares it with
-the solver.
+so that at given radius its load is wrong by -m κ h/a, m = d ln P/d ln a. For h >> a its load tends to
+(3π/(32 A2)) (a/h) of the true one. The estimate is the simplest fraction with both limits;
+tests/models/test_thin_layer_error.py compares it with the solver.
 """
 
 from functools import lru_cache
@@ -103,11 +100,8 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
     h_a : x = h/a > 0, thickness of the layer over the true contact radius
     n, nu1, nu2, bonded : the layer, as in :func:`edge_shift`; all broadcast
 
-    P/P_thin = 1 + x (m κ x0 + g x)/(x0 + x) and a_thin/a = (P/P_thin)^(1/m), with g = 32 A2/(3π),
-    m = 3 + g x/(n + g x), and x0 fitted: 1.55 - 1.16 n without friction, 1.5 + 2.3 κ bonded, at least 0.3. Both
-    limits are exact. Over h/a from 0.01 to 20 and n from 0.01 to 0.95, P_thin/P is right to 5 % without friction, 8 %
-    bonded with ν <= 0.3, 13 % bonded with ν = 0.45, and 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the
-    edge: with them the error at h/a < 0.3 is smaller.
+    P_thin/P is right to 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the edge: with them the error at
+    h/a < 0.3 is smaller.
 
     >>> error = thin_layer_error(0.5, 0.5)
     >>> print(f"{error.P:.2f} {error.a:.2f}")

@@ -67,7 +67,13 @@ class Mesh:
 
     def basis(self, points):
         """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others."""
-        return piecewise_lagrange(self.s, points, self.breaks)
+        points, order = np.asarray(points, dtype=float), self.order
+        home = np.clip(np.searchsorted(self.breaks, points, side="left") - 1, 0, len(self.breaks) - 2)
+        values = np.zeros((len(points), self.n))
+        for i in np.unique(home):
+            here, columns = np.flatnonzero(home == i), slice(i * order, (i + 1) * order)
+            values[here, columns] = lagrange(self.s[columns], points[here])
+        return values
 
     def rows(self, points):
         """H[q](x) - H[q](1) at `points` (m,) in s: (m, n)."""
@@ -111,18 +117,6 @@ def gauss_rule(order, breaks):
     """Gauss rule of ∫₀¹ · ds with `order` points between any two of the `breaks`: points and weights (m,)."""
     points, weights = gauss_legendre(order)
     return on_panels(points, breaks), (np.diff(breaks)[:, None] * weights).ravel()
-
-
-def piecewise_lagrange(nodes, points, breaks=WHOLE):
-    """Values (m, n) at `points` (m,) of the Lagrange polynomials of `nodes` (n,), as many on each panel."""
-    points, panels = np.asarray(points, dtype=float), len(breaks) - 1
-    order = len(nodes) // panels
-    home = np.clip(np.searchsorted(breaks, points, side="left") - 1, 0, panels - 1)
-    values = np.zeros((len(points), len(nodes)))
-    for i in np.unique(home):
-        here, columns = np.flatnonzero(home == i), slice(i * order, (i + 1) * order)
-        values[here, columns] = lagrange(nodes[columns], points[here])
-    return values
 
 
 def half_space_rows(nodes, s_out, breaks=WHOLE):

@@ -58,37 +58,18 @@ def pieces(s, breaks, order, near=None, rough=None):
             there &= near
         is_far = ahead >= length
         level = np.where(is_far, -1, panels_towards(start if rough is None else np.where(rough, 0.0, start), length))
-        kinds, side = 2 * level + (ahead < 0), _Side(s, low, length, sign, start, far_end)
+        kinds = 2 * level + (ahead < 0)
         for kind in np.unique(kinds[there]).tolist():
-            one, (row, panel) = kind // 2, np.nonzero(there & (kinds == kind))
+            (one, inside), (rows, panels) = divmod(kind, 2), np.nonzero(there & (kinds == kind))
             rule = gauss_legendre(12 + order // 2) if one < 0 else log_rule(14 + order // 2, rough is not None, one)
-            many = max(1, _TOGETHER // (len(rule[0]) * order))
-            for at in range(0, len(row), many):
-                pairs = row[at : at + many], panel[at : at + many]
-                yield _piece(side, pairs, rule, kind % 2)
-
-
-class _Side(NamedTuple):
-    """The parts of p panels that lie on one side of m targets s, above them where `sign` is +1. The panels begin at
-    `low` and have this `length`, (p,) each; `start` and `end` (m, p) are the distances of a target from the ends of a
-    part."""
-
-    s: np.ndarray
-    low: np.ndarray
-    length: np.ndarray
-    sign: int
-    start: np.ndarray
-    end: np.ndarray
-
-
-def _piece(side, pairs, rule, inside):
-    """The :class:`Piece` of `pairs` (targets, panels) by a `rule` on [0, 1]; `inside`: targets are in their panels."""
-    (row, panel), (distance, weight), sign = pairs, rule, side.sign
-    begin = side.start[row, panel, None]
-    reach = side.end[row, panel, None] - begin
-    gap = begin + reach * distance
-    if inside:
-        local = ((side.s[row] - side.low[panel])[:, None] + sign * gap) / side.length[panel, None]
-    else:
-        local = (distance if sign > 0 else 1 - distance)[None]
-    return Piece(row, panel, sign, gap, reach * weight, local)
+            (distance, weight), many = rule, max(1, _TOGETHER // (len(rule[0]) * order))
+            for at in range(0, len(rows), many):
+                row, panel = rows[at : at + many], panels[at : at + many]
+                begin = start[row, panel, None]
+                reach = far_end[row, panel, None] - begin
+                gap = begin + reach * distance
+                if inside:
+                    local = ((s[row] - low[panel])[:, None] + sign * gap) / length[panel, None]
+                else:
+                    local = (distance if sign > 0 else 1 - distance)[None]
+                yield Piece(row, panel, sign, gap, reach * weight, local)

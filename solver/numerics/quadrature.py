@@ -32,14 +32,10 @@ def radau_nodes(n):
     return _frozen(np.append((inner + 1) / 2, 1.0))
 
 
-def barycentric_weights(nodes):
-    """Barycentric weights (n,) of `nodes` (n,). Distances are divided by the capacity of [0, 1], 1/4, so that products
-    of them neither overflow nor underflow."""
-    return _weights_kept(np.ascontiguousarray(nodes, dtype=float).tobytes())
-
-
 @lru_cache(maxsize=256)
-def _weights_kept(nodes_bytes):
+def _barycentric_weights(nodes_bytes):
+    """Barycentric weights (n,) of nodes (n,). Distances are divided by the capacity of [0, 1], 1/4, so that products of
+    them neither overflow nor underflow."""
     nodes = np.frombuffer(nodes_bytes)
     difference = nodes[:, None] - nodes[None, :]
     np.fill_diagonal(difference, 1.0)
@@ -55,7 +51,7 @@ def lagrange(nodes, points):
     hit = None if values.all() else values == 0.0
     if hit is not None:
         values[hit] = 1.0
-    np.divide(barycentric_weights(nodes), values, out=values)
+    np.divide(_barycentric_weights(np.ascontiguousarray(nodes, dtype=float).tobytes()), values, out=values)
     values /= values.sum(axis=1, keepdims=True)
     if hit is not None:
         on_node = hit.any(axis=1)

@@ -76,20 +76,12 @@ class Summary(str):
 def summary(contact: xr.Dataset) -> Summary:
     """What `study.solve` found, in words.
 
-    Parameters
-    ----------
     contact : a dataset of `study.solve`, in physical units or dimensionless; of a grid the first cases are written out
 
-    Returns
-    -------
-    Text: the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
+    The text has the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
     standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
     inputs make of the quantity (`NAME_spread`). `error` and `model_error` are of the other six quantities; dP/dD is
-    taken to be as sure.
-
-    Raises
-    ------
-    ValueError : the dataset is not one of contacts
+    taken to be as sure. Raises ValueError where the dataset is not one of contacts.
     """
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:

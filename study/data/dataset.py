@@ -105,13 +105,9 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
     a name stays a number.
 
-    Raises
-    ------
-    ValueError : the array has none of these names, and no attribute `flag_meanings`; its numbers are of no case, such
-        as the mean of several
+    Raises ValueError: the array has none of these names, and no attribute `flag_meanings`; its numbers are of no case,
+    such as the mean of several.
 
-    Examples
-    --------
     >>> import study
     >>> found = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
     >>> study.decode(found.model_used).values.tolist()

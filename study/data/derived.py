@@ -55,13 +55,9 @@ ASSUMPTIONS = {
 
 
 def validity(dataset: xr.Dataset) -> xr.DataArray:
-    """Assumptions that each case violates, a sum of masks; 0: all hold.
+    """Assumptions that each case violates, a sum of the masks of ASSUMPTIONS; 0: all hold. docs/model.md explains them.
 
-    1 model error of a thin layer > NOT_THIN; 2 N̄πa², of random heights those in touch, < FEW_SPOTS; 4 b(0) >
-    SPOT_OVER_LAYER h on a layer of any kind; 8 n >= 1 on a thin layer asked for by name (the paper assumes n < 1); 16
-    λ(0) > MERGING, but on a lattice; 32 a/R > STEEP, both D/h and p(0)/E1* > COMPRESSED, or the layer is STRETCHED;
-    64 b(0) > STEEP_SPOT Ra, or p_max as of such a spot; 128 1/sqrt(N̄) > PITCH_OVER_LAYER h on a layer of any kind. A
-    case without numbers (see `status`) only gets the masks that need none. int32 over the dimensions of `status`.
+    A case without numbers (see `status`) only gets the masks that need none. int32 over the dimensions of `status`.
 
     Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
     """

@@ -78,14 +78,10 @@ def physical_attributes(name: str, given: dict) -> dict:
 def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
     """The dataset in SI units, each named by the attribute `units`; `study.readable` gives µm, mN, MPa.
 
-    Parameters
-    ----------
     R : radius of the punch: m, or a text such as "5 mm", or a quantity of pint
     E2_star : reduced modulus E2/(1 - ν2²) of the half-space, E1* on a rigid base: Pa, or "230 GPa"
 
-    Raises
-    ------
-    ValueError : the dataset is physical already; R is no length, or E2_star no pressure
+    Raises ValueError: the dataset is physical already; R is no length, or E2_star no pressure.
     """
     scales = _scales(R, E2_star)
     if PHYSICAL_SCALE in dataset.attrs:
@@ -129,14 +125,10 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
 def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:
     """Dimensionless parameters for `study.solve` from physical ones, in the units that `to_physical` gives.
 
-    Parameters
-    ----------
     R : m; E2_star : Pa; P : N; a, D, h, Ra : m; Nbar : 1/m²; or texts with a unit, such as "5 mm", or quantities of
         pint. Everything else is a pure number or text and passes unchanged
 
-    Returns
-    -------
-    dict with the same names, scalars, arrays or DataArrays as given
+    The dict has the same names, with scalars, arrays or DataArrays as given.
     """
     found, scales = {}, _scales(R, E2_star)
     for name, given in parameters.items():

@@ -1,9 +1,6 @@
-"""Work and precision: time per case and error of every way to solve the model, on three fixed problem sets.
+"""Work and precision: time per case and error of every way to solve the model, on fixed problem sets.
 
-Time is processor time of one thread, which other work on the machine hardly changes. A set is solved as one batch, or
-several copies of it where it would be too short to measure, and the shortest of several runs counts. The error of a
-case is the largest of the relative errors of a, P, D, p0, p_max, Ar_An against the solution at rtol 1e-11. A case
-without an answer, or more than 100 % off, has the error 1.
+docs/tradeoff.md says how both are measured.
 """
 
 import hashlib

@@ -29,20 +29,14 @@ NOT_VALID = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
     """A figure of `y` against `x`, a curve for each value of `hue`, a panel for each combination of the other axes.
 
-    Parameters
-    ----------
     dataset : of `study.solve`, or the results of a study
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
     hue : name of a dimension, or "label" of the cases; **where : values to be drawn alone, such as bonding="bonded"
 
-    Returns
-    -------
-    A figure of pyplot. Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps.
+    It is one of pyplot. Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps.
     Where the dataset has the spread of `y`, a band shows ± one standard deviation.
 
-    Raises
-    ------
-    StudyError : no dataset, or a stacked one, a name is not there, a value neither, or there are more than 12 panels
+    Raises StudyError: no dataset, or a stacked one, a name is not there, a value neither, or more than 12 panels.
     """
     from matplotlib import pyplot
 

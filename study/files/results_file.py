@@ -114,10 +114,7 @@ def open_results(path) -> xr.Dataset:
     Any thread may open, and read, while others run studies. A file without checksums, of an earlier version, is read
     unverified.
 
-    Raises
-    ------
-    FileNotFoundError : there is none
-    StudyError : it is damaged, or cannot be read; also an OSError
+    Raises FileNotFoundError: there is none; StudyError: it is damaged, or cannot be read; also an OSError.
     """
     found = examine(path)
     if found.kind != "foreign":  # a netCDF file of another program is read as it is

@@ -1,9 +1,6 @@
-"""The numbers that the paper prints beside ours, and why they may be 0.6 % off.
+"""The numbers that the paper prints beside ours, and why they may be 0.6 % off (docs/tradeoff.md).
 
 They are compared with the converged ones, and with single iterates of the paper's successive approximations.
-
-With k = 0 the iterates of Eq. (8) at a = 0.04 alternate about the answer and come near it slowly. If the iteration is
-stopped early, the load of the last iterate is wrong to one side, and that of the next would be wrong to the other.
 """
 
 import numpy as np

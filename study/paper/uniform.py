@@ -1,10 +1,7 @@
 """The paper's own way: a uniform mesh in r, successive approximations from p = 0, and the radius by halving.
 
-The paper gives Eqs (8) and (10), the parameter k and the search for the contact radius by halving; mesh and stopping
-rule it does not give. Here they are chosen in its favour: pressure linear between uniform nodes, the singular kernel
-integrated exactly against that, a new approximation until it moves by no more than the tolerance, at each radius from
-the pressure at the radius before, which halves their number. It serves for comparison: `solver.solve` needs a tenth of
-the nodes and of the steps.
+Mesh and stopping rule, which the paper does not give, are chosen in its favour (docs/tradeoff.md). It serves for
+comparison: `solver.solve` needs a tenth of the nodes and of the steps.
 """
 
 from collections import namedtuple
@@ -86,8 +83,6 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
     `status` is CONVERGED, ITERATION_LIMIT, which keeps the last numbers, DIVERGED, or INVALID_INPUT. Raises ValueError
     for a base that the paper does not have, smooth cases on the half-space, or an elastic punch.
 
-    Examples
-    --------
     >>> from solver import Problem
     >>> layer, asperities = {"h": 0.02, "n": 0.5, "base": "thin_layer"}, {"Nbar": 250000, "Ra": 0.004}
     >>> case = Problem.of(a=0.04, **layer, **asperities, micro="power_law", B=0.1, beta=0.5)

@@ -1,6 +1,5 @@
 """What can be wrong with a physical scene as a whole, though each of its inputs is right."""
 
-from functools import partial
 from numbers import Real
 from typing import Any
 
@@ -40,13 +39,12 @@ def missing(parameters: dict, names: set[str], errors: list[str]) -> list[str]:
             messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
     if "nu_punch" in parameters and "E_punch" not in parameters:
         messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
-    given = {*parameters, *names, "n"}
-    return messages + one_control(names) + not_given(given, partial(_texts, parameters), errors)
 
+    def texts(name: str) -> list:
+        """The values of a parameter that has texts: its default, where it is not given."""
+        return np.ravel(np.array(parameters.get(name, VOCABULARY[name].own.default), dtype=object)).tolist()
 
-def _texts(parameters: dict, name: str) -> list:
-    """The values of a parameter that has texts: its default, where it is not given."""
-    return np.ravel(np.array(parameters.get(name, VOCABULARY[name].own.default), dtype=object)).tolist()
+    return messages + one_control(names) + not_given({*parameters, *names, "n"}, texts, errors)
 
 
 def equal_cases(scene: Scene) -> list[str]:

@@ -58,19 +58,14 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     if scene and scene.spreads and given["output"].get("dtype") == "float32":
         problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
         errors.append(f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}')
-    if errors:
-        _check_the_rest(draft, parameters, given)
+    if errors:  # what is read later only, words and other sections, is checked too: all mistakes are named at once
+        for key, value in parameters.items():
+            if key in VOCABULARY and VOCABULARY[key].own.choices:
+                draft.checked(key, value if isinstance(value, list) else [value])
+        definition.settings(given, errors)
         raise definition.refusal(where, errors)
     made = complete(draft, scene, list(given["axes"]), (given, name, text, where))
     return replace(made, digest=_digest(made))
-
-
-def _check_the_rest(draft: Draft, parameters: dict, given: dict) -> None:
-    """Messages for what is read later only, so that all mistakes are named at once: words, and other sections."""
-    for name, value in parameters.items():
-        if name in VOCABULARY and VOCABULARY[name].own.choices:
-            draft.checked(name, value if isinstance(value, list) else [value])
-    definition.settings(given, draft.errors)
 
 
 def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options) -> Definition:

@@ -176,10 +176,8 @@ def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most:
 
 def settings(tables: dict, errors: list[str]) -> tuple:
     """Title, points and names of the profiles, and type of the numbers: of the title and the section [output]."""
-    title, output = (
-        tables.get("title", ""),
-        {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {}),
-    )
+    title = tables.get("title", "")
+    output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
     x = profile_points(output["x"], errors)
     if not isinstance(title, str):
         errors.append(f"title = {shown(title)}: must be text")

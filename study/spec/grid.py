@@ -120,8 +120,6 @@ def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
 def as_array(own: Parameter, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
     """Check the values of one parameter and make them an array of float, int or text.
 
-    Parameters
-    ----------
     raw : list of values, or a list with one value
     key : how messages call the parameter; entry i of several is called key[i]
     errors : messages are appended here

@@ -39,8 +39,6 @@ OTHERS = {"condition": "a text", "source": "a text", "also": "a list of texts", 
 class Material:
     """An isotropic elastic material; what `get` and `read` return has passed their checks.
 
-    Parameters
-    ----------
     name : as in the table
     E, nu : Young's modulus, Pa, and Poisson's ratio
     E_spread, nu_spread : one standard deviation of each, Pa and 1, among the pieces that bear the name
@@ -78,13 +76,9 @@ class Material:
 def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     """The material of this name, or of this other name; capitals, hyphens and spaces do not matter.
 
-    Parameters
-    ----------
     among : where to look, as `read` returns it; without it the table of this package
 
-    Raises
-    ------
-    LookupError : there is none; names like it are suggested
+    Raises LookupError if there is none; names like it are suggested.
     """
     known = _built_in() if among is None else among
     spelled = {_plain(word): entry for entry in known.values() for word in entry.also}
@@ -129,10 +123,8 @@ def read(path) -> dict[str, Material]:
     Each is a section `["my steel"]` with the numbers E (Pa), nu, E_spread (Pa), nu_spread, and if wanted the texts
     condition and source, the list `also` of other names, and checked = true.
 
-    Raises
-    ------
-    OSError : the file cannot be read
-    ValueError : it is no TOML, or a value is missing or not allowed: a line for each, with file, section, key, value
+    Raises OSError: the file cannot be read; ValueError: it is no TOML, or a value is missing or not allowed: a line for
+    each, with file, section, key, value.
     """
     path = Path(path)
     try:
@@ -183,21 +175,15 @@ def _errors(given) -> list[str]:
 
 
 def _is_allowed(key: str, value, modulus=None) -> bool:
-    if key in NUMBERS:
-        if not _is_number(value):
-            return False
-        if key == "E_spread":  # where E is wrong itself, its spread is not compared with it
-            return value >= 0 and (
-                value == 0 or not _is_allowed("E", modulus) or LEAST_SPREAD * modulus <= value < modulus
-            )
-        return {"E": SOFTEST <= value <= STIFFEST, "nu": -1 < value <= 0.5, "nu_spread": 0 <= value <= 0.5}[key]
     if key == "also":
         return isinstance(value, list) and all(isinstance(word, str) for word in value)
-    return isinstance(value, bool if key == "checked" else str)
-
-
-def _is_number(value) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+    if key in OTHERS:
+        return isinstance(value, bool if key == "checked" else str)
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    if key == "E_spread":  # where E is wrong itself, its spread is not compared with it
+        return value == 0 or value > 0 and (not _is_allowed("E", modulus) or LEAST_SPREAD * modulus <= value < modulus)
+    return {"E": SOFTEST <= value <= STIFFEST, "nu": -1 < value <= 0.5, "nu_spread": 0 <= value <= 0.5}[key]
 
 
 def _plain(name) -> str:

@@ -28,8 +28,6 @@ SPIKED = 2.0
 class Roughness:
     """Asperities of a scan, by one method, after one filter, at one resolution: N̄ and Ra depend on all three.
 
-    Attributes
-    ----------
     Nbar : asperities per unit area, 1/m²
     Ra : radius of an asperity, 1/(mean curvature of the summits), m
     sigma_summits : standard deviation of the heights of the summits, m; the model supposes 0
@@ -76,8 +74,6 @@ def _length(x: float) -> str:
 def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Roughness:
     """Asperities of a scan: density, radius, spread of their heights.
 
-    Parameters
-    ----------
     scan : of `read`, `profile` or `height_map`
     method : "moments", the summits that an isotropic Gaussian surface of the same m0, m2, m4 has (Nayak 1971,
         McCool 1987); "summits", the points higher than their eight neighbours, or two on a profile. On a random surface
@@ -85,10 +81,8 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
     form : what is taken off: "mean", "plane", or the radius of a sphere, m (< 0: a cup), and then the plane
     cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: none
 
-    Raises
-    ------
-    ValueError : an unknown method or form, a cutoff below three steps, a sphere smaller than the scan; after the filter
-        fewer than 16 points in a direction, no heights, or no summits
+    Raises ValueError: an unknown method or form, a cutoff below three steps, a sphere smaller than the scan; after the
+    filter fewer than 16 points in a direction, no heights, or no summits.
     """
     if not isinstance(scan, Scan):
         raise ValueError("give a scan: that of study.roughness.read, or of height_map or profile, which take arrays")

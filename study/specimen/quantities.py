@@ -77,18 +77,15 @@ def unit_in(given: Any) -> str:
 def quantity(name: str, given: Any, unit: str) -> Quantity:
     """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number.
 
-    Parameters
-    ----------
     name : what the number is called, for messages
     given : text, pint quantity or number
     unit : one of READABLE: the SI unit of the result
 
-    Raises
-    ------
-    ValueError : there is no number or no unit, or the unit is of something else, which the message names
+    Raises ValueError: there is no number or no unit, or the unit is of something else, which the message names.
     """
-    what = READABLE[unit][0] if unit in READABLE else f"a number of {unit}"
-    wanted = f'must be {what}, such as "{_example(unit)}"' if unit != "1" else "must be a number without a unit"
+    what, multiples = READABLE.get(unit, (f"a number of {unit}", ((unit, 1.0),)))
+    example = f"2 {multiples[min(1, len(multiples) - 1)][0]}"
+    wanted = f'must be {what}, such as "{example}"' if unit != "1" else "must be a number without a unit"
     if isinstance(given, numbers.Real) and not isinstance(given, bool):
         if unit != "1":
             raise ValueError(f"{name} = {shown(given)} has no unit: {wanted}")
@@ -101,7 +98,7 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     if not has_unit(given):
         raise ValueError(f"{name} = {shown(given)}: {wanted}")
     try:
-        return Quantity(float(given.to(_pint_name(unit)).magnitude))
+        return Quantity(float(given.to(unit).magnitude))
     except Exception as error:  # its class depends on the registry of the quantity
         raise ValueError(f"{name} = {given}: {wanted}") from error
 
@@ -147,7 +144,7 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     size = _size(plain[2], unit) if plain else None
     if size is not None and math.isfinite(value := float(Decimal(plain[1]) * size)):
         return value
-    registry = _registry()
+    registry = _registry()  # outside `try`: an error of pint itself is not one of the unit
     try:
         found = registry.Quantity(text)
     except Exception as error:  # pint raises many kinds of errors
@@ -156,9 +153,9 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
     if unit != "1" and "%" in text:  # "9 um %" were 0.09 um
         raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
-    if not found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
+    if not found.is_compatible_with(unit):
         raise ValueError(f'{name} = "{said}" is {_understood(found)}: {wanted}')
-    value = float(found.to(_pint_name(unit)).magnitude)
+    value = float(found.to(unit).magnitude)
     if not math.isfinite(value):
         raise ValueError(f'{name} = "{said}": must be finite')
     return value
@@ -167,9 +164,9 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
 @lru_cache(maxsize=256)
 def _size(word: str, unit: str) -> Decimal | None:
     """The size of a unit such as "um" or "1/mm^2" in the SI `unit`; None if it cannot be told."""
-    registry = _registry()  # outside `try`: an error of pint itself is not one of the unit
+    registry = _registry()
     try:
-        found = registry.Quantity(word).to(_pint_name(unit)).magnitude
+        found = registry.Quantity(word).to(unit).magnitude
     except Exception:  # pint then reads the whole text, and the message says what is wrong
         return None
     # it is the integer 1 for the SI unit itself
@@ -180,14 +177,7 @@ def _understood(found: Any) -> str:
     """What a quantity of the wrong dimension is, in words: "a force"."""
     if found.dimensionless:
         return "an angle or a ratio"
-    for unit, (what, _) in READABLE.items():
-        if found.check(_registry().Quantity(1, _pint_name(unit)).dimensionality):
-            return what
-    return f"in {found.units}"
-
-
-def _pint_name(unit: str) -> str:
-    return "dimensionless" if unit == "1" else unit
+    return next((what for unit, (what, _) in READABLE.items() if found.is_compatible_with(unit)), f"in {found.units}")
 
 
 @cache
@@ -196,11 +186,6 @@ def _registry() -> Any:
     import pint
 
     return pint.UnitRegistry(non_int_type=Decimal)
-
-
-def _example(unit: str) -> str:
-    multiples = READABLE[unit][1] if unit in READABLE else ((unit, 1.0),)
-    return f"2 {multiples[min(1, len(multiples) - 1)][0]}"
 
 
 def multiple(largest: float, unit: str) -> tuple[str, float]:

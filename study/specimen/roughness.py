@@ -92,8 +92,6 @@ def _positive(name: str, value):
 def looks_like_iso_ra(Ra, Nbar, *, si=False) -> str | None:
     """A warning if Ra is too small to be the radius of asperities so dense, perhaps an ISO roughness; None otherwise.
 
-    Parameters
-    ----------
     Ra, Nbar : in units of one length, or in R; arrays are compared with each other, the sharpest is named
     si : whether they are in m and 1/m², so that the warning has readable units
 

@@ -22,8 +22,6 @@ UNEVEN = 0.1
 class Scan:
     """Heights of a surface. Made by `profile`, `height_map` and `read`, which check them.
 
-    Attributes
-    ----------
     z : heights in m, shape (x) of a profile or (y, x) of a map
     steps : distance of the points along each axis of z, m
     name : the file, or what the caller calls it
@@ -42,15 +40,11 @@ class Scan:
 def profile(z, *, x=None, dx=None, unit="m", height_unit=None, name="the profile") -> Scan:
     """A profile, from its heights and either their positions or their distance.
 
-    Parameters
-    ----------
     z : heights, in height_unit (None: as `unit`)
     x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
     unit, height_unit : one of m, mm, um, nm, pm, angstrom
 
-    Raises
-    ------
-    ValueError : neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them
+    Raises ValueError: neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them.
     """
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
@@ -61,15 +55,11 @@ def profile(z, *, x=None, dx=None, unit="m", height_unit=None, name="the profile
 def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") -> Scan:
     """A map of heights z, shape (y, x), in height_unit (None: as `unit`).
 
-    Parameters
-    ----------
     dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
     unit, height_unit : one of m, mm, um, nm, pm, angstrom
 
-    Raises
-    ------
-    ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
-        positive, an unknown unit, or heights so large that their unit must be another
+    Raises ValueError: fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is
+    not positive, an unknown unit, or heights so large that their unit must be another.
     """
     dx = number(f"{name}: dx", dx, unit)
     known = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray

@@ -23,17 +23,13 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
     Every other ending (.sur, .opd, .x3p, .gwy, …) is the format of an instrument; the package SurfaceTopography reads
     it, with the lengths and units that the file states: pip install 'roughcoat[topography]'.
 
-    Parameters
-    ----------
     unit : unit of x, dx, dy: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
     dx, dy : distance of the points, in unit; dy is dx if it is not given
     columns : which columns to take, counted from 0: (x, z), or (z,) with dx
 
-    Raises
-    ------
-    ValueError : the file cannot be read as a scan; the message names the file, what was read, and what is allowed
-    ImportError : the format of an instrument, and SurfaceTopography is not installed
+    Raises ValueError: the file cannot be read as a scan; the message names the file, what was read, and what is
+    allowed; ImportError: the format of an instrument, and SurfaceTopography is not installed.
     """
     path = Path(path)
     if path.suffix.lower() not in (*TEXT, ".npy"):

@@ -120,10 +120,8 @@ def of_moments(m: Moments) -> Asperities:
 def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
     """Summits of a map, or peaks of a profile, found point by point; None if there are none.
 
-    A summit is higher than its eight neighbours; its curvature is the mean of the second differences along x and y. Of
-    equal neighbours the last counts, so that a flat top is one summit. Peaks of a profile (two neighbours) are lower,
-    and blunter, than the summits beside which they pass: they are converted by the ratios of an isotropic Gaussian
-    surface, N̄ = 1.209 D², curvature 1.200 times the peaks', σ_s² = σ_peaks² - 0.326 m2²/m4.
+    Of equal neighbours the last counts, so that a flat top is one summit. Peaks of a profile are lower, and blunter,
+    than the summits beside which they pass: they are converted by the ratios of an isotropic Gaussian surface.
     """
     inner = (slice(1, -1),) * z.ndim
     centre = z[inner]

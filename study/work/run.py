@@ -70,7 +70,8 @@ def _compute(order: Order, found: Condition) -> Report:
         log.warning("%s: %s; %s", order.store.path, found.reason, kept)
     known = prepared(order, found)
     missing = len(known.missing)
-    writer = nullcontext(iter(())) if order.shared else closing(_writing(order, known, found))
+    aside = found.kind == "damaged"
+    writer = nullcontext(iter(())) if order.shared else closing(writing(order.store, known, order.command, aside))
     with writer as steps:
         failures = compute_blocks(order, known, steps)
         kept = "" if order.shared else _finish(order, known, steps)
@@ -86,13 +87,9 @@ def _finish_if_last(order: Order, report: Report) -> Report:
         if order.done(found):
             return replace(report, complete=True, kept=tidy(order.store))
         known = prepared(replace(order, retry=()), found)
-        with closing(_writing(order, known, found)) as steps:
+        with closing(writing(order.store, known, order.command, found.kind == "damaged")) as steps:
             kept = _finish(order, known, steps)
         return order.report(known, computed=report.computed, failures=report.failures, kept=kept)
-
-
-def _writing(order: Order, known: Inventory, found: Condition) -> Iterator[None]:
-    return writing(order.store, known, order.command, aside=found.kind == "damaged")
 
 
 def _finish(order: Order, known: Inventory, steps: Iterator[None]) -> str:

@@ -21,7 +21,7 @@ import numpy as np
 
 from ..spec.block_size import USUAL, usual_block
 from ..spec.definition import Definition
-from .cases import Failure, Parcel, can_travel, compute, guarded, parcel
+from .cases import Failure, can_travel, compute, guarded, parcel
 from .processes import Processes
 from .workers import available_workers
 
@@ -116,7 +116,11 @@ def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[
 
     def feeder(call: Callable) -> None:
         while index := _next(waiting):
-            done.append((index[0], _in_process(call, parcel(definition, index[0]))))
+            try:
+                found = call(guarded, parcel(definition, index[0]))
+            except Exception as error:  # the block is then computed here
+                found = Failure(str(error), "")
+            done.append((index[0], found))
 
     begun, feeders = time.perf_counter(), []
     if ready := _pool.reuse(most):
@@ -141,14 +145,6 @@ def _next(queue: deque) -> list:
         return [queue.popleft()]
     except IndexError:
         return []
-
-
-def _in_process(call: Callable, wanted: Parcel) -> dict[str, np.ndarray] | Failure:
-    """The columns of a block, computed in a process."""
-    try:
-        return call(guarded, wanted)
-    except Exception as error:  # the block is then computed here
-        return Failure(str(error), "")
 
 
 def _place(columns: dict, definition: Definition, index: np.ndarray, found: dict | Failure) -> None:

@@ -78,9 +78,18 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
         return found
 
     def hand_over(found: Future, computed) -> None:
+        """Give `found` the result of a future of dask, or the exception.
+
+        Dask's own executor reads the state of the future once more when it has the result. If the worker is lost in
+        between, it takes the result for an exception, and a block that has been computed fails.
+        """
         with handing:
-            if not ended.is_set():
-                _hand_over(found, computed)
+            if ended.is_set():
+                return
+            try:
+                found.set_result(computed.result())
+            except BaseException as error:
+                found.set_exception(Lost() if computed.cancelled() else error)
 
     try:
         yield Engine(submit, width)
@@ -89,18 +98,6 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
         if handing.acquire(timeout=CONNECT):  # of a client that is closed, dask's thread waits for a result for ever
             handing.release()
         client.close(timeout=1)
-
-
-def _hand_over(found: Future, computed) -> None:
-    """Give `found` the result of a future of dask, or the exception.
-
-    Dask's own executor reads the state of the future once more when it has the result. If the worker is lost in
-    between, it takes the result for an exception, and a block that has been computed fails.
-    """
-    try:
-        found.set_result(computed.result())
-    except BaseException as error:
-        found.set_exception(Lost() if computed.cancelled() else error)
 
 
 def available_workers() -> int:

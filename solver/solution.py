@@ -11,6 +11,7 @@ from .status import Status
 _POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _NOT_NEGATIVE = ("A0", "residual", "error", "profile_error")
 _PROFILES = ("p", "lam")
+_NUMBERS = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)
 #: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
 #: Shares of an area are at most 1. A sum over 256 nodes may round to 1 + 256 eps, which is 1 + 6e-14. What is above
@@ -116,33 +117,22 @@ class Solution:
 
         `model_error` may always be NaN.
         """
-        names = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)
         ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
-        if all(np.isfinite(values.sum()) for values in self._of(names, ended)):  # as in most batches, and quick to see
-            return np.zeros(len(self.a), dtype=bool)
-        finite = np.all([np.isfinite(_ends(getattr(self, name))).all(axis=0) for name in names], axis=0)
-        return ~finite & ended
+        return ended & ~np.all([_of_all(np.isfinite(getattr(self, name))) for name in _NUMBERS], axis=0)
 
     def out_of_range(self):
         """(B,) bool: the case has converged to a number that is negative, 0 or above 1 where it cannot be.
 
         To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
         """
-        names, ended = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES), self.status == Status.CONVERGED
-        least = dict(zip(names, (values.min(initial=1.0) for values in self._of(names, ended)), strict=True))
-        most = max(values.max(initial=0.0) for values in self._of(_SHARES, ended))
-        if most <= 1 + _ROUNDING and all(v > 0 if name in _POSITIVE else v >= 0 for name, v in least.items()):
-            return np.zeros(len(self.a), dtype=bool)
-        ends = {name: _ends(getattr(self, name)) for name in names}
-        wrong = [~(low > 0) for name, (low, _) in ends.items() if name in _POSITIVE]
-        wrong += [low < 0 for low, _ in ends.values()]
-        wrong += [ends[name][1] > 1 + _ROUNDING for name in _SHARES]
-        return np.any(wrong, axis=0) & ended
-
-    def _of(self, names, chosen):
-        """The arrays of these names for the cases that are `chosen`, (B,) bool."""
-        arrays = (getattr(self, name) for name in names)
-        return arrays if chosen.all() else (values[chosen] for values in arrays)
+        ended = self.status == Status.CONVERGED
+        right = ended.copy()
+        for name in _NUMBERS:
+            values = getattr(self, name)
+            right &= _of_all(values > 0 if name in _POSITIVE else ~(values < 0))
+            if name in _SHARES:
+                right &= _of_all(~(values > 1 + _ROUNDING))
+        return ended & ~right
 
     def refused(self, mask, status):
         """The solution without the numbers of the cases in `mask`, (B,) bool; they get this status."""
@@ -156,10 +146,6 @@ class Solution:
         return Solution(**arrays)
 
 
-def _ends(values):
-    """Smallest and largest number of each case of `values` (B,) or (B, m): (2, B); NaN where one of them is NaN."""
-    if values.ndim == 1:
-        return np.stack([values, values])
-    if not values.shape[1]:
-        return np.zeros((2, len(values)))
-    return np.stack([values.min(axis=1), values.max(axis=1)])
+def _of_all(right):
+    """(B,) bool: whether all of a case are True, in an array (B,) or (B, m)."""
+    return right.all(axis=tuple(range(1, right.ndim)))

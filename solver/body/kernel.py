@@ -45,23 +45,19 @@ def layered_kernel(u, n, nu1, nu2, bonded):
 
 def whole(u, n, nu1, nu2, bonded):
     """L alone, of arrays u (at least one-dimensional); arguments as in :func:`layered_kernel`."""
-    bonded = np.asarray(bonded)
-    if bonded.all():
-        return _bonded_whole(u, n, nu1, nu2)
-    if not bonded.any():
-        return _frictionless_whole(u, n)
-    return np.where(bonded, _bonded_whole(u, n, nu1, nu2), _frictionless_whole(u, n))
+    return _by_interface(bonded, lambda: _bonded_whole(u, n, nu1, nu2), lambda: _frictionless_whole(u, n))
 
 
 def decaying_part(u, n, nu1, nu2, bonded):
     """L - 1 and u dL/du; arguments as in :func:`layered_kernel`, the materials broadcast against u."""
-    bonded = np.asarray(bonded)
-    if bonded.all():
-        return _bonded(u, n, nu1, nu2)
-    if not bonded.any():
-        return _frictionless(u, n)
-    both = zip(_bonded(u, n, nu1, nu2), _frictionless(u, n), strict=True)
-    return tuple(np.where(bonded, b, f) for b, f in both)
+    return _by_interface(bonded, lambda: _bonded(u, n, nu1, nu2), lambda: _frictionless(u, n))
+
+
+def _by_interface(bonded, of_bonded, of_frictionless):
+    """What either function gives, or that of each interface where both occur."""
+    if np.all(bonded):
+        return of_bonded()
+    return np.where(bonded, of_bonded(), of_frictionless()) if np.any(bonded) else of_frictionless()
 
 
 class _Frictionless(NamedTuple):

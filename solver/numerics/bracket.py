@@ -3,7 +3,7 @@
 import numpy as np
 
 
-def false_position(evaluate, start, tolerance, steps=80):
+def false_position(evaluate, start, tolerance):
     """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`.
 
     Returns the last x (B,) of each case, and the function there (B,).
@@ -17,7 +17,7 @@ def false_position(evaluate, start, tolerance, steps=80):
     (low, high), (g_low, g_high) = _outwards(evaluate, start)
     x, g = high.copy(), g_high.copy()
     active, was_below = np.flatnonzero(np.isfinite(g_low + g_high)), np.full(len(start), np.nan)
-    for _ in range(steps):
+    for _ in range(80):
         if not len(active):
             break
         lo, hi, gl, gh = low[active], high[active], g_low[active], g_high[active]

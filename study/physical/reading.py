@@ -175,28 +175,23 @@ def _add(scene: Scene, name: str, given: Any) -> None:
                     raise ValueError(message)
         else:
             value, spread = found.value, found.spread
-    if name in ("R1", "R2") and not _all(value != 0):
+    if name in ("R1", "R2") and not np.all(value != 0):
         raise ValueError(f"{name} = {on_one_line(str(given))}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
     inside = (value > low) & (value <= high)
-    if not _all(inside):
+    if not np.all(inside):
         text = f"{name} = {on_one_line(str(given))}"
         if isinstance(given, xr.DataArray):
             place, unit = np.argwhere(~inside.values)[0].tolist(), given.attrs.get("units", "1")
             text = f"{name}{place} = {given.values[tuple(place)]:g}" + f" {unit}" * (unit != "1")
         raise ValueError(f"{text}: {limits}")
-    if not _all(spread == 0):
+    if not np.all(spread == 0):
         reach = STEP * spread
-        if not _all((value - reach > low) & (value + reach <= high)):
+        if not np.all((value - reach > low) & (value + reach <= high)):
             text = f"with its spread it {limits}; at the limit itself give no spread"
             raise ValueError(f"{name} = {on_one_line(str(given))}: {text}")
         scene.spreads[name] = spread
     scene.given[name] = value
-
-
-def _all(where: Any) -> bool:
-    """Whether all of a labelled array, or the one there is, are true: `np.all`, which takes long of a single number."""
-    return where if isinstance(where, bool) else bool(np.all(where))
 
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:

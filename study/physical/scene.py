@@ -136,8 +136,7 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
         dims, data = found.dims, found.data
     else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
         data = with_unit(variable.data, powers, unit, R)
-    if data.dtype != variable.dtype:  # astype takes time even where it changes nothing
-        data = data.astype(variable.dtype)
+    data = data.astype(variable.dtype, copy=False)
     return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 

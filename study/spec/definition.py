@@ -10,9 +10,8 @@ from typing import Any
 import numpy as np
 
 from ..terminal import counted, on_one_line, shown
-from .block_size import usual_block
 from .given import MOST_MESSAGES, Draft
-from .grid import MOVED, Grid
+from .grid import MOVED, Grid, usual_block
 from .identity import digest_of, law_versions
 from .toml_text import hint, text_in
 from .vocabulary import NUMERICS, finite, names, suggest

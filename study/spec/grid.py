@@ -8,9 +8,15 @@ from itertools import product
 import numpy as np
 
 from ..terminal import shown
-from .vocabulary import VOCABULARY, Parameter, all_numbers_allowed, check, finite
+from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
 
 LONGEST_AXIS = 1_000_000
+USUAL = 8000  # cases in a block, if they are ordinary: some seconds of work, which a run that is killed loses
+SLOW = 1000  # of cases that take some milliseconds each
+SLOWEST = 100  # of cases that may take ten seconds each
+#: On the exact layer, an n above this or an rtol below this may need a mesh for each single case.
+_STIFF, _FINE = 1e3, 1e-9
+_MANY_NODES = 96  # a user who asks for more has more than the solver begins with
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
 MOVED = "moved input"
 """The dimension of the variations of each case while it is solved: as given, then each input with a spread moved up and
@@ -112,6 +118,16 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
     return lengths
 
 
+def usual_block(grid: Grid) -> int:
+    """Number of cases in a block when the study does not say it, by the slowest kind of case of the grid."""
+    n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
+    layered = np.isin(along(grid, "base"), ("layered", "auto")).any()
+    approximated = (along(grid, "scheme") == "picard").any()
+    if layered and (approximated or (n > _STIFF).any() or (rtol < _FINE).any()):
+        return SLOWEST
+    return SLOW if approximated or (nodes > _MANY_NODES).any() else USUAL
+
+
 def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
     """(B, ...) -> (*grid.shape, ...): an array over the cases as one over the dimensions."""
     return flat.reshape(grid.shape + flat.shape[1:])
@@ -125,8 +141,8 @@ def as_array(own: Parameter, raw: list, key: str, errors: list[str], gaps: bool 
     errors : messages are appended here
     gaps : None stands for "not given" and becomes NaN
     """
-    if not own.whole and all_numbers_allowed(own, raw):
-        return np.array(raw)
+    if not own.whole and own.interval and set(map(type, raw)) == {float} and are_within(own, raw).all():
+        return np.array(raw)  # for a million numbers this takes less than `check` of each
     found = []
     for i, value in enumerate(raw):
         text = "" if value is None and gaps else check(own, value)

@@ -15,10 +15,7 @@ LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, list]:
     """Columns of a random sample: parameter -> list of `size` values, in the order of the table.
 
-    table : {size, seed, NAME = ..., ...}, known names; each parameter either a list, drawn with equal chances, or a
-        range {start, stop, spacing = "linear" | "log"}, drawn uniformly in the parameter or in its logarithm. A range
-        with over = "Ra^2" is that of the product with Ra^2: what is drawn is divided by that power of another
-        parameter of the sample.
+    table : {size, seed, NAME = ..., ...}, known names; docs/studies.md says what a parameter may be
     known : parameter -> what values it may have
     errors : messages are appended here; {} is returned then
 

@@ -1,11 +1,8 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
-`dask.distributed.LocalCluster` is not used because it starts 2.5 s later. The first answers of two workers came after
-2.0 s, with dask after 4.5 s (means of three in alternation on two processors that others used too). Two starts and a
-run of 100,000 thin rough cases took 11.5 s of processor time, with dask 18.1 s; the run alone took twice as much with
-dask's own settings, which make workers give memory back after each block. `python tests/benchmark_engine.py 3 100`
-measures it. Dask's process scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed
-process ends it.
+`dask.distributed.LocalCluster` is not used because it starts 2.5 s later; two starts and a run of 100,000 thin rough
+cases took 11.5 s of processor time, with dask 18.1 s (`python tests/benchmark_engine.py 3 100`). Dask's process
+scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed process ends it.
 """
 
 import os

@@ -19,8 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..spec.block_size import USUAL, usual_block
 from ..spec.definition import Definition
+from ..spec.grid import USUAL, usual_block
 from .cases import Failure, can_travel, compute, guarded, parcel
 from .processes import Processes
 from .workers import available_workers
@@ -116,8 +116,9 @@ def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[
 
     def feeder(call: Callable) -> None:
         while index := _next(waiting):
+            wanted = parcel(definition, index[0])
             try:
-                found = call(guarded, parcel(definition, index[0]))
+                found = call(guarded, wanted)
             except Exception as error:  # the block is then computed here
                 found = Failure(str(error), "")
             done.append((index[0], found))

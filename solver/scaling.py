@@ -12,17 +12,9 @@ from .parameters import CONTROL, PARAMETERS, allowed
 from .problem import Problem
 from .status import Status
 
-#: Power of R and of E2* in the unit of each quantity.
-_UNITS = {
-    "a": (1, 0),
-    "D": (1, 0),
-    "A0": (1, 0),
-    "p0": (0, 1),
-    "p_max": (0, 1),
-    "p": (0, 1),
-    "P": (2, 1),
-    "dP_dD": (1, 1),
-}
+#: (i, j) of the unit E2*^i R^j of each quantity.
+_UNITS = {"A0": (0, 1), "p0": (1, 0), "p_max": (1, 0), "p": (1, 0), "dP_dD": (1, 1)}
+_UNITS = _UNITS | {name: own.powers for name, own in CONTROL.items()}
 
 
 def dimensionless(problem):
@@ -114,7 +106,7 @@ def restore(solution, problem):
     """
     solution = solution.refused(solution.out_of_range(), Status.DIVERGED)
     arrays = {}
-    for name, (of_R, of_E2) in _UNITS.items():
+    for name, (of_E2, of_R) in _UNITS.items():
         array, factor = getattr(solution, name), problem.R**of_R * problem.E2**of_E2
         arrays[name] = array * factor.reshape(-1, *[1] * (array.ndim - 1))
     solution = replace(solution, **arrays)

@@ -170,7 +170,8 @@ class LayeredOperator(NamedTuple):
 
     def products(self, q):
         """K q (B, n) and edge @ q (B,)."""
-        return _apart(np.einsum("bij,bj->bi", self.rows, q))
+        found = np.einsum("bij,bj->bi", self.rows, q)
+        return found[:, :-1], found[:, -1]
 
     def slopes(self, q):
         """Derivatives of the products by ln a: (B, n) and (B,)."""
@@ -186,7 +187,7 @@ class LayeredOperator(NamedTuple):
                     out[index] = (tab.weights(uL) * (own @ tab.phi.T)) @ tab.J
                 if part.film is not None:
                     out[index] += np.matmul(_film(part.d_film[rows], tab, self.mesh.n), own[..., None])[..., 0]
-        return _apart(out)
+        return out[:, :-1], out[:, -1]
 
     def between(self, q, s, half_space):
         """K q (B, m) at points s (m,) between the nodes; half_space (B, m) is H[q] - H[q](edge) there."""
@@ -203,10 +204,6 @@ class LayeredOperator(NamedTuple):
                 out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
             out[part.index] += part.share * half_space[part.index]
         return out
-
-
-def _apart(values):
-    return values[:, :-1], values[:, -1]
 
 
 def _rows(parts, mesh):

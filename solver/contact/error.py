@@ -126,9 +126,8 @@ def completed(ev, Ar_An, error, rows):
     if not law.rough or not len(rows):
         return area, error
     if law.law.corners:
-        own = cornered(ev, rows)
-        error = error + MARGIN * own.missed + _CHANCE * own.largest
-        return own.Ar_An, np.maximum(error, MARGIN * own.error)
+        area, of_area, missed, largest = cornered(ev, rows)
+        return area, np.maximum(error + MARGIN * missed + _CHANCE * largest, MARGIN * of_area)
     ends = law.area(ev.state.y[rows][:, [0, -1]], ev.curve.q[rows][:, [0, -1]])
     ring = np.where(ends[:, 0] > _RISEN, _UNSEEN * mesh.s[0] ** 2 / 2 * ends[:, 0] / area, 0.0)
     error, sharp = np.maximum(error, ring), np.flatnonzero(ends[:, 1] > _SATURATED)

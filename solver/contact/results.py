@@ -1,7 +1,7 @@
 """From the solved unknowns to the quantities of the paper: Eqs (5), (11)-(14) and the profiles."""
 
+from collections import namedtuple
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 
@@ -18,20 +18,10 @@ _APART = 1e-4
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
 
 
-class Quantities(NamedTuple):
-    """Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`."""
-
-    a: np.ndarray
-    P: np.ndarray
-    D: np.ndarray
-    p0: np.ndarray
-    p_max: np.ndarray
-    Ar_An: np.ndarray
-    A0: np.ndarray
-
-
 #: The largest relative error of these is the error of a case.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
+#: Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`.
+Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 
 
 def quantities(ev):
@@ -56,21 +46,12 @@ def difference(first, second):
     return np.max([np.abs(getattr(first, name) / getattr(second, name) - 1) for name in JUDGED], axis=0)
 
 
-class Between(NamedTuple):
-    """What interpolates from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials, `L`, and
-    of H - H(1), `H`; and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
-
-    s: np.ndarray
-    L: np.ndarray
-    H: np.ndarray
-    kappa: np.ndarray
-    node_kappa: np.ndarray
-
-
 @lru_cache(maxsize=32)
 def _between(mesh, s_bytes):
+    """What interpolates from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials and of
+    H - H(1); and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
     s = np.frombuffer(s_bytes)
-    return Between(s, mesh.basis(s), mesh.rows(s), _stiffness_between(mesh, s), _stiffness_between(mesh, mesh.s))
+    return mesh.basis(s), mesh.rows(s), _stiffness_between(mesh, s), _stiffness_between(mesh, mesh.s)
 
 
 def _stiffness_between(mesh, s):
@@ -96,22 +77,22 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     nothing it is q_L. Newton's method solves it until the next step would be below the relative `tolerance`. It begins
     at a closed form for two terms, times the factor by which that is wrong at the nodes, interpolated.
     """
-    between = _between(ev.mesh, np.ascontiguousarray(s, dtype=float).tobytes())
-    Kq = ev.operator.between(ev.curve.q, between.s, ev.curve.q @ between.H.T)[rows]
+    s = np.ascontiguousarray(s, dtype=float)
+    L, H, kappa, node_kappa = _between(ev.mesh, s.tobytes())
+    Kq = ev.operator.between(ev.curve.q, s, ev.curve.q @ H.T)[rows]
     X, Y, Z, law = ev.X[rows], ev.Y[rows], ev.Z[rows], ev.cases.law.take(rows)
     q, g = ev.curve.q[rows], ev.curve.g[rows]
-    stiff = X * between.kappa
-    q_L = q @ between.L.T
+    stiff, q_L = X * kappa, q @ L.T
     # The right-hand side is kept positive, but far below κ q_L, which is small under a stiff film.
-    least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * between.s**2, 1e-9 * between.s**2)
-    right = np.maximum(between.s**2 - X * Kq + stiff * q_L, least)
-    linear, node_linear = stiff + Y, X * between.node_kappa + Y
+    least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * s**2, 1e-9 * s**2)
+    right = np.maximum(s**2 - X * Kq + stiff * q_L, least)
+    linear, node_linear = stiff + Y, X * node_kappa + Y
 
     def guess(linear, right):
         return law.guess(1 / (linear / right + 1 / law.sparse(right / Z)))
 
     missed = np.nan_to_num(ev.state.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
-    missed = np.clip(missed, 0.5, 2.0) @ between.L.T
+    missed = np.clip(missed, 0.5, 2.0) @ L.T
     y = guess(linear, right) * np.clip(missed, 0.7, 1.4)
     active = np.arange(len(y))
     for _ in range(_STEPS):
@@ -126,19 +107,9 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     return y
 
 
-class Cornered(NamedTuple):
-    """What :func:`cornered` finds, (b,) each: Ar/An and its relative error; `missed`, the part of the load that the
-    polynomial through the nodes misses between them; `largest`, the largest part that it misses from the edge to any
-    radius."""
-
-    Ar_An: np.ndarray
-    error: np.ndarray
-    missed: np.ndarray
-    largest: np.ndarray
-
-
 def cornered(ev, rows):
-    """:class:`Cornered` of the cases `rows` (b,), of a law with corners.
+    """Of the cases `rows` (b,) of a law with corners: Ar/An; its relative error; the part of the load that the
+    polynomial through the nodes misses between them; the largest part that it misses from the edge to any radius.
 
     Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too far
     apart. So y is interpolated to _FEW points between each two nodes, and from these by a polynomial to _MANY, where λ
@@ -158,7 +129,7 @@ def cornered(ev, rows):
     few, many = few.reshape(len(rows), -1, _FEW).sum(axis=2), many.reshape(len(rows), -1, _MANY).sum(axis=2)
     missed = np.cumsum((q - at_nodes @ ev.mesh.basis(s).T) * (w * s), axis=1) / (at_nodes @ ev.mesh.w)[:, None]
     area, missed = many.sum(axis=1), np.abs(missed)
-    return Cornered(area, np.abs(few - many).sum(axis=1) / area, missed[:, -1], missed.max(axis=1))
+    return area, np.abs(few - many).sum(axis=1) / area, missed[:, -1], missed.max(axis=1)
 
 
 def profiles(ev, x, rows):

@@ -82,17 +82,14 @@ class Mesh:
 
 @lru_cache(maxsize=64)
 def mesh_of(n):
-    """The :class:`Mesh` of one panel with `n` nodes (n >= 2); cached, the arrays are read-only."""
-    return _build(n, WHOLE)
+    """The :class:`Mesh` of one panel with `n` nodes (n >= 2); cached."""
+    return panel_mesh.__wrapped__(n, WHOLE)
 
 
 @lru_cache(maxsize=16)
 def panel_mesh(order, breaks):
-    """The :class:`Mesh` with `order` nodes on each of the panels between `breaks`, a tuple from 0 to 1; cached."""
-    return _build(order, breaks)
-
-
-def _build(order, breaks):
+    """The :class:`Mesh` with `order` nodes on each of the panels between `breaks`, a tuple from 0 to 1; cached, the
+    arrays are read-only."""
     ends = np.array(breaks)
     lengths = np.diff(ends)
     s = on_panels(radau_nodes(order), breaks)

@@ -74,10 +74,10 @@ def validity_of(variables: Mapping) -> xr.Variable:
     status, used = variables["status"], variables["model_used"].attrs
     v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
     layered, rough = v["base"] != "half_space", _have("rough", v["micro"])
-    h, n = _given(v, "h"), _given(v, "n")
+    h, n = v.get("h", np.nan), v.get("n", np.nan)
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
     # No more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
-    steep = np.pi / 2 * (_given(v, "p_max") - v["p0"]) / E1
+    steep = np.pi / 2 * (v.get("p_max", np.nan) - v["p0"]) / E1
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
     stretched = layer_modulus(n) * np.minimum(h, v["a"]) * v["a"] ** 2 > 8 * STRETCHED * v["p0"]
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
@@ -89,8 +89,8 @@ def validity_of(variables: Mapping) -> xr.Variable:
         8: (v["base"] == "thin_layer") & (n >= 1),
         16: rough & _have("smears", v["micro"]) & (v["lam0"] > MERGING),
         32: (v["a"] > STEEP) | layered & (compressed | stretched),
-        64: rough & ((_spot_radius(v) > STEEP_SPOT * _given(v, "Ra")) | (steep > STEEP_SPOT)),
-        128: layered & rough & (_given(v, "Nbar") * (PITCH_OVER_LAYER * h) ** 2 < 1),
+        64: rough & ((_spot_radius(v) > STEEP_SPOT * v.get("Ra", np.nan)) | (steep > STEEP_SPOT)),
+        128: layered & rough & (v.get("Nbar", np.nan) * (PITCH_OVER_LAYER * h) ** 2 < 1),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
     return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())
@@ -173,14 +173,14 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     if "p" not in dataset:
         raise ValueError("p_peak needs the profile p, which profiles = false leaves out")
     unit, R = _scales(dataset)
-    E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(_given(dataset, "n")))
+    E1 = xr.where(dataset["base"] == "half_space", 1.0, layer_modulus(dataset.get("n", np.nan)))
     E1 = E1 / (1 + dataset.get("m", 0.0))  # of layer and punch in series
     found = xr.full_like(dataset["p"], np.nan)
     stated = {name_in(line): line for line in dataset.attrs.get("micro_laws", "").splitlines()}
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
         if stated.get(law.name, identity(law.name)) != identity(law.name):
             continue
-        given = [without_unit(_given(dataset, name), VOCABULARY[name].powers, unit, R) for name in law.parameters]
+        given = [without_unit(dataset.get(name, np.nan), VOCABULARY[name].powers, unit, R) for name in law.parameters]
         p = dataset["p"] / unit
         spots = xr.apply_ufunc(_largest(law), p, E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
@@ -224,22 +224,17 @@ def _touching(values):
     """Share of the summits in the centre that touch: 1 of equal heights."""
     share = np.ones(())
     for law in [law for name, law in LAWS.items() if law.touching and np.any(values["micro"] == name)]:
-        touch = law.touching(values["A0"], **{name: _given(values, name) for name in law.parameters})
+        touch = law.touching(values["A0"], **{name: values.get(name, np.nan) for name in law.parameters})
         share = np.where(values["micro"] == law.name, touch, share)
     return share
 
 
 def _spots(values):
-    return _given(values, "Nbar") * np.pi * values["a"] ** 2
+    return values.get("Nbar", np.nan) * np.pi * values["a"] ** 2
 
 
 def _spot_radius(values):
-    return np.sqrt(values["lam0"] / (np.pi * _given(values, "Nbar")))
-
-
-def _given(values, name: str):
-    """A parameter of a dataset, or of its variables; NaN when the study does not have it."""
-    return values.get(name, np.nan)
+    return np.sqrt(values["lam0"] / (np.pi * values.get("Nbar", np.nan)))
 
 
 def named(array: xr.DataArray, name: str, in_si: bool = False) -> xr.DataArray:

@@ -7,7 +7,7 @@ import hashlib
 import json
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -15,6 +15,7 @@ import numpy as np
 import xarray as xr
 
 from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
+from solver.contact.results import difference
 
 from ..data.provenance import provenance
 from ..files.examine import examine
@@ -23,7 +24,6 @@ from ..paper import paper_error
 from ..paper.uniform import solve_uniform, uniform_mesh
 from .problem_sets import SETS
 
-JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 REFERENCE = 1e-11
 ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 X = np.array([0.0, 1.0])
@@ -169,7 +169,7 @@ def with_reference(cases: dict) -> tuple[dict, Solution]:
 def taken(cases: dict, reference: Solution, index: np.ndarray) -> tuple[dict, Solution]:
     """The cases at `index` and their reference."""
     part = {name: value[index] if np.ndim(value) else value for name, value in cases.items()}
-    return part, replace(reference, **{name: getattr(reference, name)[index] for name in vars(reference)})
+    return part, reference.take(index)
 
 
 def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution]:
@@ -185,10 +185,10 @@ def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution
 
 
 def errors(solution: Solution, reference: Solution) -> np.ndarray:
-    """(B,) the largest of the relative errors of JUDGED of each case, at most 1; 1 without an answer."""
+    """(B,) the largest of the relative errors of each case, at most 1; 1 without an answer."""
     with np.errstate(all="ignore"):
-        found = [np.abs(getattr(solution, name) / getattr(reference, name) - 1) for name in JUDGED]
-    return np.minimum(np.nan_to_num(np.max(found, axis=0), nan=1.0, posinf=1.0), 1.0)
+        found = difference(solution, reference)
+    return np.minimum(np.nan_to_num(found, nan=1.0, posinf=1.0), 1.0)
 
 
 def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, command: str) -> xr.Dataset:

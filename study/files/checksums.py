@@ -76,11 +76,6 @@ class CaseDigests:
         return found
 
 
-def split_runs(line: str) -> list[str]:
-    """The digits of each run in the line =runs."""
-    return [line[start : start + DIGITS] for start in range(0, len(line), DIGITS)]
-
-
 def digest_of_cases(numerics: str, x: np.ndarray, keys: np.ndarray) -> str:
     """The line `=cases`."""
     return digest(numerics, np.asarray(x, dtype=np.float64), keys)

@@ -14,7 +14,7 @@ import numpy as np
 from ..spec.grid import Grid, windows
 from ..spec.vocabulary import names
 from .access import Unusable
-from .checksums import ATTRIBUTE, CaseDigests, lines_of_head, parsed, split_runs
+from .checksums import ATTRIBUTE, DIGITS, CaseDigests, lines_of_head, parsed
 from .child import python_command
 from .netcdf import File, check_regular
 from .seal import LARGE, is_whole
@@ -198,9 +198,9 @@ def _intact(rows: CaseDigests, lines: dict[str, str], lost: dict) -> np.ndarray:
     for start, stop in (part for parts in lost.values() for part in parts):
         found[start:stop] = False
     if lines:
-        given, there = (split_runs(text) for text in (lines.get("=runs", ""), rows.lines()["=runs"]))
-        for number, digits in enumerate(there):
-            if number >= len(given) or given[number] != digits:
+        given, there = lines.get("=runs", ""), rows.lines()["=runs"]
+        for number, start in enumerate(range(0, len(there), DIGITS)):
+            if given[start : start + DIGITS] != there[start : start + DIGITS]:
                 found[number * rows.run : (number + 1) * rows.run] = False
     return found
 

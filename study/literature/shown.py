@@ -5,18 +5,7 @@ import xarray as xr
 from matplotlib.ticker import FuncFormatter
 
 from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
-from . import formulas
-from .compared import (
-    LEVELS,
-    around_one,
-    coefficients,
-    kappa,
-    load_error,
-    over_smooth,
-    range_of,
-    stiffness,
-    stiffness_errors,
-)
+from . import compared, formulas
 
 SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)
 """a/h whose errors the table tells."""
@@ -63,14 +52,14 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
     for panel, (axes, (bonded, nu, title)) in enumerate(zip(panels, INTERFACES, strict=False)):
         for formula in formulas.LOADS:
             if formula.bonded == bonded and (nu in formula.nu or formula.nu == (nu,) or is_short(formula, bonded)):
-                x, error = load_error(formula, rigid, nu)
+                x, error = compared.load_error(formula, rigid, nu)
                 words = formula.name.replace("general", f"general, nu = {nu:g}").replace("nu =", r"$\nu$ =")
                 axes.plot(x, np.abs(error), label=words, **look(formula.name))
                 keep(panel, x, error)
         axes.set(xlabel="$a/h$", xlim=(0.01, 20), title=title)
     axes = panels[2]
-    _, n, _ = stiffness(coated)
-    for name, error in stiffness_errors(coated).items():
+    _, n, _ = compared.stiffness(coated)
+    for name, error in compared.stiffness_errors(coated).items():
         if not name.endswith("0.626"):
             largest = np.abs(error).max(axis=1)
             axes.plot(n, largest, label=name, **look(name))
@@ -92,7 +81,7 @@ def frame(axes, words: str) -> None:
     axes.set(xscale="log", yscale="log", ylim=(1e-4, 10))
     axes.set_ylabel(words, fontsize=8, labelpad=1)
     axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{100 * value:g} %"))
-    for level, grey in zip(LEVELS, ("0.86", "0.94"), strict=True):
+    for level, grey in zip(compared.LEVELS, ("0.86", "0.94"), strict=True):
         axes.axhspan(1e-4, level, color=grey, linewidth=0, zorder=-2 if grey == "0.94" else -1)
     axes.title.set_fontsize(8)
     axes.tick_params(labelsize=7)
@@ -115,8 +104,8 @@ def loads(rigid: xr.Dataset) -> list[tuple]:
     rows = []
     for formula in formulas.LOADS:
         for nu in formula.nu:
-            x, error = load_error(formula, rigid, nu)
-            ranges = [range_of(x, error, level, formula.thin) for level in LEVELS]
+            x, error = compared.load_error(formula, rigid, nu)
+            ranges = [compared.range_of(x, error, level, formula.thin) for level in compared.LEVELS]
             shown = CubicSpline(np.log(x), error)(np.log(SHOWN_AT))
             any_nu = not formula.bonded and len(formula.nu) == 1 and not is_short(formula, False)
             interface = "bonded" if formula.bonded else "frictionless"
@@ -136,16 +125,16 @@ def loads(rigid: xr.Dataset) -> list[tuple]:
 def stiffnesses(coated: xr.Dataset) -> list[tuple]:
     """Formulas of the stiffness of a smooth contact over 2a on a bonded coating, nu = 0.3: largest error over a/h from
     0.01 to 2 and to 20, and the n around 1 for which it stays below 1% and 5%."""
-    x, n, _ = stiffness(coated)
+    x, n, _ = compared.stiffness(coated)
     places = [int(np.argmin(np.abs(np.log(n / wanted)))) for wanted in SHOWN_N]
     rows = []
-    for name, error in stiffness_errors(coated).items():
+    for name, error in compared.stiffness_errors(coated).items():
         read = (
             formulas.STIFFNESSES[name][1] if name in formulas.STIFFNESSES else "alpha, the best for each n, found here"
         )
         for most in THIN_TO:
             largest = np.abs(error[:, x <= most * (1 + 1e-9)]).max(axis=1)
-            ranges = [around_one(n, largest, level) for level in LEVELS]
+            ranges = [compared.around_one(n, largest, level) for level in compared.LEVELS]
             rows.append((name, read, most, *ranges, *largest[places]))
     return rows
 
@@ -164,7 +153,7 @@ def stiffnesses(coated: xr.Dataset) -> list[tuple]:
 def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     """Where the literature differs, on a rigid base. c1, c2, c3: coefficients of the load over that of Hertz in powers
     of sqrt(R D)/h. kappa: stiffness of a flat punch over 2 E1* a."""
-    bonded, loose = coefficients(rigid, True, 0.5), coefficients(rigid, False, 0.3)
+    bonded, loose = compared.coefficients(rigid, True, 0.5), compared.coefficients(rigid, False, 0.3)
     first, second = formulas.DIMITRIADIS, formulas.GARCIA
     rows = [("c1, bonded, nu = 1/2", "Dimitriadis, Garcia", first[0], bonded[0])]
     for k in (1, 2):
@@ -175,8 +164,8 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
         rows.append(("c1, frictionless, any nu", f"Dimitriadis with nu = {nu:g}", said, loose[0]))
     for script, said in formulas.KAPPA.items():
         for nu, value in said.items():
-            rows.append((f"kappa at a/h = 1, nu = {nu:g}", script, value, float(kappa(rigid, nu))))
-    x, n, exact = stiffness(coated)
+            rows.append((f"kappa at a/h = 1, nu = {nu:g}", script, value, float(compared.kappa(rigid, nu))))
+    x, n, exact = compared.stiffness(coated)
     near = int(np.argmin(np.abs(n - 1)))
     share, middle = formulas.gao_weight(x, float(coated["nu1"])), int(np.argmin(np.abs(np.log(x))))
     slope = (exact[near] - 1) / (n[near] - 1)
@@ -203,7 +192,7 @@ def rough_spheres(rough: xr.Dataset) -> list[tuple]:
     """A sphere with asperities of normal heights: pressure in the middle and effective radius over those of Hertz, by
     Greenwood and Tripp (1967), who leave out that asperities press down their neighbours, and with it."""
     rows = []
-    values = zip(*over_smooth(rough), rough["Ra"].values, rough["lam0"].values, strict=True)
+    values = zip(*compared.over_smooth(rough), rough["Ra"].values, rough["lam0"].values, strict=True)
     for alpha, mu, p0, radius, Ra, covered in values:
         alpha, mu = float(f"{alpha:.4g}"), round(mu)
         said = formulas.GREENWOOD_TRIPP[mu][alpha]

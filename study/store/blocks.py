@@ -10,7 +10,6 @@ import logging
 from dataclasses import dataclass, field
 from itertools import count
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 
@@ -27,28 +26,19 @@ from .keys import case_keys, find
 log = logging.getLogger(__name__)
 
 
-class Source(Protocol):
-    """Where numbers of cases are: a block, or an earlier results file.
+@dataclass(frozen=True, eq=False)
+class Source:
+    """Where numbers of cases are: the file of a block. An earlier results file is such a source too (`earlier.py`).
 
     keys : (N, 2), of its cases; status : (N,) int8, NOT_RUN for a case whose numbers cannot be trusted
     """
-
-    keys: np.ndarray
-    status: np.ndarray
-
-    def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
-        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged when they are no longer there."""
-
-
-@dataclass(frozen=True, eq=False)
-class BlockSource:
-    """The cases of a block, in the file that holds it."""
 
     path: Path
     keys: np.ndarray
     status: np.ndarray
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
+        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged when they are no longer there."""
         block = read_block(self.path)
         if not np.array_equal(block.keys, self.keys):
             raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
@@ -156,7 +146,7 @@ def inventory(
                 choice = "--force computes it again, --results DIR writes elsewhere"
                 raise StudyError([f"{store.folder}: holds unfinished work of {version}: {choice}"])
         elif usable(store.definition, block.facts, block.arrays):
-            sources.append(BlockSource(path, block.keys, block.arrays["status"]))
+            sources.append(Source(path, block.keys, block.arrays["status"]))
     sources += [earlier] if earlier else []
     return Inventory(keys, sources, *_places(keys, sources, retry), blocks, covered)
 
@@ -180,7 +170,7 @@ def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.
     path = put(store, Block(facts(store.definition.x), known.keys[index], arrays))
     known.source[index], known.row[index] = len(known.sources), np.arange(len(index))
     known.status[index] = arrays["status"]
-    known.sources.append(BlockSource(path, known.keys[index], arrays["status"]))
+    known.sources.append(Source(path, known.keys[index], arrays["status"]))
     known.blocks[path] = len(index)
     known.covered.add(path)
 

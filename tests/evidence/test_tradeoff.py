@@ -9,10 +9,11 @@ import xarray as xr
 from conftest import ROOT
 
 from solver import Problem, solve
+from solver.contact.results import JUDGED
 from study import open_results
 from study.evidence import tradeoff
 from study.evidence.problem_sets import SETS
-from study.evidence.tradeoff import JUDGED, WAYS, errors, measure, taken, timed, with_reference
+from study.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
 from study.evidence.tradeoff_view import DRAWN, MODELS, columns, factors, rows, time_to
 from study.paper import paper_error
 

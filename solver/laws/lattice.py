@@ -2,16 +2,13 @@
 
 With l = 1/sqrt(Nbar), p^ = p Ra/(E l), A^ = A Ra/l² and p_max^ = p_max Ra/(E l), one curve each of A^, λ and p_max^
 over p^ serves every Nbar, Ra and E. They come from lattices.csv, which tests/references/make_lattices.py computes from
-the periodic contact problem. p* and A* are those of the disc cell. Both ends of the curves are known.
+the periodic contact problem. p* and A* are those of the disc cell. Both ends of the curves are known (docs/model.md).
 
-- Isolated spots are Hertz's: A^ = (9/16 p^²)^(1/3) - c p^ + ..., where c = 1.2415 (square) and 1.2481 (hexagonal) are
-  sums over the lattice.
-- At full contact A^ would be the mean relief, the mean depth below the summits: 1/12 and 0.0802. It is a limit only.
-  Between neighbouring summits the surface has a kink, here called a ridge, where its slope changes by J. The pressure
-  of full contact would be minus infinity there: (z J/4π) ln r at the distance r from a point where z ridges meet, and
-  from a ridge itself, with z = 2. So gaps stay, of the size exp(-4π p^/(z J)); their area falls as exp(-2π p^/J). A^
-  falls short of its limit by the mean gap. That falls as exp(-3π p^) on the square lattice (J = 1, z = 4), and as
-  exp(-4π p^/J) on the hexagonal one.
+Full contact is a limit only. Between neighbouring summits the surface has a kink, here called a ridge, where its slope
+changes by J. The pressure of full contact would be minus infinity there: (z J/4π) ln r at the distance r from a point
+where z ridges meet, and from a ridge itself, with z = 2. So gaps stay, of the size exp(-4π p^/(z J)); their area falls
+as exp(-2π p^/J). A^ falls short of its limit by the mean gap. That falls as exp(-3π p^) on the square lattice (J = 1,
+z = 4), and as exp(-4π p^/J) on the hexagonal one.
 """
 
 import csv

@@ -58,13 +58,12 @@ class Law:
     version : text that changes whenever the numbers of the law may change; part of the keys of its cases
     rough : False of no asperities at all: A = 0, and the equation of the contact is linear in y = q
     error : largest relative error of A, λ and p_max in a law that comes from a table, else 0; part of `model_error`
-    least, most : smallest and largest p/E that the law knows. A contact whose p(0) is below `least`, or with a pressure
-        above `most`, gets no numbers
+    least, most : smallest and largest p/E that the law knows; contacts outside get no numbers
     corners : whether λ(y) has corners, for example where the lowest summits touch; Ar/An then has its own quadrature
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
     touching : (A, **parameters) -> share of the summits that touch where the displacement is A; None: all do
     rise : how much the displacement of the asperities saves nodes on the mesh to begin with: 0.5 for power laws, 1.1
-        for a law that saturates, fitted to random cases. A wrong value costs time; `error` does not depend on it
+        for a law that saturates, fitted to random cases. A wrong value costs time, and nothing else
 
     The rest may be left out. It is then found from `curve` and `edge`, which takes more time.
 

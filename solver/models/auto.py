@@ -1,9 +1,8 @@
 """The base "auto": each case is solved once, on the cheapest model whose error a closed form shows to be small enough.
 
-Cheaper than the exact layer are the thin layer and, for a thick one, a half-space of its material. Cheaper still is a
-smooth punch on these, to which the asperities are added afterwards. Before anything is solved, the error of each model
-against the rough contact on the exact layer is bounded, from h/a and A[p(0)]/a² at the first guess of the radius
-(:func:`bounds`). The bound of the model that is chosen becomes `model_error`.
+The models are in docs/accuracy.md. Before anything is solved, the error of each against the rough contact on the exact
+layer is bounded, from h/a and A[p(0)]/a² at the first guess of the radius (:func:`bounds`). The bound of the model that
+is chosen becomes `model_error`.
 """
 
 from dataclasses import replace

@@ -2,8 +2,7 @@
 
 One Newton step of the exact equation begins at the pressure and the radius of the cheap solution. It gives to first
 order what the exact model would have found under the same control. The largest relative difference over a, P, D, p(0),
-p_max, Ar/An is the estimate. A solution on the exact layer takes several steps on each of several meshes; this takes
-one step on one mesh.
+p_max, Ar/An is the estimate.
 """
 
 from dataclasses import replace

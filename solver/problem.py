@@ -62,7 +62,7 @@ class Problem:
         """A parameter; NaN if its law was registered after this batch was made."""
         if name not in PARAMETERS:
             raise AttributeError(f"Problem has no {name}")
-        return self.parameters.get(name, np.full(len(self), np.nan))
+        return self.parameters[name] if name in self.parameters else np.full(len(self), np.nan)
 
     @classmethod
     def of(cls, *, P=None, a=None, D=None, **parameters):

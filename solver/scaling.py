@@ -9,7 +9,6 @@ from .body.springs import STIFF, layer_modulus, local_compliance, thin_layer_coe
 from .contact.equation import Cases
 from .laws import LAWS, try_out
 from .parameters import CONTROL, PARAMETERS, allowed
-from .problem import Problem
 from .status import Status
 
 #: (i, j) of the unit E2*^i R^j of each quantity.
@@ -27,9 +26,12 @@ def dimensionless(problem):
                 values = values / unit if power > 0 else values * unit
         return values
 
-    parameters = {name: number(values, PARAMETERS[name]) for name, values in problem.parameters.items()}
-    scaled = Problem(problem.control, number(problem.value, CONTROL[problem.control]), parameters)
-    return scaled.but(n=np.where(problem.base != "half_space", problem.n, 1.0), R=1.0, E2=1.0)
+    with_unit = {name: values for name, values in problem.parameters.items() if any(PARAMETERS[name].powers)}
+    own = {name: number(values, PARAMETERS[name]) for name, values in with_unit.items()}
+    n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
+    own |= {"n": n, "R": one, "E2": one}
+    value = number(problem.value, CONTROL[problem.control])
+    return replace(problem, value=value, parameters=problem.parameters | own)
 
 
 def with_rigid_punch(problem):

@@ -148,4 +148,4 @@ class Solution:
 
 def _of_all(right):
     """(B,) bool: whether all of a case are True, in an array (B,) or (B, m)."""
-    return right.all(axis=tuple(range(1, right.ndim)))
+    return right if right.ndim == 1 else right.all(axis=1)

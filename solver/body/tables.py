@@ -20,6 +20,8 @@ _KEEP = 4e6
 _MOST_BYTES = 4e8
 #: On meshes of up to so many nodes the product is formed for a single case too: it serves all later ones.
 _SMALL = 22
+#: The same for the convolution of films.
+_WHOLE = 64
 #: The integral of the transform φ is taken in pieces, along each of which the argument of J0 grows by at most so many
 #: radians.
 _PHASE = 120.0
@@ -109,10 +111,10 @@ def _film_table(mesh, many):
 
 @_kept
 def film_rows(mesh, s_bytes, many):
-    """The convolution at points s between the nodes: a :class:`film.Convolution` for few cases, a :class:`film.Whole`
-    for many."""
+    """The convolution at points s between the nodes: a :class:`film.Whole` for many cases or on few nodes, where it
+    serves all later cases, else a :class:`film.Convolution`."""
     found = film.convolution(mesh, np.frombuffer(s_bytes), CUT)
-    return found.whole() if many else found
+    return found.whole() if many or mesh.n <= _WHOLE else found
 
 
 def felt(mesh, x):

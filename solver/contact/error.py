@@ -24,9 +24,9 @@ _RISEN = 0.05
 #: is multiplied by this. Of such extreme cases on 6 nodes 10 % have an error above the estimate without the factor, 3 %
 #: above that with it (`python tests/error_bars.py`); two that need it are "blind" of tests/contact/test_error_bars.py.
 _BLIND = 3.0
-#: At one point, the centre, the pressures of two meshes may agree by chance: of 2,000 random coatings at rtol 1e-3 one
-#: had 20 times its error, and 15 more than that. So what the step changes of the pressure counts wherever s is above
-#: this ("centre" of tests/contact/test_error_bars.py). Not so on panels, which may enclose a corner there.
+#: At one point, the centre, the pressures of two meshes may agree by chance: those of "centre" of
+#: tests/contact/test_error_bars.py do, to a twentieth of their error. So what the step changes of the pressure counts
+#: wherever s is above this. Not so on panels, which may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
 _NEAR = 1e-8
@@ -105,9 +105,10 @@ def of_profiles(ev, refined, rows):
     at its nodes, most of which lie between those of the mesh, over the largest p or λ. For a smooth punch also the
     pressure at the edge, where there is none, of the polynomial through the nodes."""
     law = ev.cases.law.take(rows)
-    q, new_q = (at.curve.q[rows] for at in refined[:2])
+    start, end = refined.start, refined.end
+    q, new_q = start.curve.q[rows], end.curve.q[rows]
     if law.rough:
-        lam, new_lam = (law.area(at.state.y[rows], p) for at, p in zip(refined[:2], (q, new_q), strict=True))
+        lam, new_lam = law.area(start.state.y[rows], q), law.area(end.state.y[rows], new_q)
         other = np.abs(new_lam - lam).max(axis=1) / new_lam.max(axis=1)
     else:
         other = np.abs(ev.curve.q[rows] @ ev.mesh.basis(np.zeros(1))[0]) / new_q.max(axis=1)

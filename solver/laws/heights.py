@@ -27,7 +27,11 @@ _ALIKE = 0.03
 _KEPT, _AT_ONCE = 4096, 64
 #: Largest relative error of A, λ and p_max by the tables (tests/laws/test_heights.py). It is that of λ; A has 5e-6, and
 #: with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves; A has 1e-4 there.
-ERROR, STEPPED = 2e-4, 5e-4
+#: So its tables have _FINE times as many knots.
+ERROR, STEPPED, _FINE = 2e-4, 5e-4, 4
+#: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of those above it.
+#: The error then grows with this power of that ratio (tests/laws/test_histograms.py).
+_RARE, _SHARPER = 25.0, 1.7
 
 #: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/test_touching.py), and how
 #: many cases have it at a time.
@@ -100,23 +104,24 @@ _TABLES: dict[tuple, np.ndarray] = {}
 
 
 def _tables(density, field, sigma, cut):
-    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the table of each
-    case (B,)."""
+    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), of a histogram with _FINE
+    KNOTS; and the table of each case (B,)."""
     laws, group = np.unique(np.concatenate([sigma, cut], axis=1), axis=0, return_inverse=True)
     keys = [(density, field, *row) for row in laws.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}
-    missing = [key for key, row in rows.items() if row is None]
-    for begin in range(0, len(missing), _AT_ONCE):
-        some = missing[begin : begin + _AT_ONCE]
+    missing, fine = [key for key, row in rows.items() if row is None], 1 if density.of else _FINE
+    at_once = _AT_ONCE // fine**2
+    for begin in range(0, len(missing), at_once):
+        some = missing[begin : begin + at_once]
         s, c = np.array([key[2:] for key in some]).T[:, :, None]
         at = partial(density.at, cut=c[..., None, None])
-        made = spread.tables(density.edges(c), at, field, s, _relief(density, s, c))
+        made = spread.tables(density.edges(c), at, field, s, _relief(density, s, c), fine)
         rows.update(zip(some, np.moveaxis(made, 1, 0), strict=True))
     if missing:
         if len(_TABLES) + len(missing) > _KEPT:
             _TABLES.clear()
         _TABLES.update((key, rows[key]) for key in missing)
-    return np.array([rows[key] for key in keys]).reshape(-1, 2, spread.KNOTS), group.ravel()
+    return np.array([rows[key] for key in keys]).reshape(len(keys), 2, spread.KNOTS * fine), group.ravel()
 
 
 def _relief(density, sigma, cut):
@@ -126,7 +131,8 @@ def _relief(density, sigma, cut):
 def _looked_up(density, field, which, y, sigma, cut):
     """q (B, m) if `which` is 0, λ if it is 1; and d ln q/d ln y, or that of λ."""
     table, group = _tables(density, field, np.where(sigma > 0, sigma, 1.0), cut)
-    value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y)
+    step = spread.STEP * spread.KNOTS / table.shape[-1]
+    value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, step)
     return np.exp(value), slope
 
 
@@ -208,7 +214,9 @@ def histogram(name, z, share, version):
     step = (z[-1] - z[0]) / (len(z) - 1)
     depth, shares = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
     bins = Histogram(tuple(shares.tolist()), step, float(depth @ shares * step))
-    return law(name, bins, version=version, error=STEPPED)
+    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]
+    sharp = max(1.0, (share[:-1] / above).max() / _RARE)
+    return law(name, bins, version=version, error=STEPPED * sharp**_SHARPER)
 
 
 NORMAL, EVEN = Symmetric(_normal, "cut"), Symmetric(_uniform, UNIFORM)

@@ -68,13 +68,16 @@ def _of_text(name, text):
 
 
 def _histogram(name, z, share):
-    """The law of a histogram with the columns z and share (n,). Raises ValueError where z is not that of one."""
+    """The law of a histogram with the columns z and share (n,). Raises ValueError where it is none that a table knows."""
     steps = np.diff(z)
     if len(z) > _MOST:
         raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")
     if not (steps > 0).all() or np.ptp(steps) > 1e-6 * steps.mean():
         raise ValueError("column z: must ascend in equal steps")
-    return heights.histogram(name, z, share, _digest(z, share))
+    found = heights.histogram(name, z, share, _digest(z, share))
+    if found.error > _FAR:
+        raise ValueError("column share: a few summits stand far above the many: leave out the highest rows, if so rare")
+    return found
 
 
 def _digest(*columns):

@@ -176,10 +176,11 @@ def look_up(table, group, y, step=STEP):
     return value + slope * (place - knot - t), slope / step
 
 
-def tables(edges, density, field, sigma, relief):
-    """(2, G, KNOTS): ln q and ln λ at the knots of G laws; arguments as those of :func:`pressure`."""
-    y = np.exp(FIRST + STEP * np.arange(KNOTS)) * np.ones((len(sigma), 1))
-    few, _ = pressure(edges, density, field, y[:, ::_EVERY], sigma, relief)
+def tables(edges, density, field, sigma, relief, fine=1):
+    """(2, G, KNOTS * fine): ln q and ln λ at the knots of G laws, STEP / fine apart; arguments as those of
+    :func:`pressure`."""
+    y = np.exp(FIRST + STEP / fine * np.arange(KNOTS * fine)) * np.ones((len(sigma), 1))
+    few, _ = pressure(edges, density, field, y[:, :: _EVERY * fine], sigma, relief)
     guess, _ = look_up(np.log(few), np.arange(len(y)), y, _EVERY * STEP)
     q, at = pressure(edges, density, field, y, sigma, relief, np.exp(guess))
     return np.log(np.stack([q, at.area]))

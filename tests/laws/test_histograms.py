@@ -1,0 +1,45 @@
+"""Histograms of heights whose classes are very unequal: their tables are within the error that the law states."""
+
+from functools import partial
+
+import numpy as np
+import pytest
+
+from solver.laws import heights, spread
+from solver.laws.own_table import read
+
+NORMAL = np.exp(-(np.linspace(-4, 4, 32) ** 2) / 2)
+SHARES = {
+    "normal": NORMAL,
+    "counted": np.maximum(np.random.default_rng(3).multinomial(10_000, NORMAL / NORMAL.sum()), 0.5),
+    "rare": [0.2, 0.4, 0.3] + [0.01] * 5,
+    "rarer": [0.2, 0.4, 0.3] + [0.001] * 20,
+    "apart": [0.1, 0.3, 0.1, 1e-12, 1e-12, 1e-12, 0.1, 0.3, 0.1],
+}
+
+
+@pytest.mark.parametrize("step", [0.03, 3.0])
+@pytest.mark.parametrize("kind", SHARES)
+def test_the_tables_keep_to_the_error(kind, step):
+    """At equal pressures A and λ are those of the means over the classes. The stated error is at most 100 times λ's,
+    so that it says something."""
+    share = np.array(SHARES[kind], dtype=float)
+    law = heights.histogram("table:x", step * np.arange(len(share)), share, "1")
+    one, c, y = np.ones(1), np.zeros((1, 1)), np.exp(np.linspace(np.log(2e-4), np.log(1e5), 3000))[None]
+    own, bins = law.bind(one, Nbar=one / np.pi, Ra=one), law.curve.args[0]  # A* = 1
+    relief = bins.mean(c) + 1 / 3
+    at = partial(bins.at, c=c[..., None, None])
+    with np.errstate(all="ignore"):
+        q, true = spread.pressure(bins.edges(c), at, 1.0, y, one[None], relief)
+        found = own.evaluate(y)
+    pairs = (found.g, spread.depth(y, q, relief)[0]), (own.area(y, found.q), true.area)
+    errors = [np.log(mine[0]) - np.interp(np.log(found.q[0]), np.log(q[0]), np.log(value[0])) for mine, value in pairs]
+    worst = np.abs(errors)[:, 5:-5].max()
+    assert worst < law.error < max(100 * worst, 2 * heights.STEPPED)
+
+
+def test_a_few_summits_far_above_the_many_are_refused(tmp_path):
+    file = tmp_path / "mine.csv"
+    file.write_text("z,share\n0,0.5\n1e-4,0.5\n2e-4,1e-6\n")
+    with pytest.raises(ValueError, match="mine.csv: column share: a few summits stand far above the many: leave out"):
+        read(f"table:{file}")

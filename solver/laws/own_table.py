@@ -68,7 +68,7 @@ def _of_text(name, text):
 
 
 def _histogram(name, z, share):
-    """The law of a histogram with the columns z and share (n,). Raises ValueError where it is none that a table knows."""
+    """The law of a histogram with the columns z and share (n,). Raises ValueError where it is not one of use."""
     steps = np.diff(z)
     if len(z) > _MOST:
         raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")

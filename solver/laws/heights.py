@@ -104,8 +104,8 @@ _TABLES: dict[tuple, np.ndarray] = {}
 
 
 def _tables(density, field, sigma, cut):
-    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), _FINE KNOTS of a histogram;
-    and the table of each case (B,)."""
+    """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the table of each
+    case (B,). A histogram has _FINE KNOTS."""
     laws, group = np.unique(np.concatenate([sigma, cut], axis=1), axis=0, return_inverse=True)
     keys = [(density, field, *row) for row in laws.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}

@@ -132,7 +132,7 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     for piece in pieces(s_out, breaks, order):
         values = piece.weight * _kernel(s_out[piece.row, None], piece.gap, piece.sign)
         rows[piece.row, piece.panel] += against(values, piece.basis(own))
-    return rows.reshape(len(s_out), -1)
+    return rows.reshape(len(s_out), len(nodes))
 
 
 def _kernel(s, gap, sign):

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from solver.laws.own_table import PREFIX
+
 from ..spec.checks import not_given
 from ..spec.given import one_control
 from ..spec.grid import twins
@@ -77,6 +79,16 @@ def impossible(scene: Scene) -> list[str]:
     if "n" in scene.parameters:
         messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
     return messages
+
+
+def moving_tables(scene: Scene) -> list[str]:
+    """A message where a table of one's own, whose lengths are in R, would change with the spread of a radius."""
+    micro = np.ravel(np.array(scene.parameters.get("micro", ""), dtype=object)).tolist()
+    table = next((word for word in micro if str(word).startswith(PREFIX)), "")
+    moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
+    if not (table and moved):
+        return []
+    return [f"{moved[0]} has a spread, with which the lengths of {table} would change: they are in R: give no spread"]
 
 
 def _shown(value: Any) -> str:

@@ -18,7 +18,7 @@ from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
-from .checks import equal_cases, impossible, missing
+from .checks import equal_cases, impossible, missing, moving_tables
 from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of
 from .scales import make_dimensionless
 from .scene import STEP, Scene
@@ -91,7 +91,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     scene.spreads = scene.spreads if spreads else {}
     _move(scene)
     make_dimensionless(scene)
-    errors = beyond_bounds(scene, parameters) if bounds else []
+    errors = moving_tables(scene) + (beyond_bounds(scene, parameters) if bounds else [])
     if errors:
         raise StudyError(errors)
     return scene

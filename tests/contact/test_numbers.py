@@ -100,3 +100,10 @@ def test_unreachable_tolerance_is_said():
     assert s.error[0] > 1e-15
     assert s.nodes[0] >= 32  # on more nodes the rounding of their sums is more, and no error can be less
     assert_allclose(s.a, one(P=LOAD, nodes=64, micro="disc_cell").a, rtol=1e-13, atol=0)
+
+
+def test_profiles_of_no_radius_or_of_the_edge_alone():
+    case = {"P": LOAD, "h": 0.02, "n": 0.5, "Nbar": 250000, "Ra": 0.004, "base": [*BASES, "layered"]}
+    whole, none, edge = (solve(Problem.of(**case), x) for x in ([0.0, 1.0], [], [1.0, 1.0]))
+    assert none.p.shape == (3, 0) and (none.D == whole.D).all() and (edge.D == whole.D).all()
+    assert edge.p.shape == (3, 2) and (edge.p == 0).all() and (edge.lam == 0).all()

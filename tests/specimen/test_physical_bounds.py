@@ -68,3 +68,16 @@ def test_rows_ranges_and_the_command_line(tmp_path, capsys):
     words = [f"{name}={value}" for name, value in GIVEN.items()]
     assert main(["point", *words, "P=-10 N"]) == 2
     assert "P = -10 N: must be in [5.769e-18, 5.769e+09] N" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("radius", [{"R": "5.0 ± 0.1 mm"}, {"R": None, "R1": "5 mm", "R2": "20 ± 1 mm"}])
+def test_a_table_whose_lengths_would_follow_the_spread_of_a_radius(radius, tmp_path):
+    """Its lengths are in R, but no heights in µm grow with the error of R: the spreads would be wrong."""
+    file = tmp_path / "mine.csv"
+    file.write_text("z,share\n0,1\n1e-5,1\n2e-5,1\n")
+    given = GIVEN | {"P": "50 mN", "Nbar": "5 1/um^2", "Ra": "20 um", "h": "99 um", "micro": f"table:{file}"}
+    change = {name: value for name, value in (given | radius).items() if value}
+    word = next(name for name, value in radius.items() if value and "±" in value)
+    with pytest.raises(study.StudyError, match=rf"^{word} has a spread, .*mine.csv would change: they are in R"):
+        study.solve(**change)
+    assert study.solve(**given).status == 0

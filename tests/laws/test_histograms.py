@@ -28,7 +28,7 @@ def test_the_tables_keep_to_the_error(kind, step):
     one, c, y = np.ones(1), np.zeros((1, 1)), np.exp(np.linspace(np.log(2e-4), np.log(1e5), 3000))[None]
     own, bins = law.bind(one, Nbar=one / np.pi, Ra=one), law.curve.args[0]  # A* = 1
     relief = bins.mean(c) + 1 / 3
-    at = partial(bins.at, c=c[..., None, None])
+    at = partial(bins.at, cut=c[..., None, None])
     with np.errstate(all="ignore"):
         q, true = spread.pressure(bins.edges(c), at, 1.0, y, one[None], relief)
         found = own.evaluate(y)

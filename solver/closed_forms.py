@@ -26,8 +26,8 @@ def hertz(P=None, a=None, D=None, p0=None, R=1.0, E=1.0):
 
     :class:`SmoothContact`: P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R).
 
-    P, a, D, p0 : load, contact radius, indentation depth, pressure in the centre; exactly one of them (ValueError)
-    R, E : radius of the sphere, and reduced modulus E* of the half-space
+    P, a, D, p0 : load, contact radius, indentation depth, pressure in the centre, > 0; exactly one (else ValueError)
+    R, E : radius of the sphere, and reduced modulus E* of the half-space, > 0
 
     >>> print(f"{hertz(P=2.70408e-5).D:.5e}")
     7.43681e-04
@@ -59,12 +59,12 @@ def thin_layer_on_rigid_base(P=None, a=None, D=None, *, h, nu1=0.3, bonded=False
     :class:`SmoothContact`: P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²).
     C = 2 A2 h/E, with A2 of Eq. (2) at n = 0: 1/2 without friction, (1 - 2 nu1)/(2 (1 - nu1)²) bonded.
 
-    P, a, D : load, contact radius, indentation depth; exactly one of them (ValueError)
-    h : thickness of the layer
-    nu1 : Poisson ratio of the layer, used when bonded. At 0.5 a bonded layer is no foundation of springs: P and p0 are
-        infinite at given a or D, and NaN at given P
+    P, a, D : load, contact radius, indentation depth, > 0; exactly one of them (else ValueError)
+    h : thickness of the layer, > 0
+    nu1 : Poisson ratio of the layer in (-1, 0.5), used when bonded. At 0.5 a bonded layer is no foundation of springs:
+        P and p0 are infinite at given a or D, and NaN at given P
     bonded : perfect bond of layer and base, or a frictionless interface
-    R, E : radius of the sphere, and reduced modulus E1* of the layer
+    R, E : radius of the sphere, and reduced modulus E1* of the layer, > 0
     """
     if sum(v is not None for v in (P, a, D)) != 1:
         raise ValueError("thin_layer_on_rigid_base: give exactly one of P, a, D")

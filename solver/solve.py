@@ -42,7 +42,9 @@ def solve(problem, x=(0.0, 1.0)):
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    return _solved(problem, x, refused(problem, dimensionless(problem)) | problem.without_scheme())
+    radii = np.append(x, RADII) if has_range(problem) else x
+    found = _solved(problem, radii, refused(problem, dimensionless(problem)) | problem.without_scheme())
+    return found if radii is x else replace(found, p=found.p[:, : len(x)], lam=found.lam[:, : len(x)])
 
 
 def _of_a_model(problem, x):
@@ -56,7 +58,6 @@ def _solved(given, x, invalid):
     scaled = dimensionless(problem)
     no_springs = ~invalid & without_springs(scaled)
     status = np.select([invalid, no_springs], [Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE], 0)
-    wanted, x = len(x), np.append(x, RADII) if has_range(problem) else x
     size = len(problem), len(x)
     pieces = [(np.arange(len(problem)), Solution.of(*size, status=status))]
     for mask, solver in _routes(problem, ~(invalid | no_springs)):
@@ -68,7 +69,6 @@ def _solved(given, x, invalid):
     found.status[missed] = Status.TOLERANCE_NOT_MET
     solution = _with_models(given, restore(found, problem))
     solution = solution.refused(outside_law(given, solution), Status.OUTSIDE_LAW)
-    solution = replace(solution, p=solution.p[:, :wanted], lam=solution.lam[:, :wanted])
     return replace(solution, **{given.control: given.value * 1.0})  # exactly as given, also where a case is refused
 
 

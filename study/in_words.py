@@ -59,8 +59,6 @@ WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of 
 closely: the bodies are no half-spaces there."
 OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
 each R a table of its own, in cases."
-
-
 #: A body under a sphere yields where p(0) exceeds 1.6 times its yield strength (Johnson, Contact Mechanics, 1985), and
 #: that is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share of E.
 YIELD, STIFF = 0.03, 1e10

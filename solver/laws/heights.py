@@ -110,7 +110,7 @@ def _tables(density, field, sigma, cut):
     keys = [(density, field, *row) for row in laws.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}
     missing, fine = [key for key, row in rows.items() if row is None], 1 if density.of else _FINE
-    at_once = _AT_ONCE // fine**2
+    at_once = _AT_ONCE // fine**2  # the tables are larger, of more pieces
     for begin in range(0, len(missing), at_once):
         some = missing[begin : begin + at_once]
         s, c = np.array([key[2:] for key in some]).T[:, :, None]
@@ -214,7 +214,7 @@ def histogram(name, z, share, version):
     step = (z[-1] - z[0]) / (len(z) - 1)
     depth, shares = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
     bins = Histogram(tuple(shares.tolist()), step, float(depth @ shares * step))
-    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]
+    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]  # of each share but the last: the mean above it
     sharp = max(1.0, (share[:-1] / above).max() / _RARE)
     return law(name, bins, version=version, error=STEPPED * sharp**_SHARPER)
 

@@ -76,7 +76,7 @@ def _histogram(name, z, share):
         raise ValueError("column z: must ascend in equal steps")
     found = heights.histogram(name, z, share, _digest(z, share))
     if found.error > _FAR:
-        raise ValueError("column share: a few summits stand far above the many: leave out the highest rows, if so rare")
+        raise ValueError("column share: a few summits stand far above the many: leave out the highest rows, of so few")
     return found
 
 
@@ -199,7 +199,7 @@ def _apart(curves, t):
     rows = np.arange(len(t))
     points = np.exp(np.interp(np.arange(0, len(t) - 1, 1 / _STEPS), rows, np.log(t)))
     V = np.array([curve.exponent(points)[0] for curve in curves])
-    return _APART * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))
+    return _APART * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))  # far above _FAR, and no overflow
 
 
 def _falls(found, t):

@@ -88,7 +88,7 @@ def moving_tables(scene: Scene) -> list[str]:
     moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
     if not (table and moved):
         return []
-    return [f"{moved[0]} has a spread, with which the lengths of {table} would change: they are in R: give no spread"]
+    return [f"{moved[0]} has a spread: the lengths in {table} are in R and would change with it; give {moved[0]} none"]
 
 
 def _shown(value: Any) -> str:

@@ -26,8 +26,6 @@ from .scene import STEP, Scene
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
-
-
 #: What a case without a layer may leave out.
 _OF_LAYER = ("layer", "E1", "h", "nu1", "bonding")
 
@@ -106,14 +104,15 @@ def _material(name: str, given: Any) -> str:
 
 def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
     """The parameters, with those of the rows as CaseValues. These come first, since `case` is the first dimension. What
-    a case without a layer leaves out is that of another case: it has no use."""
-    bare = [row.get("base", parameters.get("base")) == "half_space" for row in rows]
+    a case without a layer leaves out is taken from another case: no answer depends on it."""
+    bases = [row.get("base", parameters.get("base")) for row in rows]
+    uncoated = [isinstance(base, str) and base == "half_space" for base in bases]
     found = {}
     for name in dict.fromkeys(name for row in rows for name in row):
         if name == "label":  # a case need not have one
             found[name] = CaseValues([row.get(name, "") for row in rows])
         elif name in parameters or not all(
-            name in row or (name in _OF_LAYER and none) for row, none in zip(rows, bare, strict=True)
+            name in row or (bare and name in _OF_LAYER) for row, bare in zip(rows, uncoated, strict=True)
         ):
             errors.append(f"{name} must be given in every case, or once for all")
         else:

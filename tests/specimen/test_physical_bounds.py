@@ -78,6 +78,7 @@ def test_a_table_whose_lengths_would_follow_the_spread_of_a_radius(radius, tmp_p
     given = GIVEN | {"P": "50 mN", "Nbar": "5 1/um^2", "Ra": "20 um", "h": "99 um", "micro": f"table:{file}"}
     change = {name: value for name, value in (given | radius).items() if value}
     word = next(name for name, value in radius.items() if value and "±" in value)
-    with pytest.raises(study.StudyError, match=rf"^{word} has a spread, .*mine.csv would change: they are in R"):
+    message = rf"^{word} has a spread: the lengths in .*mine.csv are in R and would change with it; give {word} none$"
+    with pytest.raises(study.StudyError, match=message):
         study.solve(**change)
     assert study.solve(**given).status == 0

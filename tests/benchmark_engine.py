@@ -31,7 +31,7 @@ def local_cluster(*_):
 
     # what dask sets makes malloc give memory back after each block, which doubles the processor time
     dask.config.set({"distributed.nanny.pre-spawn-environ": {}, "distributed.worker.profile.enabled": False})
-    options = {"n_workers": WORKERS, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": None}
+    options = {"n_workers": WORKERS, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": ":0"}
     with LocalCluster(**options) as cluster, Client(cluster, set_as_default=False) as client:
         yield workers.Engine(client.get_executor(pure=False).submit, lambda: workers.AHEAD * WORKERS)
 

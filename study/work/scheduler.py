@@ -17,10 +17,10 @@ def address_error(text: str) -> str:
     return "must be the address of a dask scheduler, such as tcp://127.0.0.1:8786 or tls://HOST:PORT"
 
 
-def connected(address: str, seconds: float):
+def connected(address: str, listens: float, answers: float):
     """A dask client of the scheduler at an address.
 
-    Raises StudyError when nothing answers there in so many seconds, or what answers is no scheduler.
+    Raises StudyError when nothing listens there in `listens` seconds, or no scheduler answers in `answers`.
     """
     from ..spec.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
 
@@ -38,32 +38,36 @@ def connected(address: str, seconds: float):
 
             if not Security().get_connection_args("client")["ssl_context"]:
                 raise OSError("TLS needs certificates, which dask's configuration must name: see docs/cluster.md")
-        _greeted(address, seconds)
+        seconds = answers if _is_there(address, listens, answers) else listens
         return Client(address, timeout=seconds, set_as_default=False)
     except Exception as error:  # what the client raises for an answer that it does not understand is not known
         said = str(error) or type(error).__name__
         raise StudyError([f"--scheduler {address}: no scheduler answers there ({said})"]) from None
 
 
-def _greeted(address: str, seconds: float) -> None:
-    """Raise OSError when the host has no address, or when the first bytes from there are not those of dask.
+def _is_there(address: str, listens: float, answers: float) -> bool:
+    """Whether something listens at the address.
 
-    Dask takes the first bytes as the length of a message, whatever they are, and asks for that much memory.
+    Raises OSError when the host has no address, or when the first bytes from there are not those of dask. Dask takes
+    the first bytes as the length of a message, whatever they are, and asks for that much memory.
     """
     scheme, host, port = ADDRESS.fullmatch(address).groups()
-    if host is None or scheme not in (None, "tcp"):
-        return
-    where = (host.strip("[]"), int(port))
+    if host is None:
+        return False
     try:
-        peer = socket.create_connection(where, timeout=seconds)
+        peer = socket.create_connection((host.strip("[]"), int(port)), timeout=listens)
     except socket.gaierror as error:
         raise OSError(f"{host}: {error.strerror}") from None
     except OSError:  # perhaps the scheduler is about to start: the client asks again
-        return
+        return False
     with peer, peer.makefile("rb") as stream:
+        if scheme not in (None, "tcp"):
+            return True
+        peer.settimeout(answers)
         try:
             first = stream.read(8)
         except TimeoutError:
-            raise OSError(f"it says nothing in {seconds:g} s") from None
+            raise OSError(f"it says nothing in {answers:g} s") from None
         if len(first) < 8 or struct.unpack("<Q", first)[0] > GREETING:
             raise OSError("something else listens there")
+    return True

@@ -12,7 +12,8 @@ from .cases import Failure
 from .processes import Processes
 from .scheduler import connected
 
-CONNECT = 10  # seconds that a scheduler has to answer
+CONNECT = 10  # seconds in which something must listen at the address of a scheduler
+ANSWER = 60  # seconds that a scheduler has to answer: on a busy machine 10 were too few
 AHEAD = 4  # blocks submitted for each worker, which goes on with them while this thread writes
 MANY = 8  # blocks from which on it pays to start processes, which do not share a lock of Python as threads do
 
@@ -62,7 +63,7 @@ def processes_for(workers: int, blocks: int) -> int:
 
 @contextmanager
 def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
-    client = connected(scheduler, CONNECT)
+    client = connected(scheduler, CONNECT, ANSWER)
     handing, ended = threading.Lock(), threading.Event()
 
     def width() -> int:

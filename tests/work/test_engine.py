@@ -1,6 +1,7 @@
 """What computes, and how much of it at a time; a cluster is played by the test."""
 
 import os
+import socket
 import sys
 import threading
 from concurrent.futures import CancelledError, Executor, Future
@@ -52,8 +53,8 @@ def test_the_width_is_asked_again_and_again():
 
 
 def test_a_task_that_raises_is_a_failure():
-    found = dict(as_they_come(Engine(AtOnce().submit, lambda: 2), lambda task: 1 // task, [1, 0, 1]))
-    assert found == {0: 1, 1: Failure("ZeroDivisionError: integer division or modulo by zero", ""), 2: 1}
+    found = dict(as_they_come(Engine(AtOnce().submit, lambda: 2), lambda task: [1][1 - task], [1, 0, 1]))
+    assert found == {0: 1, 1: Failure("IndexError: list index out of range", ""), 2: 1}
 
 
 def test_a_cluster_is_left_when_no_thread_waits_for_it(monkeypatch):
@@ -170,6 +171,13 @@ def test_as_much_for_a_cluster_as_it_has_threads(client, monkeypatch):
         with pytest.raises(Lost, match="^the scheduler is gone$"):
             found.width()
     assert client.done[1:] == ["closed"]
+
+
+def test_a_scheduler_that_listens_may_be_busy(client):
+    with socket.create_server(("127.0.0.1", 0)) as scheduler:
+        address = f"ws://127.0.0.1:{scheduler.getsockname()[1]}"
+        with engine(None, address):
+            assert client.done == [(address, workers.ANSWER, False)]
 
 
 def test_workers_bound_the_threads_of_a_cluster(client):

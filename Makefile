@@ -120,12 +120,15 @@ clean: ## remove figures, tables and caches; results and .venv stay
 	rm -rf .pytest_cache .ruff_cache .hypothesis
 	find solver study tests -name __pycache__ -type d -prune -exec rm -rf {} +
 
-# Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages.
+# Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
+# the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.
 $(READY): requirements.lock pyproject.toml
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "roughcoat needs Python 3.11 or newer; name one: make setup PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)
-	$(VENV)/bin/python -m pip install --quiet --only-binary :all: --requirement requirements.lock
+	$(VENV)/bin/python -m pip install --quiet --only-binary :all: --requirement requirements.lock || \
+	  { echo "requirements.lock does not fit this Python: the newest versions are installed, not the pinned ones"; \
+	    $(VENV)/bin/python -m pip install --quiet --prefer-binary setuptools --editable '.[cluster,test,lint]'; }
 	$(VENV)/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 

@@ -59,6 +59,10 @@ WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of 
 closely: the bodies are no half-spaces there."
 OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
 each R a table of its own, in cases."
+SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
+does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
+#: Below this modulus in Pa a material is a rubber or a gel. Nearly all have a Poisson ratio close to 0.5.
+_RUBBER = 1e8
 #: A body under a sphere yields where p(0) exceeds 1.6 times its yield strength (Johnson, Contact Mechanics, 1985), and
 #: that is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share of E.
 YIELD, STIFF = 0.03, 1e10
@@ -183,7 +187,7 @@ def _sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     found += [f"Beware: {sentence}" for sentence in beyond]
     if not beyond and word == "converged":
         found.append(NOT_VIOLATED)
-    return found
+    return found + [f"Assumed: {sentence}" for sentence in _assumed(case.variables)]
 
 
 def doubts(contact: xr.Dataset) -> list[str]:
@@ -205,6 +209,16 @@ def doubts(contact: xr.Dataset) -> list[str]:
         found.append(OF_SEVERAL_RADII)
     given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == unit_of(name)}
     return found + _yielding(v) + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
+
+
+def _assumed(v) -> list[str]:
+    """A sentence for each default that stands for an input which was not given, and may be far from it."""
+    taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
+    found = [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
+    for modulus, ratio, _ in BODIES.values():
+        if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < _RUBBER:
+            found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")
+    return found
 
 
 def _yielding(v) -> list[str]:

@@ -41,6 +41,19 @@ def test_what_was_not_given_is_said_where_it_counts():
     assert "assumed" not in half_space
 
 
+def test_an_assumption_that_may_be_far_off_has_a_sentence():
+    """Bonded, and of rubber, this film carries 2.8 times what it does by the two defaults."""
+    film = {"R": "3 mm", "E1": "20 MPa", "E2": "210 GPa", "nu2": 0.3, "h": "50 um", "a": "0.2 mm", "micro": "smooth"}
+    found = quiet(**film)
+    text = study.summary(found).splitlines()[-2:]
+    assert text[0].startswith("Assumed: The layer slides on the body without friction, since bonding is not given.")
+    assert text[1] == "Assumed: nu1 = 0.3. Of rubbers and gels, as soft as this, it is nearly 0.5."
+    said = quiet(**film, nu1=0.495, bonding="bonded")
+    assert "Assumed" not in study.summary(said) and said.P > 2.7 * found.P
+    gel = quiet(R="3 um", E2="2 kPa", nu2=0.5, E_punch="1 kPa", base="half_space", micro="smooth", P="1 pN")
+    assert study.summary(gel).splitlines()[-1].startswith("Assumed: nu_punch = 0.3. Of rubbers")
+
+
 def test_what_is_given_and_not_used_is_said():
     rough = {"Nbar": "2 1/um^2", "Ra": "10 um", "sigma": "10 nm"}
     text = study.summary(quiet(**COATED | rough, P="10 N", x=2))

@@ -32,6 +32,10 @@ _LEAST_LENGTH = 0.3
 #: The least |κ| under asperities, over the integral of the absolute value: with it, and the factor that the base "auto"
 #: has, bounds are twice the errors or more (test_kappa_of_waves_that_cancel in tests/models/test_auto.py).
 _UNCANCELLED = 0.25
+#: A bonded layer that is nearly incompressible is softer than its springs, for it is squeezed out sideways. Then the
+#: error is at least (L/(A1 + A2 u))^power - 1, at u = wave h/a: wave and power of each control, fitted to random layers
+#: (test_squeezed_layers of tests/models/test_thin_layer_error.py).
+_SQUEEZED = {"P": (2.0, 0.5), "a": (3.5, 0.9), "D": (2.0, 1.0)}
 #: Largest |ln n| of the table of κ without friction, beyond the bounds of n. If integrated for each case, κ would take
 #: longer than the whole solution of a smooth case on a thin layer.
 _RANGE = 25.0
@@ -115,9 +119,9 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
 def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
     """Estimated relative error of the thin-layer model: the largest over a, P, D, p(0), p_max and Ar/An.
 
-    NaN where the thin-layer equation does not apply. For true errors from 0.001 to 1 of a smooth sphere, 0.23 to 5
-    times the true one (tests/models/test_thin_layer_error.py and test_auto.py), most often 1 to 2 times. Under
-    asperities it is too large, a hundred times and more where these yield more than the layer.
+    NaN where the thin-layer equation does not apply. For true errors above 0.001 of a smooth sphere, 0.23 to 9 times
+    the true one (tests/models/test_thin_layer_error.py and test_auto.py), most often 1 to 2 times. Under asperities it
+    may be too large, a hundred times and more where these yield more than the layer.
 
     control : "P", "a" or "D", the quantity that is given, which has no error itself
     h_a, n, nu1, nu2, bonded : as in :func:`thin_layer_error`; rough : whether the punch has asperities
@@ -133,8 +137,20 @@ def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
     edge, far, m = _terms(h_a, n, nu1, nu2, bonded, rough)
     inwards = np.where(edge < 0, 2, 1)
     if control == "P":
-        return (1 + np.abs(edge) + far) ** (inwards / m) - 1
-    return 1 - 1 / (1 + np.abs(edge) * (inwards / m if control == "D" else 1) + far)
+        error = (1 + np.abs(edge) + far) ** (inwards / m) - 1
+    else:
+        error = 1 - 1 / (1 + np.abs(edge) * (inwards / m if control == "D" else 1) + far)
+    return np.maximum(error, _squeezed(*_SQUEEZED[control], h_a, n, nu1, nu2, bonded))
+
+
+def _squeezed(wave, power, h_a, *material):
+    """The error of layers that are squeezed out, below 0 of others. NaN or below 0 without springs."""
+    u, n, nu1, nu2, bonded = np.broadcast_arrays(wave * np.asarray(h_a, dtype=float), *material)
+    error, i = np.zeros(u.shape), np.nonzero(bonded)
+    if len(i[0]):
+        A1, A2 = thin_layer_coefficients(*(v[i] for v in (n, nu1, nu2, bonded)))
+        error[i] = (whole(*(v[i] for v in (u, n, nu1, nu2, bonded))) / (A1 + A2 * u[i])) ** power - 1
+    return error
 
 
 def _terms(h_a, n, nu1, nu2, bonded, rough=False):

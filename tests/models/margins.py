@@ -44,9 +44,11 @@ def ratios(control: str, size: int) -> dict:
         index = np.flatnonzero((auto.micro == micro) & (exact.status == 0))
         for model, bound in bounds(auto.take(index)).items():
             near = (bound > 1e-4) & (bound < 0.3)
+            if not near.any():
+                continue
             cheap = _on_model(model, auto.take(index[near]), np.array([0.0, 1.0]), solve)
-            errors = [np.abs(cheap[name] / getattr(exact, name)[index[near]] - 1) for name in JUDGED]
-            error = np.where(cheap["status"] == 0, np.max(errors, axis=0), 0.0)
+            errors = [np.abs(getattr(cheap, name) / getattr(exact, name)[index[near]] - 1) for name in JUDGED]
+            error = np.where(cheap.status == 0, np.max(errors, axis=0), 0.0)
             found.setdefault(model.name, []).append(np.maximum(error - 2e-6, 0) / bound[near])
     return {name: np.concatenate(parts) for name, parts in found.items()}
 

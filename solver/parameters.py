@@ -7,7 +7,7 @@ import numpy as np
 
 BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto")
-#: How the model error of a thin layer asked for by name is estimated: free of cost, or by one step of the exact layer.
+#: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
 
 

@@ -31,7 +31,7 @@ class Problem:
         "auto", the cheapest that is accurate enough
     accuracy = 0.01 : allowed relative model error of the base "auto"
     model_check = "closed_form" : `model_error` of the base "thin_layer" is estimated free of cost; "first_order", by
-        one step of the exact layer
+        solving the exact layer from there, on a coarse mesh
     micro = "disc_cell" : the law of Eqs (6) and (7); "smooth", no asperities; "power_law", A = B Ra (p/E1*)^beta (E2*
         without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; or the name of a
         registered law, or such a :class:`~solver.laws.Law` itself

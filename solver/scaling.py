@@ -40,7 +40,7 @@ def with_rigid_punch(problem):
     The displacements of both bodies add. On a half-space E2* becomes E2*/(1 + m). On a thin layer A1 becomes A1 + m:
     its half-space has the modulus E1*/(n + m), asperities feel Ec = E1*/(1 + m), and springs of the same C are those of
     a frictionless layer of thickness 2 A2 h/(1 + m). Exact layers stay as they are. So do thin layers without springs,
-    and those whose model error comes from a step of the exact layer (`model_check` "first_order").
+    and those whose model error comes from the exact layer (`model_check` "first_order").
     """
     m, base = problem.m, problem.base
     if not (m > 0).any():
@@ -61,7 +61,7 @@ def with_rigid_punch(problem):
 def with_a_stiff_base(problem):
     """The problem with rigid bases, n = 0, under thin layers replaced by half-spaces that yield less than rounding.
 
-    Layers whose model error comes from a step of the exact layer stay as they are.
+    Layers whose model error comes from the exact layer stay as they are.
     """
     stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
     if not stiff.any():

@@ -69,13 +69,11 @@ def refine(ev, own):
     return Refined(start, end, found, newton.stiffness(start, dq_deta, found.P, found.D))
 
 
-def nearby(ev, state, curve=None):
+def nearby(ev, state):
     """:class:`~solver.contact.equation.Evaluation` at a state near that of `ev`: good for
-    :func:`~solver.contact.results.quantities`, but not for F. The operator is taken to first order; so is the law, if
-    its `curve` at the state is not given."""
-    if curve is None:
-        dy, old = state.y - ev.state.y, ev.curve
-        curve = old._replace(q=old.q + old.dq * dy, g=old.g + old.dg * dy)
+    :func:`~solver.contact.results.quantities`, but not for F. The operator and the law are taken to first order."""
+    dy, old = state.y - ev.state.y, ev.curve
+    curve = old._replace(q=old.q + old.dq * dy, g=old.g + old.dg * dy)
     edge_q = (ev.operator.edge * curve.q).sum(axis=1) + ev.slopes[1] * (state.eta - ev.state.eta)
     return replace(ev, state=state, X=groups(ev.cases, state.eta)[0], curve=curve, edge_q=edge_q)
 

@@ -77,9 +77,9 @@ def wave_rule(eta, n, reach=2.0):
     return tuple(np.concatenate(v) for v in zip(*parts, strict=True))
 
 
-def fredholm(eta, n, nu1, nu2, bonded, count=None, m=0.0):
+def fredholm(eta, n, nu1, nu2, bonded, count=None, m=0.0, radii=()):
     """P R/(E1* a³), D R/a², p(0) R/(E1* a), (dP/dD)/(E1* a) of a smooth sphere at h/a = η; with a sphere of E1*/m,
-    whose displacement adds m to L, over Ec = E1*/(1 + m) in place of E1*."""
+    whose displacement adds m to L, over Ec = E1*/(1 + m) in place of E1*. Then p(r) R/(E1* a) at the radii r/a."""
     t, w = legendre(count or 48 + int(6 / eta))
     k, kw = wave_rule(eta, n)
     weight = kw * kernel(k * eta, n, nu1, nu2, bonded) / (1 + m)
@@ -92,7 +92,11 @@ def fredholm(eta, n, nu1, nu2, bonded, count=None, m=0.0):
     f = d * f1 - f2
     transform = wave @ (w * f)
     p0 = 2 / np.pi - (2 / np.pi**2) * (weight * k * sici(k)[0]) @ transform
-    return np.array([2 * w @ f, d, p0, 2 * w @ f1])
+    root, root_w = (v * np.sqrt(1 - np.array(radii))[:, None] for v in legendre(60))  # t = r + root²
+    t = np.array(radii)[:, None] + root**2
+    slope = -2 * t + (2 / np.pi) * np.sin(t[..., None] * k) @ (weight * k * transform)
+    p = -(root_w * 2 / np.sqrt(t + np.array(radii)[:, None]) * slope).sum(axis=1) / np.pi
+    return np.array([2 * w @ f, d, p0, 2 * w @ f1, *p])
 
 
 def polynomial_basis(nodes, s):

@@ -1,9 +1,11 @@
 """What an iteration on a mesh has found: the solution with its error and profiles, and whether the punch lifts off."""
 
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 
+from ..numerics.mesh import gauss_rule
 from ..solution import Solution
 from ..status import Status
 from . import newton
@@ -11,6 +13,8 @@ from .equation import State
 from .error import completed, estimate, of_profiles, refine
 from .results import profiles, quantities
 
+#: A ring of tension may lie between two nodes: so the pressure is looked at in this many times as many points.
+_DENSER = 3
 #: If the error of a case is below this, p(0) < 0 is real and no error of the mesh.
 _SURE = 0.1
 #: A gap higher than this times a²/2, or tension above this part of the load, is real and no rounding.
@@ -56,6 +60,13 @@ class Answer(NamedTuple):
         return (self.tension > _TENSION) & (self.tension <= 10 * self.solution.error)
 
 
+@lru_cache(maxsize=32)
+def _between(mesh):
+    """The polynomials of a mesh (n, m) at _DENSER times as many points, and the weights (m,) of ∫ · s ds there."""
+    s, w = gauss_rule(_DENSER * mesh.order, mesh.breaks)
+    return mesh.basis(s).T, w * s
+
+
 def stuck(error, slow, nodes, rtol):
     """(B,) bool: finer meshes of one panel will hardly bring the error to rtol."""
     return slow & (nodes >= _LATE) & (error > _FAR * rtol)
@@ -98,7 +109,9 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     rest = errors | {"dP_dD": slope, "p": p, "lam": lam, "status": status}
     ends = {"nodes": ev.mesh.n, "iterations": count}
     solution = Solution.of(len(error), len(x), **own._asdict(), **rest, **ends)
-    # there can be tension only where the equation is linear: without asperities
-    q, w = ev.curve.q, ev.mesh.w
-    tension = np.where(finite, np.maximum(-q, 0.0) @ np.abs(w) / np.abs(q @ w), 0.0)
+    tension = np.zeros(len(error))
+    if not ev.cases.law.law.rough:  # there can be tension only where the equation is linear: without asperities
+        basis, w = _between(ev.mesh)
+        q = ev.curve.q @ basis
+        tension = np.where(finite, np.maximum(-q, 0.0) @ w / np.abs(q @ w), 0.0)
     return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, ev.floor, refined.end.state)

@@ -5,6 +5,7 @@ test_layered_limits.py.
 """
 
 import numpy as np
+from layered_independent import fredholm
 
 from solver import Problem, Status, solve
 
@@ -35,3 +36,20 @@ def test_tension_in_a_ring():
     s = plates([6.011308, 7.0403465, 10.7600884], [6984587.0, 3888109.0, 30663147.0],
                ["frictionless", "bonded", "bonded"], nodes=24)  # fmt: skip
     assert list(s.status) == [Status.LIFT_OFF] * 3
+
+
+def test_a_ring_of_tension_between_the_nodes():
+    """Two plates just stiff enough: the independent pressure is below 0 in a narrow ring, 1e-4 of the largest. Panels
+    whose nodes lie beside that ring took both for contacts."""
+    for n, bonding in ((3.91e5, "frictionless"), (4.25e5, "bonded")):
+        p = fredholm(0.18, n, 0.3, 0.3, bonding == "bonded", radii=np.linspace(0.25, 0.97, 73))[4:]
+        assert -2e-4 < p.min() / p.max() < -1e-5
+        s = plates([1 / 0.18], n, bonding, nodes=[0, 22, 32, 48, 96])
+        assert list(s.status) == [Status.LIFT_OFF] * 5
+
+
+def test_tension_that_no_finer_mesh_will_judge():
+    """On meshes that are given the tensile part of the load is an error: 3e-6 of the load here."""
+    s = plates([4.0], 1e5, "bonded", nodes=[64, 96])
+    assert list(s.status) == [Status.TOLERANCE_NOT_MET] * 2
+    assert np.all((s.error > 1e-6) & (s.error < 1e-5)) and np.isfinite(s.P).all()

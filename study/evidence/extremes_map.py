@@ -14,12 +14,7 @@ from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 
 BASES = {"half_space": "half-space", "thin_layer": "thin layer", "layered": "exact layer"}
 LAWS = ("smooth", "disc_cell", "power_law")
-AXES = {
-    "P": r"$P/(E_2^* R^2)$",
-    "N Ra^2": r"$\bar N R_a^2$",
-    "h": "$h/R$",
-    "n": "$n$",
-}
+AXES = {"P": r"$P/(E_2^* R^2)$", "N Ra^2": r"$\bar N R_a^2$", "h": "$h/R$", "n": "$n$"}
 ROWS = (("half_space", "P", "N Ra^2"), ("thin_layer", "P", "N Ra^2"), ("thin_layer", "h", "n"),
         ("layered", "P", "N Ra^2"), ("layered", "h", "n"))  # fmt: skip
 BARS = ("estimated error / rtol, median of the cell", "iterations, largest of the cell")
@@ -123,24 +118,15 @@ def legend(panels, images, present: np.ndarray) -> None:
     figure.legend(handles=handles, loc="outside lower left", ncols=2, fontsize=7)
 
 
+SHARES = "n/a", "lift-off", "converged", "above rtol", "failed"
+NUMBERS = "error 50% | .1e; error 99.9% | .1e; error max | .1e; iterations | .0f; max | .0f"
+
+
 @table(
     "extremes",
     "extremes",
     "extremes_layered",
-    columns="""
-    base
-    law
-    cases | d
-    n/a | .2%
-    lift-off | .2%
-    converged | .2%
-    above rtol | .2%
-    failed | .2%
-    error 50% | .1e
-    error 99.9% | .1e
-    error max | .1e
-    iterations | .0f
-    max | .0f""",
+    columns="base; law; cases | d; " + "".join(f"{share} | .2%; " for share in SHARES) + NUMBERS,
 )
 def shares(*studies: xr.Dataset) -> list[tuple]:
     """Random cases far beyond any scene: share of the cases that have no solution (the thin layer does not apply, the

@@ -91,16 +91,8 @@ def legend(panels) -> None:
 @table(
     "tradeoff",
     "tradeoff",
-    columns=r"""
-    set
-    way
-    setting
-    cases | d
-    time/us | .1f | time/\textmu s
-    error 50% | .1e
-    error 95% | .1e
-    largest | .1e
-    ended | .1%""",
+    columns=r"""set; way; setting; cases | d; time/us | .1f | time/\textmu s
+    error 50% | .1e; error 95% | .1e; largest | .1e; ended | .1%""",
 )
 def rows(found: xr.Dataset) -> list[tuple]:
     """Work and precision: time per case on one thread, error of half and of 95% of the cases, largest error, share of
@@ -120,11 +112,7 @@ def rows(found: xr.Dataset) -> list[tuple]:
     return table
 
 
-@table(
-    "tradeoff_cheapest",
-    "tradeoff",
-    columns="\n".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]),
-)
+@table("tradeoff_cheapest", "tradeoff", columns="; ".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]))
 def cheapest(found: xr.Dataset) -> list[tuple]:
     """Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
     none."""
@@ -144,16 +132,7 @@ def time_to(part: xr.Dataset, target: float) -> float:
     return 1e6 * float(np.min(part["time"].values[reached], initial=np.inf))
 
 
-@table(
-    "tradeoff_factors",
-    "tradeoff",
-    columns="""
-    error | g
-    the paper's way | .3g
-    with
-    Newton | .3g
-    factor | .0f""",
-)
+@table("tradeoff_factors", "tradeoff", columns="error | g; the paper's way | .3g; with; Newton | .3g; factor | .0f")
 def factors(found: xr.Dataset) -> list[tuple]:
     """On the paper's layer: the paper's way at its cheapest beside Newton (rtol), time per case in us.
 

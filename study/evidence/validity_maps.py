@@ -155,10 +155,8 @@ MATERIALS = ("frictionless", "nu=0", "nu=0.3", "nu=0.45")
     "validity",
     "validity",
     "validity_load",
-    columns="\n".join(
-        ["punch", "error in", "given"]
-        + [rf"{name} {level}% | .3g | {name}, {level}\%" for name in MATERIALS for level in (1, 10)]
-    ),
+    columns="punch; error in; given"
+    + "".join(rf"; {name} {level}% | .3g | {name}, {level}\%" for name in MATERIALS for level in (1, 10)),
 )
 def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
     """Largest h/a (0.01 or more) up to which the thin-layer model errs by less than 1% and 10%, n from 0.01 to 0.95;

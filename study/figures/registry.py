@@ -4,6 +4,7 @@
 `table`, and `make`, know a function in one of these rooms without another line anywhere.
 """
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -85,14 +86,14 @@ def table(name: str, *studies: str, columns: str, caption: str = ""):
     """Register `rows(*datasets)`, which gives the table NAME as a list of tuples, one value per column.
 
     studies : names of the studies whose datasets `rows` takes, in this order
-    columns : a line for each column, "heading | format of its numbers | heading in LaTeX"; without a format the cells
-        are text, without a heading in LaTeX it is the plain one
+    columns : "heading | format of its numbers | heading in LaTeX" of each, on lines or separated by "; "; without a
+        format the cells are text, without a heading in LaTeX it is the plain one
     caption : by default the first paragraph of the docstring
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
         check_new(name, rows, TABLES)
-        heads = tuple(column(line) for line in columns.strip().split("\n"))
+        heads = tuple(column(one) for one in re.split(r"\n|(?<!\\); ", columns.strip()))
         TABLES[name] = Table(studies, rows, caption_of(rows, caption), heads)
         return rows
 
@@ -113,9 +114,9 @@ def caption_of(function: Callable, given: str = "") -> str:
     return " ".join((given or (function.__doc__ or "").partition("\n\n")[0]).split())
 
 
-def column(line: str) -> Column:
-    """A line of `columns` of a table."""
-    text, form, latex = (cell.strip() for cell in (line + "||").split("|")[:3])
+def column(given: str) -> Column:
+    """One of the `columns` of a table."""
+    text, form, latex = (cell.strip() for cell in (given + "||").split("|")[:3])
     return Column(text, form or "s", latex or text.replace("%", r"\%"))
 
 

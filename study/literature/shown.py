@@ -91,10 +91,8 @@ def frame(axes, words: str) -> None:
 @table(
     "literature",
     "literature",
-    columns="\n".join(
-        ["formula", "interface", "nu | s | $\\nu$", "constants read in", "1% | s | 1\\%", "5% | s | 5\\%"]
-        + [f"a/h = {x:g} | +.2% | $a/h = {x:g}$" for x in SHOWN_AT]
-    ),
+    columns=r"formula; interface; nu | s | $\nu$; constants read in; 1%; 5%"
+    + "".join(f"; a/h = {x:g} | +.2% | $a/h = {x:g}$" for x in SHOWN_AT),
 )
 def loads(rigid: xr.Dataset) -> list[tuple]:
     """Formulas of the load on a smooth sphere on a layer on a rigid base: the a/h (0.01 to 20) up to which, or from
@@ -117,10 +115,8 @@ def loads(rigid: xr.Dataset) -> list[tuple]:
 @table(
     "literature_coatings",
     "literature_coatings",
-    columns="\n".join(
-        ["formula", "constants read in", "a/h up to | g | $a/h$ up to", "1% | s | 1\\%", "5% | s | 5\\%"]
-        + [f"n = {n:g} | .2% | $n = {n:g}$" for n in SHOWN_N]
-    ),
+    columns="formula; constants read in; a/h up to | g | $a/h$ up to; 1%; 5%"
+    + "".join(f"; n = {n:g} | .2% | $n = {n:g}$" for n in SHOWN_N),
 )
 def stiffnesses(coated: xr.Dataset) -> list[tuple]:
     """Formulas of the stiffness of a smooth contact over 2a on a bonded coating, nu = 0.3: largest error over a/h from
@@ -143,12 +139,7 @@ def stiffnesses(coated: xr.Dataset) -> list[tuple]:
     "literature_decided",
     "literature",
     "literature_coatings",
-    columns="""
-    quantity
-    by
-    says | .4g
-    exact | .5g
-    off by | +.1%""",
+    columns="quantity; by; says | .4g; exact | .5g; off by | +.1%",
 )
 def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
     """Where the literature differs, on a rigid base. c1, c2, c3: coefficients of the load over that of Hertz in powers
@@ -176,17 +167,10 @@ def decided(rigid: xr.Dataset, coated: xr.Dataset) -> list[tuple]:
 @table(
     "literature_rough",
     "literature_rough",
-    columns="""
-    alpha | g | $\\alpha$
-    mu | g | $\\mu$
-    Ra/R | g | $R_a/R$
-    lambda(0) | .2g | $\\lambda(0)$
+    columns=r"""alpha | g | $\alpha$; mu | g | $\mu$; Ra/R | g | $R_a/R$; lambda(0) | .2g | $\lambda(0)$
     p(0), Greenwood and Tripp | .4f | $p(0)$, Greenwood and Tripp
-    p(0), with neighbours | .4f | $p(0)$, with neighbours
-    p(0) off by | +.1% | $p(0)$ off by
-    radius, Greenwood and Tripp | .4f
-    radius, with neighbours | .4f
-    radius off by | +.1%""",
+    p(0), with neighbours | .4f | $p(0)$, with neighbours; p(0) off by | +.1% | $p(0)$ off by
+    radius, Greenwood and Tripp | .4f; radius, with neighbours | .4f; radius off by | +.1%""",
 )
 def rough_spheres(rough: xr.Dataset) -> list[tuple]:
     """A sphere with asperities of normal heights: pressure in the middle and effective radius over those of Hertz, by

@@ -20,14 +20,8 @@ DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
 @table(
     "table1_lattice",
     columns=r"""
-    Ra/R | g | $R_a/R$
-    N R^2 | d | $\bar N R^2$
-    N Ra^2 | g | $\bar N R_a^2$
-    paper's fit off | .1% | paper's fit off
-    disc cell off | .1% | disc cell off
-    B | .3e | $B E_1^{*\beta}/R$
-    beta | .4f | $\beta$
-    error | .1%""",
+    Ra/R | g | $R_a/R$; N R^2 | d | $\bar N R^2$; N Ra^2 | g | $\bar N R_a^2$; paper's fit off | .1%
+    disc cell off | .1%; B | .3e | $B E_1^{*\beta}/R$; beta | .4f | $\beta$; error | .1%""",
 )
 def table1_lattice() -> list[tuple]:
     """Table 1 against asperities on a square lattice, 0.0025 to 0.025 E1*: largest error of the power law with the

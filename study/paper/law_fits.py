@@ -52,16 +52,9 @@ def bound(Ra: float, Nbar: float) -> str:
 @table(
     "table1",
     columns=r"""
-    Ra/R | g | $R_a/R$
-    N R^2 | d | $\bar N R^2$
-    N Ra^2 | g | $\bar N R_a^2$
-    B paper | .1e | $B E_1^{*\beta}/R$ (paper)
-    beta paper | .2f | $\beta$ (paper)
-    error stated
-    error found | .1%
-    B | .3e | $B E_1^{*\beta}/R$
-    beta | .4f | $\beta$
-    error | .1%""",
+    Ra/R | g | $R_a/R$; N R^2 | d | $\bar N R^2$; N Ra^2 | g | $\bar N R_a^2$
+    B paper | .1e | $B E_1^{*\beta}/R$ (paper); beta paper | .2f | $\beta$ (paper); error stated; error found | .1%
+    B | .3e | $B E_1^{*\beta}/R$; beta | .4f | $\beta$; error | .1%""",
 )
 def table1() -> list[tuple]:
     """Power law A = B p^beta fitted to the additional displacement of a rough layer: the paper's constants, the error

@@ -79,13 +79,7 @@ def contacts(load: float) -> dict[str, float]:
 @table(
     "paper_error",
     "tradeoff",
-    columns="""
-    quantity
-    paper | .4g
-    converged | .5g
-    converged off | +.2%
-    iterates | .5g
-    iterates off | +.2%""",
+    columns="quantity; paper | .4g; converged | .5g; converged off | +.2%; iterates | .5g; iterates off | +.2%",
 )
 def rows(found: xr.Dataset) -> list[tuple]:
     """The paper's numbers, the converged ones, and those by two successive iterates of Eq. (8) with k = 0: the load by
@@ -101,11 +95,7 @@ def rows(found: xr.Dataset) -> list[tuple]:
     "paper_numbers",
     "reference_load",
     "main_case",
-    columns="""
-    quantity
-    paper | .4g
-    roughcoat | .5e
-    difference | +.2%""",
+    columns="quantity; paper | .4g; roughcoat | .5e; difference | +.2%",
 )
 def paper_numbers(reference: xr.Dataset, main: xr.Dataset) -> list[tuple]:
     """Numbers printed in the paper and the converged ones of the same model.

@@ -35,24 +35,7 @@ MODELS = {
     "layered": "the exact layered half-space under the asperities",
     "smooth_layered": "the exact layered half-space, without asperities",
 }
-BROKEN = {
-    "layer_not_thin": f"The layer is not thin: the thin-layer equation errs by more than {derived.NOT_THIN:.0%} here. "
-    'Take base = "layered".',
-    "few_spots": f"Fewer than {derived.FEW_SPOTS:.0f} asperities touch: the model, which spreads them "
-    "evenly, describes an average over many contacts.",
-    "spot_not_small_against_h": f"The contact spots are not small against the layer (b > {derived.SPOT_OVER_LAYER:g} "
-    "h): they feel the body below, and the asperities' part is only roughly right.",
-    "n_not_below_one": "The layer is not softer than the body (n >= 1), which the paper's thin layer assumes. Take "
-    'base = "layered".',
-    "spots_merging": f"The contact spots merge (λ(0) > {derived.MERGING:g}): the micro law, which spreads the pressure "
-    "around a spot evenly, overestimates what the asperities yield by 10 % or more.",
-    "strain_not_small": f"The strain is not small (a > {derived.STEEP:g} R, or the layer gives way by more than "
-    f"{derived.COMPRESSED:.0%}, or is stretched like a membrane): linear elasticity is roughly right at best.",
-    "asperity_strain_not_small": f"The strain under the asperities is not small (b > {derived.STEEP_SPOT:g} Ra, or "
-    "pmax as of such a spot): most materials yield before that, and pmax is larger than any real pressure.",
-    "pitch_not_small_against_h": f"The asperities are far apart against the layer (1/sqrt(Nbar) > "
-    f"{derived.PITCH_OVER_LAYER:g} h): it bends between them, which the law of the asperities leaves out.",
-}
+BROKEN = derived.assumption_texts("sentence")
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers). \
 Yield strengths and adhesion are not checked (Limits)."
 WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of its radius), as in a cup that fits \

@@ -4,8 +4,10 @@ Every function takes an opened dimensionless dataset and returns a DataArray who
 vocabulary.
 """
 
+import tomllib
 from collections.abc import Callable, Mapping
 from functools import wraps
+from importlib.resources import files
 
 import numpy as np
 import xarray as xr
@@ -42,16 +44,13 @@ STEEP_SPOT = 0.5
 and p_max = 0.32 E1* is above the hardness of any metal."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset, of each formula with the decorator `quantity`. They can be drawn like results."""
-ASSUMPTIONS = {
-    1: "layer_not_thin",
-    2: "few_spots",
-    4: "spot_not_small_against_h",
-    8: "n_not_below_one",
-    16: "spots_merging",
-    32: "strain_not_small",
-    64: "asperity_strain_not_small",
-    128: "pitch_not_small_against_h",
-}
+_TEXTS = tomllib.loads((files(__package__) / "assumptions.toml").read_text(encoding="utf-8"))
+ASSUMPTIONS = {1 << i: name for i, name in enumerate(_TEXTS)}
+
+
+def assumption_texts(key: str) -> dict[str, str]:
+    """Name of each assumption -> one of its texts in assumptions.toml, with the limits in it; "" where it has none."""
+    return {name: own.get(key, "").format(**globals(), percent=100 * NOT_THIN) for name, own in _TEXTS.items()}
 
 
 def validity(dataset: xr.Dataset) -> xr.DataArray:

@@ -7,19 +7,7 @@ from matplotlib.patheffects import withStroke
 from ..data import derived
 from ..data.dataset import broken
 
-ASSUMPTION_TEXT = {
-    "layer_not_thin": f"layer not thin, error > {derived.NOT_THIN * 100:g} %",
-    "few_spots": f"fewer than {derived.FEW_SPOTS:g} spots",
-    "spot_not_small_against_h": rf"spots not small, $b > {derived.SPOT_OVER_LAYER:g}\,h$",
-    "n_not_below_one": r"layer not soft, $n \geq 1$",
-    "spots_merging": rf"spots merge, $\lambda(0) > {derived.MERGING:g}$",
-    "strain_not_small": rf"$a > {derived.STEEP:g}\,R$ or layer strained",
-    "asperity_strain_not_small": rf"spots steep, $b > {derived.STEEP_SPOT:g}\,R_a$",
-    "pitch_not_small_against_h": rf"asperities far apart, pitch $> {derived.PITCH_OVER_LAYER:g}\,h$",
-}
-OF_WHICH = {"layer_not_thin": " in $a$, $D$, $p(0)$, $p_{\\max}$ or $A_r/A_n$"}
-"""What a note above the axes adds to the text of an assumption; a legend has no room for it."""
-GREYS = dict(zip(ASSUMPTION_TEXT, ("0.87", "0.74", "0.8", "0.93", "0.83", "0.9", "0.78", "0.71"), strict=True))
+ASSUMPTION_TEXT, OF_WHICH, GREYS = (derived.assumption_texts(key) for key in ("text", "of_which", "grey"))
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
@@ -86,7 +74,7 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 
 def note(axes, everywhere: dict[str, dict]) -> None:
     """Write above the axes a line for each assumption: assumption -> the curves that break it everywhere, by name."""
-    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH.get(meaning, '')}"
+    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH[meaning]}"
              for meaning, curves in everywhere.items()]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 

@@ -28,10 +28,8 @@ for _room in (figures, paper, literature, evidence):
 
 FIGURE, SCHEME, TABLE = ("csv", "pdf", "png"), ("svg", "pdf", "png"), ("txt", "csv", "tex")
 """Endings of the files of a figure, a scheme and a table."""
-CAPTIONS = "captions"
-"""Name among the figures of the file that holds all captions."""
-LETTERS = 21
-"""Letters on an inch of the line above a figure that states its parameters."""
+CAPTIONS = "captions"  # name among the figures of the file that holds all captions
+LETTERS = 21  # letters on an inch of the line above a figure that states its parameters
 LONG = ("extremes", "extremes_layered", "picard_domain", "tradeoff")
 """Studies that take minutes to compute: `make figures` goes without them."""
 

@@ -19,8 +19,7 @@ from .specimen.roughness import looks_like_iso_ra
 
 MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
-#: What `error` is the largest error of.
-_JUDGED = tuple(name for name in SHOWN if name != "dP_dD")
+_JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is the largest error of
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.

@@ -25,8 +25,7 @@ SPOT_OVER_LAYER = 0.1
 PITCH_OVER_LAYER = 2.0
 """A layer bends between asperities whose pitch 1/sqrt(N̄) is larger than this times h. A[p] then errs: by up to 2.4 %
 where the pitch is 2 h, by up to 11 % where it is 3 h (`make validate`, docs/validate.md)."""
-NOT_THIN = 0.1
-"""Largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %."""
+NOT_THIN = 0.1  # largest model error of a thin layer: `make validity` prints and draws where it reaches these 10 %
 MERGING = 0.4
 """Largest λ(0) of spots that do not merge: the disc cell then overestimates A[p] by 10 % against a square lattice of
 asperities and by 11 % against a hexagonal one, λ and p_max err by 3 % (tests/laws/test_micro_lattice.py)."""

@@ -11,10 +11,8 @@ from matplotlib.ticker import LogFormatterMathtext
 
 from ..figures.registry import TWO_COLUMNS, Columns, figure, joined
 
-MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))
-"""β and number of nodes of each map."""
-SHARES = (1e-2, 1e-4)
-"""Each p/p(0) at which a line A'(p) = (1 + 2k) C is drawn."""
+MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))  # β and number of nodes of each map
+SHARES = (1e-2, 1e-4)  # each p/p(0) at which a line A'(p) = (1 + 2k) C is drawn
 LARGEST = 0.57021276802733
 """Largest eigenvalue, over 4/π, of the operator p -> u(r) - u(1) of the half-space on a contact of radius 1, from
 tests/evidence/test_picard_domain.py, which computes it of the matrix."""

@@ -27,8 +27,7 @@ from .problem_sets import SETS
 REFERENCE = 1e-11
 ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
 X = np.array([0.0, 1.0])
-PATIENCE = 1.0
-"""Seconds after which a measurement is not repeated."""
+PATIENCE = 1.0  # seconds after which a measurement is not repeated
 
 PAPERS = ("paper, layer", "paper, half-space")
 TOLERANCES = tuple(10.0**-i for i in range(2, 10))

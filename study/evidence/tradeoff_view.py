@@ -6,8 +6,7 @@ from matplotlib.lines import Line2D
 
 from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 
-FLOOR = 1e-12
-"""Smaller errors are drawn here: they are those of the reference."""
+FLOOR = 1e-12  # smaller errors are drawn here: they are those of the reference
 TIMES = (5.0, 4e6)  # µs, ends of the abscissa
 DRAWN = {
     "paper k = 5": ("the paper's way, $k$ = 5", "#a63603", "D"),
@@ -21,13 +20,10 @@ DRAWN = {
 Tables and CSV have all ways."""
 MODELS = {"the other law": "power law for the exact law", "the other layer": "thin layer for the exact layer"}
 MODEL_LINE = {"color": "0.35", "linewidth": 0.8, "linestyle": (0, (4, 2)), "zorder": 0}
-SETTLED = 0.99
-"""From this share of ended cases on a mark is filled."""
-REACHED = 0.95
-"""A setting reaches a target when this share of the cases ends and 95 % of all are within it."""
+SETTLED = 0.99  # from this share of ended cases on a mark is filled
+REACHED = 0.95  # a setting reaches a target when this share of the cases ends and 95 % of all are within it
 TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
-ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)
-"""Errors at which the paper's way is compared with Newton."""
+ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # errors at which the paper's way is compared with Newton
 
 
 @figure("tradeoff", "tradeoff", size=(TWO_COLUMNS, 6.4), panels=(2, 2))

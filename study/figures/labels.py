@@ -12,11 +12,9 @@ from ..spec.vocabulary import VOCABULARY, over_scale
 from ..specimen import quantities
 from ..specimen.quantities import READABLE, readable
 
-TIMES = r"\,"
-"""What is written between two factors, in mathtext."""
+TIMES = r"\,"  # what is written between two factors, in mathtext
 GREEK = {"α": r"\alpha ", "β": r"\beta ", "λ": r"\lambda ", "ν": r"\nu ", "π": r"\pi ", "σ": r"\sigma ", "²": "^2"}
-UNITS = {"B": r"R_a/E_1^{*\beta}"}
-"""Units of parameters whose scale is not made of E2* and R."""
+UNITS = {"B": r"R_a/E_1^{*\beta}"}  # units of parameters whose scale is not made of E2* and R
 
 
 def symbol(name: str) -> str:

@@ -8,8 +8,7 @@ from ..figures.registry import pick
 from . import formulas
 from .formulas import Formula
 
-LEVELS = (0.01, 0.05)
-"""Errors for which the tables state the ranges of a/h."""
+LEVELS = (0.01, 0.05)  # errors for which the tables state the ranges of a/h
 SERIES_UP_TO = 0.15
 """a/h below which the series of F/F_H is fitted: with degree 6 the first two coefficients agree with those known in
 closed form to 1e-4 (tests/literature/test_literature.py)."""

@@ -37,8 +37,7 @@ DERIVED = "derived here from L at small u"
 
 DIMITRIADIS, GARCIA = (1.133, 1.283, 0.769, 0.0975), (1.133, 1.497, 1.469, 0.755)
 """c1 to c4 of a bonded layer of ν = 1/2."""
-ALPHA_LOOSE = -0.347
-"""The first factor of α0 of Dimitriadis et al. for a loose layer."""
+ALPHA_LOOSE = -0.347  # the first factor of α0 of Dimitriadis et al. for a loose layer
 
 
 def series(*coefficients: float) -> Callable:

@@ -7,11 +7,9 @@ from matplotlib.ticker import FuncFormatter
 from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 from . import compared, formulas
 
-SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)
-"""a/h whose errors the table tells."""
+SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h whose errors the table tells
 SHOWN_N = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)
-THIN_TO = (2.0, 20.0)
-"""Largest a/h over which the formulas of the stiffness are judged."""
+THIN_TO = (2.0, 20.0)  # largest a/h over which the formulas of the stiffness are judged
 INTERFACES = ((True, 0.5, r"rigid base, bonded, $\nu = 1/2$"), (False, 0.3, "rigid base, frictionless"))
 STYLES = {
     "Hertz": ("0.45", "-"),

@@ -27,8 +27,7 @@ NUMBERS = {
 }
 """Sections 4.1 to 5 of the paper; the load of all contacts is that of the first line."""
 
-ERROR_INTERVAL = (0.0025, 0.025)
-"""Pressures in E1* over which the paper states the errors of its fits."""
+ERROR_INTERVAL = (0.0025, 0.025)  # pressures in E1* over which the paper states the errors of its fits
 
 ERROR_BOUNDS = {4.0: 0.08, 1.0: 0.05, 0.25: 0.05}
 """N̄Ra² of a row of Table 1: what the error of its fit does not exceed. The paper prints the two bounds, no more; that

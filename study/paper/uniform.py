@@ -18,8 +18,7 @@ from solver.threads import one_blas_thread
 LIMIT, LIMIT_RELAXED = 200, 40
 """Most approximations at one radius: LIMIT, or LIMIT_RELAXED (1 + k) if that is more, since relaxation slows them by
 1 + k. Cases that take more end in a cycle."""
-ROWS = 64
-"""Rows of the operator that are formed at a time. All at once would take 0.5 GB on 1100 intervals."""
+ROWS = 64  # rows of the operator that are formed at a time. All at once would take 0.5 GB on 1100 intervals
 
 
 UniformMesh = namedtuple("UniformMesh", "x w K")

@@ -83,8 +83,12 @@ def draw(name: str, results="results", folder="figures") -> list[Path]:
     A scheme is copied as .svg, .pdf and .png; "captions" is FOLDER/captions.md. The same datasets give the same bytes:
     no file carries a date. Raises what `compose` raises.
     """
-    if name in SCHEMES:
-        return copied(name, Path(folder))
+    if name in SCHEMES:  # it stands in the package as it is: the .svg is the original, to be edited by hand
+        paths = [Path(folder) / f"{name}.{kind}" for kind in SCHEME]
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        for path in paths:
+            path.write_bytes((files(paper) / "schemes" / path.name).read_bytes())
+        return paths
     if name == CAPTIONS:
         return [write_text(Path(folder) / "captions.md", captions(results))]
     return save(Path(folder) / name, *compose(name, results))
@@ -99,15 +103,6 @@ def captions(results="results") -> str:
             given = ", ".join(stated(open_studies(name, FIGURES, results)))
             lines.append(f"**{name}.** {recipe.caption}{f' Parameters: {given}.' if given else ''}\n")
     return "\n".join(lines)
-
-
-def copied(name: str, folder: Path) -> list[Path]:
-    """Copies of a scheme, which stands in the package as it is: the .svg is the original, to be edited by hand."""
-    folder.mkdir(parents=True, exist_ok=True)
-    paths = [folder / f"{name}.{kind}" for kind in SCHEME]
-    for path in paths:
-        path.write_bytes((files(paper) / "schemes" / path.name).read_bytes())
-    return paths
 
 
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:

@@ -24,16 +24,14 @@ _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is th
 _OF_ASPERITIES = ("p_max", "Ar_An")
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
 _OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta")
-MODELS = {
-    "half_space": "a half-space under the asperities",
-    "smooth_half_space": "a half-space, without asperities",
-    "layer_alone": "a half-space of the layer's material under the asperities",
-    "smooth_layer_alone": "a half-space of the layer's material, without asperities",
-    "thin_layer": "the thin-layer equation under the asperities",
-    "smooth_thin_layer": "the thin-layer equation, without asperities",
-    "layered": "the exact layered half-space under the asperities",
-    "smooth_layered": "the exact layered half-space, without asperities",
+_BASES = {
+    "half_space": "a half-space",
+    "layer_alone": "a half-space of the layer's material",
+    "thin_layer": "the thin-layer equation",
+    "layered": "the exact layered half-space",
 }
+MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
+MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 BROKEN = derived.assumption_texts("sentence")
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers). \
 Yield strengths and adhesion are not checked (Limits)."

@@ -27,18 +27,11 @@ def coatings(size: int, seed: int) -> dict:
     random = np.random.default_rng(seed)
     Ra, density = _between(random, 5e-4, 1e-2, size), random.integers(len(DENSITIES), size=size)
     B, beta, _ = np.array([fit_power_law(value) for value in DENSITIES]).T[:, density]
-    return {
-        "P": _between(random, 1e-7, 1e-3, size),
-        "h": _between(random, 1e-3, 0.1, size),
-        "n": _between(random, 1e-3, 1e3, size),
-        "bonding": random.choice(["frictionless", "bonded"], size),
-        "Ra": Ra,
-        "Nbar": np.array(DENSITIES)[density] / Ra**2,
-        "B": B,
-        "beta": beta,
-        "base": np.full(size, "layered"),
-        "micro": np.full(size, "disc_cell"),
-    }
+    found = {"Ra": Ra, "Nbar": np.array(DENSITIES)[density] / Ra**2, "B": B, "beta": beta}
+    ranges = {"P": (1e-7, 1e-3), "h": (1e-3, 0.1), "n": (1e-3, 1e3)}
+    found |= {name: _between(random, *ends, size) for name, ends in ranges.items()}
+    found |= {"bonding": random.choice(["frictionless", "bonded"], size)}
+    return found | {"base": np.full(size, "layered"), "micro": np.full(size, "disc_cell")}
 
 
 def extremes(size: int, seed: int) -> dict:
@@ -47,14 +40,11 @@ def extremes(size: int, seed: int) -> dict:
     The exact layer is left out: it takes seconds a case at the tolerance of the reference. `make extremes` has it.
     """
     random = np.random.default_rng(seed)
-    Ra = _between(random, 1e-5, 0.1, size)
-    return {
-        "P": _between(random, 1e-12, 0.1, size),
-        "h": _between(random, 1e-8, 1e3, size),
-        "n": _between(random, 1e-6, 0.999999, size),
+    ranges = {"Ra": (1e-5, 0.1), "P": (1e-12, 0.1), "h": (1e-8, 1e3), "n": (1e-6, 0.999999)}
+    found = {name: _between(random, *ends, size) for name, ends in ranges.items()}
+    return found | {
         "bonding": random.choice(["frictionless", "bonded"], size),
-        "Ra": Ra,
-        "Nbar": _between(random, 1e-6, 1e6, size) / Ra**2,
+        "Nbar": _between(random, 1e-6, 1e6, size) / found["Ra"] ** 2,
         "B": _between(random, 1e-2, 10, size),
         "beta": random.uniform(0.3, 0.95, size),
         "base": random.choice(["half_space", "thin_layer"], size),

@@ -38,7 +38,12 @@ def work_precision(panels, found: xr.Dataset) -> Columns:
             part = here.sel(way=way).dropna("step", subset=["time"])
             curve(axes, 1e6 * part["time"].values, part["most"].values, part["ended"].values, colour, mark)
         for way, words in MODELS.items():
-            model_line(axes, here.sel(way=way), words)
+            error = float(here["median"].sel(way=way)[0])
+            if np.isfinite(error):
+                axes.axhline(error, **MODEL_LINE)
+                text = f"{words.partition(' for')[0]}: {error:.1%}"
+                axes.annotate(text, (0.02, error), (0, 1.5), xycoords=("axes fraction", "data"), ha="left", va="bottom",
+                              textcoords="offset points", fontsize=6.5, color="0.25")  # fmt: skip
         axes.set(xscale="log", yscale="log", xlim=TIMES, ylim=(FLOOR / 2, 3))
         axes.set_yticks(10.0 ** np.arange(-12, 1, 3))
     for axes in panels[-1]:
@@ -57,17 +62,6 @@ def curve(axes, time, error, ended, colour: str, mark: str) -> None:
         size = 7 if mark == "*" else 4
         style = {"markersize": size, "markerfacecolor": face, "markeredgewidth": 0.8}
         axes.plot(time[where], error[where], mark, color=colour, linestyle="none", **style)
-
-
-def model_line(axes, part: xr.Dataset, words: str) -> None:
-    """A line across the panel at the median difference of two models."""
-    error = float(part["median"][0])
-    if not np.isfinite(error):
-        return
-    axes.axhline(error, **MODEL_LINE)
-    text = f"{words.partition(' for')[0]}: {error:.1%}"
-    axes.annotate(text, (0.02, error), (0, 1.5), xycoords=("axes fraction", "data"), textcoords="offset points",
-                  ha="left", va="bottom", fontsize=6.5, color="0.25")  # fmt: skip
 
 
 def legend(panels) -> None:

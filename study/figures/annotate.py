@@ -17,16 +17,8 @@ def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", 
     """
     heights = [np.interp(at, *line.get_data()) for line in lines]
     gap, anchor, height = (2, "bottom", max(heights)) if side == "above" else (-2, "top", min(heights))
-    axes.annotate(
-        text,
-        (at, height),
-        (0, gap),
-        textcoords="offset points",
-        ha=align,
-        va=anchor,
-        color=lines[0].get_color(),
-        path_effects=[withStroke(linewidth=2, foreground="white")],
-    )
+    look = {"ha": align, "va": anchor, "color": lines[0].get_color(), "textcoords": "offset points"}
+    axes.annotate(text, (at, height), (0, gap), path_effects=[withStroke(linewidth=2, foreground="white")], **look)
 
 
 def load_axis(axes, largest: float, P0: float) -> None:

@@ -129,20 +129,10 @@ def gao_weight(x, nu):
     return 2 / np.pi * np.arctan(1 / x) + far / (2 * np.pi * (1 - nu))
 
 
-def gao(x, n, nu):
-    """E_eff/E2* = 1 + (n - 1) φ0."""
-    return 1 + (n - 1) * gao_weight(x, nu)
-
-
 def hay_crawford(x, n, nu, F=0.0626):
     """Hay and Crawford 2011: 1/E_eff = (1 - φ0)/(1 + F φ0 n) + φ0/n, of equal Poisson ratios."""
     share = gao_weight(x, nu)
     return 1 / ((1 - share) / (1 + F * share * n) + share / n)
-
-
-def bec(x, n, nu):
-    """Bec et al. 2006: layer and half-space as two springs in series."""
-    return 1 / (1 / (n * (1 + np.pi * x / 2)) + 1 / (1 + 2 / (np.pi * x)))
 
 
 def perriot_barthel(x, n, nu):
@@ -157,11 +147,12 @@ def doerner_nix(x, n, nu, alpha):
 
 
 STIFFNESSES = {
-    "Gao, Chiu and Lee 1992": (gao, NIMS),
+    "Gao, Chiu and Lee 1992": (lambda x, n, nu: 1 + (n - 1) * gao_weight(x, nu), NIMS),
     "Hay and Crawford 2011, F = 0.0626": (hay_crawford, NIMS),
     "Hay and Crawford 2011, F = 0.626": (lambda x, n, nu: hay_crawford(x, n, nu, 0.626), "an older file of NIMS"),
     "Perriot and Barthel 2004": (perriot_barthel, NIMS + "; the exponent from its plotting script"),
-    "Bec et al. 2006": (bec, NIMS),
+    # layer and half-space as two springs in series
+    "Bec et al. 2006": (lambda x, n, nu: 1 / (1 / (n * (1 + np.pi * x / 2)) + 1 / (1 + 2 / (np.pi * x))), NIMS),
 }
 """Name -> (x, n, ν) -> E_eff/E2* on a bonded layer, and where its constants were read."""
 

@@ -23,16 +23,15 @@ for the curves named in the legend."""
 PAPER_LABEL = "thin layer (the paper)"
 
 
-def with_companion(name: str, *studies: str, more: str = "", height: float = 3.0):
+def with_companion(name: str, *studies: str, words: str = "", height: float = 3.0):
     """Register `draw(axes, *datasets, exact)` as the figure NAME and, with exact = True, as its companion.
 
-    more : what the caption of both has after the docstring; what holds for the layer is added
+    words : the caption of both, by default the docstring; what holds for the layer is added
     """
 
     def register(draw):
         for suffix, exact in (("", False), ("_layered", True)):
-            layer = LAYER_EXACT if exact else LAYER_THIN
-            caption = f"{caption_of(draw)} {more} {layer}"
+            caption = f"{caption_of(draw, words)} {LAYER_EXACT if exact else LAYER_THIN}"
             named = figure(name + suffix, *studies, size=(ONE_COLUMN, height), caption=caption)
             named(partial(draw, exact=exact))
         return draw
@@ -108,14 +107,9 @@ def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     return pressures(axes, shown, float(paper[0]["a"]), PAPER_LABEL * exact)
 
 
-def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, label: str, sides: dict[str, str],
-                 exact: bool, scale: float = 1.0) -> Columns:  # fmt: skip
-    """One quantity over `scale` of the curves named in `sides` against the load; P0 marked, loads shaded where an
-    assumption fails.
-
-    data : datasets load_sweep and main_case; label : of the ordinate
-    """
-    sweep, main = data
+def against_load(axes, sweep: xr.Dataset, main: xr.Dataset, what: tuple, exact: bool) -> Columns:
+    """One quantity against the load; P0 marked, loads shaded where an assumption fails. what : see AGAINST_LOAD"""
+    quantity, scale, label, sides = what
     P, columns, first = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}, {}
     for curve, side in sides.items():
         cases = cases_of(sweep, curve, exact)
@@ -135,25 +129,18 @@ def against_load(axes, data: tuple[xr.Dataset, xr.Dataset], quantity: str, label
     return columns
 
 
-@with_companion("fig04", "load_sweep", "main_case", more=OVER_LOADS)
-def contact_area(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Real over nominal contact area against the load."""
-    return against_load(axes, data, "Ar_An", "$A_r/A_n$", {"1": "above", "2": "below"}, exact)
-
-
-@with_companion("fig05", "load_sweep", "main_case", more=OVER_LOADS)
-def largest_pressure(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Largest real pressure in the middle of the contact against the load."""
-    return against_load(axes, data, "p_max", r"$p_{\max}/E_2^*$", {"1": "below", "2": "below"}, exact)
-
-
-@with_companion("fig06", "load_sweep", "main_case", more=OVER_LOADS)
-def depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Depth of the rough punch against the load."""
-    return against_load(axes, data, "D", DEPTH, {"1": "above", "2": "below"}, exact, 1e-3)
-
-
-@with_companion("fig08", "load_sweep", "main_case", more=OVER_LOADS, height=3.6)
-def rough_and_smooth_depth(axes, *data: xr.Dataset, exact: bool) -> Columns:
-    """Depth of the rough punch, and of the smooth one (primes), against the load."""
-    return against_load(axes, data, "D", DEPTH, {"1": "above", "2": "above", "1′": "below", "2′": "below"}, exact, 1e-3)
+AGAINST_LOAD = {
+    "fig04": ("Real over nominal contact area against the load.",
+              "Ar_An", 1.0, "$A_r/A_n$", {"1": "above", "2": "below"}),
+    "fig05": ("Largest real pressure in the middle of the contact against the load.",
+              "p_max", 1.0, r"$p_{\max}/E_2^*$", {"1": "below", "2": "below"}),
+    "fig06": ("Depth of the rough punch against the load.",
+              "D", 1e-3, DEPTH, {"1": "above", "2": "below"}),
+    "fig08": ("Depth of the rough punch, and of the smooth one (primes), against the load.",
+              "D", 1e-3, DEPTH, {"1": "above", "2": "above", "1′": "below", "2′": "below"}),
+}  # fmt: skip
+"""Figure -> caption, quantity, its unit and label on the ordinate, curves and on which side of them their names are."""
+for _name, (_words, *_what) in AGAINST_LOAD.items():
+    _height = 3.6 if _name == "fig08" else 3.0  # it has four curves
+    _register = with_companion(_name, "load_sweep", "main_case", words=f"{_words} {OVER_LOADS}", height=_height)
+    _register(partial(against_load, what=tuple(_what)))

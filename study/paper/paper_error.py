@@ -68,12 +68,8 @@ def contacts(load: float) -> dict[str, float]:
     """The numbers of Section 5 by converged solutions under one load, keys of `numbers.NUMBERS`."""
     changes = {}, {"base": "half_space"}, {"micro": "smooth"}
     layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
-    return {
-        **{name: float(getattr(layered, name)[0]) for name in SHARED},
-        "An_ratio": float(bare.a[0] / RADIUS) ** 2,
-        "D smooth layered": float(smooth.D[0]),
-        "D smooth homogeneous": float(hertz(P=load).D),
-    }
+    found = {name: float(getattr(layered, name)[0]) for name in SHARED} | {"An_ratio": float(bare.a[0] / RADIUS) ** 2}
+    return found | {"D smooth layered": float(smooth.D[0]), "D smooth homogeneous": float(hertz(P=load).D)}
 
 
 @table(

@@ -146,10 +146,7 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
 
 
 def dry_run(definition: Definition, results="results", *, workers=None, yes=False, force=False) -> Estimate:
-    """What `run` would cost, how many cases it would find computed, and whether it would be refused. Writes nothing.
-
-    Raises StudyError when the study is very large and there are results or blocks to look through, and no `yes`.
-    """
+    """As `study.api.Study.dry_run`."""
     order = Order(definition, Path(results))
     found = look(order.store)
     if order.done(found):

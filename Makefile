@@ -65,7 +65,7 @@ picard_domain: figures/picard_domain.pdf ## where the paper's successive approxi
 literature: figures/literature.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
 	$(RUN) table --run literature literature_coatings literature_decided literature_rough
 	@cp figures/literature.png docs/
-	$(RUN).literature.page docs/literature.md
+	$(VENV)/bin/python tests/literature_page.py docs/literature.md
 
 validate: $(READY) ## rough spheres with every asperity resolved beside the two scales: docs/validate.md, .nc, .png
 	$(VENV)/bin/python tests/validate.py docs

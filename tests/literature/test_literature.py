@@ -7,6 +7,7 @@ import pages
 import pytest
 import xarray as xr
 from conftest import opened
+from literature_page import page
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
@@ -15,7 +16,6 @@ from solver import Problem, solve
 from solver.body.kernel import layered_kernel
 from study.figures.registry import TABLES
 from study.literature import compared, formulas
-from study.literature.page import page
 from study.literature.shown import SHOWN_AT
 
 A = 0.01

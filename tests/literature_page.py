@@ -1,12 +1,12 @@
-"""The tables of the page docs/literature.md; its words are written there by hand."""
+"""`python tests/literature_page.py docs/literature.md` writes the tables of that page; its words are written by hand."""
 
 import re
 import sys
 from pathlib import Path
 
-from ..figures.formats import formatted
-from ..figures.registry import TABLES, open_studies
-from . import shown  # noqa: F401  which puts the tables into the register
+from study.figures.formats import formatted
+from study.figures.registry import TABLES, open_studies
+from study.literature import shown  # noqa: F401  which puts the tables into the register
 
 
 def markdown(name: str, results) -> str:

@@ -1,4 +1,4 @@
-"""`python tests/literature_page.py docs/literature.md` writes the tables of that page; its words are written by hand."""
+"""The tables of docs/literature.md, whose words are written there by hand: `make literature` runs this."""
 
 import re
 import sys

@@ -113,10 +113,8 @@ def _given(case: xr.Dataset, name: str) -> str:
     if isinstance(value, (str, np.str_)):
         return f"{name} of {value}" if name in BODIES else str(value).replace("_", " ") + assumed
     text = f"{name} = {_text(case, name, float(value), _spread(case, name))}"
-    unit = " Ra/E1*^beta" if name == "B" else ""
-    return (
-        text + unit + assumed + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
-    )
+    text += " Ra/E1*^beta" * (name == "B") + assumed
+    return text + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
 
 
 def _text(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:

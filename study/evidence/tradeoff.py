@@ -145,9 +145,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, com
     return assembled(found, counts, ways, size, command)
 
 
-def measured(
-    way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies: int = 1
-) -> dict[str, float]:
+def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies=1) -> dict[str, float]:
     """What WORDS lists, for one way and setting, with `copies` of the cases timed together."""
     way.prepare(setting)
     whole, reference = taken(cases, reference, np.tile(np.arange(len(reference.a)), copies))

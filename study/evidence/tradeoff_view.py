@@ -70,10 +70,8 @@ def legend(panels) -> None:
         Line2D([], [], color=colour, marker=mark, markersize=6 if mark == "*" else 4, linewidth=0.9, label=name)
         for name, colour, mark in DRAWN.values()
     ]
-    words = "open: fewer than 99 % ended"
-    handles.append(
-        Line2D([], [], color="0.3", marker="o", markerfacecolor="white", markersize=4, linewidth=0, label=words)
-    )
+    hollow = {"color": "0.3", "marker": "o", "markerfacecolor": "white", "markersize": 4, "linewidth": 0}
+    handles.append(Line2D([], [], label="open: fewer than 99 % ended", **hollow))
     handles.append(Line2D([], [], label="a simpler model: error of half the cases", **MODEL_LINE))
     panels[0, 0].figure.legend(handles=handles, loc="outside lower center", ncols=3, fontsize=7.5)
 
@@ -95,10 +93,8 @@ def rows(found: xr.Dataset) -> list[tuple]:
                 here = part.isel(step=step)
                 errors = [float(here[key]) for key in ("median", "most", "worst")]
                 setting = f"{str(here['varied'].values)} {float(here['setting']):g}"
-                words = MODELS.get(way, way)
-                table.append(
-                    (name, words, setting, int(here["cases"]), 1e6 * float(here["time"]), *errors, float(here["ended"]))
-                )
+                numbers = int(here["cases"]), 1e6 * float(here["time"]), *errors, float(here["ended"])
+                table.append((name, MODELS.get(way, way), setting, *numbers))
     return table
 
 
@@ -142,6 +138,5 @@ def columns(found: xr.Dataset) -> Columns:
     """What the figure shows, as numbers: set and way by their place."""
     known = np.isfinite(found["time"].values)
     i, j, _ = np.nonzero(known)
-    return {"set": i, "way": j, "cases": found["cases"].values[i, j]} | {
-        name: found[name].values[known] for name in ("setting", "time", "median", "most", "worst", "ended")
-    }
+    cells = {name: found[name].values[known] for name in ("setting", "time", "median", "most", "worst", "ended")}
+    return {"set": i, "way": j, "cases": found["cases"].values[i, j]} | cells

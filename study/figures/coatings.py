@@ -73,9 +73,7 @@ def decorate(panels, found: xr.Dataset) -> None:
             axes.set_ylim(min(low), max(high))
     for axes in panels[-1]:
         axes.set_xlabel("$a/h$")
-    handles = [
-        Line2D([], [], color=COLOURS[n], linewidth=1.3, label=f"$n = {power(n)}$") for n in found["n"].values.tolist()
-    ]
+    handles = [Line2D([], [], color=COLOURS[n], linewidth=1.3, label=f"$n = {power(n)}$") for n in found["n"].values]
     handles.append(Line2D([], [], color="0.2", linewidth=0.8, linestyle=DASHES, label="smooth punch"))
     handles.append(Line2D([], [], color="0.2", linewidth=0.9, alpha=PALE, label="outside validity"))
     P = rf"$P/(E_2^* R^2)$ from {written(float(found['P'][0]))} to {written(float(found['P'][-1]))}"

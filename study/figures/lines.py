@@ -167,7 +167,7 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
     x, y, hue, along = names
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
-    for i in range(len(colours)):
+    for i, colour in enumerate(colours):
         one = case.isel({hue: i}) if hue else case
         across, up = (np.broadcast_to(one[name].values, one.sizes[along]) for name in (x, y))
         valid = np.ones(len(up), bool)
@@ -175,11 +175,9 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             valid = np.broadcast_to(one["validity"].values == 0, len(up))
         spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{y}_spread",) if name in one}
         for half in spread.values():
-            axes.fill_between(
-                across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colours[i], **BAND
-            )
-        axes.plot(across / sizes[0], up / sizes[1], color=colours[i], **NOT_VALID)
-        axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colours[i], linestyle="-")
+            axes.fill_between(across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND)
+        axes.plot(across / sizes[0], up / sizes[1], color=colour, **NOT_VALID)
+        axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colour, linestyle="-")
         fixed = {
             name: np.full(len(up), array.item())
             for name, array in one.coords.items()

@@ -156,9 +156,8 @@ def _split(file: File, lines: dict[str, str]) -> tuple[list[str], list[str]]:
         return list(there), []
     coordinates = coordinates_of(file)
     known = names("control", "result", "profile", "flag", "count")
-    return [name for name in coordinates if name in there], [
-        name for name in known if name in there and name not in coordinates
-    ]
+    over = [name for name in known if name in there and name not in coordinates]
+    return [name for name in coordinates if name in there], over
 
 
 def coordinates_of(file: File) -> set[str]:

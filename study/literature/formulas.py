@@ -5,29 +5,16 @@ rigid base. A formula of the stiffness is E_eff = (dP/dD)/(2a), the modulus that
 feels, over x = a/h: in E1* on a rigid base, in E2* on a half-space with n = E1*/E2*.
 """
 
+from collections import namedtuple
 from collections.abc import Callable
 from functools import partial
 from importlib.resources import files
-from typing import NamedTuple
 
 import numpy as np
 
-
-class Formula(NamedTuple):
-    """One formula, of one interface.
-
-    name : authors and year; of : (χ, ν) -> F/F_H; read : where its constants were read
-    bonded : the interface; nu : Poisson ratios of the layer for which it is made; thin : whether it is the limit h << a
-    """
-
-    name: str
-    of: Callable
-    bonded: bool
-    nu: tuple[float, ...]
-    read: str
-    thin: bool = False
-
-
+Formula = namedtuple("Formula", "name of bonded nu read thin", defaults=(False,))
+"""One formula. name : authors and year; of : (χ, ν) -> F/F_H; bonded : the interface; nu : Poisson ratios of the layer
+for which it is made; read : where its constants were read; thin : whether it is the limit h << a"""
 ATOMICJ = "AtomicJ, github.com/pawelHerm"
 PYFMRHEO = "PyFMRheo, github.com/jlopezalo, models/bec.py"
 BIOMOMENTUM = "Biomomentum-functions, github.com/RenatoC322: parabolas fitted to its table"

@@ -123,9 +123,7 @@ def stiffnesses(coated: xr.Dataset) -> list[tuple]:
     places = [int(np.argmin(np.abs(np.log(n / wanted)))) for wanted in SHOWN_N]
     rows = []
     for name, error in compared.stiffness_errors(coated).items():
-        read = (
-            formulas.STIFFNESSES[name][1] if name in formulas.STIFFNESSES else "alpha, the best for each n, found here"
-        )
+        read = formulas.STIFFNESSES.get(name, ("", "alpha, the best for each n, found here"))[1]
         for most in THIN_TO:
             largest = np.abs(error[:, x <= most * (1 + 1e-9)]).max(axis=1)
             ranges = [compared.around_one(n, largest, level) for level in compared.LEVELS]

@@ -115,9 +115,7 @@ def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -
     return covers(given, arrays, facts(definition.x), not_run(definition, 0))
 
 
-def inventory(
-    store: Store, earlier: Source | None = None, retry: tuple[int, ...] = (), force: bool = False
-) -> Inventory:
+def inventory(store: Store, earlier: Source | None = None, retry: tuple = (), force: bool = False) -> Inventory:
     """What is on disk of a study: in its blocks, and in an earlier results file if there is one.
 
     retry : cases of these statuses count as missing; force : ignore blocks of another version of the numerics

@@ -62,9 +62,7 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
     # whether some case may need the operator of the exact layer: as its base, or for the error of the thin layer
-    exact = np.isin(base, ("layered", "auto")).any() or (
-        (base == "thin_layer").any() and (judged == "first_order").any()
-    )
+    exact = np.isin(base, ("layered", "auto")).any() or (base == "thin_layer").any() and (judged == "first_order").any()
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
     memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes or 1) * TABLES * exact

@@ -106,9 +106,8 @@ class Order:
 
     def report(self, known: Inventory | None = None, **what) -> Report:
         counts = count_statuses(known.status) if known else {}
-        return replace(
-            Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN)), **what
-        )
+        found = Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
+        return replace(found, **what)
 
 
 def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:

@@ -10,6 +10,7 @@ from conftest import opened
 from study import StudyError
 from study.catalogue import TABLES, tabulate
 from study.evidence.validity_maps import largest_thickness
+from study.figures import registry
 from study.figures.formats import as_csv, as_latex, as_text, latex
 from study.figures.registry import Table, column
 from study.paper import law_fits, numbers
@@ -143,6 +144,13 @@ def test_formats_of_cells():
     assert as_csv(table, rows).splitlines()[1:] == ["one,0.077", "two,at most 8%"]
     assert as_text(table, rows).splitlines()[4:] == ["one        7.7%", "two  at most 8%"]
     assert as_latex(table, rows).splitlines()[7:9] == [r"one & 7.7\% \\", r"two & at most 8\% \\"]
+
+
+def test_columns_may_share_a_line(monkeypatch):
+    """A thin space in mathtext separates no columns."""
+    monkeypatch.setattr(registry, "TABLES", {})
+    registry.table("shared", columns="of; number | d | $N\\; R$\n    last | .1%")(list)
+    assert registry.TABLES["shared"].columns == tuple(map(column, ("of", "number | d | $N\\; R$", "last | .1%")))
 
 
 def test_messages_of_table(results, tmp_path):

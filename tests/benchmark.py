@@ -116,7 +116,7 @@ def papers_way() -> list[dict]:
     rows = []
     for k, intervals, count in PAPERS:
         way = paper_way(k, most=count)
-        theirs = measured(way, intervals, *taken(cases, reference, way.index(cases)), REPEATS)
+        theirs = measured(way, intervals, *taken(cases, reference, way.index(len(reference.a))), REPEATS)
         ours = next(one for one in newton if one["most"] <= theirs["most"])
         row = {"error": theirs["most"], "k": k, "intervals": intervals, "cases": count, "ended": theirs["ended"]}
         row |= {"seconds": theirs["time"], "newton_rtol": ours["setting"], "newton_error": ours["most"]}

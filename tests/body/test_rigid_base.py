@@ -120,7 +120,10 @@ def test_bounds_and_what_has_no_springs():
 
 
 def test_where_the_rounding_of_an_incompressible_bond_shows():
-    """docs/model.md: at a/h above a thousand, or above forty at rtol 1e-10, the error is said to be above rtol."""
+    """docs/model.md: at a/h above a thousand, or above forty at rtol 1e-10, the error is said to be above rtol.
+
+    Between 30 and 100 the processor decides.
+    """
     bond = {"n": 0, "nu1": 0.5, "bonding": "bonded", "micro": "smooth"}
-    found = solve(Problem.of(a=0.04, h=0.04 / np.array([900, 2000, 30, 50]), rtol=[1e-6, 1e-6, 1e-10, 1e-10], **bond))
+    found = solve(Problem.of(a=0.04, h=0.04 / np.array([900, 2000, 20, 100]), rtol=[1e-6, 1e-6, 1e-10, 1e-10], **bond))
     assert found.status.tolist() == [Status.CONVERGED, Status.TOLERANCE_NOT_MET] * 2

@@ -27,7 +27,8 @@ SAME = 1e-9
 #: The paper's approximations amplify rounding, and end where they move by less than rtol/10.
 SETTLED = 1e-5
 #: An error estimate is the difference of two solutions, each with its rounding, which is 1e-11 at most.
-ESTIMATE = {"rtol": 1e-2, "atol": 1e-11}
+#: That of the profiles looks at polynomials at the edge too, where rounding is ten times larger (on an ARM processor).
+ESTIMATE, OF_PROFILES = {"rtol": 1e-2, "atol": 1e-11}, {"rtol": 1e-2, "atol": 1e-10}
 
 
 def test_the_table_belongs_to_the_numerics_version():
@@ -75,7 +76,7 @@ def test_what_is_counted(found, name):
 
 @pytest.mark.parametrize("name", golden.ERRORS)
 def test_error_bars(found, name):
-    assert_same(name, found[name], **ESTIMATE)
+    assert_same(name, found[name], **OF_PROFILES if name == "profile_error" else ESTIMATE)
 
 
 @pytest.mark.parametrize("name", golden.NUMBERS)

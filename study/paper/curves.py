@@ -15,8 +15,8 @@ CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, lay
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
 DEPTH = r"$D\ /\ (10^{-3} R)$"
 PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9, "zorder": 1.5}
-LAYER_THIN = """The layer is the paper's thin one. It is said where it is not thin: where the largest relative error of a,
-P, D, p(0), pmax and Ar/An against the exact layer exceeds 10 %, as `model_error` estimates it."""
+LAYER_THIN = """The layer is the paper's thin one. It is said where it is not thin: the largest relative error of a, P,
+D, p(0), pmax and Ar/An against the exact layer then exceeds 10 %, as `model_error` estimates it."""
 LAYER_EXACT = "The layer is exact; thin dotted lines: the same on the paper's thin layer."
 OVER_LOADS = """P0 is the load of figures 3, 7 and 10. Grey: loads at which an assumption of the model does not hold,
 for the curves named in the legend."""

@@ -7,6 +7,7 @@ from matplotlib.patheffects import withStroke
 from ..data import derived
 from ..data.dataset import broken
 
+MOST = 0.75  # of the axis: more is not shaded, the curves and the legend would stand on grey
 ASSUMPTION_TEXT, OF_WHICH, GREYS = (derived.assumption_texts(key) for key in ("text", "of_which", "grey"))
 
 
@@ -32,21 +33,25 @@ def load_axis(axes, largest: float, P0: float) -> None:
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
     """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
 
-    What is broken at every load is noted above the axes instead.
+    What is broken along MOST of the axis or more is noted above it instead, with the loads.
 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
-    everywhere = {}
+    noted, loads = {}, {}
     for meaning, of_curves in violations(validity).items():
         where = np.any(list(of_curves.values()), axis=0)
-        if where.all():
-            everywhere[meaning] = of_curves
+        along = [(1e5 * start, 1e5 * stop) for start, stop in bands(P, where)]
+        if sum(stop - start for start, stop in along) > MOST * 1e5 * P[-1]:
+            noted[meaning] = of_curves
+            loads[meaning] = (
+                "" if where.all() else ", at " + ", ".join(f"{low:.3g} to {high:.3g}" for low, high in along)
+            )
             continue
         label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(of_curves)})"
-        for start, stop in bands(P, where):
-            axes.axvspan(start * 1e5, stop * 1e5, color=GREYS[meaning], linewidth=0, zorder=-1, label=label)
+        for start, stop in along:
+            axes.axvspan(start, stop, color=GREYS[meaning], linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend
-    note(axes, everywhere)
+    note(axes, noted, loads)
 
 
 def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
@@ -64,10 +69,11 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
     return {meaning: curves for meaning, curves in of_curves.items() if curves}
 
 
-def note(axes, everywhere: dict[str, dict]) -> None:
-    """Write above the axes a line for each assumption: assumption -> the curves that break it everywhere, by name."""
-    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH[meaning]}"
-             for meaning, curves in everywhere.items()]  # fmt: skip
+def note(axes, noted: dict[str, dict], loads=None) -> None:
+    """Write above the axes a line for each assumption. noted : assumption -> the curves that break it, by name; loads :
+    assumption -> words that say where, if not everywhere."""
+    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH[meaning]}{(loads or {}).get(meaning, '')}"
+             for meaning, curves in noted.items()]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 
 

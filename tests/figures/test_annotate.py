@@ -20,14 +20,19 @@ def test_bands_begin_at_zero_and_end_halfway():
 def test_shading_names_the_assumption_and_its_curves():
     axes = Figure().subplots()
     attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
-    first = xr.DataArray([3, 1, 0], dims="P", attrs=attributes)
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"1": first, "2": first.copy(data=[0] * 3)})
+    first, P = xr.DataArray([3, 1, 0, 0], dims="P", attrs=attributes), np.array([1e-6, 2e-6, 3e-6, 4e-6])
+    shade_violations(axes, P, {"1": first, "2": first.copy(data=[0] * 4)})
     assert axes.get_legend_handles_labels()[1] == [f"not valid: {WORDS[1]} (1)", f"not valid: {WORDS[2]} (1)"]
     assert axes.get_title("left") == ""
     bands_so_far = len(axes.patches)
-    nowhere, one, two = (first.copy(data=[mask] * 3) for mask in (0, 1, 3))
-    shade_violations(axes, np.array([1e-6, 2e-6, 3e-6]), {"3": one, "4": nowhere, "5": two})
+    nowhere, one, two = (first.copy(data=[mask] * 4) for mask in (0, 1, 3))
+    shade_violations(axes, P, {"3": one, "4": nowhere, "5": two})
     assert axes.get_title("left") == f"3, 5: {NOTED[1]}\n5: {NOTED[2]}"
+    shade_violations(axes, P, {"6": first.copy(data=[1, 1, 1, 0])})
+    assert axes.get_title("left") == f"6: {NOTED[1]}, at 0 to 0.35", "in 1e-5 E2* R²"
+    gaps = xr.DataArray([2, 2, 0, 2, 2, 2], dims="P", attrs=attributes)
+    shade_violations(axes, 1e-5 * np.arange(1, 7), {"7": gaps})
+    assert axes.get_title("left") == f"7: {NOTED[2]}, at 0 to 2.5, 3.5 to 6"
     assert len(axes.get_legend_handles_labels()[1]) == 2
     assert len(axes.patches) == bands_so_far
 

@@ -44,8 +44,7 @@ def distance(cases, cheap, p):
     solution has no numbers, inf where Newton's method from it finds none.
 
     One step would not do: on a layer that is nearly incompressible the exact pressure at the edge is several times that
-    of the thin layer, and a step finds a part of this only (test_first_order_near_nu_one_half of
-    tests/models/test_auto.py).
+    of the thin layer, and a step finds a part of this only (tests/models/test_first_order.py).
 
     cases : an equation in units R = E2* = 1; cheap : the cheap solution in the same units, and p (B, NODES) its
         nominal pressure at the nodes ``mesh_of(NODES).x``

@@ -1,0 +1,57 @@
+"""The model error of thin layers by "first_order": Newton's method on the exact layer, on a coarse mesh."""
+
+import numpy as np
+import pytest
+
+from solver import Problem, solve
+from solver.contact.results import difference
+from solver.models.model_error import NODES, distance
+from solver.numerics.mesh import mesh_of
+from solver.scaling import as_cases
+
+
+@pytest.mark.parametrize("control", ["P", "a", "D"])
+def test_first_order_near_nu_one_half(control):
+    """Bonded rubber: where the thin layer errs by 0.001 or more `first_order` is within 15 % of that error, and it
+    exceeds what it should be by no more than 0.005, what its mesh misses. One step was up to four times too small."""
+    rng, size = np.random.default_rng(3), 80
+    low, high = np.log([[3e-3, 0.1], [2e-3, 0.5], [1e-4, 0.5], [1e-5, 0.05], [1e3, 1e8], [1e-4, 0.1]]).T
+    a, h, n, soft, Nbar, Ra = np.exp(rng.uniform(low, high, (size, 6)).T)
+    given = {"h": h * a, "n": n, "nu1": 0.5 - soft, "nu2": rng.uniform(0, 0.5, size), "bonding": "bonded"}
+    given |= {"Nbar": Nbar, "Ra": Ra, "rtol": 1e-5}
+    at = getattr(solve(Problem.of(a=a, **given)), control)
+    given[control] = np.where(np.isfinite(at), at, 1e-3)
+    true = solve(Problem.of(**given))
+    thin = solve(Problem.of(**given, base="thin_layer", model_check="first_order"))
+    error = difference(thin, true)
+    some = (true.status == 0) & (thin.status == 0) & (error > 1e-3)
+    assert some.sum() > 15
+    np.testing.assert_array_less(error[some], 1.15 * thin.model_error[some])
+    np.testing.assert_array_less(thin.model_error[some], 1.15 * error[some] + 0.005)
+
+
+def test_first_order_counts_what_its_mesh_misses():
+    """At the edge its mesh misses up to five sixths of these errors, and as much of the thin layer's own solution."""
+    a, h, n, nu1, nu2, Nbar, Ra = np.transpose([
+        [0.009527, 5.377e-06, 0.009891, 0.4903, 0.3871, 57490000.0, 0.0258],
+        [0.08248, 4.665e-05, 0.0003571, 0.496, 0.0266, 100900.0, 0.0227],
+        [0.01803, 9.937e-06, 0.002034, 0.4919, 0.2573, 2364000.0, 0.02185],
+    ])  # fmt: skip
+    given = {"a": a, "h": h, "n": n, "nu1": nu1, "nu2": nu2, "bonding": "bonded", "Nbar": Nbar, "Ra": Ra, "rtol": 1e-7}
+    thin = solve(Problem.of(**given, base="thin_layer", model_check="first_order"))
+    error = difference(thin, solve(Problem.of(**given)))
+    assert np.all(error > 2e-4) and np.all(error < 1.1 * thin.model_error) and np.all(thin.model_error < 3 * error)
+
+
+def test_a_first_order_that_fails_has_no_error():
+    """An exact equation without a solution; a pressure of NaN costs only steps; a case without cheap numbers has no
+    estimate at all."""
+    contact = {"P": [1e-5] * 4, "h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
+    problem = Problem.of(**contact)
+    cases = as_cases(problem)._replace(value=np.array([1e-5, np.nan, 1e-5, 1e-5]))
+    cheap = solve(Problem.of(**contact, base="thin_layer"), mesh_of(NODES).x)
+    cheap.a[2], p = np.nan, cheap.p.copy()
+    p[3] = np.nan
+    error = distance(cases, cheap, p)
+    assert 0 < error[0] < 1 and error[1] == np.inf and np.isnan(error[2])
+    np.testing.assert_allclose(error[3], error[0], rtol=1e-6)

@@ -186,6 +186,7 @@ def doubts(contact: xr.Dataset) -> list[str]:
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         found.append(OF_SEVERAL_RADII)
     given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == unit_of(name)}
+    given |= {ratio: v[ratio] for _, ratio, _ in BODIES.values() if ratio in v}
     return found + _yielding(v) + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
 
 

@@ -23,6 +23,7 @@ _REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa 
 _REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
 _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
 
+_RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
 #: What has a unit and cannot be zero.
 INPUTS = ("P", "a", "D", "h", "Nbar", "Ra", "sigma", "R", "R1", "R2", "E1", "E2", "E_punch")
 
@@ -60,12 +61,13 @@ def absurd(given: dict, spreads: dict) -> list[str]:
             one = readable(float(values[outside][0]), unit_of(name))
             found.append(f"{name} = {one}: {words}; is its unit right?")
     for name, spread in spreads.items():
-        value, most = given[name], 1.0
-        if name in ("R1", "R2"):
-            most = abs(value / given["R"])  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+        value = given[name]
+        limit = 0.5 - value if name in _RATIOS else abs(value)
+        if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+            limit = limit * np.minimum(abs(value / given["R"]), 1)
         with np.errstate(invalid="ignore"):  # rigid: inf
-            value, spread, most = (np.ravel(0 * (value + spread + most) + one) for one in (value, spread, most))
-        wide = np.flatnonzero((spread > 0) & (spread >= abs(value) * np.minimum(most, 1)))
+            value, spread, limit = (np.ravel(0 * (value + spread + limit) + one) for one in (value, spread, limit))
+        wide = np.flatnonzero((spread > 0) & (spread >= limit))
         if len(wide):
             text = readable(float(value[wide[0]]), unit_of(name), float(spread[wide[0]]))
             found.append(f"{name} = {text}: too wide a spread for the ± of results, which is to first order")

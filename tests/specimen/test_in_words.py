@@ -165,6 +165,14 @@ def test_no_real_system_is_absurd():
         study.solve(R="6 m", E1="1 MPa", E2="210 GPa", h="1 m", P="1 N", micro="smooth", x=2)
 
 
+def test_a_spread_of_nu_that_reaches_one_half_is_too_wide():
+    """A bonded layer yields far less near 0.5, and beyond it there is none: ± of the results was too large."""
+    film = {"R": "3 mm", "E1": "5 MPa", "E2": "rigid", "h": "100 um", "bonding": "bonded", "micro": "smooth"}
+    for nu1, wide in (("0.49 ± 0.02", True), ("0.49 ± 0.005", False), ("0.0 ± 0.05", False), ("-0.2 ± 0.3", False)):
+        text = study.summary(quiet(**film, nu1=nu1, P="1 mN", x=2))
+        assert ("Beware: nu1 = 0.490 ± 0.020: too wide a spread" in text) == wide == ("too wide" in text)
+
+
 STEEL = {"R": "5 mm", "punch": "steel 52100", "body": "steel 52100", "micro": "smooth", "x": 2}
 
 

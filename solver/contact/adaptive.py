@@ -49,7 +49,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
     cases = cases._replace(body=cases.body.within(np.where(free, rtol, 0.0), a))
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
     found = _together(rungs, size, len(x))
-    undecided = ~free & found.unsure  # no finer mesh will tell: what tension there is of the load may be wrong
+    undecided = ~free & found.unsure  # no finer mesh will judge the tension: its part of the load is an error
     np.maximum(found.solution.error, found.tension, out=found.solution.error, where=undecided)
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
     missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET

@@ -33,30 +33,28 @@ def load_axis(axes, largest: float, P0: float) -> None:
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:
     """Grey bands over the loads (E2* R²) where a curve breaks an assumption; the legend says which and whose.
 
-    What is broken along MOST of the axis or more is noted above it instead, with the loads.
+    What is broken along more than MOST of the axis is noted above it instead, with the loads.
 
     validity : curve name -> flags over P, with the attributes flag_masks and flag_meanings
     """
-    noted, loads = {}, {}
+    noted = []
     for meaning, of_curves in violations(validity).items():
         where = np.any(list(of_curves.values()), axis=0)
         along = [(1e5 * start, 1e5 * stop) for start, stop in bands(P, where)]
         if sum(stop - start for start, stop in along) > MOST * 1e5 * P[-1]:
-            noted[meaning] = of_curves
-            loads[meaning] = (
-                "" if where.all() else ", at " + ", ".join(f"{low:.3g} to {high:.3g}" for low, high in along)
-            )
+            loads = ", ".join(f"${low:.3g} < P < {high:.3g}$" if low else f"$P < {high:.3g}$" for low, high in along)
+            noted.append((meaning, of_curves, "" if where.all() else f", {loads}"))
             continue
         label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(of_curves)})"
         for start, stop in along:
             axes.axvspan(start, stop, color=GREYS[meaning], linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend
-    note(axes, noted, loads)
+    note(axes, noted)
 
 
 def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
     """Write above the axes which curves break which assumptions. validity : curve name -> flags of one case."""
-    note(axes, violations(validity))
+    note(axes, [(meaning, of_curves, "") for meaning, of_curves in violations(validity).items()])
 
 
 def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndarray]]:
@@ -69,11 +67,11 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
     return {meaning: curves for meaning, curves in of_curves.items() if curves}
 
 
-def note(axes, noted: dict[str, dict], loads=None) -> None:
-    """Write above the axes a line for each assumption. noted : assumption -> the curves that break it, by name; loads :
-    assumption -> words that say where, if not everywhere."""
-    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH[meaning]}{(loads or {}).get(meaning, '')}"
-             for meaning, curves in noted.items()]  # fmt: skip
+def note(axes, noted: list[tuple]) -> None:
+    """Write above the axes a line for each assumption. noted : assumption, the curves that break it, and words that say
+    where, if not everywhere."""
+    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH[meaning]}{loads}"
+             for meaning, curves, loads in noted]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 
 

@@ -13,7 +13,7 @@ from .processes import Processes
 from .scheduler import connected
 
 CONNECT = 10  # seconds in which something must listen at the address of a scheduler
-ANSWER = 60  # seconds that a scheduler has to answer: on a busy machine 10 were too few
+ANSWER = 60  # seconds that a scheduler which listens has to answer: it may be busy
 AHEAD = 4  # blocks submitted for each worker, which goes on with them while this thread writes
 MANY = 8  # blocks from which on it pays to start processes, which do not share a lock of Python as threads do
 

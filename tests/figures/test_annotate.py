@@ -29,10 +29,10 @@ def test_shading_names_the_assumption_and_its_curves():
     shade_violations(axes, P, {"3": one, "4": nowhere, "5": two})
     assert axes.get_title("left") == f"3, 5: {NOTED[1]}\n5: {NOTED[2]}"
     shade_violations(axes, P, {"6": first.copy(data=[1, 1, 1, 0])})
-    assert axes.get_title("left") == f"6: {NOTED[1]}, at 0 to 0.35", "in 1e-5 E2* R²"
+    assert axes.get_title("left") == f"6: {NOTED[1]}, $P < 0.35$", "in 1e-5 E2* R²"
     gaps = xr.DataArray([2, 2, 0, 2, 2, 2], dims="P", attrs=attributes)
     shade_violations(axes, 1e-5 * np.arange(1, 7), {"7": gaps})
-    assert axes.get_title("left") == f"7: {NOTED[2]}, at 0 to 2.5, 3.5 to 6"
+    assert axes.get_title("left") == f"7: {NOTED[2]}, $P < 2.5$, $3.5 < P < 6$"
     assert len(axes.get_legend_handles_labels()[1]) == 2
     assert len(axes.patches) == bands_so_far
 
@@ -70,7 +70,7 @@ def test_each_assumption_has_its_words_and_its_grey(mask):
     axes.legend()
     assert list(legend(axes.get_legend())) == [f"not valid: {WORDS[mask]} (7)"]
     assert axes.patches[0].get_zorder() < 0, "under the curves"
-    assert list(ASSUMPTION_TEXT) == words.split() and len(set(GREYS)) == len(WORDS)
+    assert list(ASSUMPTION_TEXT) == words.split() and len(set(GREYS.values())) == len(WORDS)
 
 
 def test_one_entry_of_the_legend_stands_for_all_bands_of_the_curves_that_have_some():

@@ -111,7 +111,7 @@ def test_loads_are_shaded_where_a_curve_breaks_an_assumption(drawing, results, n
             everywhere[mask] = whose
             last = int(somewhere.sum())
             assert somewhere[:last].all(), "from the smallest load on"
-            loads[mask] = "" if somewhere.all() else f", at 0 to {(P[last - 1] + P[last]) / 2:.3g}"
+            loads[mask] = "" if somewhere.all() else f", $P < {(P[last - 1] + P[last]) / 2:.3g}$"
         elif whose:
             colour = entries.pop(f"not valid: {words}")
             shaded = np.any([(a <= trial) & (trial < b) for a, b, c in bands(axes) if c == colour], axis=0)

@@ -2,38 +2,19 @@
 # `--run` it computes those that are missing, or whose numbers something has changed, and writes what is out of date.
 
 PYTHON ?= python3
-# The studies of this repository. They may replace their own results of an older version; a study of yours may not.
-STUDIES := reference_load main_case load_sweep spot_density parameter_map validity validity_load coatings \
-  literature literature_coatings literature_rough spot_density_lattice \
-  extremes extremes_layered picard_domain \
-  dlc_on_steel tin_on_steel ptfe_lining polymer_film_on_glass rubber_on_metal gel_on_glass
-# What `make clean` removes of figures/ and tables/.
-DRAWN := fig?? fig??_layered fig??_lattice validity validity_load coatings extremes picard_domain tradeoff literature
-WRITTEN := table1 table1_lattice paper_numbers validity extremes tradeoff tradeoff_cheapest tradeoff_factors paper_error \
-  literature literature_coatings literature_decided literature_rough
 # Kernels of OpenBLAS for `make kernels`: one that every x86-64 processor runs. On another, all that it runs:
 # make kernels KERNELS="Nehalem Haswell Zen SkylakeX"
 KERNELS ?= Nehalem
-# What it runs: the tests of the rooms that compute, without files that take long because they make the same sums for more
-# cases, or start processes. All that import the solver: make kernels NUMERIC="$$(grep -l '^from solver' tests/*/test_*.py)"
-LONG := contact/test_extremes contact/test_robust contact/test_bounds contact/test_threads contact/test_fuzz_solver \
-  laws/test_cones models/test_auto
-COMPUTING := numerics laws body contact models
-NUMERIC ?= $(filter-out $(LONG:%=tests/%.py),$(wildcard $(COMPUTING:%=tests/%/test_*.py)))
 VENV := .venv
 READY := $(VENV)/.ready
 RUN := $(VENV)/bin/python -m study
 # As many processes as processors, but no more than pays; one that is done takes tests from another. Compiled modules are
 # kept, whatever the environment says: tests start some hundred processes, of which each would compile them anew.
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
-SOURCES := $(wildcard solver/*.py solver/*/*.py study/*.py study/*/*.py)
-TARGETS := help setup figures table1 paper_numbers validity map extremes tradeoff picard_domain literature validate \
-  test check kernels lowest mutants fuzz bench speed lint clean
 
 .DEFAULT_GOAL := help
-.PHONY: $(TARGETS) always
+.PHONY: always $(shell sed -n 's/^\([a-z0-9_]*\): .*/\1/p' Makefile)
 .NOTPARALLEL:
-.SECONDARY:
 .DELETE_ON_ERROR:
 .PRECIOUS: results/%.nc
 
@@ -52,9 +33,10 @@ extremes: figures/extremes.pdf tables/extremes.txt ## 102,000 random cases far b
 table1 paper_numbers validity extremes:
 	@cat tables/$@.txt
 
-map: results/parameter_map.nc ## 25,000 cases for exploration: results/parameter_map.nc
+map: $(READY) ## 25,000 cases for exploration: results/parameter_map.nc
+	$(RUN) run --force studies/parameter_map.toml
 
-tradeoff: figures/tradeoff.pdf $(READY) ## error against time of every way to solve: docs/tradeoff_measured.txt, tradeoff.png
+tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs/tradeoff_measured.txt, tradeoff.png
 	$(RUN) table --run tradeoff tradeoff_cheapest tradeoff_factors paper_error
 	@cp figures/tradeoff.png docs/
 	@for name in tradeoff_cheapest tradeoff_factors paper_error; do cat tables/$$name.txt; echo; done | \
@@ -75,20 +57,13 @@ test: $(READY) ## all tests
 
 # Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
 # the shrunken results of all studies, which are twenty seconds of computing.
-CHECKED := numerics/test_linalg.py numerics/test_operator.py laws/test_micro.py laws/test_fit.py body/test_kernel.py \
-  contact/test_golden_numbers.py contact/test_numbers.py models/test_closed_forms.py specimen/test_quantities.py \
-  spec/test_given.py spec/test_definition.py spec/test_bad_files.py data files/test_atomic.py store/test_blocks.py \
-  work/test_engine.py work/test_progress.py figures/test_annotate.py commands/test_cli_options.py \
-  paper/test_uniform.py::test_weights_are_the_trapezoidal_rule paper/test_uniform.py::test_second_order_towards_newton \
-  literature/test_literature.py::test_hermanowicz_without_friction evidence/test_tradeoff_shown.py \
-  repository/test_imports.py::test_rooms_import_one_way repository/test_imports.py::test_no_cycles \
-  repository/test_mutants.py::test_enough_mutants_that_are_one_change_of_code_that_compiles
-check: $(READY) lint ## for the inner loop: ruff, and tests that take half a minute
-	$(PYTEST) $(CHECKED:%=tests/%)
+check: $(READY) lint ## for the inner loop: ruff, and the tests in tests/quick.txt, which take half a minute
+	$(PYTEST) @tests/quick.txt
 
-kernels: $(READY) ## the tests of the rooms that compute, under the BLAS kernels of other processors
+# The rooms that compute, without files that take long because they make the same sums for more cases, or start processes.
+kernels: $(READY) ## the tests in tests/computing.txt under the BLAS kernels of other processors
 	@for kernel in $(KERNELS); do echo "OPENBLAS_CORETYPE=$$kernel"; \
-	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) $(NUMERIC) || exit 1; done
+	  OPENBLAS_CORETYPE=$$kernel $(PYTEST) @tests/computing.txt || exit 1; done
 
 lowest: ## all tests with the lowest versions that pyproject.toml allows, installed into .venv-lowest
 	$(PYTHON) -m venv .venv-lowest
@@ -114,11 +89,8 @@ speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
 lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .
 
-clean: ## remove figures, tables and caches; results and .venv stay
-	rm -f $(foreach kind,pdf png csv svg,$(DRAWN:%=figures/%.$(kind))) figures/captions.md bench.json
-	rm -f $(foreach kind,txt csv tex,$(WRITTEN:%=tables/%.$(kind)))
-	rm -rf .pytest_cache .ruff_cache .hypothesis
-	find solver study tests -name __pycache__ -type d -prune -exec rm -rf {} +
+clean: $(READY) ## remove figures and tables that the program draws, and caches; results and .venv stay
+	$(VENV)/bin/python tests/clean.py
 
 # Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
 # the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.
@@ -132,10 +104,9 @@ $(READY): requirements.lock pyproject.toml
 	$(VENV)/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch $@
 
-# `run` computes nothing when the digest of the results is still right; touch then tells make so.
-results/%.nc: studies/%.toml $(SOURCES) | $(READY)
-	$(RUN) run $(if $(filter $*,$(STUDIES)),--force) $<
-	@touch $@
+# A study whose results are there and right computes nothing.
+results/%.nc: always | $(READY)
+	$(RUN) run studies/$*.toml
 
 figures/%.pdf: always | $(READY)
 	$(RUN) plot --run $*

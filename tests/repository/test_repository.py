@@ -6,16 +6,12 @@ import shutil
 import subprocess
 import sys
 import tomllib
-from fnmatch import fnmatch
 from pathlib import Path
 
 import pytest
 from conftest import ROOT, STUDIES
 from lowest import lowest
 
-from study.catalogue import FIGURES, SCHEMES, TABLES
-
-MAKEFILE = (ROOT / "Makefile").read_text(encoding="utf-8")
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
@@ -28,43 +24,30 @@ def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
     return subprocess.run(["make", *arguments], cwd=folder, capture_output=True, text=True, env=environment, timeout=60)
 
 
-def variable(name: str) -> set[str]:
-    text = re.search(rf"^{name} := ((?:.*\\\n)*.*)$", MAKEFILE, flags=re.MULTILINE)[1].replace("\\\n", " ")
-    return set(re.sub(r"\$\((\w+)\)", lambda found: " ".join(variable(found[1])), text).split())
-
-
 def test_make_help_lists_every_target():
     lines = make(ROOT, "help").stdout.splitlines()
     assert {line.split()[1] for line in lines} == set(TARGETS)
     assert all(len(line.split()) > 2 for line in lines), "each with a word of explanation"
 
 
-def test_makefile_knows_its_own_studies_and_cleans_up_every_figure_and_table():
-    assert variable("STUDIES") == {file.stem for file in STUDIES}
-    for names, patterns in (([*FIGURES, *SCHEMES], variable("DRAWN")), (TABLES, variable("WRITTEN"))):
-        unmatched = [name for name in names if not any(fnmatch(name, pattern) for pattern in patterns)]
-        assert not unmatched
+@pytest.mark.parametrize("listed", ["quick.txt", "computing.txt"])
+def test_lists_of_tests_name_files_that_there_are(listed):
+    lines = (ROOT / "tests" / listed).read_text(encoding="utf-8").split()
+    files = [line.removeprefix("--ignore=").split("::")[0] for line in lines]
+    assert len(files) > 5
+    assert not [file for file in files if not (ROOT / file).exists()]
 
 
 @pytest.fixture
 def sandbox(tmp_path) -> Path:
-    """The Makefile with a python that writes down what it is asked, and like `run` makes a result that is not there."""
+    """The Makefile with a python that writes down what it is asked."""
     shutil.copy(ROOT / "Makefile", tmp_path)
-    for folder in ("studies", "study", "solver", "tests", "results", ".venv/bin"):
+    for folder in ("studies", "results", ".venv/bin"):
         (tmp_path / folder).mkdir(parents=True)
-    for file in (
-        "studies/validity.toml",
-        "studies/mine.toml",
-        "study/api.py",
-        "requirements.lock",
-        "pyproject.toml",
-    ):
+    for file in ("studies/mine.toml", "requirements.lock", "pyproject.toml"):
         (tmp_path / file).touch()
     python = tmp_path / ".venv/bin/python"
-    python.write_text(
-        '#!/bin/sh\necho "$@" >> calls\nfor word; do last=$word; done\n'
-        'result="results/$(basename "$last" .toml).nc"\n[ -e "$result" ] || touch "$result"\n'
-    )
+    python.write_text('#!/bin/sh\necho "$@" >> calls\n')
     python.chmod(0o755)
     (tmp_path / ".venv/.ready").touch()
     return tmp_path
@@ -76,18 +59,6 @@ def calls(folder: Path) -> list[str]:
     return found
 
 
-def test_make_computes_a_study_once_and_replaces_only_its_own(sandbox):
-    assert make(sandbox, "results/validity.nc", "results/mine.nc").returncode == 0
-    assert calls(sandbox) == ["-m study run --force studies/validity.toml", "-m study run studies/mine.toml"]
-    make(sandbox, "results/validity.nc", "results/mine.nc")
-    assert calls(sandbox) == []
-    os.utime(sandbox / "results/mine.nc", (1, 1))  # older than the sources
-    make(sandbox, "results/mine.nc")
-    assert calls(sandbox) == ["-m study run studies/mine.toml"], "the digest decides, so run must be asked"
-    make(sandbox, "results/mine.nc")
-    assert calls(sandbox) == [], "and once is enough"
-
-
 @pytest.mark.parametrize(
     ("target", "asked"),
     [
@@ -96,10 +67,10 @@ def test_make_computes_a_study_once_and_replaces_only_its_own(sandbox):
         ("tables/validity.txt", ["table --run validity"]),
         ("picard_domain", ["plot --run picard_domain"]),
         ("map", ["run --force studies/parameter_map.toml"]),
+        ("results/mine.nc", ["run studies/mine.toml"]),
     ],
 )
 def test_make_asks_the_program_which_knows_what_is_needed(sandbox, target, asked):
-    (sandbox / "studies/parameter_map.toml").touch()
     assert make(sandbox, target).returncode == 0
     assert calls(sandbox) == [f"-m study {command}" for command in asked]
 
@@ -114,27 +85,23 @@ def test_make_prints_a_table_that_it_has_written(sandbox):
     }
 
 
-def test_clean_removes_ours_alone(sandbox):
-    for name in (
-        "figures/fig04.pdf",
-        "figures/fig10_layered.csv",
-        "tables/table1.tex",
-        "figures/mine.pdf",
-        "bench.json",
-    ):
-        (sandbox / name).parent.mkdir(exist_ok=True)
-        (sandbox / name).touch()
-    assert make(sandbox, "clean").returncode == 0
-    assert [path.name for folder in ("figures", "tables") for path in (sandbox / folder).iterdir()] == ["mine.pdf"]
+def test_clean_removes_what_the_program_draws_alone(tmp_path):
+    kept = ("figures/mine.pdf", "figures/parameter_map_p_max.pdf", "tables/mine.txt", "results/main_case.nc")
+    ours = ("figures/fig01.svg", "figures/fig04.pdf", "figures/fig10_layered.csv", "figures/captions.md",
+            "tables/table1.tex", "bench.json", "study/spec/__pycache__/x.pyc", ".ruff_cache/x")  # fmt: skip
+    for name in (*kept, *ours):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    subprocess.run([sys.executable, ROOT / "tests" / "clean.py"], cwd=tmp_path, check=True, timeout=60)
+    assert {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*") if path.is_file()} == set(kept)
 
 
-def test_a_refused_run_and_clean_leave_the_results(sandbox):
+def test_a_refused_run_leaves_the_results(sandbox):
     result = sandbox / "results/mine.nc"
     result.write_text("a night of computing")
     os.utime(result, (1, 1))
     (sandbox / ".venv/bin/python").write_text("#!/bin/sh\nexit 2\n")
     assert make(sandbox, "results/mine.nc").returncode != 0
-    assert make(sandbox, "clean").returncode == 0
     assert result.read_text() == "a night of computing"
 
 

@@ -33,8 +33,7 @@ _BASES = {
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 BROKEN = derived.assumption_texts("sentence")
-NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers). \
-Yield strengths and adhesion are not checked (Limits)."
+NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
 WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of its radius), as in a cup that fits \
 closely: the bodies are no half-spaces there."
 OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
@@ -43,8 +42,9 @@ SLIDES = 'The layer slides on the body without friction, since bonding is not gi
 does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
 #: Below this modulus in Pa a material is a rubber or a gel. Nearly all have a Poisson ratio close to 0.5.
 _RUBBER = 1e8
-#: A body under a sphere yields where p(0) exceeds 1.6 times its yield strength (Johnson, Contact Mechanics, 1985), and
-#: that is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share of E.
+#: A body under a sphere yields where p(0) exceeds this times its yield strength (Johnson, Contact Mechanics, 1985).
+STRENGTHS = 1.6
+#: The yield strength is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share.
 YIELD, STIFF = 0.03, 1e10
 
 
@@ -163,9 +163,20 @@ def _sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         found.append(f"Model: {model}{errs}.")
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
-    if not beyond and word == "converged":
-        found.append(NOT_VIOLATED)
+    found += [NOT_VIOLATED] * (not beyond and word == "converged")
+    found += [f"Not checked (docs/model.md, Limits): {_not_checked(case, judged)}."] * (word == "converged")
     return found + [f"Assumed: {sentence}" for sentence in _assumed(case.variables)]
+
+
+def _not_checked(case: xr.Dataset, judged: list[str]) -> str:
+    """What nothing looks at. Of contacts with units between bodies that are no rubbers, also the strengths they need."""
+    moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
+    if not moduli or min(moduli) < _RUBBER:
+        return "adhesion, and whether the bodies stay elastic"
+    needed = (float(f"{float(case[name]) / STRENGTHS:.2g}") for name in ("p0", "p_max"))
+    below, at_spots = (readable(strength, "Pa") for strength in needed)
+    words = f"adhesion, and whether the bodies stay elastic. Under a sphere this takes a yield strength of some {below}"
+    return words + f", at its asperities one of some {at_spots}" * ("p_max" in judged)
 
 
 def doubts(contact: xr.Dataset) -> list[str]:

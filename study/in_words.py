@@ -169,7 +169,7 @@ def _sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
 
 
 def _not_checked(case: xr.Dataset, judged: list[str]) -> str:
-    """What nothing looks at. Of contacts with units between bodies that are no rubbers, also the strengths they need."""
+    """What nothing looks at. Of contacts with units, unless there is a rubber, also the strengths that they need."""
     moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
     if not moduli or min(moduli) < _RUBBER:
         return "adhesion, and whether the bodies stay elastic"

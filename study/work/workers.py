@@ -1,12 +1,13 @@
 """Where blocks are computed: threads or processes of this machine, or workers of a dask cluster; one interface."""
 
-import os
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
+
+import dask.system
 
 from .cases import Failure
 from .processes import Processes
@@ -102,8 +103,8 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
 
 
 def available_workers() -> int:
-    """Processors that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+    """Processors that this process may use, no more than the limit of its container is worth, rounded up."""
+    return dask.system.cpu_count()
 
 
 def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterator[tuple[int, object]]:

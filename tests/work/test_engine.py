@@ -1,5 +1,6 @@
 """What computes, and how much of it at a time; a cluster is played by the test."""
 
+import io
 import os
 import socket
 import sys
@@ -7,6 +8,7 @@ import threading
 from concurrent.futures import CancelledError, Executor, Future
 from types import SimpleNamespace
 
+import dask.system
 import numpy as np
 import pytest
 from children import PATIENCE
@@ -104,13 +106,17 @@ def test_threads_for_each_processor_unless_told_otherwise(monkeypatch):
             assert found.submit(os.getpid).result(PATIENCE) == os.getpid()
 
 
-def test_processors_that_may_be_used(monkeypatch):
-    monkeypatch.setattr(os, "sched_getaffinity", lambda _: {0, 3, 5}, raising=False)
-    assert available_workers() == 3
-    monkeypatch.delattr(os, "sched_getaffinity")
-    for count, expected in ((6, 6), (None, 1)):
-        monkeypatch.setattr(os, "cpu_count", lambda count=count: count)
-        assert available_workers() == expected
+@pytest.mark.skipif(sys.platform != "linux", reason="containers")
+def test_a_container_uses_no_more_processors_than_its_limit(monkeypatch):
+    """One of 64 processors that is given 1.5 of them (docker run --cpus=1.5): 64 processes would fill its memory."""
+    files = {"/proc/self/cgroup": "0::/\n", "/sys/fs/cgroup/cpu.max": "150000 100000\n"}
+    monkeypatch.setattr(dask.system, "psutil", None)
+    monkeypatch.setattr(dask.system, "open", lambda path: io.StringIO(files[path]), raising=False)
+    monkeypatch.setattr(os, "sched_getaffinity", lambda _: set(range(64)))
+    monkeypatch.setattr(os, "process_cpu_count", lambda: 64, raising=False)
+    assert available_workers() == 2
+    files["/sys/fs/cgroup/cpu.max"] = "max 100000\n"
+    assert available_workers() == 64
 
 
 class Computed:

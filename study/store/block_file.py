@@ -35,8 +35,13 @@ def write_block(path: Path, block: Block) -> None:
     head = np.array(json.dumps({"facts": block.facts, "columns": list(block.arrays)}))
     with replacing(path) as temporary:
         with open(temporary, "wb") as file:
-            for array in (head, block.keys, *block.arrays.values()):
-                np.save(file, array, allow_pickle=False)
+            try:
+                for array in (head, block.keys, *block.arrays.values()):
+                    np.save(file, array, allow_pickle=False)
+            except OSError as error:
+                if error.errno is None:  # numpy says how much of an array was written, not why no more
+                    raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
+                raise
         seal(temporary)
 
 

@@ -6,12 +6,14 @@ import resource
 import stat
 from pathlib import Path
 
+import numpy as np
 import pytest
 from interrupted_study import BLOCK, CASES, assert_ends_well, written
 from line_study import present, store_block
 
 import study
 from study.__main__ import main
+from study.store.block_file import Block, write_block
 
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="POSIX limits")
 
@@ -42,6 +44,18 @@ def test_full_disk(opened, undisturbed, capsys, tmp_path, limit, kept):
     assert present(opened) == kept
     assert not list(opened.results.rglob("*.tmp"))
     assert_ends_well(opened, undisturbed, CASES - kept)
+
+
+def test_disk_full_within_an_array(tmp_path):
+    """Of which numpy says only "100000 requested and 999 written", if the array is larger than the buffer."""
+    block = Block({}, np.zeros((100_000, 2), np.uint64), {})
+    try:
+        full_disk(8000)
+        with pytest.raises(OSError, match=r"some.block cannot be written \(.*\): is the disk full\?"):
+            write_block(tmp_path / "some.block", block)
+    finally:
+        full_disk(resource.RLIM_INFINITY)
+    assert not list(tmp_path.iterdir())
 
 
 def test_disk_full_half_way(opened, undisturbed, monkeypatch):

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import solver
 
 from . import evidence, figures, literature, paper
-from .figures.formats import as_csv, as_latex, as_text, csv_text, write_text
+from .figures.formats import as_csv, as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, NotMade, entry, open_studies
 from .figures.style import style
@@ -85,12 +85,9 @@ def draw(name: str, results="results", folder="figures") -> list[Path]:
     """
     if name in SCHEMES:  # it stands in the package as it is: the .svg is the original, to be edited by hand
         paths = [Path(folder) / f"{name}.{kind}" for kind in SCHEME]
-        Path(folder).mkdir(parents=True, exist_ok=True)
-        for path in paths:
-            path.write_bytes((files(paper) / "schemes" / path.name).read_bytes())
-        return paths
+        return [write(path, (files(paper) / "schemes" / path.name).read_bytes()) for path in paths]
     if name == CAPTIONS:
-        return [write_text(Path(folder) / "captions.md", captions(results))]
+        return [write(Path(folder) / "captions.md", captions(results))]
     return save(Path(folder) / name, *compose(name, results))
 
 
@@ -113,7 +110,7 @@ def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]
         with style():
             figure.savefig(stem.with_suffix(suffix), metadata={"Title": title} | dated)
             figure.set_layout_engine(None)  # the second keeps the layout, which takes long to find for many axes
-    write_text(stem.with_suffix(".csv"), csv_text(columns, rows))  # last: a text in the figure may be wrong
+    write(stem.with_suffix(".csv"), csv_text(columns, rows))  # last: a text in the figure may be wrong
     return [stem.with_suffix(f".{kind}") for kind in FIGURE]
 
 
@@ -124,4 +121,4 @@ def tabulate(name: str, results="results", folder="tables") -> list[Path]:
     if not isinstance(rows, list) or any(len(row) != len(table.columns) for row in rows):
         raise NotMade([f"{name}: the function must return a list of tuples of {len(table.columns)} cells, one a row"])
     texts = {"txt": as_text(table, rows), "csv": as_csv(table, rows), "tex": as_latex(table, rows)}
-    return [write_text(Path(folder) / f"{name}.{suffix}", text) for suffix, text in texts.items()]
+    return [write(Path(folder) / f"{name}.{suffix}", text) for suffix, text in texts.items()]

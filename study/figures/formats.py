@@ -5,6 +5,7 @@ import io
 import re
 from pathlib import Path
 
+from ..files.atomic import replacing
 from .registry import Table
 
 
@@ -54,8 +55,9 @@ def csv_text(headings, rows) -> str:
     return stream.getvalue()
 
 
-def write_text(path: Path, text: str) -> Path:
-    """Write a text file, and the folder it goes to; returns the path."""
+def write(path: Path, content: str | bytes) -> Path:
+    """Write a file whole or not at all, since `outdated` takes it for whole, and its folder; returns the path."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(text, encoding="utf-8")
+    with replacing(path) as temporary:
+        temporary.write_bytes(content.encode() if isinstance(content, str) else content)
     return path

@@ -82,6 +82,19 @@ def test_read_only_folder(opened, undisturbed, capsys, tmp_path):
     assert_ends_well(opened, undisturbed, CASES)
 
 
+def test_a_table_that_a_full_disk_cuts_off_is_written_again(tmp_path, capsys):
+    """An empty file that is younger than its inputs would be up to date for ever."""
+    command = ["table", "--run", "table1", "--tables", str(tmp_path)]
+    try:
+        full_disk(0)
+        assert main(command) == 1
+    finally:
+        full_disk(resource.RLIM_INFINITY)
+    assert "File too large" in capsys.readouterr().err and not list(tmp_path.iterdir())
+    assert main(command) == 0
+    assert all(path.stat().st_size for path in tmp_path.iterdir()) and len(capsys.readouterr().out.split()) == 3
+
+
 def test_folder_becomes_read_only(opened, undisturbed, tmp_path, capsys, monkeypatch):
     store_block(opened, 0, BLOCK)
 

@@ -38,7 +38,7 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
             known = {str(one): one for one in map(_checked, values)}
             known = {text: _material(body, one) for text, one in known.items()}
         except LookupError as error:
-            errors.append(f"{body}: {error.args[0]}")
+            errors.append(f"{body}: {error.args[0]} (or give {follows[0]} and {follows[1]})")
             found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing
             continue
         texts, *numbers = zip(*(known[str(one)] for one in values), strict=True)

@@ -13,7 +13,7 @@ from ..spec.definition import StudyError
 from ..spec.given import label_slips
 from ..spec.grid import MOVED, equal_values
 from ..spec.laws import is_parameter
-from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
+from ..spec.vocabulary import PARAMETERS, VOCABULARY, instead
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
@@ -71,7 +71,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
             errors += label_slips(given)
         elif name not in SCENE and not is_parameter(name):
             known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * bool(rows)]
-            errors.append(f"{shown(name)} is not a parameter{suggest(name, known)}")
+            errors.append(f"{shown(name)} is not a parameter{instead(name, known)}")
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)

@@ -97,7 +97,9 @@ def parsed(path) -> tuple[dict, str, str, str]:
     path = Path(path)
     where = path.as_posix()
     if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
-        raise StudyError([f"{where}: a study file is called NAME.toml, NAME of letters, digits, _, - and ."])
+        raise StudyError(
+            [f"{where}: a study file is called NAME.toml, NAME of letters without accents, digits, _, - and ."]
+        )
     try:
         text = text_in(path)
         tables = tomllib.loads(text)
@@ -138,11 +140,17 @@ def new_draft(tables: dict, where: str) -> tuple[Draft, dict]:
         raise StudyError([f'{where}: kind = {shown(kind)}: must be "contact", or left out{gone}'])
     draft = Draft()
     draft.errors += [
-        f"{shown(key)} is not a section{suggest(key, SECTIONS)}"
-        for key in islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
+        _no_section(key, tables[key]) for key in islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
     ]
     given = tables | {section: _table(tables, section, keys, draft.errors) for section, keys in KEYS.items()}
     return draft, given
+
+
+def _no_section(key: str, value: Any) -> str:
+    """A message about a key at the top of the file: a parameter, say, since the line [model] is missing."""
+    near = suggest(key, SECTIONS)
+    below = near.startswith("; known") and not isinstance(value, (dict, list))
+    return f"{shown(key)} is not a section{near}{'; parameters stand below [model] or [axes]' * below}"
 
 
 def add_numerics(draft: Draft, given: dict) -> None:

@@ -11,7 +11,7 @@ from .fitted import fitted, wants_a_fit
 from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, twins
 from .laws import is_parameter, law_names, update_vocabulary
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, suggest
+from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, instead
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
@@ -171,7 +171,7 @@ class Draft:
         place = f"{section} " if section else ""
         if not is_parameter(name):
             known = [*PARAMETERS, *["label"] * (section == "[[cases]]")]
-            near = suggest(name, known) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
+            near = instead(name, known) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")

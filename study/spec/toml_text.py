@@ -29,7 +29,9 @@ def text_in(path: Path) -> str:
 
 
 def hint(text: str, reason: str) -> str:
-    """The end of a message about a line of TOML, if it has a text without quotes; "" for another mistake."""
+    """The end of a message about a line of TOML: a text without quotes, a name given twice; "" for another mistake."""
+    if "overwrite" in reason:
+        return "; a name is given twice in one section"
     place = re.search(r"at line (\d+)", reason)
     line = text.split("\n")[int(place[1]) - 1][:300] if place else ""
     plain = "'" not in line and '"' not in line and _NO_QUOTES.search(line)

@@ -213,6 +213,11 @@ def finite(value) -> bool:
         return False
 
 
+def instead(name: str, known) -> str:
+    """The end of a message about a name that is no parameter."""
+    return "; of the results P, a or D may be given" if name in VOCABULARY else suggest(name, known)
+
+
 def suggest(word: str, known) -> str:
     """The end of a message: '; did you mean "Nbar"?' when a known word is near, otherwise what is known."""
     lower = {name.lower(): name for name in known}

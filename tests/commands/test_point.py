@@ -92,11 +92,13 @@ def test_materials_by_name_bring_their_spreads(capsys):
             for name in ("profiles", "cases", "title", "workers")
         ),
         (["body=steel 52100", "E2=210 GPa"], ["body and E2 are both given: E2 follows from body"]),
-        (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"?']),
+        (["layer=DLC"], ['layer: "DLC" is no material; did you mean "DLC ta-C" or "DLC a-C:H"? (or give E1 and nu1)']),
         (
             ["P=1e-5", "h=0.02", "n=0.5", "accuracy=5%", "micro=smooth", "R=2 mm", "E2=5 GPa"],
             ['P = 1e-05 has no unit: must be a force, such as "2 N" (accuracy = "5%" makes this a study with units)'],
         ),
+        (["P=1e-5", "p0=1"], ['solve: "p0" is not a parameter; of the results P, a or D may be given']),
+        (["R=1 mm", "p0=1 GPa"], ['"p0" is not a parameter; of the results P, a or D may be given']),
         (["P=1e-5", "mirco=smooth"], ['solve: "mirco" is not a parameter; did you mean "micro"?']),
     ],
 )

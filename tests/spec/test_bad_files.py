@@ -10,6 +10,14 @@ from study.physical import study_file
 BAD = [
     ("h = 0.02", "h = 0.02\nNabr = 1", '[model] "Nabr" is not a parameter; did you mean "Nbar"?'),
     ("[output]", "[outptu]\n[output]", '"outptu" is not a section; did you mean "output"?'),
+    ("h = 0.02", "h = 0.02\nA0 = 1", '[model] "A0" is not a parameter; of the results P, a or D may be given'),
+    ("h = 0.02", "h = 0.02\nh = 0.03", "a name is given twice in one section"),
+    (
+        "[model]",
+        "sigma = 1\n[model]",
+        '"sigma" is not a section; known: title, kind, model, axes, cases, sample, '
+        "numerics, output; parameters stand below [model] or [axes]",
+    ),
     ("P = [", "Nabr = [1]\nP = [", '[axes] "Nabr" is not a parameter; did you mean "Nbar"?'),
     ("rtol = ", "blok = 3\nrtol = ", '[numerics] "blok" is not known; did you mean "block"?'),
     ("x = [0", "profile = true\nx = [0", '[output] "profile" is not known; did you mean "profiles"?'),

@@ -176,5 +176,5 @@ def test_a_clock_that_jumps(opened, undisturbed, monkeypatch, tmp_path):
 def test_names_that_would_be_trouble_in_the_results_folder_are_refused(tmp_path, name, capsys):
     (tmp_path / f"{name}.toml").write_text(TEXT, encoding="utf-8")
     assert main(["run", str(tmp_path / f"{name}.toml"), "--results", str(tmp_path / "results")]) == 2
-    assert "a study file is called NAME.toml, NAME of letters, digits" in capsys.readouterr().err
+    assert "a study file is called NAME.toml, NAME of letters without accents, digits" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == [f"{name}.toml"]

@@ -122,7 +122,7 @@ def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
 
 
 def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
-    """The parameters; DataArrays over an input that is one itself are without the coordinates along it.
+    """The parameters; DataArrays over an input that is one itself are over `dim_of` it, without coordinates along it.
 
     Messages where two of them disagree on a dimension: the arithmetic of xarray would leave out the cases that one of
     them does not have, or take those of one in the order of the other.
@@ -152,8 +152,9 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
                 other, known = labels.setdefault(dim, (name, given[dim].values))
                 if not np.array_equal(known, given[dim].values):
                     errors.append(f"{name} has other values of {dim}, or in another order, than {other}")
+    own = {dim: dim_of(dim) for dim in along_itself}
     return parameters | {
-        name: given.drop_vars([dim for dim in given.dims if dim in given.coords and dim in along_itself])
+        name: given.drop_vars(own, errors="ignore").rename({dim: own[dim] for dim in given.dims if dim in own})
         for name, given in arrays.items()
     }
 
@@ -165,15 +166,15 @@ def _add(scene: Scene, name: str, given: Any) -> None:
     else:
         found = given if isinstance(given, (QuantityList, Quantity)) else _quantities(name, given)
         if isinstance(found, QuantityList):
-            scene.dims |= {found.dim: name} if found.dim == dim_of(name) else {}
             value = xr.DataArray([one.value for one in found.quantities], dims=found.dim)
             spread = xr.DataArray([one.spread for one in found.quantities], dims=found.dim)
-            if found.dim == dim_of(name):
-                unit = f" {unit_of(name)}".removesuffix(" 1")
-                for message in equal_values(name, value.values.tolist(), lambda one: f"{one:g}{unit}"):
-                    raise ValueError(message)
         else:
             value, spread = found.value, found.spread
+    if isinstance(value, xr.DataArray) and value.dims == (dim_of(name),):
+        scene.dims[dim_of(name)] = name
+        unit = f" {unit_of(name)}".removesuffix(" 1")
+        for message in equal_values(name, value.values.tolist(), lambda one: f"{one:g}{unit}"):
+            raise ValueError(message)
     if name in ("R1", "R2") and not np.all(value != 0):
         raise ValueError(f"{name} = {on_one_line(str(given))}: must not be 0")
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))

@@ -34,6 +34,7 @@ def of(values, units: str, dim: str = "ball", labels=None) -> xr.DataArray:
         ({"R": ["1 mm", "2 mm"], "P": of([3, 4], "N", "R")}, 'P: a dimension cannot be called "R" here, unless that'),
         ({"R": "1 mm", "Ra": ["1 um"], "P": of([3], "N", "Ra")}, 'P: a dimension cannot be called "Ra" here, unless'),
         ({"R": "1 mm", "P": of([3, 4], "N", "moved input")}, 'P: a dimension cannot be called "moved input" here'),
+        ({"R": "1 mm", "P": of([3, 3], "N", "P")}, "P[0] and P[1] are both 3 N: values of an axis must differ"),
         ({"R": "1 mm", "P": of(["3", "4"], "N")}, "P: a DataArray must hold numbers"),
         ({"R": "1 mm", "P": of([True, True], "N")}, "P: a DataArray must hold numbers"),
         ({"R": "1 mm", "P": "1 N", "nu2": xr.DataArray(["0.3"], dims="q")}, "nu2: a DataArray must hold numbers"),
@@ -52,6 +53,15 @@ def test_arrays_over_an_input_are_taken_together():
         **BALL | {"base": "layered", "R": "1 mm", "E1": "9 GPa", "h": h, "P": of([1, 2], "N", "h", [5, 9])}
     )
     assert found.a.dims == ("h",) and found.P.values.tolist() == [1, 2]
+
+
+def test_an_array_over_itself_is_an_axis_whatever_the_modulus_depends_on():
+    """`P=earlier.P` was refused wherever E2 has a spread, as that of every material has, or several values: the load in
+    units of E2* R² lies along these too."""
+    for moduli in ({"E2": "210 ± 10 GPa"}, {"E2": ["210 GPa", "70 GPa"]}):
+        expected = study.solve(**BALL | moduli, R="1 mm", P=["1 N", "2 N"])
+        again = study.solve(**BALL | moduli, R="1 mm", P=expected.P)
+        assert again.drop_attrs().identical(expected.drop_attrs()) and again.sel(P="2 N").P == 2
 
 
 def test_short_floats_do_not_overflow():

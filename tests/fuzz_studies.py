@@ -174,7 +174,7 @@ def main() -> int:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     begun, done = time.monotonic(), Counter()
     found = faults(count, seed, Path(tempfile.mkdtemp(prefix="fuzz_studies")), done)
-    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 1e6
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e9
     print(*found, sep="\n")
     print(f"{count} study files in {time.monotonic() - begun:.0f} s, {peak:.2f} GB: {len(found)} faults", dict(done))
     return min(len(found), 1)

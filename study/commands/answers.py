@@ -27,7 +27,7 @@ def verified_line(name: str, found: Condition) -> str:
     """What `verify` found."""
     said = {
         "sound": "verified, every number is the one that was written",
-        "unverified": "an earlier version wrote it without checksums, so it cannot be verified; nothing wrong was seen",
+        "unverified": "xarray or an earlier version wrote it, without checksums to compare; nothing wrong was seen",
         "missing": "does not exist",
     }
     return f"{name}: {said.get(found.kind, found.reason)}"

@@ -12,9 +12,10 @@ from pathlib import Path
 def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
     """A temporary path to write to. When the `with` block ends well, the file is flushed to disk and becomes `path`.
 
-    folder : where the temporary file is, on the file system of `path`; by default beside it. Its name is random, since
-        the process id may be the same on two machines that share a folder
+    folder : where the temporary file is; by default, or if it is a link, which may lead to another file system,
+        beside `path`. Its name is random, since the process id may be the same on two machines that share a folder
     """
+    folder = None if folder and folder.is_symlink() else folder
     if path.is_symlink():
         path, folder = target(path), None
     temporary = (folder or path.parent) / f".{path.name}.{secrets.token_hex(4)}.tmp"

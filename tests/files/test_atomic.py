@@ -47,6 +47,15 @@ def test_a_failure_leaves_what_was_there(tmp_path, failure):
     assert path.read_text(encoding="utf-8") == "old"
 
 
+def test_nothing_is_renamed_from_where_a_link_leads(tmp_path):
+    """A folder of blocks that leads to a faster disk: results could not be renamed to their place at the end."""
+    (tmp_path / "disk").mkdir()
+    (tmp_path / "link").symlink_to("disk")
+    with replacing(tmp_path / "file", tmp_path / "link") as temporary:
+        assert temporary.parent == tmp_path
+        temporary.touch()
+
+
 def test_two_writers_have_temporary_files_of_their_own(tmp_path):
     """In the folder that was asked for."""
     folder = tmp_path / "folder"

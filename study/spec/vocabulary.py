@@ -215,7 +215,7 @@ def finite(value) -> bool:
 
 def instead(name: str, known) -> str:
     """The end of a message about a name that is no parameter."""
-    return "; of the results P, a or D may be given" if name in VOCABULARY else suggest(name, known)
+    return "; of the results P, a or D may be given" if name in names("result") else suggest(name, known)
 
 
 def suggest(word: str, known) -> str:

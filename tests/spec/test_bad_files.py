@@ -10,6 +10,8 @@ from study.physical import study_file
 BAD = [
     ("h = 0.02", "h = 0.02\nNabr = 1", '[model] "Nabr" is not a parameter; did you mean "Nbar"?'),
     ("[output]", "[outptu]\n[output]", '"outptu" is not a section; did you mean "output"?'),
+    ("h = 0.02", "h = 0.02\np = 1e-5", '[model] "p" is not a parameter; did you mean "P"?'),
+    ("h = 0.02", "h = 0.02\nx = 5", '[model] "x" is not a parameter; known: P, a, D'),
     ("h = 0.02", "h = 0.02\nA0 = 1", '[model] "A0" is not a parameter; of the results P, a or D may be given'),
     ("h = 0.02", "h = 0.02\nh = 0.03", "a name is given twice in one section"),
     (

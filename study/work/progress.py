@@ -39,10 +39,10 @@ class Progress:
         self._write(lambda terminal: "\n" if terminal and self.computed else "")
 
     def _write(self, text: Callable[[bool], str]) -> None:
-        """Write text(whether it is for a terminal), if there is a stream. When that fails, go on without it: a run must
-        not end because of it."""
+        """Write text(whether it is for a terminal that can erase a line), if there is a stream. When that fails, go on
+        without it: a run must not end because of it."""
         try:
-            if self.stream is not None and (shown := text(self.stream.isatty())):
+            if self.stream is not None and (shown := text(self.stream.isatty() and os.environ.get("TERM") != "dumb")):
                 self.stream.write(shown)
                 self.stream.flush()
         except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed

@@ -18,7 +18,8 @@ class Terminal(io.StringIO):
 
 @pytest.fixture
 def clock(monkeypatch) -> list[float]:
-    """The time in seconds, which stands still."""
+    """The time in seconds, which stands still, before a terminal that can erase a line."""
+    monkeypatch.setenv("TERM", "xterm")
     now = [1000.0]
     monkeypatch.setattr(progress.time, "monotonic", lambda: now[0])
     return now
@@ -42,8 +43,10 @@ def test_on_a_terminal_it_is_one_line_rewritten_ten_times_a_second(clock):
     )
 
 
-def test_elsewhere_it_is_a_plain_line_every_ten_seconds_and_at_the_end(clock):
-    log = io.StringIO()
+@pytest.mark.parametrize("stream", [io.StringIO, Terminal], ids=["file", "terminal that cannot erase"])
+def test_elsewhere_it_is_a_plain_line_every_ten_seconds_and_at_the_end(clock, monkeypatch, stream):
+    monkeypatch.setenv("TERM", "dumb")
+    log = stream()
     shown = begun("fig04", 100, log)
     for _ in range(100):
         clock[0] += 0.25

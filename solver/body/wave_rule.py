@@ -41,14 +41,15 @@ _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: u = 1/2, the second above, with u = k η at the lower end of the octave. For each digit by which L - 1 has decayed
 #: where the panel begins it has _LESS points fewer. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
-#: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
-#: L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count.
-_END, _END_MIDDLE = 17.0, 15.0
+#: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END; that of films
+#: at _END_FILM. Beyond, L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, under stiff layers too,
+#: where what they move of the pressure is larger (tests/contact/test_error_bars.py).
+_END, _END_MIDDLE, _END_FILM = 20.0, 18.0, 8.7
 
 
 def _end(octave):
     """Where the integral over u ends in an octave."""
-    return min(_END, _END_MIDDLE + 0.7 * octave)
+    return _END_FILM if octave == FILM else min(_END, _END_MIDDLE + 0.7 * octave)
 
 
 #: Largest k of the quadrature of films.

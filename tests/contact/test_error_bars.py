@@ -159,3 +159,15 @@ def test_the_pressure_next_to_the_edge():
     s = solve(Problem.of(P=LOAD, h=0.02, n=[0.5, 2.0, 30.0], base="layered", micro="smooth"), x)
     ratio = s.p / np.sqrt((1 - x) * (1 + x))
     np.testing.assert_allclose(ratio, np.broadcast_to(ratio[:, :1], ratio.shape), rtol=0.1)
+
+
+@pytest.mark.parametrize("bonding", ["frictionless", "bonded"])
+def test_the_ends_of_two_octaves_agree_to_their_errors(bonding):
+    """Where h/a passes a power of two, the operator is made of other waves; h itself differs by 1e-14 of it."""
+    rng, size, a = np.random.default_rng(1), 200, 0.04
+    Ra = 10 ** rng.uniform(-6, -2, size)
+    case = {"a": a, "n": 10 ** rng.uniform(-3, 3, size), "bonding": bonding, "Ra": Ra, "Nbar": Ra**-2, "rtol": 1e-9}
+    h = a * 2.0 ** rng.integers(-7, 4, size)
+    below, above = (solve(Problem.of(**case, h=h * (1 + step))) for step in (-1e-14, 1e-14))
+    assert (below.status == Status.CONVERGED).all() and (above.status == Status.CONVERGED).all()
+    assert np.all(difference(below, above) <= below.error + above.error)

@@ -26,7 +26,9 @@ _THIN, _THINNEST = 4.0, 0.1
 #: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times
 #: (a/h) ∫|L - 1| du. Below, that bound would be too large to be of use, unless n is almost 1.
 _ALONE, _THICKEST = 0.8, 1.0
-#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D.
+#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D. The ring at the
+#: edge in which asperities of A ~ p^β yield more than the body is (A/a²)^(2/(3 - β)) wide: where β is below 1/3, the
+#: exponent is that.
 _ASPERITIES = {"P": 5.0, "a": 7.0, "D": 4.0}
 #: A bound above this is not trusted, for it is of first order; so its model is not taken, whatever `accuracy` is.
 _TRUSTED = 0.3
@@ -93,7 +95,9 @@ def bounds(part):
     if not cases.law.rough:
         return {Model(model + 1): bound for model, bound in found.items()}
     p0 = 2 / np.pi * a * layer_modulus(part.n) / whole(1.5 * x, *material)
-    asperities = _ASPERITIES[part.control] * (cases.law.at(p0[:, None]).A[:, 0] / a**2) ** 0.75
+    _, beta = cases.law.edge()
+    share = cases.law.at(p0[:, None]).A[:, 0] / a**2
+    asperities = _ASPERITIES[part.control] * share ** np.minimum(0.75, 2 / (3 - beta))
     return {Model(model + 1): bound + asperities for model, bound in found.items()} | found
 
 

@@ -105,6 +105,18 @@ def test_kappa_of_waves_that_cancel(n, nu1, nu2, control):
     assert (errors(chosen, exact) <= chosen.model_error + chosen.error + exact.error).all()
 
 
+@pytest.mark.parametrize(("control", "value"), [("a", 0.02), ("P", 1e-5), ("D", 4e-4)])
+def test_accuracy_is_kept_where_asperities_yield_at_once(control, value):
+    """A ~ p^β of β below 1/3: they touch in a wide ring around the smooth contact. A is 1e-6 to 1e-2 of a²."""
+    beta, share = (v.ravel() for v in np.meshgrid([0.02, 0.05, 0.1, 0.2, 0.3], 10.0 ** np.arange(-6, -1)))
+    Ra = share * 0.02**2 / (0.1 * 0.013**beta)
+    case = {control: value, "h": 2e3, "n": 0.5, "micro": "power_law", "B": 0.1, "beta": beta, "Ra": Ra, "Nbar": Ra**-2}
+    true, found = solve(Problem.of(**case)), solve(Problem.of(**case, base="auto", accuracy=0.3))
+    known = (true.status == 0) & (found.model_used == Model.SMOOTH_LAYER_ALONE)
+    assert known.sum() > 10
+    assert (errors(found, true) <= found.model_error + true.error)[known].all()
+
+
 def test_every_model_is_used_and_named():
     given, _ = grid("validity")
     used = solve(Problem.of(**given | {"base": "auto", "accuracy": 0.1})).model_used

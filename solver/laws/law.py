@@ -178,7 +178,9 @@ class Bound(NamedTuple):
 
 
 def inverse(value, target, y):
-    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding.
+    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding. A step that is
+    not half the one before goes to the middle of the bracket of the root, if it has both ends: where a law bends
+    sharply, Newton's method alone may swing to and fro between them.
 
     value : y -> (value, its derivative), increasing from 0; target : array; y : first guess, an array of its shape.
 
@@ -187,8 +189,13 @@ def inverse(value, target, y):
     goal = np.where(target > 0, target, 1.0)
     y = np.where((target > 0) & (y > 0), y, 1.0)
     going, size = np.full(y.shape, True), np.full(y.shape, np.inf)
+    low, high = np.zeros(y.shape), np.full(y.shape, np.inf)
     for _ in range(_STEPS):
         step = np.clip(log_step(value, goal, y), -_LONGEST, _LONGEST)
+        low, high = np.where(step > 0, y, low), np.where(step < 0, y, high)
+        astray = (np.abs(step) > np.maximum(size / 2, _ROUNDING)) & (low > 0) & (high < np.inf)
+        middle = np.sqrt(np.where(astray, low, y)) * np.sqrt(np.where(astray, high, y))
+        step = np.where(astray, np.log(middle / y), step)
         y = np.where(going, y * np.exp(step), y)
         size, before = np.where(going, np.abs(step), size), size
         going = going & (size > _LAST) & ((size > _ROUNDING) | (size < before / 2))

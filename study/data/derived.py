@@ -185,7 +185,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         p = dataset["p"] / unit
         spots = xr.apply_ufunc(_largest(law), p, E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
-    return unit * found.max("x")
+    return unit * found.max("x", skipna=False)
 
 
 def _scales(dataset: xr.Dataset) -> tuple:

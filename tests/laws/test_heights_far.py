@@ -7,7 +7,8 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
 
-from solver.laws import heights
+import study
+from solver.laws import LAWS, heights
 
 
 @pytest.mark.parametrize(
@@ -37,3 +38,22 @@ def test_heights_far_beyond_the_relief(sigma, q):
         for low, high in pairwise(ends / sigma)
     )
     assert_allclose(found, q, rtol=3e-5)  # q by the table, 5e-6, and its exponent of A up to 5/2
+
+
+@pytest.mark.parametrize("cut", [3.0, 4.5, 5.0])
+@pytest.mark.parametrize("sigma", [0.01, 0.1, 1.0, 100.0])
+@np.errstate(all="ignore")  # as in the solver
+def test_every_pressure_has_its_spots(sigma, cut):
+    """Where the few highest summits end and the many begin, q(y) is steep: Newton's method alone swings over it."""
+    q = np.geomspace(1e-10, 1e4, 400)[None]
+    law = LAWS["normal_heights"].bind(np.ones(1), Nbar=1 / np.pi, Ra=1.0, sigma=sigma, cut=cut)
+    assert_allclose(law.evaluate(law.from_pressure(q)).q, q, rtol=1e-12)
+
+
+def test_auto_and_the_peak_pressure_find_them():
+    """A smooth punch for a rough one, and the largest pressure of the profile: under a half-space that in the centre."""
+    heights = {"micro": "normal_heights", "cut": 5.0, "Nbar": 3e9, "Ra": 1e-4, "sigma": 4e-8}
+    found = study.solve(a=np.geomspace(1e-3, 0.03, 12), base="half_space", **heights)
+    assert_allclose(study.derived.peak_pressure(found), found.p_max, rtol=1e-9)
+    chosen = study.solve(a=np.geomspace(1e-3, 0.03, 12), h=1e3, n=0.5, base="auto", accuracy=0.3, **heights)
+    assert (found.status == 0).all() and (chosen.status == 0).all()

@@ -51,7 +51,7 @@ def test_every_pressure_has_its_spots(sigma, cut):
 
 
 def test_auto_and_the_peak_pressure_find_them():
-    """A smooth punch for a rough one, and the largest pressure of the profile: under a half-space that in the centre."""
+    """A smooth punch for a rough one, and the largest pressure of the profile, here that in the centre."""
     heights = {"micro": "normal_heights", "cut": 5.0, "Nbar": 3e9, "Ra": 1e-4, "sigma": 4e-8}
     found = study.solve(a=np.geomspace(1e-3, 0.03, 12), base="half_space", **heights)
     assert_allclose(study.derived.peak_pressure(found), found.p_max, rtol=1e-9)

@@ -20,9 +20,8 @@ from ..status import Status
 from .model_error import closed_form
 
 #: In random cases the true error is at most 0.85 of each bound that follows (`python tests/models/margins.py`).
-#: Where h/a is below _THINNEST, the error of the thin layer is at most _THIN times its closed form, which is that of a
-#: smooth punch.
-_THIN, _THINNEST = 4.0, 0.1
+#: The error of the thin layer is at most _THIN times its closed form, which is that of a smooth punch.
+_THIN = 4.0
 #: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times
 #: (a/h) ∫|L - 1| du. Below, that bound would be too large to be of use, unless n is almost 1.
 _ALONE, _THICKEST = 0.8, 1.0
@@ -84,13 +83,11 @@ def bounds(part):
     cases = as_cases(part.but(base="layered"))
     a = guess_radius(cases)
     x, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")
-    alone, thin = np.full((2, len(part)), np.inf)
+    alone, thin = np.full(len(part), np.inf), np.nan_to_num(_THIN * closed_form(part, a), nan=np.inf)
     of_law = cases.law.law.error
     i = np.flatnonzero(x > _THICKEST)
     L1, _ = decaying_part(_U * np.ones((len(i), 1)), *(v[i, None] for v in material))
     alone[i] = _ALONE * (np.abs(L1) @ _WEIGHTS) / x[i]
-    i = np.flatnonzero(x < _THINNEST)
-    thin[i] = np.nan_to_num(_THIN * closed_form(part.take(i), a[i]), nan=np.inf)
     found = {Model.LAYER_ALONE: alone + of_law, Model.THIN_LAYER: thin + of_law}
     if not cases.law.rough:
         return {Model(model + 1): bound for model, bound in found.items()}

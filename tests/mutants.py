@@ -57,7 +57,10 @@ class Verdict:
 
 
 def read(root: Path = ROOT) -> list[Mutant]:
-    """The mutants of a tree: [PACKAGE.ROOM.MODULE.NAME] with `old`, `new`, and `tests` relative to tests/."""
+    """The mutants of a tree: [PACKAGE.ROOM.MODULE.NAME] with `old`, `new`, and `tests` relative to tests/.
+
+    They are of the file MODULE.py, or of the `file` that they name.
+    """
     return list(_within(tomllib.loads((root / "tests/mutants.toml").read_text(encoding="utf-8")), ()))
 
 
@@ -65,7 +68,7 @@ def _within(tables: dict, path: tuple[str, ...]) -> Iterator[Mutant]:
     """The mutants of nested tables, `path` the names of the tables around."""
     for name, entry in tables.items():
         if "old" in entry:
-            yield Mutant(".".join((*path, name)), f"{'/'.join(path)}.py", **entry)
+            yield Mutant(".".join((*path, name)), **{"file": f"{'/'.join(path)}.py"} | entry)
         else:
             yield from _within(entry, (*path, name))
 

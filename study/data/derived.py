@@ -117,7 +117,7 @@ def quantity(name: str) -> Callable:
     Raises ValueError for a name without a row.
     """
     if name not in VOCABULARY:
-        raise ValueError(f"{name} has no row in study/spec/vocabulary.py: a quantity needs one")
+        raise ValueError(f"{name} has no row in study/spec/vocabulary.toml: a quantity needs one")
 
     def register(formula: Callable) -> Callable:
         @wraps(formula)

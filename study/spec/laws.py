@@ -22,7 +22,7 @@ def update_vocabulary() -> None:
         if name not in PARAMETERS:
             owners = " and ".join(SOLVER_PARAMETERS[name].needed_by[1])
             words = declared.long_name or f"parameter of the micro law {owners}"
-            VOCABULARY[name] = Entry(name, declared.symbol or name, words, "roughness", declared.powers)
+            VOCABULARY[name] = Entry(name, "roughness", words, declared.symbol or name, declared.powers)
             PARAMETERS.append(name)
 
 

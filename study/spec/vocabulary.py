@@ -1,10 +1,12 @@
-"""The only table of names: what every parameter and result is called, measured in, allowed to be and printed as."""
+"""What every parameter and result is called, measured in, allowed to be and printed as: the rows of vocabulary.toml."""
 
 import difflib
 import math
 import numbers
+import tomllib
 from dataclasses import dataclass
 from functools import cached_property
+from importlib.resources import files
 
 import numpy as np
 
@@ -28,16 +30,12 @@ def si_unit(powers: tuple[int, int]) -> str:
 
 @dataclass(frozen=True)
 class Entry:
-    """A row of the vocabulary: one parameter, result or coordinate.
-
-    powers : (i, j): the dimensionless number times E2*^i R^j is the physical quantity
-    interval : of a parameter that has narrower bounds in a study than in the solver
-    """
+    """A row of the vocabulary: one parameter, result or coordinate; vocabulary.toml says what the fields are."""
 
     name: str
-    symbol: str
-    long_name: str
     role: str
+    long_name: str
+    symbol: str = ""
     powers: tuple[int, int] = (0, 0)
     equation: str = ""
     interval: str = ""
@@ -81,71 +79,21 @@ def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = (
 
 LISTED = 40  # most names that a message lists
 
-# fmt: off
-_ENTRIES = (
-    Entry("P", "P", "load", "control", (1, 2), equation="(5)"),
-    Entry("a", "a", "radius of the nominal contact area", "control", (0, 1), equation="(4)"),
-    Entry("D", "D", "indentation depth", "control", (0, 1), equation="(14)"),
-    Entry("h", "h", "thickness of the layer", "material", (0, 1)),
-    Entry("n", "n", "ratio of the reduced moduli of layer and half-space", "material"),
-    Entry("m", "m", "ratio of the reduced moduli of layer and punch, 0: rigid", "material"),
-    Entry("nu1", "ν1", "Poisson ratio of the layer", "material"),
-    Entry("nu2", "ν2", "Poisson ratio of the half-space", "material"),
-    Entry("bonding", "", "interface of layer and half-space", "material"),
-    Entry("base", "", "elastic base", "material"),
-    Entry("Nbar", "N̄", "number of asperities per unit area", "roughness", (0, -2)),
-    Entry("Ra", "Ra", "radius of an asperity", "roughness", (0, 1)),
-    Entry("micro", "", "micro law A[p]", "roughness", equation="(6), (7)"),
-    Entry("B", "B", "coefficient of the power law A = B p^β, in Ra/E1*^β", "roughness"),
-    Entry("beta", "β", "exponent of the power law A = B p^β", "roughness"),
-    Entry("sigma", "σ", "standard deviation of the heights of the asperities", "roughness", (0, 1)),
-    Entry("cut", "c", "largest height of an asperity above the mean, over σ", "roughness"),
-    Entry("scheme", "", "scheme of solution", "numerics"),
-    Entry("k", "k", "iteration parameter of the successive approximations", "numerics", equation="(8)"),
-    Entry("rtol", "", "wanted relative error", "numerics", interval="[1e-12, 0.1]"),
-    Entry("accuracy", "", "allowed relative model error of the base auto", "numerics"),
-    Entry("model_check", "", "how the model error of a named thin layer is estimated", "numerics"),
-    Entry("nodes", "", "number of nodes, 0: chosen by rtol", "numerics"),
-    Entry("max_iterations", "", "largest number of iterations, 0: the scheme's own", "numerics"),
-    Entry("p0", "p(0)", "nominal pressure in the centre", "result", (1, 0), equation="(3)"),
-    Entry("p_max", "pmax", "real pressure in the middle of the central spot", "result", (1, 0), equation="(13)"),
-    Entry("Ar_An", "Ar/An", "real over nominal contact area", "result", equation="(12)"),
-    Entry("A0", "A[p(0)]", "additional displacement of the rough layer in the centre", "result", (0, 1),
-          equation="(6)"),
-    Entry("dP_dD", "dP/dD", "contact stiffness", "result", (1, 1)),
-    Entry("lam0", "λ(0)", "relative contact area in the centre", "result", equation="(11)"),
-    Entry("p", "p(r)", "nominal contact pressure", "profile", (1, 0), equation="(3)"),
-    Entry("lam", "λ(r)", "relative contact area", "profile", equation="(11)"),
-    Entry("status", "", "how the solution of the case ended", "flag"),
-    Entry("error", "", "estimated relative error of a, P, D, p(0), pmax and Ar/An", "result"),
-    Entry("profile_error", "", "estimated error of the profiles of p and λ, over their largest values", "result"),
-    Entry("model_error", "", "estimated relative error of the model used, against the exact layered one", "result"),
-    Entry("model_used", "", "model that the case was solved with", "flag"),
-    Entry("residual", "", "relative residual of the discrete equation", "result"),
-    Entry("iterations", "", "number of iterations", "count"),
-    Entry("nodes_used", "", "number of nodes used", "count"),
-    Entry("validity", "", "assumptions of the model that the case violates; 0: none", "flag"),
-    Entry("An", "An", "nominal contact area", "derived", (0, 2)),
-    Entry("An_ratio", "An/(π a0²)", "nominal contact area over a reference area", "derived"),
-    Entry("p_mean", "P/An", "mean nominal pressure", "derived", (1, 0)),
-    Entry("spots", "N̄ An", "number of contact spots", "derived"),
-    Entry("b0", "b(0)", "radius of the central contact spot", "derived", (0, 1), equation="(7)"),
-    Entry("p_peak", "ppeak", "largest real pressure in the contact, wherever it is", "derived", (1, 0),
-          equation="(13)"),
-    Entry("E_eff", "Eeff", "effective reduced modulus (dP/dD)/(2a)", "derived", (1, 0)),
-    Entry("x", "r/a", "radius over the radius of the nominal contact area", "coordinate"),
-    Entry("case", "", "number of the case", "coordinate"),
-    Entry("label", "", "label of the case", "coordinate"),
-)
-# fmt: on
+
+def entries(tables: dict) -> dict[str, Entry]:
+    """Name -> row, of tables as those of vocabulary.toml: role -> name -> the other fields."""
+    rows = [(name, role, own) for role, table in tables.items() for name, own in table.items()]
+    return {name: Entry(name, role, **own | {"powers": tuple(own.get("powers", (0, 0)))}) for name, role, own in rows}
 
 
-VOCABULARY = {entry.name: entry for entry in _ENTRIES}
+VOCABULARY = entries(tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8")))
+ROLES = {name: entry.role for name, entry in VOCABULARY.items()}
+"""Without the parameters of registered laws."""
 
 
 def names(*roles: str) -> tuple[str, ...]:
     """Names that have one of the roles, in the order of the table."""
-    return tuple(entry.name for entry in _ENTRIES if entry.role in roles)
+    return tuple(name for name, role in ROLES.items() if role in roles)
 
 
 CONTROLS = names("control")

@@ -2,6 +2,7 @@
 
 import csv
 import re
+import tomllib
 
 import numpy as np
 import pages
@@ -21,7 +22,8 @@ def code(heading: str) -> list[str]:
     return re.findall(r"^```python\n(.*?)^```", SECTIONS[heading], flags=re.DOTALL | re.MULTILINE)
 
 
-(FIGURE,), (TABLE,), (ROW, FORMULA) = map(code, ("A figure", "A table", "An output quantity"))
+(FIGURE,), (TABLE,), (FORMULA,) = map(code, ("A figure", "A table", "An output quantity"))
+(ROW,) = pages.blocks("docs/extending.md", "toml")[-1:]
 SCRIPT = """
 import sys
 import study.figures
@@ -79,7 +81,7 @@ def test_a_table_is_one_function(results, tmp_path):
 
 
 def test_an_output_quantity_is_one_row_and_its_formula(results, monkeypatch):
-    (row,) = eval(ROW, vars(vocabulary))
+    (row,) = vocabulary.entries(tomllib.loads(ROW)).values()
     monkeypatch.setitem(vocabulary.VOCABULARY, row.name, row)
     monkeypatch.setitem(derived.QUANTITIES, row.name, None)  # and not there any more after the test
     found = vars(derived) | {}

@@ -121,7 +121,7 @@ def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given(monkeypatch):
     """A tilt of the punch, say, 0 by default. Results and blocks of today stay those of their cases."""
     today = defined()
     monkeypatch.setitem(solver.parameters.PARAMETERS, "tilt", Parameter(0.0, interval="[0, 1]"))
-    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "", "tilt of the punch", "material"))
+    monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "material", "tilt of the punch"))
     for module in (identity, keys):
         monkeypatch.setattr(module, "PARAMETERS", (*PARAMETERS, "tilt"))
     for tilt, same in ((None, True), (0.0, True), (0.5, False)):

@@ -19,7 +19,7 @@ from ..spec.vocabulary import VOCABULARY, attributes
 from .units import physical_attributes, reduced_modulus, without_unit
 
 FEW_SPOTS = 100.0
-"""The model spreads the asperities evenly: with fewer in touch than this, N̄πa² of equal heights, they are not many."""
+"""The model spreads the asperities evenly, so many must touch. Of equal heights, N̄πa² touch."""
 SPOT_OVER_LAYER = 0.1
 """The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0
@@ -33,11 +33,12 @@ STEEP = 0.2
 """Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and the sphere is at
 r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
 COMPRESSED = 0.1
-"""Largest compressive strain of the layer; linear elasticity errs by about as much as the strain. It is D/h where the
-layer gives way, and where the body below does, no more than p(0)/E1*."""
+"""Largest compressive strain of the layer; linear elasticity errs by about as much. A layer that gives way itself has the
+strain D/h. If rather the body below gives way, the strain of the layer is at most p(0)/E1*."""
 STRETCHED = 0.1
-"""Largest part of p(0) that the tension of a layer bent to the sphere bears, which linear elasticity leaves out: with a
-free edge at r = a it is E1* h a²/(8 R³) if h < a (Föppl's equations; tests/data/test_validity_stretched.py)."""
+"""A layer bent to the sphere is under tension. Linear elasticity leaves out that the tension bears a part of the pressure.
+This is the largest part of p(0) that it may bear. With a free edge at r = a it bears E1* h a²/(8 R³) if h < a (Föppl's
+equations; tests/data/test_validity_stretched.py)."""
 STEEP_SPOT = 0.5
 """Largest b(0)/Ra: the strain under an asperity, 0.2 b/Ra, is then 10 %, the sphere is 6 % deeper than the paraboloid,
 and p_max = 0.32 E1* is above the hardness of any metal."""
@@ -77,7 +78,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
     layered, rough = v["base"] != "half_space", _have("rough", v["micro"])
     h, n = v.get("h", np.nan), v.get("n", np.nan)
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
-    # No more than b/Ra of the central spot, by (13). b(0) of random heights is a mean, a table has no Ra.
+    # By (13) this is at most b/Ra of the central spot. It also serves laws whose b(0) is a mean, and those without Ra.
     steep = np.pi / 2 * (v.get("p_max", np.nan) - v["p0"]) / E1
     compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
     stretched = layer_modulus(n) * np.minimum(h, v["a"]) * v["a"] ** 2 > 8 * STRETCHED * v["p0"]
@@ -217,7 +218,7 @@ def effective_modulus(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def _have(feature: str, micro):
-    """Whether the laws of the cases are "rough", or have another feature. One that is not registered is taken to."""
+    """Whether the law of each case has a feature, such as "rough". A law that is not registered is taken to have it."""
     return sum(micro == name for name, law in LAWS.items() if not getattr(law, feature)) == 0
 
 

@@ -65,8 +65,9 @@ def absurd(given: dict, spreads: dict) -> list[str]:
         limit = 0.5 - value if name in _RATIOS else abs(value)
         if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
             limit = limit * np.minimum(abs(value / given["R"]), 1)
-        with np.errstate(invalid="ignore"):  # rigid: inf
-            value, spread, limit = (np.ravel(0 * (value + spread + limit) + one) for one in (value, spread, limit))
+        with np.errstate(invalid="ignore"):  # a rigid body has inf, and 0 inf is NaN
+            zero = 0 * (value + spread + limit)  # over all their dimensions
+            value, spread, limit = (np.ravel(zero + one) for one in (value, spread, limit))
         wide = np.flatnonzero((spread > 0) & (spread >= limit))
         if len(wide):
             text = readable(float(value[wide[0]]), unit_of(name), float(spread[wide[0]]))

@@ -122,10 +122,11 @@ def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
 
 
 def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
-    """The parameters; DataArrays over an input that is one itself are over `dim_of` it, without coordinates along it.
+    """The parameters, after a check that DataArrays which share a dimension have the same coordinates along it.
 
-    Messages where two of them disagree on a dimension: the arithmetic of xarray would leave out the cases that one of
-    them does not have, or take those of one in the order of the other.
+    Otherwise the arithmetic of xarray would leave out the cases that one of them does not have, or take those of one in
+    the order of the other. Where h is a DataArray over h, the dimension h of all of them becomes `dim_of` it, without
+    coordinates: these are the input itself.
     """
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}

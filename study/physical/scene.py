@@ -145,8 +145,9 @@ def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[
 
     It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs.
 
-    used : `model_used`, None of coordinates alone. The base auto may change its model between up and down: the step
-        between two models is no derivative; the difference is then that of two of up, as given, down with one model.
+    used : `model_used`, None of coordinates alone. On the base auto the cases moved up and down may be solved by two
+        models, and a step from one model to another is no derivative. Then the case as given is compared with the moved
+        one that has its model.
     """
     if VOCABULARY[name].role not in ("control", "result", "profile") or name in _WITHOUT_SPREAD:
         return {}

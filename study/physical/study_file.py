@@ -27,7 +27,7 @@ from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
 ANY_VALUE = 0.3
-"""In place of an axis with a mistake: all numbers may have it."""
+"""Stands for an axis with a mistake. Every parameter that is a number may have it, so no second message follows."""
 FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
 
 

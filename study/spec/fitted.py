@@ -26,24 +26,18 @@ def wants_a_fit(grid: Grid) -> bool:
 
 def fitted(grid: Grid) -> tuple[dict, list[str]]:
     """Values of B and beta over the dimensions of Nbar and Ra, as in `Grid.values`; and what is wrong with them."""
-    both = along(grid, "Nbar") * along(grid, "Ra") ** 2
-    known = np.unique(both[np.isfinite(both)])
+    products = along(grid, "Nbar") * along(grid, "Ra") ** 2
+    known = np.unique(products[np.isfinite(products)]).tolist()
     if len(known) > MOST_FITS:
         few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(known)}"
         return {}, [f"B and beta are missing: {few}"]
-    laws = {value: fit_power_law(value)[:2] for value in known.tolist()}
-    of_both = {dim for name in ("Nbar", "Ra") for dim in grid.values[name][0]}
-    dims = tuple(dim for dim in grid.sizes if dim in of_both)
+    dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
     found, errors = {}, []
-    for i, name in enumerate(("B", "beta")):
-        numbers = [
-            float(f"{laws[value][i]:.{DIGITS}g}") if value in laws else np.nan for value in both.ravel().tolist()
-        ]
-        found[name] = dims, np.array(numbers).reshape([grid.sizes[dim] for dim in dims])
+    for name, fits in zip(("B", "beta"), zip(*(fit_power_law(value)[:2] for value in known), strict=True), strict=True):
+        kept = {value: float(f"{fit:.{DIGITS}g}") for value, fit in zip(known, fits, strict=True)}
+        array = np.array([kept.get(value, np.nan) for value in products.ravel().tolist()])
+        found[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])
         own = VOCABULARY[name].own
-        wrong = [value for value in laws if not allowed(own, laws[value][i])]
-        if wrong:
-            errors.append(
-                f"{name} fitted to Nbar Ra^2 = {wrong[0]:g} is {laws[wrong[0]][i]:g}: must be in {own.interval}"
-            )
+        wrong = [(value, fit) for value, fit in zip(known, fits, strict=True) if not allowed(own, fit)]
+        errors += [f"{name} fitted to Nbar Ra^2 = {v:g} is {fit:g}: must be in {own.interval}" for v, fit in wrong[:1]]
     return found, errors

@@ -146,7 +146,7 @@ class Draft:
         self._check_dimensions()
         _, laws = self.values.get("micro", ((), ""))  # "" if what was given has been refused
         for name in [name for name in PARAMETERS if name not in self.sections]:
-            own = VOCABULARY[name].own
+            own = VOCABULARY[name].own  # a parameter of a law that no case has stays away
             selector, owners = own.needed_by
             if own.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
                 self.values[name] = (), np.array(own.default)

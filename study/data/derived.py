@@ -33,10 +33,10 @@ STEEP = 0.2
 """Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and the sphere is at
 r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
 COMPRESSED = 0.1
-"""Largest compressive strain of the layer; linear elasticity errs by about as much. A layer that gives way itself has the
-strain D/h. If rather the body below gives way, the strain of the layer is at most p(0)/E1*."""
+"""Largest compressive strain of the layer; linear elasticity errs by about as much. A layer that gives way itself has
+the strain D/h. If rather the body below gives way, the strain of the layer is at most p(0)/E1*."""
 STRETCHED = 0.1
-"""A layer bent to the sphere is under tension. Linear elasticity leaves out that the tension bears a part of the pressure.
+"""A layer bent to the sphere is under tension, which bears a part of the pressure. Linear elasticity leaves that out.
 This is the largest part of p(0) that it may bear. With a free edge at r = a it bears E1* h a²/(8 R³) if h < a (Föppl's
 equations; tests/data/test_validity_stretched.py)."""
 STEEP_SPOT = 0.5

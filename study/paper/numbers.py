@@ -1,34 +1,10 @@
-"""The numbers that the paper prints: data only, in its scaling R = 1, E2* = 1."""
+"""The numbers that the paper prints, from numbers.toml, which says what they are."""
 
-TABLE1 = (
-    # Ra, Nbar, B E1*^beta in R, beta
-    (0.004, 250_000, 4e-4, 0.50),
-    (0.004, 62_500, 1.2e-3, 0.53),
-    (0.004, 15_625, 4e-3, 0.57),
-    (0.002, 250_000, 6e-4, 0.53),
-    (0.001, 250_000, 1e-3, 0.57),
-)
+import tomllib
+from importlib.resources import files
 
-NUMBERS = {
-    # key: (quantity, printed value)
-    "P": ("load P at a = a0, rough, layered", 2.72e-5),
-    "p0": ("p(0), rough, layered", 0.01),
-    "Ar_An": ("Ar/An, rough, layered", 0.185),
-    "p_max": ("pmax, rough, layered", 0.053),
-    "D": ("D, rough, layered", 1.038e-3),
-    "A0": ("A[p(0)], rough, layered", 5.711e-5),
-    "An_ratio": ("An over that of a0, rough, homogeneous", 0.564),
-    "Ar_An homogeneous": ("Ar/An, rough, homogeneous", 0.172),
-    "p_max homogeneous": ("pmax, rough, homogeneous", 0.097),
-    "D smooth layered": ("D, smooth, layered", 1.003e-3),
-    "D smooth homogeneous": ("D, smooth, homogeneous (Hertz)", 7.418e-4),
-    "B": ("B of the fit, in Ra/E1*^beta, first row of Table 1", 0.092),
-    "beta": ("beta of the fit, first row of Table 1", 0.491),
-}
-"""Sections 4.1 to 5 of the paper; the load of all contacts is that of the first line."""
-
-ERROR_INTERVAL = (0.0025, 0.025)  # pressures in E1* over which the paper states the errors of its fits
-
-ERROR_BOUNDS = {4.0: 0.08, 1.0: 0.05, 0.25: 0.05}
-"""N̄Ra² of a row of Table 1: what the error of its fit does not exceed. The paper prints the two bounds, no more; that
-the first row has the wider one follows from the errors of its constants as we find them."""
+_PRINTED = tomllib.loads((files(__package__) / "numbers.toml").read_text(encoding="utf-8"))
+TABLE1 = tuple(map(tuple, _PRINTED["table1"]))
+NUMBERS = _PRINTED["numbers"]
+ERROR_INTERVAL = tuple(_PRINTED["error_interval"])
+ERROR_BOUNDS = dict(_PRINTED["error_bounds"])

@@ -10,7 +10,7 @@ from test_cli import GOOD, studies  # noqa: F401
 
 from study import api, catalogue
 from study.__main__ import main
-from study.commands.answers import failure_lines
+from study.commands.computing import failure_lines
 from study.evidence import tradeoff
 from study.work import plan
 from study.work.plan import Report

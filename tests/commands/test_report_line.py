@@ -5,7 +5,7 @@ from types import SimpleNamespace
 
 import pytest
 
-from study.commands.answers import cost_line, failure_lines, report_line, state_line
+from study.commands.computing import cost_line, failure_lines, report_line, state_line
 from study.work.cost import Estimate
 from study.work.plan import Report
 

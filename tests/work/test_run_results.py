@@ -13,7 +13,7 @@ import xarray as xr
 from line_study import leftovers, load, store_block
 
 import study
-from study.commands.answers import state_line
+from study.commands.computing import state_line
 from study.files import netcdf, results_file
 from study.work import cases, workers
 

@@ -15,7 +15,7 @@ from .physical.study_file import read
 from .spec.definition import Definition, StudyError
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
-from .store.earlier import earlier, other, statuses
+from .store.earlier import earlier, of_what, statuses
 from .store.tidy import clean
 from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look
@@ -110,7 +110,7 @@ class Study:
                 return partial_dataset(self.definition, self.results)
             return self.open()  # a run has ended meanwhile, and removed its blocks
         if found.good or found.kind == "missing":
-            reason = f"holds results of {other(found)}" if found.good else "does not exist"
+            reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
         again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)

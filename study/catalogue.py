@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 import solver
 
 from . import evidence, figures, literature, paper
-from .figures.formats import as_csv, as_latex, as_text, csv_text, write
+from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, NotMade, entry, open_studies
 from .figures.style import style
@@ -120,5 +120,6 @@ def tabulate(name: str, results="results", folder="tables") -> list[Path]:
     rows = table.rows(*datasets)
     if not isinstance(rows, list) or any(len(row) != len(table.columns) for row in rows):
         raise NotMade([f"{name}: the function must return a list of tuples of {len(table.columns)} cells, one a row"])
-    texts = {"txt": as_text(table, rows), "csv": as_csv(table, rows), "tex": as_latex(table, rows)}
+    text_csv = csv_text([column.text for column in table.columns], rows)
+    texts = {"txt": as_text(table, rows), "csv": text_csv, "tex": as_latex(table, rows)}
     return [write(Path(folder) / f"{name}.{suffix}", text) for suffix, text in texts.items()]

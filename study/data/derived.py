@@ -45,15 +45,12 @@ and p_max = 0.32 E1* is above the hardness of any metal."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset, of each formula with the decorator `quantity`. They can be drawn like results."""
 _TEXTS = tomllib.loads((files(__package__) / "assumptions.toml").read_text(encoding="utf-8"))
-_LIMITS = {"NOT_THIN": NOT_THIN, "percent": 100 * NOT_THIN, "FEW_SPOTS": FEW_SPOTS, "MERGING": MERGING}
-_LIMITS |= {"SPOT_OVER_LAYER": SPOT_OVER_LAYER, "PITCH_OVER_LAYER": PITCH_OVER_LAYER}
-_LIMITS |= {"STEEP": STEEP, "COMPRESSED": COMPRESSED, "STEEP_SPOT": STEEP_SPOT}
 ASSUMPTIONS = {1 << i: name for i, name in enumerate(_TEXTS)}
 
 
 def assumption_texts(key: str) -> dict[str, str]:
     """Name of each assumption -> one of its texts in assumptions.toml, with the limits in it; "" where it has none."""
-    return {name: own.get(key, "").format(**_LIMITS) for name, own in _TEXTS.items()}
+    return {name: own.get(key, "").format(**globals(), percent=100 * NOT_THIN) for name, own in _TEXTS.items()}
 
 
 def validity(dataset: xr.Dataset) -> xr.DataArray:

@@ -24,15 +24,16 @@ from ..paper import paper_error
 from ..paper.uniform import solve_uniform, uniform_mesh
 from .problem_sets import SETS
 
-REFERENCE = 1e-11
-ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)
-X = np.array([0.0, 1.0])
+REFERENCE = 1e-11  # rtol of the solutions with which all others are compared
+ENDED = (Status.CONVERGED, Status.TOLERANCE_NOT_MET)  # statuses of cases whose iteration closed
+X = np.array([0.0, 1.0])  # points of the profiles: as few as there can be, since they take time
 PATIENCE = 1.0  # seconds after which a measurement is not repeated
 
-PAPERS = ("paper, layer", "paper, half-space")
+PAPERS = ("paper, layer", "paper, half-space")  # the problem sets that the paper's way can solve
 TOLERANCES = tuple(10.0**-i for i in range(2, 10))
 NODES = (8.0, 12.0, 16.0, 24.0, 32.0)
-SLOW, COPIES = 20, 10
+SLOW = 20  # cases of a set on which a slow way is measured
+COPIES = 10  # of each case of the paper in a batch of a quick way
 #: Intervals of the paper's meshes, among them those that just reach 1e-3, 1e-4, 1e-5 and 1e-6 on the paper's layer.
 MESHES = (10.0, 20.0, 45.0, 80.0, 130.0)
 FINE = (390.0, 640.0, 1100.0)
@@ -44,7 +45,7 @@ class Way:
 
     varied : what the settings are, in a word
     sets : names of the problem sets on which it is measured; most : it takes at most so many cases of a set
-    copies : of the paper's cases in a batch, for ways so quick that a hundred cases cannot be timed
+    copies : of each of the paper's cases in a batch; several for ways so quick that a hundred cases cannot be timed
     prepare(setting) : is called before, and not timed, as any number of cases can use what it prepares
     """
 
@@ -82,6 +83,7 @@ def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution
 
 
 def _picard(k: float) -> Way:
+    """The solver's scheme "picard", on the nodes that Newton's method has; the more there are, the smaller is rtol."""
     options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
     return Way(changed(**options), "nodes", NODES, PAPERS, most=SLOW)
 
@@ -227,8 +229,8 @@ def results(folder, size: int = SIZE, force: bool = False, command: str = "") ->
         found.raise_if_bad()
     if force or not found.good or found.digest != digest(plan(WAYS, size)):
         path.parent.mkdir(parents=True, exist_ok=True)
-        measured = measure(size, command=command)
+        dataset = measure(size, command=command)
         if found.kind == "damaged":
             set_aside(path)
-        write(measured, path)
+        write(dataset, path)
     return open_results(path)

@@ -18,11 +18,6 @@ def as_text(table: Table, rows: list[tuple]) -> str:
     return "\n".join([table.caption, "", lines[0], "-" * max(map(len, lines)), *lines[1:]]) + "\n"
 
 
-def as_csv(table: Table, rows: list[tuple]) -> str:
-    """CSV with all digits."""
-    return csv_text([column.text for column in table.columns], rows)
-
-
 def as_latex(table: Table, rows: list[tuple]) -> str:
     """A table environment; needs the package booktabs."""
     form = "".join("l" if column.form == "s" else "r" for column in table.columns)

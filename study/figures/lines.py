@@ -224,7 +224,7 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         every = -(-found.sizes[hue] // MOST_NAMES)
         colours = shades(found.sizes[hue])
         named = range(0, found.sizes[hue], every)
-        title, texts = entries(found, hue)
+        title, texts = legend_texts(found, hue)
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
     if "validity" in found and (found["validity"] != 0).any():
         handles.append(Line2D([], [], color="0.4", label="not valid", **NOT_VALID))
@@ -234,7 +234,7 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         figure.legend(handles=handles, title=title, loc="outside right center")
 
 
-def entries(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
+def legend_texts(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
     """Title of the legend, and what each curve is called in it."""
     known = "label" if hue == "case" and "label" in found else hue
     if known not in found.coords or found[known].dtype.kind not in "fi" or known == "case":

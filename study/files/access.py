@@ -46,7 +46,9 @@ class Access:
             return False
         taken = False
         try:
-            again = Access._depth > 0 and blocking  # not blocking: xarray closes a dataset that is garbage
+            # Without `blocking` it is xarray that closes a dataset nobody uses. It may come in the middle of other work
+            # of this thread in netCDF, and must fail then.
+            again = Access._depth > 0 and blocking
             taken = again or NETCDF4_PYTHON_LOCK.acquire(blocking)
         finally:
             Access._depth += taken

@@ -180,7 +180,7 @@ def _range_values(raw: dict, key: str, errors: list[str]) -> list:
     check_range(raw, key, errors, ("start", "stop", "num", "spacing"))
     num = raw.get("num")
     if type(num) is not int or not 2 <= num <= LONGEST_AXIS:
-        errors.append(f"{key}: {entry('num', raw)}: must be a whole number in [2, {LONGEST_AXIS}]")
+        errors.append(f"{key}: {quoted('num', raw)}: must be a whole number in [2, {LONGEST_AXIS}]")
     if len(errors) > before:
         return []
     make = np.geomspace if raw.get("spacing", "linear") == "log" else np.linspace
@@ -199,7 +199,7 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
         value = raw.get(end)
         if not finite(value) or (spacing == "log" and value <= 0):
             also = ", > 0 for spacing log" * (spacing == "log")
-            errors.append(f"{key}: {entry(end, raw)}: must be a finite number{also}")
+            errors.append(f"{key}: {quoted(end, raw)}: must be a finite number{also}")
     start, stop = raw.get("start"), raw.get("stop")
     if finite(start) and finite(stop) and not math.isfinite(float(stop) - float(start)):
         errors.append(f"{key}: from start = {shown(start)} to stop = {shown(stop)}: must be less than 1.8e308 apart")
@@ -223,6 +223,6 @@ def equal_values(name: str, values: list, written: Callable = shown) -> list[str
     ]
 
 
-def entry(name: str, table: dict) -> str:
+def quoted(name: str, table: dict) -> str:
     """An entry of a table as a message quotes it: "num = 3", or "num is missing"."""
     return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"

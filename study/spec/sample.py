@@ -5,7 +5,7 @@ import re
 import numpy as np
 
 from ..terminal import shown
-from .grid import LONGEST_AXIS, check_range, entry
+from .grid import LONGEST_AXIS, check_range, quoted
 from .vocabulary import Parameter, check
 
 KEYS = ("start", "stop", "spacing", "over")  # of a range
@@ -29,7 +29,7 @@ def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, lis
     before = len(errors)
     for key, (low, high) in LIMITS.items():
         if type(table.get(key)) is not int or not low <= table[key] <= high:
-            errors.append(f"[sample] {entry(key, table)}: must be a whole number in [{low}, {high}]")
+            errors.append(f"[sample] {quoted(key, table)}: must be a whole number in [{low}, {high}]")
     drawn = {name: given for name, given in table.items() if name not in LIMITS}
     if not drawn:
         errors.append("[sample] has no parameter: must draw at least one")

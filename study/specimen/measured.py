@@ -105,11 +105,10 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
         else f"{found.found} peaks found as points above their two neighbours, converted to summits of an isotropic "
         "Gaussian surface",
     }
-    return Roughness(
-        *(found.density, 1 / found.curvature, found.spread, float(np.mean(np.abs(z - z.mean())))),
-        *(how[method], filtered, _resolution(scan)),
-        tuple(_notes(z, scan.steps, along, m, found)),
-    )
+    iso_Ra = float(np.mean(np.abs(z - z.mean())))
+    notes = tuple(_notes(z, scan.steps, along, m, found))
+    texts = {"method": how[method], "filter": filtered, "resolution": _resolution(scan), "notes": notes}
+    return Roughness(found.density, 1 / found.curvature, found.spread, iso_Ra, **texts)
 
 
 def _filtered(scan: Scan, form: str | float, cutoff: float | None) -> tuple[np.ndarray, str]:

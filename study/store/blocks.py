@@ -136,6 +136,7 @@ def inventory(store: Store, earlier: Source | None = None, retry: tuple = (), fo
             continue
         blocks[path] = len(block.keys)
         near = np.minimum(np.searchsorted(first, block.keys[:, 0]), len(first) - 1)
+        # all its cases are of the study, and the results will hold its columns
         if (first[near] == block.keys[:, 0]).all() and covers(*results, block.facts, block.arrays):
             covered.add(path)
         if block.facts["numerics_version"] != NUMERICS_VERSION:
@@ -157,8 +158,9 @@ def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> 
         parts.append((found.keys[row], np.full(len(row), number, np.int32), row, found.status[row]))
     known, source, row, status = (np.concatenate(column) for column in zip(*parts, strict=True))
     where = find(keys, known, status)
-    missing = ((source, -1), (row, -1), (status, NOT_RUN))
-    return tuple(np.append(array, array.dtype.type(none))[where] for array, none in missing)
+    of_missing = ((source, -1), (row, -1), (status, NOT_RUN))
+    # `where` is -1 for a missing case: it takes the last number, which is appended here
+    return tuple(np.append(array, array.dtype.type(none))[where] for array, none in of_missing)
 
 
 def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:

@@ -150,8 +150,8 @@ def _grid_in(file: File) -> tuple[Grid, Grid | None]:
     return Grid(sizes, values), Grid(sizes, scales)
 
 
-def other(found: Condition) -> str:
-    """Of what the results in a file are that are not those of a study."""
+def of_what(found: Condition) -> str:
+    """What the results in a sound file belong to, if not to the study as it is now: "another definition"."""
     return "another definition" if found.numerics == NUMERICS_VERSION else "another version of the numerics"
 
 

@@ -13,8 +13,9 @@ import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from pathlib import Path
 
 import numpy as np
@@ -115,37 +116,36 @@ def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[
     waiting, done, columns = deque(blocks), deque(), {}
 
     def feeder(call: Callable) -> None:
-        while index := _next(waiting):
-            wanted = parcel(definition, index[0])
+        for index in _taken(waiting):
+            wanted = parcel(definition, index)
             try:
                 found = call(guarded, wanted)
             except Exception as error:  # the block is then computed here
                 found = Failure(str(error), "")
-            done.append((index[0], found))
+            done.append((index, found))
 
     begun, feeders = time.perf_counter(), []
     if ready := _pool.reuse(most):
         feeders = _pool.feed(feeder, ready)
-    while index := _next(waiting):
-        _place(columns, definition, index[0], compute(parcel(definition, index[0])))
+    for index in _taken(waiting):
+        _place(columns, definition, index, compute(parcel(definition, index)))
         if most and not feeders:
             left = (time.perf_counter() - begun) / (len(blocks) - len(waiting)) * len(waiting)
             feeders = _pool.feed(feeder, min(most, int(left / START)))
-        while ended := _next(done):
-            _place(columns, definition, *ended[0])
+        for ended in _taken(done):
+            _place(columns, definition, *ended)
     for one in feeders:
         one.result()  # raises the error of a feeder, whose cases would be missing
-    while ended := _next(done):
-        _place(columns, definition, *ended[0])
+    for ended in _taken(done):
+        _place(columns, definition, *ended)
     return columns
 
 
-def _next(queue: deque) -> list:
-    """[the next item of a queue], or [] if it is empty: other threads take items too, so one cannot look first."""
-    try:
-        return [queue.popleft()]
-    except IndexError:
-        return []
+def _taken(queue: deque) -> Iterator:
+    """Take items off a queue until it is empty. Other threads take items too, so one cannot look first."""
+    with suppress(IndexError):
+        while True:
+            yield queue.popleft()
 
 
 def _place(columns: dict, definition: Definition, index: np.ndarray, found: dict | Failure) -> None:

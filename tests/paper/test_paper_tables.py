@@ -11,7 +11,7 @@ from study import StudyError
 from study.catalogue import TABLES, tabulate
 from study.evidence.validity_maps import largest_thickness
 from study.figures import registry
-from study.figures.formats import as_csv, as_latex, as_text, latex
+from study.figures.formats import as_latex, as_text, latex
 from study.figures.registry import Table, column
 from study.paper import law_fits, numbers
 from study.paper.paper_error import paper_numbers
@@ -141,7 +141,6 @@ def test_formats_of_cells():
     assert latex("does not hold") == "does not hold"
     table = Table((), tuple, "caption", (column("of"), column("number | .1% | $x$")))
     rows = [("one", 0.077), ("two", "at most 8%")]
-    assert as_csv(table, rows).splitlines()[1:] == ["one,0.077", "two,at most 8%"]
     assert as_text(table, rows).splitlines()[4:] == ["one        7.7%", "two  at most 8%"]
     assert as_latex(table, rows).splitlines()[7:9] == [r"one & 7.7\% \\", r"two & at most 8\% \\"]
 

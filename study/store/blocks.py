@@ -19,9 +19,9 @@ from ..data.dataset import not_run
 from ..files.access import Unusable
 from ..files.atomic import remove_temporary
 from ..spec.definition import Definition, StudyError
+from ..spec.identity import case_keys, find
 from ..spec.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
-from .keys import case_keys, find
 
 log = logging.getLogger(__name__)
 

@@ -19,10 +19,10 @@ from ..physical.names import SCENE
 from ..physical.scales import grid_of_results, parameters_from_si, result_from_si, scales_of
 from ..spec.definition import Definition, StudyError
 from ..spec.grid import Grid, columns
+from ..spec.identity import case_keys, find
 from ..spec.vocabulary import NOT_RUN, PARAMETERS
 from .block_file import Damaged
 from .blocks import Store, facts, usable
-from .keys import case_keys, find
 
 MEND = "run the study as it was (its text is the attribute study), which mends it, or use --results DIR"
 

@@ -13,7 +13,7 @@ import study
 from solver import Problem, Status, laws, solve
 from solver.laws import own_table
 from study.spec.definition import from_tables
-from study.store.keys import case_keys
+from study.spec.identity import case_keys
 from study.work.cases import compute, parcel
 
 ASPERITIES = {"Nbar": 250_000.0, "Ra": 0.004}

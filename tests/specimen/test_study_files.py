@@ -9,8 +9,8 @@ import xarray as xr
 import study
 from study.__main__ import main
 from study.physical.study_file import from_tables
+from study.spec.identity import case_keys
 from study.store import writer
-from study.store.keys import case_keys
 
 pytest.importorskip("pint")
 TEXT = """

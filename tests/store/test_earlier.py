@@ -11,11 +11,11 @@ import study
 from solver import NUMERICS_VERSION
 from study.files.examine import Condition, examine
 from study.spec.definition import Definition, from_tables
+from study.spec.identity import case_keys
 from study.store import earlier as module
 from study.store.block_file import Damaged
 from study.store.blocks import Store, gather, inventory
 from study.store.earlier import Earlier, ResultsSource, check_replaceable
-from study.store.keys import case_keys
 
 
 def line(P=(1e-6, 2e-6, 3e-6), **output) -> Definition:

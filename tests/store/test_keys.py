@@ -17,10 +17,9 @@ from solver.parameters import CONTROL, EVERY, Parameter
 from study.spec import identity
 from study.spec.definition import Definition, from_tables
 from study.spec.grid import Grid
-from study.spec.identity import digest_of
+from study.spec.identity import case_keys, digest_of
 from study.spec.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
 from study.store import keys
-from study.store.keys import case_keys
 from study.work.cases import compute, parcel
 
 OF_ALL = CONTROL | solver.parameters.PARAMETERS

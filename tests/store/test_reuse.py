@@ -11,8 +11,8 @@ from same import assert_same
 import study
 from study.spec import identity
 from study.spec.grid import Grid
+from study.spec.identity import case_keys, find
 from study.store import blocks, earlier
-from study.store.keys import case_keys, find
 
 BASE = {"micro": '"smooth"', "base": '"thin_layer"', "n": "0.5"}
 AXES = {"P": "[1e-6, 2e-6, 4e-6]", "h": "[0.001, 0.002]"}

@@ -121,7 +121,7 @@ def as_text(lines: dict[str, str]) -> str:
 
 
 def parsed(given: str) -> dict[str, str]:
-    """The lines of the attribute, which may be damaged; `=checksums` has become "right" or "wrong"."""
+    """The lines of the attribute. The value of `=checksums` is "right", or "wrong" if the attribute is damaged."""
     found = dict(line.rpartition(" ")[::2] for line in given.split("\n") if " " in line)
     right = given[: given.rfind("=checksums ")]
     return found | {"=checksums": "right" if found.get("=checksums") == digest(right) else "wrong"}

@@ -40,7 +40,7 @@ def stiffness(coated: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
 
 
 def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
-    """Name of a formula -> its relative error (n, a/h). The last formula has for each n the α that suits it best."""
+    """Name of a formula -> its relative error (n, a/h). The last formula has a free α: each n gets the best one."""
     x, n, exact = stiffness(coated)
     nu = float(coated["nu1"])
     found = {name: of(x, n[:, None], nu) / exact - 1 for name, (of, _) in formulas.STIFFNESSES.items()}

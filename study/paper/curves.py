@@ -55,7 +55,7 @@ def plot(axes, points: list[tuple], label: str) -> list:
 
 
 def pressures(axes, shown: list[tuple[dict[str, xr.Dataset], str, str]], a0: float, dotted: str = "") -> Columns:
-    """Curves p/E2* over r/a0, each with its name, labels, limits, legend, and notes on what is not valid.
+    """Draw p/E2* over r/a0: curves with their names, labels, limits, legend, and notes on what is not valid.
 
     shown : for each curve its cases (the first has the name of the curve), its label, and where its name stands
     dotted : what the legend calls the dotted lines, if there are some

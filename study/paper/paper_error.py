@@ -17,9 +17,9 @@ from .uniform import solve_uniform
 
 MAIN = {"base": "thin_layer", "h": 0.02, "n": 0.5, "Nbar": 250_000, "Ra": 0.004}
 MAIN |= {"micro": "power_law", "B": 0.1, "beta": 0.5}
-RADIUS = 0.04
-INTERVALS = (20, 40, 80, 160)
-STEPS = 40
+RADIUS = 0.04  # a0 of the paper's main case
+INTERVALS = (20, 40, 80, 160)  # of the uniform meshes that the paper may have had
+STEPS = 40  # iterates on each
 SHARED = ("P", "D", "A0", "Ar_An", "p_max")
 """Quantities of the rough layered contact that are compared; keys of `numbers.NUMBERS`."""
 

@@ -21,8 +21,8 @@ FITTED = ("B", "beta")
 def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: list[str]) -> list[str]:
     """Messages for parameters without a default that are not given, though some case needs them.
 
-    given : names of the parameters that are; texts : name of a parameter, such as base -> its values
-    errors : where these have an unknown name or section, what is missing may be there
+    given : names of those that are given; texts : a function, name of a parameter such as base -> its values
+    errors : found before. If one is of an unknown name or section, the missing parameter may be there: no messages then
     """
     messages = []
     if any("is not a parameter" in error or "is not a section" in error for error in errors):

@@ -10,7 +10,7 @@ from .blocks import Inventory, Store, inventory, remove_litter
 
 
 def tidy(store: Store, known: Inventory | None = None) -> str:
-    """Remove the blocks of which the results file holds all numbers. Returns what else is in the folder, in words."""
+    """Remove the blocks whose numbers are all in the results file. Returns in words what else is in the folder."""
     known = known or inventory(store, force=True)
     for path in known.covered:
         path.unlink(missing_ok=True)

@@ -15,16 +15,16 @@ from .progress import duration
 from .workers import AHEAD, available_workers, processes_for
 
 SAMPLE = 256  # cases whose time is measured
-PROCESS, WORKER = 250_000_000, 110_000_000  # bytes of Python and its packages, and of those in a worker process
+PROCESS = 250_000_000  # bytes of this process, Python and the packages
+WORKER = 110_000_000  # bytes of a worker process, which has fewer packages
 PER_CASE = 100  # bytes for the key of a case, and to find it
-WORKING = 5  # memory of the arrays (B, m) of a block while it is solved, over the size of its result
-# Bytes that solving takes besides in each worker, and how many matrices (B, n, n) are there at a time. Measured: peaks
-# of runs on 17 to 256 nodes, and of 300 cases of studies/extremes_layered.toml, which fill every table (0.86 GB in one
-# process).
+WORKING = 5  # while a block is solved, its arrays (B, m) take so many times the memory of its result
+# Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time. Measured: peaks of runs on 17 to
+# 256 nodes, and of 300 cases of studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
 KEY = 16  # bytes of the key of a case in a block
-# Bytes of a results file besides its numbers, and a factor for chunks, which are stored whole at the edges of a grid.
-# Measured on files of 3000 and of 1e6 cases.
+# A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at the
+# edges of a grid. Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
 TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and what they are made of
 

@@ -19,7 +19,6 @@ from study.spec.definition import Definition, from_tables
 from study.spec.grid import Grid
 from study.spec.identity import case_keys, digest_of
 from study.spec.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
-from study.store import keys
 from study.work.cases import compute, parcel
 
 OF_ALL = CONTROL | solver.parameters.PARAMETERS
@@ -121,8 +120,7 @@ def test_a_parameter_of_tomorrow_changes_nothing_until_it_is_given(monkeypatch):
     today = defined()
     monkeypatch.setitem(solver.parameters.PARAMETERS, "tilt", Parameter(0.0, interval="[0, 1]"))
     monkeypatch.setitem(VOCABULARY, "tilt", Entry("tilt", "material", "tilt of the punch"))
-    for module in (identity, keys):
-        monkeypatch.setattr(module, "PARAMETERS", (*PARAMETERS, "tilt"))
+    monkeypatch.setattr(identity, "PARAMETERS", (*PARAMETERS, "tilt"))
     for tilt, same in ((None, True), (0.0, True), (0.5, False)):
         values = today.grid.values | ({} if tilt is None else {"tilt": ((), np.array(tilt))})
         tilted = replace(today, grid=replace(today.grid, values=values))

@@ -23,8 +23,8 @@ WORKING = 5  # while a block is solved, its arrays (B, m) take so many times the
 # 256 nodes, and of 300 cases of studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
 KEY = 16  # bytes of the key of a case in a block
-# A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at the
-# edges of a grid. Measured on files of 3000 and of 1e6 cases.
+# A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at
+# the edges of a grid. Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
 TABLES = 600_000_000  # bytes that each process keeps for the exact layer: 0.4 GB of tables, and what they are made of
 

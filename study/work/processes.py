@@ -18,8 +18,8 @@ from queue import Empty, SimpleQueue
 from ..files.child import python_command
 from .cases import Failure
 
-#: How often a block is tried. Once is too few, as a process may be killed because others take the memory. A block that is
-#: too large itself must not be tried for ever.
+#: How often a block is tried. Once is too few, as a process may be killed because others take the memory. A block
+#: that is too large itself must not be tried for ever.
 ATTEMPTS = 3
 KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps for want of memory"
 #: Seconds after which a process without a task ends, and frees its memory. It is started again for the next task.

@@ -76,7 +76,7 @@ def note(axes, noted: list[tuple]) -> None:
 
 
 def bands(P: np.ndarray, where: np.ndarray) -> list[tuple[float, float]]:
-    """Intervals of P where `where` holds. A point stands for P up to half-way to its neighbours, the first from 0 on."""
+    """Intervals of P where `where` holds. A point stands for P up to half-way to its neighbours, the first from 0."""
     edges = np.concatenate([[0.0], (P[1:] + P[:-1]) / 2, P[-1:]])
     steps = np.flatnonzero(np.diff(np.concatenate([[0], where.astype(int), [0]])))
     return [(edges[i], edges[j]) for i, j in zip(steps[::2], steps[1::2], strict=True)]

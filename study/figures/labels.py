@@ -101,10 +101,11 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     of_some = {name for dataset in datasets for name in used_inputs(dataset)}
     for name in all_inputs():
         values = _values(datasets, name)
-        if name not in of_some or len(values) != 1 or isinstance(value := values.pop(), str) and name != "bonding":
-            continue
-        array = next(dataset[name] for dataset in datasets if name in dataset)
-        found.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
+        if name in of_some and len(values) == 1:
+            (value,) = values
+            if name == "bonding" or not isinstance(value, str):
+                array = next(dataset[name] for dataset in datasets if name in dataset)
+                found.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
     return found
 
 

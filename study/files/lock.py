@@ -2,7 +2,7 @@
 
 import os
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from .atomic import make_folder
@@ -36,10 +36,8 @@ def held(path: Path, *, shared: bool = False, wait: bool = True, waiting: Callab
 def _opened(path: Path) -> int:
     while True:
         make_folder(path.parent)
-        try:
+        with suppress(FileNotFoundError):  # the folder has just been removed
             return os.open(path, os.O_RDWR | os.O_CREAT, 0o666)
-        except FileNotFoundError:  # the folder has just been removed
-            continue
 
 
 def locked(file: int, shared: bool, wait: bool, waiting: Callable = lambda: None) -> bool:

@@ -39,7 +39,6 @@ def create(file: File, part: xr.Dataset, whole: xr.Dataset, chunk: dict[str, int
     """Define all variables of a results file, and write its coordinates.
 
     part : a dataset of some cases, which has all variables; whole : one of all cases, which need not have results
-
     chunk : dimension -> its length in a chunk, where that is not all of it
     """
     variables, attributes = encode_dataset_coordinates(part)

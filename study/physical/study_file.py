@@ -122,7 +122,8 @@ def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
     raw = _in_si(raw, name, unit_of(name), errors) if with_unit else raw
     values = axis_values(raw, name, errors) if len(errors) == before else []
     if not values:  # what else is wrong is looked for, without a second message about this
-        return QuantityList([Quantity(ANY_VALUE)], dim_of(name)) if numeric else "PTFE" if name in BODIES else []
+        word = "PTFE" if name in BODIES else []  # any material
+        return QuantityList([Quantity(ANY_VALUE)], dim_of(name)) if numeric else word
     return QuantityList([Quantity(value) for value in values], dim_of(name)) if with_unit else values
 
 

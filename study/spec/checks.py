@@ -27,6 +27,7 @@ def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: 
     messages = []
     if any("is not a parameter" in error or "is not a section" in error for error in errors):
         return []
+    neither = not {*FITTED} & {*given}  # is given: then both are fitted, and it is said once to what
     for name in PARAMETERS:
         own = VOCABULARY[name].own
         selector, words = own.needed_by
@@ -34,7 +35,7 @@ def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: 
             continue
         values = texts(selector)
         found = " or ".join(shown(word) for word in words if word in values)
-        if name in FITTED and not {*FITTED} & {*given}:
+        if name in FITTED and neither:
             if found and name == FITTED[0] and not {"Nbar", "Ra"} <= {*given}:
                 messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
         elif found:

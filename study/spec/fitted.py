@@ -32,12 +32,13 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
         few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(known)}"
         return {}, [f"B and beta are missing: {few}"]
     dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
-    found, errors = {}, []
-    for name, fits in zip(("B", "beta"), zip(*(fit_power_law(value)[:2] for value in known), strict=True), strict=True):
-        kept = {value: float(f"{fit:.{DIGITS}g}") for value, fit in zip(known, fits, strict=True)}
+    laws, found, errors = {value: fit_power_law(value) for value in known}, {}, []
+    for name in ("B", "beta"):
+        own = VOCABULARY[name].own
+        fits = {value: getattr(law, name) for value, law in laws.items()}
+        kept = {value: float(f"{fit:.{DIGITS}g}") for value, fit in fits.items()}
         array = np.array([kept.get(value, np.nan) for value in products.ravel().tolist()])
         found[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])
-        own = VOCABULARY[name].own
-        wrong = [(value, fit) for value, fit in zip(known, fits, strict=True) if not allowed(own, fit)]
+        wrong = [(value, fit) for value, fit in fits.items() if not allowed(own, fit)]
         errors += [f"{name} fitted to Nbar Ra^2 = {v:g} is {fit:g}: must be in {own.interval}" for v, fit in wrong[:1]]
     return found, errors

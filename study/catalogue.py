@@ -69,8 +69,8 @@ def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     with style():
         figure = Figure(figsize=recipe.size, layout="constrained")
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
-        shapes = {np.shape(column) for column in columns.values()} if isinstance(columns, dict) else {()}
-        if len(shapes) > 1 or not all(len(shape) == 1 for shape in shapes):
+        shapes = [np.shape(column) for column in columns.values()] if isinstance(columns, dict) else [()]
+        if any(len(shape) != 1 or shape != shapes[0] for shape in shapes):
             raise NotMade([f"{name}: the function must return its numbers: heading -> column, all of one length"])
         if not figure.get_suptitle():
             figure.suptitle(wrapped(stated(datasets), LETTERS * recipe.size[0]), fontsize=7)

@@ -71,7 +71,7 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
-    """The same dataset. A user's `to_netcdf` then writes no _FillValue for coordinates, which CF forbids."""
+    """The same dataset, changed so that a user's `to_netcdf` writes no _FillValue of coordinates: CF forbids it."""
     for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
@@ -142,7 +142,7 @@ def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
 def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
     """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, NaN where no case is left.
 
-    There the status is that of a case that was not run, and all else is 0. Raises ValueError for flags of no case.
+    For NaN the status is "not run", and other flags are 0. Raises ValueError for numbers that are flags of no case.
     """
     if flags.dtype.kind in "iu":
         return flags

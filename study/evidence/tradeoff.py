@@ -199,9 +199,9 @@ def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, 
     variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured"}
     variables["varied"] = "way", [way.varied for way in ways.values()]
     title, text = "Work and precision of every way to solve the model", plan(ways, size)
-    whole = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
+    as_study = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
     coordinates = {"set": list(SETS), "way": list(ways)}
-    return xr.Dataset(variables, coordinates, provenance(whole, command)).merge(paper_error.measured())
+    return xr.Dataset(variables, coordinates, provenance(as_study, command)).merge(paper_error.measured())
 
 
 def plan(ways: dict[str, Way], size: int) -> str:

@@ -45,7 +45,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
 
 
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:
-    """What `plot` draws on a `new` figure, and the numbers that it shows: (Figure, Columns)."""
+    """The figure of `plot`, and the numbers that it shows (Columns). `new` makes an empty figure."""
     if not isinstance(dataset, xr.Dataset):
         raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
     if stacked := [dim for dim, index in dataset.indexes.items() if index.nlevels > 1 and dim in dataset.dims]:

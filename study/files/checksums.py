@@ -44,7 +44,7 @@ def as_bytes(array: np.ndarray):
 
 
 class CaseDigests:
-    """Digests of variables over `size` cases. Each variable is added in pieces, from the first case to the last.
+    """Digests of variables over `size` cases. A variable is added piece by piece, from the first case to the last.
 
     digests : name -> a digest for each run of `run` cases
     """

@@ -99,6 +99,7 @@ def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
     text, word, size = _written(given, index, _at(value, as_given), unit_of(name))
     moved = "with its spread it " if place != as_given else ""
     R, unit = _at(scene.R, place), _at(scene.unit, place)
+    # the bounds in the unit of the value
     low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
     interval = f"{entry.own.interval[0]}{low}, {high}{entry.own.interval[-1]}"
     modulus = "E1*" if np.isinf(_at(scene.given["E2"], place)) else "E2*"

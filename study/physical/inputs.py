@@ -37,14 +37,15 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     hidden |= {"n", "body", "E2", "nu2"} if is_rigid(contacts, "base") else set()
     hidden |= {"layer", "E1", "nu1"} if (values("base") == "half_space").all() else set()
     hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
-    counting = set() if np.isin(values("micro"), list(LAWS)).all() else set(names("roughness"))
-    with_modulus = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
+    unknown_law = not np.isin(values("micro"), list(LAWS)).all()
+    certain = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
+    certain |= set(names("roughness")) if unknown_law else set()
     return [
         name
         for name in all_inputs()
         if name in contacts.variables
         and name not in hidden
-        and (name not in VOCABULARY or name in (*with_modulus, *counting) or matters(name, values))
+        and (name not in VOCABULARY or name in certain or matters(name, values))
     ]
 
 

@@ -132,7 +132,8 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
     materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
     with_units = {name for name in parameters if name in VOCABULARY and unit_of(name) != "1"}
-    taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)
+    taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)  # no dimension may have these names
+    # Dimension -> the parameter that gave it first, and its coordinate there; then the same with its length.
     labels = {name: (name, arrays[name].values) for name in along_itself if name not in arrays[name].coords}
     labels |= materials
     lists = {name: given for name, given in parameters.items() if type(given) in (list, tuple, range, CaseValues)}

@@ -48,10 +48,10 @@ class Scene:
 
     def sizes(self, axes: list[str]) -> dict[str, int]:
         """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
-        names, found = {name: dim for dim, name in self.dims.items()}, {}
+        dim_of, found = {name: dim for dim, name in self.dims.items()}, {}
         arrays = [v for v in (*self.given.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
         known = {dim: size for array in arrays for dim, size in array.sizes.items()}
-        for dim in ("case", *(names.get(axis, axis) for axis in axes)):
+        for dim in ("case", *(dim_of.get(axis, axis) for axis in axes)):
             if dim in known:
                 found[dim] = known[dim]
             elif isinstance(self.parameters.get(dim), list):

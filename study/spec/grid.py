@@ -11,12 +11,12 @@ from ..terminal import shown
 from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
 
 LONGEST_AXIS = 1_000_000
-USUAL = 8000  # cases in a block, if they are ordinary: some seconds of work, which a run that is killed loses
-SLOW = 1000  # of cases that take some milliseconds each
-SLOWEST = 100  # of cases that may take ten seconds each
-#: On the exact layer, an n above this or an rtol below this may need a mesh for each single case.
+#: Cases in a block: of ordinary ones, of those that take some milliseconds each, and of those that may take ten seconds.
+#: A block is some seconds of work. A run that is killed loses the blocks in work.
+USUAL, SLOW, SLOWEST = 8000, 1000, 100
+#: On the exact layer a case with an n above, or an rtol below, may need a mesh of its own.
 _STIFF, _FINE = 1e3, 1e-9
-_MANY_NODES = 96  # a user who asks for more has more than the solver begins with
+_MANY_NODES = 96  # with more than these, all that the solver begins with, a case takes some milliseconds
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
 MOVED = "moved input"
 """The dimension of the variations of each case while it is solved: as given, then each input with a spread moved up and

@@ -11,7 +11,7 @@ from ..terminal import shown
 from .vocabulary import VOCABULARY, Parameter, are_within, check, finite
 
 LONGEST_AXIS = 1_000_000
-#: Cases in a block: of ordinary ones, of those that take some milliseconds each, and of those that may take ten seconds.
+#: Cases in a block: ordinary ones, those that take some milliseconds each, those that may take ten seconds each.
 #: A block is some seconds of work. A run that is killed loses the blocks in work.
 USUAL, SLOW, SLOWEST = 8000, 1000, 100
 #: On the exact layer a case with an n above, or an rtol below, may need a mesh of its own.

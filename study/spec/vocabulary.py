@@ -88,7 +88,7 @@ def entries(tables: dict) -> dict[str, Entry]:
 
 VOCABULARY = entries(tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8")))
 ROLES = {name: entry.role for name, entry in VOCABULARY.items()}
-"""Without the parameters of registered laws."""
+"""Name -> role, of the rows of the file alone. VOCABULARY also gets the parameters of registered laws."""
 
 
 def names(*roles: str) -> tuple[str, ...]:

@@ -17,9 +17,10 @@ COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.
 
 
 def wants_a_fit(grid: Grid) -> bool:
-    """Whether some case has the power law, none has B or beta, and Nbar and Ra are known where they are needed."""
+    """Whether some case has the power law, none has B and beta, and Nbar and Ra are known where they are needed. Of B
+    and beta a grid has both or none: that one is missing has been said before."""
     power = along(grid, "micro") == "power_law"
-    if not power.any() or {"B", "beta"} & set(grid.values):
+    if not power.any() or "B" in grid.values:
         return False
     return bool((np.isfinite(along(grid, "Nbar") * along(grid, "Ra")) | ~power).all())
 

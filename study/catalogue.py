@@ -53,7 +53,7 @@ def outdated(name: str, known: dict, results, folder) -> bool:
     written = [Path(folder) / f"{name}.{kind}" for kind in kinds]
     inputs = [Path(results) / f"{study}.nc" for study in needed(name, known)]
     for package in (Path(solver.__file__).parent, Path(__file__).parent):
-        inputs += [file for file in package.rglob("*.*") if file.suffix in (".py", ".mplstyle", ".toml")]
+        inputs += [file for file in package.rglob("*.*") if file.parent.name != "__pycache__"]
     newest = max(file.stat().st_mtime for file in inputs)
     return not all(file.exists() and file.stat().st_mtime >= newest for file in written)
 

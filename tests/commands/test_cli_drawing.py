@@ -160,6 +160,23 @@ def test_run_computes_the_studies_that_are_needed_once_and_skips_what_is_up_to_d
     assert len(drawn) == 4, "not from results that are not complete"
 
 
+def test_data_of_the_program_make_figures_out_of_date_and_compiled_code_does_not(tmp_path, monkeypatch):
+    package, figures = tmp_path / "solver", tmp_path / "figures"
+    for name in (
+        "solver/__init__.py",
+        "solver/law.csv",
+        "solver/__pycache__/law.pyc",
+        *(f"figures/fig01.{kind}" for kind in catalogue.SCHEME),
+    ):
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).touch()
+    monkeypatch.setattr(catalogue.solver, "__file__", str(package / "__init__.py"))
+    later = (figures / "fig01.svg").stat().st_mtime + 10
+    for name, again in (("__pycache__/law.pyc", False), ("law.csv", True)):
+        os.utime(package / name, (later, later))
+        assert catalogue.outdated("fig01", catalogue.FIGURES, tmp_path, figures) == again
+
+
 def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
     drawn = []
     for name in ("draw", "tabulate"):

@@ -89,8 +89,8 @@ speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
 lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .
 
-clean: $(READY) ## remove figures and tables that the program draws, and caches; results and .venv stay
-	$(VENV)/bin/python tests/clean.py
+clean: ## remove figures and tables that the program draws, and caches; results and .venv stay
+	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tests/clean.py; fi
 
 # Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
 # the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.

@@ -175,8 +175,8 @@ def _not_checked(case: xr.Dataset, judged: list[str]) -> str:
         return "adhesion, and whether the bodies stay elastic"
     needed = (float(f"{float(case[name]) / STRENGTHS:.2g}") for name in ("p0", "p_max"))
     below, at_spots = (readable(strength, "Pa") for strength in needed)
-    words = f"adhesion, and whether the bodies stay elastic. Under a sphere this takes a yield strength of some {below}"
-    return words + f", at its asperities one of some {at_spots}" * ("p_max" in judged)
+    words = f"adhesion, and whether the bodies stay elastic. They need a yield strength above some {below}"
+    return words + f", at the asperities above some {at_spots}" * ("p_max" in judged)
 
 
 def doubts(contact: xr.Dataset) -> list[str]:

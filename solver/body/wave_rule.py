@@ -41,9 +41,9 @@ _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: u = 1/2, the second above, with u = k η at the lower end of the octave. For each digit by which L - 1 has decayed
 #: where the panel begins it has _LESS points fewer. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
-#: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END; that of films
-#: at _END_FILM. Beyond, L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, under stiff layers too,
-#: where what they move of the pressure is larger (tests/contact/test_error_bars.py).
+#: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
+#: L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, under stiff layers too, where the pressure feels
+#: them more (tests/contact/test_error_bars.py). That of films ends at _END_FILM: :mod:`.film` adds what lies beyond.
 _END, _END_MIDDLE, _END_FILM = 20.0, 18.0, 8.7
 
 

@@ -178,9 +178,10 @@ class Bound(NamedTuple):
 
 
 def inverse(value, target, y):
-    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding. A step that is
-    not half the one before goes to the middle of the bracket of the root, if it has both ends: where a law bends
-    sharply, Newton's method alone may swing to and fro between them.
+    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding.
+
+    Where a law bends sharply, Newton's method may swing to and fro. So a step longer than half of the one before goes
+    to the middle, in ln y, between the nearest y below and above the root, once both are known.
 
     value : y -> (value, its derivative), increasing from 0; target : array; y : first guess, an array of its shape.
 

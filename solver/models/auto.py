@@ -25,9 +25,9 @@ _THIN = 4.0
 #: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times
 #: (a/h) ∫|L - 1| du. Below, that bound would be too large to be of use, unless n is almost 1.
 _ALONE, _THICKEST = 0.8, 1.0
-#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D. The ring at the
-#: edge in which asperities of A ~ p^β yield more than the body is (A/a²)^(2/(3 - β)) wide: where β is below 1/3, the
-#: exponent is that.
+#: The error of leaving out the asperities is at most this times (A[p(0)]/a²)^0.75 at given P, a or D. The exponent is
+#: 2/(3 - β) where that is less, for asperities of A ~ p^β with β < 1/3: in a ring at the edge, (A/a²)^(2/(3 - β)) wide,
+#: they yield more than the body.
 _ASPERITIES = {"P": 5.0, "a": 7.0, "D": 4.0}
 #: A bound above this is not trusted, for it is of first order; so its model is not taken, whatever `accuracy` is.
 _TRUSTED = 0.3

@@ -19,7 +19,7 @@ from ..spec.vocabulary import VOCABULARY, attributes
 from .units import physical_attributes, reduced_modulus, without_unit
 
 FEW_SPOTS = 100.0
-"""The model spreads the asperities evenly, so many must touch. Of equal heights, N̄πa² touch."""
+"""Fewest asperities in touch: the model spreads them evenly, so they must be many. Of equal heights N̄πa² touch."""
 SPOT_OVER_LAYER = 0.1
 """The micro law takes the layer for a half-space: the central spot must be small against it, b <= 0.1 h."""
 PITCH_OVER_LAYER = 2.0

@@ -100,7 +100,7 @@ def test_the_strength_that_bodies_need_is_said():
     said = study.summary(found).splitlines()[-1]
     sizes = {"MPa": 1e6, "GPa": 1e9}
     needed = [float(number) * sizes[unit] for number, unit in re.findall(r"some ([\d.]+) ([MG]Pa)", said)]
-    assert said.startswith("Not checked") and "at its asperities" in said
+    assert said.startswith("Not checked") and "at the asperities" in said
     assert needed == pytest.approx([found[name].item() / STRENGTHS for name in ("p0", "p_max")], rel=0.05), "2 digits"
     smooth = study.summary(quiet(**given, P="10 N")).splitlines()[-1]
     assert smooth.count("some ") == 1 and "asperities" not in smooth

@@ -23,7 +23,7 @@ from .terminal import empty_buffers, open_closed_streams, program, say
 
 # The solver computes on one BLAS thread. A BLAS library that reads this before numpy is imported does not start others;
 # without it each worker process would have a thread for each processor.
-for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"):
+for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
 DIR = {"type": folder, "metavar": "DIR"}

@@ -21,8 +21,8 @@ def as_text(table: Table, rows: list[tuple]) -> str:
 def as_latex(table: Table, rows: list[tuple]) -> str:
     """A table environment; needs the package booktabs."""
     form = "".join("l" if column.form == "s" else "r" for column in table.columns)
-    begin = [r"\begin{table}", r"\centering", rf"\caption{{{table.caption}}}", rf"\begin{{tabular}}{{{form}}}"]
-    head = " & ".join(column.latex for column in table.columns) + r" \\"
+    begin = [r"\begin{table}", r"\centering", rf"\caption{{{latex(table.caption)}}}", rf"\begin{{tabular}}{{{form}}}"]
+    head = " & ".join(column.latex or latex(column.text) for column in table.columns) + r" \\"
     lines = [" & ".join(map(latex, row)) + r" \\" for row in formatted(table, rows)]
     end = [r"\end{tabular}", r"\end{table}"]
     return "\n".join([*begin, r"\toprule", head, r"\midrule", *lines, r"\bottomrule", *end]) + "\n"
@@ -38,9 +38,9 @@ def formatted(table: Table, rows: list[tuple]) -> list[list[str]]:
 
 
 def latex(cell: str) -> str:
-    """A formatted cell for LaTeX: powers of ten written out, percent signs escaped."""
-    written_out = re.sub(r"([\d.+-]+)e([+-]\d+)$", lambda found: rf"${found[1]}\times 10^{{{int(found[2])}}}$", cell)
-    return written_out.replace("%", r"\%")
+    """A formatted cell or a caption for LaTeX: powers of ten written out, signs escaped, in a text with $ % alone."""
+    text = re.sub(r"(?<!\\)%" if "$" in cell else r"(?<!\\)[%&#_^]", r"\\\g<0>", cell).replace(r"\^", r"\^{}")
+    return re.sub(r"([\d.+-]+)e([+-]\d+)$", lambda found: rf"${found[1]}\times 10^{{{int(found[2])}}}$", text)
 
 
 def csv_text(headings, rows) -> str:

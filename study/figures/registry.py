@@ -44,7 +44,7 @@ class Figure(NamedTuple):
 
 
 class Column(NamedTuple):
-    """One column of a table: heading, format of its numbers ("s": text), heading in LaTeX."""
+    """One column of a table: heading, format of its numbers ("s": text), heading in LaTeX if it has its own."""
 
     text: str
     form: str
@@ -117,7 +117,7 @@ def caption_of(function: Callable, given: str = "") -> str:
 def column(given: str) -> Column:
     """One of the `columns` of a table."""
     text, form, latex = (cell.strip() for cell in (given + "||").split("|")[:3])
-    return Column(text, form or "s", latex or text.replace("%", r"\%"))
+    return Column(text, form or "s", latex)
 
 
 def entry(name: str, known: dict[str, NamedTuple]) -> NamedTuple:

@@ -36,7 +36,7 @@ class Condition:
     kind : "sound"; "unverified": it seems right, but has no checksums, since an earlier version wrote it; "damaged";
         "foreign": not written by roughcoat; "unreadable"; "missing"
     reason : what is wrong; it follows the path in a message
-    digest, numerics : of the study and of the solver, as the file says
+    digest, numerics, title : of the study, of the solver, and of the study, as the file says
     sizes : of the dimensions of the cases, in order
     damage : names of the checksums that do not fit, see `checksums`
     intact : (N,) whether the numbers of each case can be trusted; None if not all variables were examined
@@ -47,6 +47,7 @@ class Condition:
     reason: str = ""
     digest: str = ""
     numerics: str = ""
+    title: str = ""
     sizes: dict[str, int] = field(default_factory=dict)
     damage: tuple[str, ...] = ()
     intact: np.ndarray | None = None
@@ -142,7 +143,8 @@ def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
     intact = _intact(rows, lines, lost) if columns is None and over else None
     kind = "damaged" if damage else "sound" if lines else "unverified"
     reason = CHANGED + _in_words(damage, intact) if damage else ""
-    about = [about.get(name, "") for name in OURS[:2]]
+    title = str(file.attribute("title")) if "title" in file.attributes() else ""
+    about = [*(about.get(name, "") for name in OURS[:2]), title]
     return Condition(file.path, kind, reason, *about, sizes, tuple(damage), intact)
 
 

@@ -26,8 +26,9 @@ from .scene import STEP, Scene
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
-#: What a case without a layer may leave out.
-_OF_LAYER = ("layer", "E1", "h", "nu1", "bonding")
+_E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
+#: What a case without a layer may leave out -> the coordinates that then have no value there, "" or NaN.
+_OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
 
 
 def _has_unit(given: Any) -> bool:
@@ -62,7 +63,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     if not signs:
         return None
     scene, errors = Scene(), []
-    parameters = _with_rows(parameters, rows, errors)
+    parameters = _with_rows(parameters, rows, scene, errors)
     parameters, scene.names = with_materials(parameters, errors)
     parameters = _alike(parameters, scene.names, errors)
     for name, given in parameters.items():
@@ -102,9 +103,12 @@ def _material(name: str, given: Any) -> str:
     return f"; a material is given as {body}, in place of {name}" if body and word else ""
 
 
-def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
+def _with_rows(parameters: dict, rows: list[dict], scene: Scene, errors: list[str]) -> dict:
     """The parameters, with those of the rows as CaseValues. These come first, since `case` is the first dimension. What
-    a case without a layer leaves out is taken from another case: no answer depends on it."""
+    a case without a layer leaves out is taken from another case: no answer depends on it, and results do not show it.
+    """
+    default = VOCABULARY["base"].own.default
+    rows = [{"base": default} | row for row in rows] if any("base" in row for row in rows) else rows
     bases = [row.get("base", parameters.get("base")) for row in rows]
     uncoated = [isinstance(base, str) and base == "half_space" for base in bases]
     found = {}
@@ -118,6 +122,9 @@ def _with_rows(parameters: dict, rows: list[dict], errors: list[str]) -> dict:
         else:
             given = [row[name] for row in rows if name in row]
             found[name] = CaseValues([row.get(name, given[0]) for row in rows])
+            if len(given) < len(rows):
+                there = xr.DataArray([name in row for row in rows], dims="case")
+                scene.given_in |= dict.fromkeys(_OF_LAYER[name], there)
     return found | {name: given for name, given in parameters.items() if name not in found}
 
 

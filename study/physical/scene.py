@@ -10,7 +10,7 @@ from ..data.dataset import Parts
 from ..data.units import PHYSICAL_SCALE, physical_attributes, with_unit
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import NUMERICS, VOCABULARY
 from .index import searchable
 from .names import SCENE, unit_of
 
@@ -33,6 +33,7 @@ class Scene:
     dims : dimension while the cases are solved -> name of it in the results
     labels : of the dimension `case`
     names : punch, layer, body -> (dimension or "", names of materials along it)
+    given_in : coordinate -> the cases that have it, a DataArray; without a layer a case may have none
     assumed : interface and Poisson ratios that count and are not given, so that they have their defaults
     """
 
@@ -41,6 +42,7 @@ class Scene:
     dims: dict = field(default_factory=dict)
     labels: list = field(default_factory=list)
     names: dict = field(default_factory=dict)
+    given_in: dict = field(default_factory=dict)
     assumed: tuple = ()
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
@@ -66,12 +68,12 @@ class Scene:
                 return value
             return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
 
-        given, spreads = ({name: cut(v) for name, v in table.items()} for table in (self.given, self.spreads))
+        tables = (self.given, self.spreads, self.given_in)
+        given, spreads, given_in = ({name: cut(v) for name, v in table.items()} for table in tables)
         labels = self.labels[window["case"]] if self.labels else []
         names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
-        return replace(
-            self, given=given, spreads=spreads, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit)
-        )
+        changed = {"given": given, "spreads": spreads, "given_in": given_in, "labels": labels, "names": names}
+        return replace(self, **changed, R=cut(self.R), unit=cut(self.unit))
 
     def results(self, parts: Parts) -> xr.Dataset:
         """The dataset in SI units, made of the dimensionless results: inputs as given, results with their spreads."""
@@ -91,10 +93,15 @@ class Scene:
         for body, (dim, texts) in self.names.items():
             values = texts if dim else texts[0]
             coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
+        for name, there in self.given_in.items():
+            if name in coords:
+                coords[name] = coords[name].where(there.variable, "" if name == "layer" else np.nan)
         if self.labels:
             coords["label"] = xr.Variable("case", self.labels)
         for name in self.assumed:
             coords[name].attrs["comment"] = ASSUMED
+        # last, since `xr.concat` compares no coordinate behind one that only the first dataset has
+        coords |= {name: coords.pop(name) for name in NUMERICS if name in coords}
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
         return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
 

@@ -96,10 +96,9 @@ def parsed(path) -> tuple[dict, str, str, str]:
     """
     path = Path(path)
     where = path.as_posix()
-    if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]*", path.stem):
-        raise StudyError(
-            [f"{where}: a study file is called NAME.toml, NAME of letters without accents, digits, _, - and ."]
-        )
+    if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}", path.stem):
+        name = "NAME of letters without accents, digits, _, - and ., 200 at most"
+        raise StudyError([f"{where}: a study file is called NAME.toml, {name}"])
     try:
         text = text_in(path)
         tables = tomllib.loads(text)

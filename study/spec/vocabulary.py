@@ -5,6 +5,7 @@ import math
 import numbers
 import tomllib
 from dataclasses import dataclass
+from decimal import Decimal
 from functools import cached_property
 from importlib.resources import files
 
@@ -156,8 +157,9 @@ def check(own: Parameter, value) -> str:
 def finite(value) -> bool:
     """Whether a value is a finite real number that a float can hold; True and False are not numbers here."""
     try:
-        return isinstance(value, numbers.Real) and not isinstance(value, bool) and math.isfinite(float(value))
-    except OverflowError:
+        number = isinstance(value, (numbers.Real, Decimal)) and not isinstance(value, bool)
+        return number and math.isfinite(float(value))
+    except (OverflowError, ValueError):  # ValueError: of a signalling NaN
         return False
 
 

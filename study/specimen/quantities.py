@@ -86,7 +86,7 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     what, multiples = READABLE.get(unit, (f"a number of {unit}", ((unit, 1.0),)))
     example = f"2 {multiples[min(1, len(multiples) - 1)][0]}"
     wanted = f'must be {what}, such as "{example}"' if unit != "1" else "must be a number without a unit"
-    if isinstance(given, numbers.Real) and not isinstance(given, bool):
+    if isinstance(given, (numbers.Real, Decimal)) and not isinstance(given, bool):
         if unit != "1":
             raise ValueError(f"{name} = {shown(given)} has no unit: {wanted}")
         try:

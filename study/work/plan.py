@@ -99,8 +99,11 @@ class Order:
         return self.part[1] > 1
 
     def done(self, found: Condition) -> bool:
-        """Whether a results file that was examined is that of this study, and holds no case to be tried again."""
-        if not belongs(self.definition, found):
+        """Whether an examined results file is that of this study, with its title, and holds no case to be tried again.
+
+        One with another title is written anew, of the cases in it.
+        """
+        if not belongs(self.definition, found) or found.title != (self.definition.title or self.definition.name):
             return False
         return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 

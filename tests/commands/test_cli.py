@@ -233,7 +233,8 @@ def test_wrong_calls(arguments, capsys):
 def test_answers_without_heavy_imports():
     """--help and complaints about a file need neither xarray nor matplotlib; all in one process, --help first."""
     script = (
-        "import sys, study.__main__ as m\n"
+        "import os, sys, study.__main__ as m\n"
+        "assert {os.environ[f'{one}_THREADS'] for one in ('OMP_NUM', 'MKL_NUM', 'VECLIB_MAXIMUM')} == {'1'}\n"
         "for call, expected in (('--help', 0), ('check studies/none.toml', 2), ('check good', 0)):\n"
         "    try: code = m.main(call.split())\n"
         "    except SystemExit as e: code = e.code\n"

@@ -139,9 +139,13 @@ def test_formats_of_cells():
     assert latex("+4.5%") == r"+4.5\%"
     assert latex("nominal pressure") == "nominal pressure"
     assert latex("does not hold") == "does not hold"
-    table = Table((), tuple, "caption", (column("of"), column("number | .1% | $x$")))
+    assert latex("thin_layer & #1 of p^2") == r"thin\_layer \& \#1 of p\^{}2"
+    assert latex(r"5 % of $a_1^2$") == r"5 \% of $a_1^2$"
+    table = Table((), tuple, "below 1% all is text", (column("of a_b"), column("number | .1% | $x$")))
     rows = [("one", 0.077), ("two", "at most 8%")]
-    assert as_text(table, rows).splitlines()[4:] == ["one        7.7%", "two  at most 8%"]
+    assert as_text(table, rows).splitlines()[4:] == ["one           7.7%", "two     at most 8%"]
+    caption, _, _, head = as_latex(table, rows).splitlines()[2:6]
+    assert (caption, head) == (r"\caption{below 1\% all is text}", r"of a\_b & $x$ \\")
     assert as_latex(table, rows).splitlines()[7:9] == [r"one & 7.7\% \\", r"two & at most 8\% \\"]
 
 

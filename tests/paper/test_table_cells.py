@@ -177,7 +177,7 @@ def in_latex(cell: str) -> str:
     mantissa, _, exponent = last.partition("e")
     if exponent.lstrip("+-").isdecimal():
         last = f"${mantissa}\\times 10^{{{int(exponent)}}}$"
-    return " ".join([*words, last]).replace("%", "\\%")
+    return " ".join([*words, last]).replace("%", "\\%").replace("E1*^", "E1*\\^{}")
 
 
 def test_the_first_line_says_what_the_table_shows(tables):

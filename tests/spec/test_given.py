@@ -1,6 +1,7 @@
 """From tables to a grid: the order of its dimensions, defaults, gaps, and values just outside of what is allowed."""
 
 import tomllib
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -108,6 +109,14 @@ def test_a_value_between_a_single_one_and_the_interval_is_refused():
     as_array(own, [0.0, 2.0, 8.0], "q", errors)
     assert errors == ["q[1] = 2.0: must be 0 or in [4, 256]"]
     assert as_array(own, [0.0, 8.0], "q", errors).tolist() == [0, 8] and len(errors) == 1
+
+
+def test_decimal_numbers():
+    """As databases give them."""
+    errors, own = [], VOCABULARY["P"].own
+    assert as_array(own, [Decimal("1e-5"), 2e-5], "P", errors).tolist() == [1e-5, 2e-5] and not errors
+    as_array(own, [Decimal("sNaN")], "P", errors)
+    assert errors == ["P = sNaN: must be a finite number, in [1e-24, 1e3]"]
 
 
 def test_nothing_is_a_value_only_where_gaps_are_allowed():

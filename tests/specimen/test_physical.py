@@ -84,6 +84,8 @@ def test_a_case_without_a_layer_needs_none(layer):
     found = quiet(cases=[bare, coated], **common)
     alone = [quiet(**common, **case).D.item() for case in (bare, coated)]
     np.testing.assert_allclose(found.D, alone, rtol=1e-12)
+    unsaid = quiet(cases=[bare, {name: coated[name] for name in coated if name != "base"}], **common)
+    np.testing.assert_array_equal(unsaid.D, found.D)
     with pytest.raises(study.StudyError) as caught:
         study.solve(cases=[coated, {"base": "layered", "bonding": "bonded"} | layer], **common)
     assert caught.value.messages == ("h must be given in every case, or once for all",)

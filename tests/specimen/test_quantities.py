@@ -2,6 +2,7 @@
 
 import math
 import re
+from decimal import Decimal
 
 import numpy as np
 import pytest
@@ -37,6 +38,7 @@ from study.specimen.quantities import READABLE, Quantity, has_unit, quantity, re
         ("1 kgf", "N", 9.80665),
         ("0.3", "1", 0.3),
         (0.3, "1", 0.3),
+        (Decimal("0.3"), "1", 0.3),
         (np.float64(0.3), "1", 0.3),
     ],
 )

@@ -1,5 +1,7 @@
 """What an edit of a study file computes anew, of a finished study and of one that stopped half-way."""
 
+import json
+
 import pytest
 import xarray as xr
 from line_study import store_block
@@ -12,8 +14,9 @@ import study
 def load(tmp_path):
     """A study of two contacts, always the same file and folder."""
 
-    def written(numerics: str = "", model: str = "", label: str = "light") -> study.Study:
-        text = f'[model]\nh = 0.5\nn = 0.5\nmicro = "smooth"\n{model}\n[numerics]\n{numerics}\n[output]\nx = 3\n'
+    def written(numerics: str = "", model: str = "", label: str = "light", title: str = "") -> study.Study:
+        text = f"title = {json.dumps(title)}\n"
+        text += f'[model]\nh = 0.5\nn = 0.5\nmicro = "smooth"\n{model}\n[numerics]\n{numerics}\n[output]\nx = 3\n'
         text += f'[[cases]]\nP = 1e-7\nlabel = "{label}"\n[[cases]]\nP = 1e-3\nlabel = "heavy"\n'
         (tmp_path / "two.toml").write_text(text, encoding="utf-8")
         return study.load(tmp_path / "two.toml", tmp_path / "results")
@@ -74,3 +77,12 @@ def test_an_edit_of_what_no_case_uses_is_of_no_account(load):
     half_way = load(model="nu1 = 0.2\nB = 0.1", numerics="rtol = 1e-7")
     store_block(half_way, 0, 1)
     assert load(model="B = 0.3", numerics="rtol = 1e-7").run(force=True).computed == 1
+
+
+def test_an_edit_of_the_title_is_in_the_results_and_computes_nothing(load):
+    load().run()
+    for title in ("two", 'of one\n "line"', ""):
+        edited = load(title=title)
+        assert edited.run().computed == 0
+        assert edited.open().title == (title or "two")
+    assert not load().run().counts  # nothing to do

@@ -172,7 +172,7 @@ def test_a_clock_that_jumps(opened, undisturbed, monkeypatch, tmp_path):
     assert_ends_well(opened, undisturbed, 0)
 
 
-@pytest.mark.parametrize("name", ["..", ".hidden", "a b", "-x", "ü"])
+@pytest.mark.parametrize("name", ["..", ".hidden", "a b", "-x", "ü", "n" * 250])
 def test_names_that_would_be_trouble_in_the_results_folder_are_refused(tmp_path, name, capsys):
     (tmp_path / f"{name}.toml").write_text(TEXT, encoding="utf-8")
     assert main(["run", str(tmp_path / f"{name}.toml"), "--results", str(tmp_path / "results")]) == 2

@@ -8,8 +8,11 @@ import numpy as np
 from .scan import FEWEST, UNITS, Scan, height_map, metres, profile
 
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
-#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken.
+#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken; if only whole
+#: numbers stand there, the first line with a decimal mark shows it.
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
+
+_THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")  # "1,024", whose comma may be no decimal mark
 
 
 def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -> Scan:
@@ -129,6 +132,9 @@ def _text(path: Path) -> tuple[np.ndarray, str]:
                 heading = line
                 continue
         row = _numbers(line, dialect)
+        if row is None and not np.mod(rows, 1).any() and not _THOUSAND.search(line):  # "0;0" has not shown it
+            dialect = dialect[0], ","
+            row = _numbers(line, dialect)
         if row is None:
             raise ValueError(f"{path.name}, line {number}: {line[:60]!r} has something else than numbers")
         if rows and len(row) != len(rows[0]):

@@ -95,3 +95,13 @@ def test_what_is_no_scan_and_no_plain_number():
         roughness.cap_radius(nm, um)
     with pytest.raises(ValueError, match="pitch is in um: give numbers"):
         roughness.square_lattice(um)
+
+
+@pytest.mark.parametrize("separator", [";", "\t", " "])
+def test_a_first_line_of_whole_numbers_shows_no_decimal_mark(tmp_path, separator):
+    """A spreadsheet writes 0 as "0", also where 0.5 is "0,5"."""
+    x, z = np.arange(20) / 2, np.sin(np.arange(20.0))
+    rows = [f"{one:.4g}{separator}{other:.4g}".replace(".", ",") for one, other in zip(x, z, strict=True)]
+    (tmp_path / "scan.csv").write_text("\n".join(["x z", *rows]), encoding="utf-8")
+    assert rows[0] == f"0{separator}0"
+    np.testing.assert_allclose(roughness.read(tmp_path / "scan.csv", unit="um").z, z * 1e-6, rtol=1e-3)

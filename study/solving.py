@@ -150,13 +150,14 @@ def solve(
         hint = "a range stands in study files; here give its values, as of numpy.geomspace"
         raise StudyError([f"{name}: {hint}" for name in ranges])
     rows = [row for row in cases if isinstance(row, dict)] if isinstance(cases, list) else []
+    if cases is not None and not (rows and len(rows) == len(cases)):
+        table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
+        raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
     scene = read_scene(parameters, cases)
     about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
-        if cases is not None and not (rows and len(rows) == len(cases)):
-            raise StudyError(["cases must be a list of dictionaries, at least one"])
         definition = complete_scene(draft, scene, [], about, most=LARGE)
     else:
         if cases is not None:

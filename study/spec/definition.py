@@ -214,7 +214,7 @@ def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
 
 def profile_points(x, errors: list[str]) -> np.ndarray:
     """Points r/a from their number or their list: increasing from 0 to 1."""
-    points = x.tolist() if isinstance(x, (np.ndarray, np.generic)) else x
+    points = np.asarray(x).tolist() if hasattr(x, "dtype") else x
     if type(points) is int and 2 <= points <= 10_000:
         return np.linspace(0.0, 1.0, points)
     if not isinstance(points, (list, tuple)) or not all(map(finite, points)):

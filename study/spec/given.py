@@ -212,7 +212,7 @@ class Draft:
             if dim in PARAMETERS and self.values.get(dim, ((dim,),))[0] != (dim,):
                 self.errors.append(f"{dim} is a dimension and a parameter over other dimensions")
             elif dim in PARAMETERS and dim not in self.sections:
-                self.errors.append(f"the dimension {dim} is called like a parameter that is not given")
+                self.errors.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
             elif dim in VOCABULARY and dim not in PARAMETERS and dim != "case":
                 self.errors.append(f'a dimension cannot be called "{dim}", which is the name of a result')
         for name, dim, size, coordinate in self.claims:

@@ -242,7 +242,9 @@ def test_answers_without_heavy_imports():
         "    heavy = {'xarray', 'dask', 'netCDF4', 'matplotlib', 'pandas'} & set(sys.modules)\n"
         "    assert not heavy, (call, heavy)\n"
         "    assert ('numpy' in sys.modules) == call.startswith('check'), call\n"
+        "import matplotlib\n"
     )
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+    backend = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
+    environment = os.environ | backend | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
     done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

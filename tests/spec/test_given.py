@@ -4,8 +4,11 @@ import tomllib
 from decimal import Decimal
 
 import numpy as np
+import pandas as pd
 import pytest
+import xarray as xr
 
+import study
 from solver.parameters import Parameter
 from study import StudyError
 from study.spec.definition import Definition, from_tables
@@ -38,6 +41,11 @@ def test_profiles_are_in_the_order_of_the_vocabulary():
         defined(model=SMOOTH | {"P": 1}, output={"profiles": list(given)}) for given in (("lam", "p"), ("p", "lam"))
     )
     assert one.profiles == other.profiles == ("p", "lam") and one.digest == other.digest
+
+
+@pytest.mark.parametrize("kind", [np.array, pd.Series, xr.DataArray])
+def test_points_may_be_labelled(kind):
+    assert study.solve(**SMOOTH, P=1e-5, x=kind([0, 0.5, 1])).x.values.tolist() == [0, 0.5, 1]
 
 
 @pytest.mark.parametrize("x", [[0, 0.5, 0.5, 1], [0.1, 1], [0, 0.9], [0], [1, 0], [0, 1, 1], [-0.1, 0, 1]])

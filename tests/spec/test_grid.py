@@ -3,6 +3,7 @@
 from functools import cache
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 from hypothesis import given, settings
@@ -118,7 +119,7 @@ def array(values, *dims, **coords):
         ({"P": [1, 2], "Ra": array([1, 2], "P", P=[1, 3])}, "Ra has other values of P than another parameter"),
         ({"P": array([1, 2], "s", s=[1, 2]), "Ra": array([1, 2], "s", s=[1, 3])}, "Ra has other values of s than"),
         ({"P": 1, "Ra": array([1, 2], "P")}, "P is a dimension and a parameter over other dimensions"),
-        ({"P": 1, "Ra": array([1, 2], "h")}, "the dimension h is called like a parameter that is not given"),
+        ({"P": 1, "Ra": array([1, 2], "h")}, "the dimension h is called like a parameter that is not given: rename it"),
         ({"P": 1, "Ra": array([1, 2], "lam")}, 'a dimension cannot be called "lam", which is the name of a result'),
         ({"P": 1, "Ra": array([1, 2], "x")}, 'a dimension cannot be called "x", which is the name of a result'),
         ({"P": array([], "s")}, "P is empty: must have at least one value"),
@@ -140,7 +141,6 @@ def array(values, *dims, **coords):
         ({"P": 1, "nodes": 16.5}, "nodes = 16.5: must be a whole number"),
         ({"cases": [{"P": 1}], "P": 1}, "P is given twice"),
         ({"cases": [{"P": 1, 2: 3}]}, '[[cases]] "2" is not a parameter'),
-        ({"cases": {"P": 1}, "P": 1}, "cases must be [[cases]] tables (a list of dictionaries)"),
         ({"P": 1, "x": 1}, "x = 1: must be a whole number in [2, 10000]"),
     ],
     ids=str,
@@ -150,6 +150,14 @@ def test_bad_parameters(parameters, message):
         study.solve(**parameters, **SMOOTH)
     assert len(caught.value.messages) == 1, caught.value.messages
     assert f"solve: {message}" in str(caught.value)
+
+
+@pytest.mark.parametrize("cases", [{"P": 1}, [], [3], pd.DataFrame({"P": [1]})], ids=type)
+def test_cases_are_a_list_of_dictionaries(cases):
+    table = ' (of a table of pandas: cases=table.to_dict("records"))' * isinstance(cases, pd.DataFrame)
+    with pytest.raises(study.StudyError) as caught:
+        study.solve(cases=cases, **SMOOTH)
+    assert caught.value.messages == (f"cases must be a list of dictionaries, at least one{table}",)
 
 
 def test_solve_collects_all_messages():

@@ -4,6 +4,7 @@ import re
 import warnings
 
 import numpy as np
+import pandas as pd
 import pytest
 import xarray as xr
 
@@ -228,6 +229,7 @@ def test_series_of_pandas_and_percent():
         ({"nu2": of_rows([0.2, 0.7], "1")}, r"^nu2\[1\] = 0.7: must be in"),
         ({"nu2": 1}, r"^nu2 = 1: must be in \(-1, 0.5\]$"),
         *(({"cases": rows}, "^cases must be a list of dictionaries, at least one$") for rows in ([], "x", {}, [3])),
+        ({"cases": pd.DataFrame({"h": ["2 um"]}), "h": None}, r"cases=table.to_dict\("),
     ],
 )
 def test_slips_are_named(change, message):

@@ -12,6 +12,7 @@ from ..data.dataset import status_words
 from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
 from ..spec.definition import LARGE, Definition, StudyError
+from ..spec.grid import MOVED
 from ..spec.identity import law_versions
 from ..spec.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses
@@ -101,9 +102,11 @@ class Order:
     def done(self, found: Condition) -> bool:
         """Whether an examined results file is that of this study, with its title, and holds no case to be tried again.
 
-        One with another title is written anew, of the cases in it.
+        One with another title is written anew, of the cases in it, unless these have been solved with moved inputs too:
+        all of that would be computed again.
         """
-        if not belongs(self.definition, found) or found.title != (self.definition.title or self.definition.name):
+        edited = found.title != (self.definition.title or self.definition.name)
+        if not belongs(self.definition, found) or (edited and MOVED not in self.definition.grid.sizes):
             return False
         return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 

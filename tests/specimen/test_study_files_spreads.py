@@ -53,6 +53,7 @@ def test_what_is_known_of_an_edited_study(results, tmp_path):
     """Of a results file the cases as they were given are used again, and those with an input moved are computed."""
     (tmp_path / "film.nc").write_bytes((results / "film.nc").read_bytes())
     assert of(TEXT, tmp_path).status()["state"] == "done" and of(TEXT, tmp_path).verify().good
+    assert of(f"title = 'films'\n{TEXT}", tmp_path).run(workers=1).computed == 0
     edited = TEXT.replace("'10 N']", "'10 N', '20 N']")
     assert of(edited, tmp_path).status()["counts"] == {0: KNOWN, 127: 12 * MOVES - KNOWN}
     assert of(edited, tmp_path).run(workers=1).computed == 12 * MOVES - KNOWN

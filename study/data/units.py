@@ -12,7 +12,8 @@ PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical unit
 
 
 def reduced_modulus(E, nu):
-    """E* = E/(1 - ν²), in the unit of E."""
+    """E* = E/(1 - ν²), in the unit of E; in Pa of a text such as "210 GPa"."""
+    E = _si("E", E, "Pa") if isinstance(E, str) else E
     return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
 
 
@@ -107,6 +108,8 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
 
     Raises ValueError for a dataset without physical units.
     """
+    if not isinstance(dataset, xr.Dataset):
+        raise ValueError("readable takes the dataset, not an array of it: study.readable(contact).a")
     if PHYSICAL_SCALE not in dataset.attrs:
         raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
     found = {}

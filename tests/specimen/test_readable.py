@@ -26,3 +26,11 @@ def test_multiples():
 def test_numbers_without_units_have_no_multiples():
     with pytest.raises(ValueError, match="the dataset is dimensionless"):
         study.readable(study.solve(P=1e-5, base="half_space", micro="smooth", x=2))
+    with pytest.raises(ValueError, match=r"takes the dataset, not an array of it: study.readable\(contact\).a"):
+        study.readable(quiet(**COATED, P="10 mN", x=3).a)
+
+
+def test_a_reduced_modulus_of_a_text():
+    assert study.reduced_modulus("91 GPa", 0.3) == study.reduced_modulus(91e9, 0.3) == pytest.approx(1e11, rel=1e-15)
+    with pytest.raises(ValueError, match='E = "91 N" is a force: must be a pressure'):
+        study.reduced_modulus("91 N", 0.3)

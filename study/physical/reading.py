@@ -27,6 +27,8 @@ _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1,
 #: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 _E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
+#: Attributes `units` of pure numbers; pint writes the last.
+_PURE = ("1", "", "dimensionless")
 #: What a case without a layer may leave out -> the coordinates that then have no value there, "" or NaN.
 _OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
 
@@ -34,7 +36,7 @@ _OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "h": ("h", "h_spread"),
 def _has_unit(given: Any) -> bool:
     """Whether a parameter, or one of its values, has a unit or a spread."""
     if isinstance(given, xr.DataArray):
-        return given.attrs.get("units", "1") != "1"
+        return given.attrs.get("units", "1") not in _PURE
     if isinstance(given, QuantityList):
         return True
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
@@ -84,7 +86,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     errors += [] if errors else impossible(scene) + (equal_cases(scene) if rows else [])
     if errors:
         name, one = min(signs, key=lambda sign: isinstance(sign[1], (list, tuple)))  # a single value rather than a list
-        hint = f" ({name} = {shown(one)} makes this a study with units)"
+        what = f"the unit of {name}" if isinstance(one, xr.DataArray) else f"{name} = {shown(one)}"
+        hint = f" ({what} makes this a study with units)"
         raise StudyError([f"{message}{hint * ('has no unit' in message)}" for message in errors])
     scene.assumed = assumed(parameters, scene.given)
     scene.spreads = scene.spreads if spreads else {}
@@ -219,7 +222,7 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if given.dtype.kind not in "iuf":
         raise ValueError(f"{name}: a DataArray must hold numbers; texts with units may be a list")
     given = given.astype(float)  # 210 GPa of float16 would be infinite in Pa
-    if unit == "1" and given.attrs.get("units", "") in ("", "1"):
+    if unit == "1" and given.attrs.get("units", "1") in _PURE:
         return given.drop_attrs()
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')

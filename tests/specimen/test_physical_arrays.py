@@ -90,3 +90,15 @@ def test_series_and_indexes_of_words_and_ratios_are_axes():
     del given["E1"], given["E_punch"]
     again = study.solve(**given | {"base": np.array("layered"), "n": np.array(1 / 210)})
     np.testing.assert_allclose(again.a, one.a, rtol=1e-12)
+
+
+@pytest.mark.parametrize("unit", ["1", "", "dimensionless"])
+def test_pure_numbers_make_no_study_with_units(unit):
+    """With the unit of pint, or an empty one, all others were asked for theirs."""
+    pure = {"base": "half_space", "micro": "smooth", "x": 2}
+    found = study.solve(**pure, P=of([1e-6, 2e-6], unit))
+    np.testing.assert_array_equal(found.a, study.solve(**pure, P=[1e-6, 2e-6]).a)
+    with pytest.raises(study.StudyError, match=r"P = 1e-05 has no unit: .* \(the unit of h makes this a study"):
+        study.solve(**pure, P=1e-5, h=of([1, 2], "um"))
+    nu2 = of([0.2, 0.3], unit)
+    np.testing.assert_array_equal(study.solve(**BALL, R="1 mm", P="1 N", nu2=nu2).nu2, nu2)

@@ -29,10 +29,14 @@ def text_in(path: Path) -> str:
 
 
 def hint(text: str, reason: str) -> str:
-    """The end of a message about a line of TOML: a text without quotes, a name given twice; "" for another mistake."""
+    """The end of a message about a line of TOML that has a usual mistake; "" for another."""
     if "overwrite" in reason:
         return "; a name is given twice in one section"
     place = re.search(r"at line (\d+)", reason)
     line = text.split("\n")[int(place[1]) - 1][:300] if place else ""
+    if re.search("[“”„‘’«»]", line):
+        return '; quotes are straight: "5 mm"'
+    if re.search(r"=\s*[-+]?\d+,\d", line):
+        return "; a number has a decimal point"
     plain = "'" not in line and '"' not in line and _NO_QUOTES.search(line)
     return '; texts stand in quotes, a number with its unit too: "5 mm"' if plain else ""

@@ -161,6 +161,24 @@ def test_texts_without_quotes_are_told_of_them(tmp_path, line, hinted):
     assert str(caught.value).endswith('; texts stand in quotes, a number with its unit too: "5 mm"') == hinted
 
 
+@pytest.mark.parametrize(
+    ("line", "end"),
+    [
+        ("R = “3 mm”", 'column 5); quotes are straight: "5 mm"'),
+        ("R = „3 mm“", 'column 5); quotes are straight: "5 mm"'),
+        ("P = 1,5", "column 6); a number has a decimal point"),
+        ("h = {start = 0,1, stop = 3, num = 3}", "; a number has a decimal point"),
+        ("h = [0.01; 0.02]", "column 10)"),
+    ],
+)
+def test_marks_of_other_programs_are_named(tmp_path, line, end):
+    path = tmp_path / "fig99.toml"
+    path.write_text(f"[model]\n{line}\n", encoding="utf-8")
+    with pytest.raises(study.StudyError, match="is not valid TOML") as caught:
+        study_file.read(path)
+    assert str(caught.value).endswith(end)
+
+
 def test_missing_file(tmp_path):
     with pytest.raises(study.StudyError, match="none.toml: cannot be read: No such file"):
         study_file.read(tmp_path / "none.toml")

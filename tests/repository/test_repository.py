@@ -30,6 +30,13 @@ def test_make_help_lists_every_target():
     assert all(len(line.split()) > 2 for line in lines), "each with a word of explanation"
 
 
+def test_formatting_leaves_the_pages_alone():
+    """CONTRIBUTING.md says `ruff format`, which would take the comments of their examples out of their columns."""
+    pytest.importorskip("ruff")
+    done = subprocess.run([sys.executable, "-m", "ruff", "format", "--check", "."], cwd=ROOT, capture_output=True)
+    assert b".md" not in done.stdout + done.stderr
+
+
 @pytest.mark.parametrize("listed", ["quick.txt", "computing.txt"])
 def test_lists_of_tests_name_files_that_there_are(listed):
     lines = (ROOT / "tests" / listed).read_text(encoding="utf-8").split()

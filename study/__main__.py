@@ -25,7 +25,6 @@ from .terminal import empty_buffers, open_closed_streams, program, say
 # without it each worker process would have a thread for each processor.
 for _name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS"):
     os.environ.setdefault(_name, "1")
-os.environ["MPLBACKEND"] = "agg"  # figures are files; the backend of a notebook that calls this may not be installed
 
 DIR = {"type": folder, "metavar": "DIR"}
 KEPT = "; finished blocks are kept, the same command goes on from there"
@@ -151,6 +150,7 @@ def own_modules_first() -> None:
 
 def command() -> None:
     """Run `main` as the process of a command line, which ends with its exit code."""
+    os.environ["MPLBACKEND"] = "agg"  # figures are files; a notebook that calls this may have set one of its own
     open_closed_streams()
     ending.listen()
     code = main()

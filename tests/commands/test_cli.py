@@ -242,9 +242,16 @@ def test_answers_without_heavy_imports():
         "    heavy = {'xarray', 'dask', 'netCDF4', 'matplotlib', 'pandas'} & set(sys.modules)\n"
         "    assert not heavy, (call, heavy)\n"
         "    assert ('numpy' in sys.modules) == call.startswith('check'), call\n"
-        "import matplotlib\n"
     )
-    backend = {"MPLBACKEND": "module://matplotlib_inline.backend_inline"}
-    environment = os.environ | backend | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join(path or os.getcwd() for path in sys.path)}
     done = subprocess.run([sys.executable, "-c", script], env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
+
+
+def test_the_backend_of_a_notebook_is_not_asked_for(tmp_path):
+    """Jupyter sets it for the programs that a cell starts with "!", where it need not be installed."""
+    path = os.pathsep.join(path or os.getcwd() for path in sys.path)
+    environment = os.environ | {"PYTHONPATH": path, "MPLBACKEND": "no_such_backend"}
+    command = [sys.executable, "-m", "study", "plot", "none.nc", "--x", "P", "--y", "a"]
+    done = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (2, "none.nc: does not exist\n")

@@ -30,7 +30,7 @@ _E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
 #: Attributes `units` of pure numbers; pint writes the last.
 _PURE = ("1", "", "dimensionless")
 #: What a case without a layer may leave out -> the coordinates that then have no value there, "" or NaN.
-_OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
+_OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "n": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
 
 
 def _has_unit(given: Any) -> bool:

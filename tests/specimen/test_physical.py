@@ -85,6 +85,8 @@ def test_a_case_without_a_layer_needs_none(layer):
     found = quiet(cases=[bare, coated], **common)
     alone = [quiet(**common, **case).D.item() for case in (bare, coated)]
     np.testing.assert_allclose(found.D, alone, rtol=1e-12)
+    n = {"n": 2.0, "h": "2 um", "bonding": "bonded"}
+    assert np.isnan(quiet(cases=[bare, n], **common).n).values.tolist() == [True, False]
     unsaid = quiet(cases=[bare, {name: coated[name] for name in coated if name != "base"}], **common)
     np.testing.assert_array_equal(unsaid.D, found.D)
     with pytest.raises(study.StudyError) as caught:

@@ -27,7 +27,10 @@ def point(options, given: list[str]) -> int:
     parameters = parameters_of(given)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it
-        found = solve(**parameters, x=2, profiles=False)
+        try:
+            found = solve(**parameters, x=2, profiles=False)
+        except StudyError as error:
+            raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     text = json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found)
     return answer(text) or (0 if int(found["status"]) == 0 else 1)
 

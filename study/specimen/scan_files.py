@@ -11,8 +11,8 @@ TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
 #: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken; if only whole
 #: numbers stand there, the first line with a decimal mark shows it.
 DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
-
-_THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")  # "1,024", whose comma may be no decimal mark
+#: "1,024": this comma may be no decimal mark.
+_THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
 
 
 def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -> Scan:

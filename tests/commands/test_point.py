@@ -97,9 +97,9 @@ def test_materials_by_name_bring_their_spreads(capsys):
             ["P=1e-5", "h=0.02", "n=0.5", "accuracy=5%", "micro=smooth", "R=2 mm", "E2=5 GPa"],
             ['P = 1e-05 has no unit: must be a force, such as "2 N" (accuracy = "5%" makes this a study with units)'],
         ),
-        (["P=1e-5", "p0=1"], ['solve: "p0" is not a parameter; of the results P, a or D may be given']),
+        (["P=1e-5", "p0=1"], ['"p0" is not a parameter; of the results P, a or D may be given']),
         (["R=1 mm", "p0=1 GPa"], ['"p0" is not a parameter; of the results P, a or D may be given']),
-        (["P=1e-5", "mirco=smooth"], ['solve: "mirco" is not a parameter; did you mean "micro"?']),
+        (["P=1e-5", "mirco=smooth"], ['"mirco" is not a parameter; did you mean "micro"?']),
     ],
 )
 def test_bad_input_is_said_before_anything_is_computed(given, messages, capsys):

@@ -15,7 +15,7 @@ from study.specimen import materials
 ROOT = Path(__file__).resolve().parents[2]
 #: What each class of materials lies between: E in Pa, nu. A unit slip or exchanged numbers fall outside.
 CLASSES = {
-    ("steel 52100", "steel M50", "steel 316L", "steel carbon"): (185e9, 220e9, 0.26, 0.32),
+    ("steel 52100", "steel M50", "steel M2", "steel 316L", "steel carbon"): (185e9, 220e9, 0.26, 0.32),
     ("aluminium 6061", "titanium Ti-6Al-4V", "copper", "brass"): (65e9, 135e9, 0.3, 0.37),
     ("glass soda-lime", "glass borosilicate", "silica"): (60e9, 76e9, 0.15, 0.25),
     ("silicon", "zirconia", "silicon nitride", "alumina", "sapphire"): (150e9, 470e9, 0.2, 0.32),

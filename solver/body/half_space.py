@@ -80,6 +80,10 @@ class HalfSpace(NamedTuple):
         """0 (B,): the quadrature of its kernel is exact to rounding."""
         return np.zeros_like(a)
 
+    def unseen(self, a, s1):
+        """0 (B,): it has no length of its own. Smooth contacts on springs have a bound of :mod:`..contact.smooth`."""
+        return np.zeros_like(a)
+
     def work(self, a, nodes):
         """Work (B,) of a mesh with its operator, and of one step."""
         return np.full_like(a, nodes**2), np.full_like(a, _STEP)

@@ -68,6 +68,10 @@ class Body(Protocol):
     def error(self, a, nodes):
         """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""
 
+    def unseen(self, a, s1):
+        """What a mesh whose first node is s1 may miss of the radius of a smooth contact, over the radius, (B,): what
+        the body's short waves do, which only the ring between that node and the edge feels."""
+
     def work(self, a, nodes):
         """The work of a case that is solved alone: (B,) for making a mesh of `nodes` nodes and the operator on it, and
         (B,) for one Newton step there. The unit is that for one entry of the matrix of a half-space on a new mesh."""

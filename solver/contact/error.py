@@ -38,6 +38,8 @@ _FINER = 5
 #: between its nodes: the sum over the contact, in which misses of opposite sign cancel, and _CHANCE times the largest
 #: sum from the edge to any radius (test_random_heights of tests/contact/test_error_bars.py).
 _CHANCE = 1 / 2
+#: Control -> what a change of the radius of a smooth contact changes of the others, at most, over that of the radius.
+_OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}
 
 
 class Refined(NamedTuple):
@@ -88,6 +90,9 @@ def estimate(ev, found, refined):
         if ev.curve.q.min() <= 0:  # where there is tension, the centre alone judges whether the punch lifts off
             counts &= ev.curve.q.min(axis=1) > 0
         change = np.where(counts, around, change)
+    if not ev.cases.law.rough:  # asperities show that a mesh is too coarse for the edge, by how they yield there
+        unseen = ev.cases.body.unseen(np.exp(ev.state.eta), ev.mesh.s[0])
+        change = np.maximum(change, _OF_RADIUS[ev.cases.control] * unseen)
     return np.maximum(margin(ev) * change, ev.floor)
 
 

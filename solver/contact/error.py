@@ -34,6 +34,9 @@ _NEAR = 1e-8
 #: which has _FINER more points on each panel than the mesh has nodes: "saturated" of tests/contact/test_error_bars.py.
 _SATURATED = 0.5
 _FINER = 5
+#: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
+#: that of a law with corners: "steep" of tests/contact/test_error_bars.py. Panels enclose that place.
+_STEEP = 0.1
 #: On a law with corners two meshes may agree by chance. So the error also counts what the mesh misses of the load
 #: between its nodes: the sum over the contact, in which misses of opposite sign cancel, and _CHANCE times the largest
 #: sum from the edge to any radius (test_random_heights of tests/contact/test_error_bars.py).
@@ -124,7 +127,8 @@ def completed(ev, Ar_An, error, rows):
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`.
 
     If λ has risen before the first node, what is missed there is counted by _UNSEEN. If asperities saturate in the
-    centre, Ar/An is compared with another quadrature. A law with corners has a quadrature of its own.
+    centre, or their displacement hardly depends on the pressure, Ar/An is compared with another quadrature. A law
+    with corners has a quadrature of its own.
     """
     law, mesh, area, error = ev.cases.law.take(rows), ev.mesh, Ar_An[rows], error[rows]
     if not law.rough or not len(rows):
@@ -134,10 +138,15 @@ def completed(ev, Ar_An, error, rows):
         return area, np.maximum(error + MARGIN * missed + _CHANCE * largest, MARGIN * of_area)
     ends = law.area(ev.state.y[rows][:, [0, -1]], ev.curve.q[rows][:, [0, -1]])
     ring = np.where(ends[:, 0] > _RISEN, _UNSEEN * mesh.s[0] ** 2 / 2 * ends[:, 0] / area, 0.0)
+    _, exponent = law.edge()
     error, sharp = np.maximum(error, ring), np.flatnonzero(ends[:, 1] > _SATURATED)
     if len(sharp):
         s, w = gauss_rule(mesh.order + _FINER, mesh.breaks)
         y, law = interpolate(ev, s, rows=rows[sharp]), law.take(sharp)
         other = law.area(y, law.evaluate(y).q) @ (2 * w * s)
         error[sharp] = np.maximum(error[sharp], MARGIN * np.abs(other / area[sharp] - 1))
+    steep = np.flatnonzero((exponent < _STEEP) & (mesh.order == mesh.n))
+    if len(steep):
+        other, of_area, _, _ = cornered(ev, rows[steep])
+        error[steep] = np.maximum(error[steep], MARGIN * (np.abs(other / area[steep] - 1) + of_area))
     return area, error

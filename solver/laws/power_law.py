@@ -9,6 +9,10 @@ from ..parameters import Parameter
 from . import disc_cell
 from .law import Curve, Law
 
+#: With a small β the pressure at the edge is below the least float. This times y is added, so that p increases with y.
+#: A pressure in the centre below _LOST has no digits then, and no p_max.
+_LEAST, _LOST = 1e-295, 1e-270
+
 
 def _scales(E, Nbar, Ra, B, beta):
     """p*, A*; and further β, and p* over that of the law that is fitted."""
@@ -18,7 +22,7 @@ def _scales(E, Nbar, Ra, B, beta):
 def _curve(y, beta, ratio):
     inverse = 2 / beta
     q = y**inverse
-    return Curve(q, y * y, inverse * q / y, 2 * y)
+    return Curve(q + _LEAST * y, y * y, inverse * q / y + _LEAST, 2 * y)
 
 
 def _from_pressure(q, beta, ratio):
@@ -30,7 +34,7 @@ def _area(y, q, beta, ratio):
 
 
 def _peak(y, q, beta, ratio):
-    spot = ratio * q
+    spot = ratio * np.where((q > 0) & (q < _LOST), np.nan, q)
     return disc_cell.spot_peak(disc_cell.spot_from_pressure(spot), spot) / ratio
 
 
@@ -44,5 +48,6 @@ LAW = Law(
     peak=_peak,
     edge=lambda beta, ratio: (1.0, beta),
     from_pressure=_from_pressure,
+    guess=lambda q, beta, ratio: np.maximum(q, _LEAST) ** (beta / 2),
     from_displacement=lambda g, beta, ratio: np.sqrt(np.maximum(g, 0.0)),
 )

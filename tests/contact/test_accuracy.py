@@ -136,3 +136,13 @@ def test_the_estimate_encloses_films_that_no_mesh_sees(control, n, bonding):
         truth = difference(at_radius, found)
         assert np.all(truth <= found.error + 1e-8)
         assert np.median(found.error / truth) < 10
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered"])
+def test_power_laws_of_small_exponents(base):
+    """Down to β = 0.01 pressures at the edge underflow; every case is solved, and none is above its error."""
+    case = random_cases(40, 7) | {"base": base, "micro": "power_law", "beta": np.geomspace(0.01, 0.1, 40)}
+    found, fine = (solve(Problem.of(**case, rtol=rtol)) for rtol in (1e-4, 1e-7))
+    assert np.all(found.status == Status.CONVERGED) and np.all(fine.status == Status.CONVERGED)
+    assert np.all(difference(found, fine) <= found.error + fine.error)
+    np.testing.assert_allclose(solve(Problem.of(**case | {"P": None, "D": fine.D})).P, fine.P, rtol=3e-6)

@@ -172,12 +172,13 @@ def test_work_is_more_where_more_is_computed():
         assert of_film[0] > of_layer[0] > of_springs[0] > 0
 
 
-def test_a_tolerance_that_no_mesh_meets_takes_no_panels():
-    """The operator of a soft film is not as good as rtol: that is said on the first mesh that is as good as it."""
+def test_a_tolerance_that_no_mesh_meets_takes_no_panels(meshes):
+    """The operator of a soft film is not as good as rtol: that is said on the first mesh that is as good as it, also
+    at the edge that the film moves."""
     film = {"n": 1.41e-5, "nu1": 0.091, "nu2": -0.15, "bonding": "bonded"}
     s = solve(Problem.of(P=132.0, h=1.97e-9, **film, micro="smooth", rtol=1e-10), X)
     layer = Layered(*(np.array([v]) for v in (1.97e-9, *film.values(), 0.0)))._replace(bonded=np.array([True]))
-    assert s.status[0] == Status.TOLERANCE_NOT_MET and s.nodes[0] <= 64
+    assert s.status[0] == Status.TOLERANCE_NOT_MET and all(panels == 1 for _, panels in meshes)
     assert_allclose(s.error, layer.error(s.a, s.nodes), rtol=1e-9)
     assert np.isfinite(s.p).all() and np.isfinite(s.lam).all()
 

@@ -50,6 +50,12 @@ CASES = {
          "h": 3.5544e-7, "n": 1.269864e-5, "B": 0.280858, "beta": 0.555622},
         22, 10,
     ),
+    # the displacement is nearly the same wherever there is pressure, and λ rises sharply where that begins: _STEEP
+    "steep": (
+        {"base": "thin_layer", "micro": "power_law", "P": 6.751e-5, "Ra": 8.085e-4, "Nbar": 4.1e6, "h": 0.03413,
+         "n": 0.5986, "B": 0.0248, "beta": 0.06069},
+        12, 30,
+    ),
     # λ of random heights rises between two nodes, where not even the finer quadrature of a law with corners sees it
     "between the nodes": (
         {"base": "thin_layer", "micro": "uniform_heights", "P": 1.3728048e-3, "Ra": 1.94177594e-4,

@@ -11,8 +11,9 @@ from solver.contact import smooth
 from study.paper.uniform import solve_uniform
 
 X = np.linspace(0.0, 1.0, 5)
-#: So small an exponent makes A almost a step of p: near the edge p leaves the range of floating point.
-STEP = {"a": 0.0021, "Ra": 0.0057, "Nbar": 250000, "micro": "power_law", "B": 0.1, "beta": 0.022, "base": "half_space"}
+#: So small an exponent makes A almost a step of p: p leaves the range of floating point near the edge, and with
+#: β = 0.01 in the centre too.
+STEP = {"a": 0.0008, "Ra": 0.0057, "Nbar": 250000, "micro": "power_law", "B": 0.1, "beta": 0.022, "base": "half_space"}
 ASKED = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "p", "lam")
 
 

@@ -32,8 +32,8 @@ _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 #: A loose operator is right to this part of rtol. A solution may change by more than what the operator leaves out: in
 #: random cases by more than once and less than _COUNTS times that (tests/body/test_loose.py).
 _OF_RTOL, _COUNTS = 0.01, 3.0
-#: Waves u = kh above _SHORT feel the layer alone. Number of points, evenly in ln u, of an integral up to there, which
-#: need be no better than a bound is (tests/contact/test_accuracy.py).
+#: Waves u = kh above _SHORT feel the layer alone. The integral of a bound up to there has _POINTS points, evenly in
+#: ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
 
 
@@ -111,9 +111,9 @@ class Layered(NamedTuple):
         return (1e-14 * nodes + _COUNTS * left_out) / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
     def unseen(self, a, s1):
-        """(B,): beside a half-space as soft as the layer is to waves of the number 1/s1² (in 1/a), where the mesh
-        ends, the layer moves the edge by (η a/π) ∫ ln[L(u)/L(u1)] du/u² from u1 = η/s1², as in
-        :mod:`..models.thin_layer_error`. This over a, and of the sizes: waves that cancel at the edge may not in p."""
+        """(B,). Waves of numbers up to 1/s1² (in 1/a) are in the solution. Those beyond, u > u1 = η/s1², move the edge by
+        (η a/π) ∫ ln[L(u)/L(u1)] du/u², as in :mod:`..models.thin_layer_error`. Here it is over a, and of the sizes of
+        the logarithm: where waves cancel at the edge, they may not in the pressure."""
         eta, shift = self.h / a, np.zeros(len(a))
         thin = np.flatnonzero(eta < _SHORT * s1**2)
         u = np.geomspace(eta[thin] / s1**2, _SHORT, _POINTS, axis=1)

@@ -111,7 +111,7 @@ class Layered(NamedTuple):
         return (1e-14 * nodes + _COUNTS * left_out) / np.minimum(L, 1.0) + np.where(octave == FILM, local / CUT**2, 0.0)
 
     def unseen(self, a, s1):
-        """(B,). Waves of numbers up to 1/s1² (in 1/a) are in the solution. Those beyond, u > u1 = η/s1², move the edge by
+        """(B,). Waves of k up to 1/s1² are in the solution. Those beyond, u > u1 = η/s1², move the edge by
         (η a/π) ∫ ln[L(u)/L(u1)] du/u², as in :mod:`..models.thin_layer_error`. Here it is over a, and of the sizes of
         the logarithm: where waves cancel at the edge, they may not in the pressure."""
         eta, shift = self.h / a, np.zeros(len(a))

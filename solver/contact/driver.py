@@ -30,16 +30,16 @@ class Iterated(NamedTuple):
 
 
 @np.errstate(all="ignore")  # what goes wrong is NaN, and `lost`
-def iterate(cases, start, step, limit):
+def iterate(start, step, limit):
     """Repeat `step` on a batch: :class:`Iterated`. A case that has closed or is lost leaves it, the others go on.
 
     start : the batch at its start, an :class:`.equation.Evaluation` or an :class:`.picard.Approximation`:
-        ``start.closed`` and ``start.lost`` (B,) bool; ``start.take(index)`` a sub-batch; ``start.join(cases, parts,
-        places)`` the batch of sub-batches at their places
+        ``start.cases``; ``start.closed`` and ``start.lost`` (B,) bool; ``start.take(index)`` a sub-batch;
+        ``start.join(cases, parts, places)`` the batch of sub-batches at their places
     step : ``step(now) -> next``
     limit : most steps, int or (B,) int
     """
-    size = len(cases.value)
+    size = len(start.cases.value)
     limit = np.broadcast_to(limit, size)
     closed, count, active = np.zeros(size, bool), np.zeros(size, int), np.arange(size)
     now, parts, places = start, [], []
@@ -54,7 +54,7 @@ def iterate(cases, start, step, limit):
                 break
             now = now.take(np.flatnonzero(~leaves))
         now = step(now)
-    return Iterated(parts[0] if len(parts) == 1 else start.join(cases, parts, places), closed, count)
+    return Iterated(parts[0] if len(parts) == 1 else start.join(start.cases, parts, places), closed, count)
 
 
 def newton_steps(nodes):
@@ -73,7 +73,7 @@ def solve_on(start, limit=0, budget=BUDGET):
     cases, mesh = start.cases, start.mesh
     left = np.where(budget > 0, budget // cases.body.work(np.exp(start.state.eta), mesh.n)[1] + 1, 0)
     most = np.minimum(newton_steps(mesh.n), left).astype(int)
-    found = _newton(start, np.minimum(limit or newton.LIMIT, most))
+    found = iterate(start, newton.step, np.minimum(limit or newton.LIMIT, most))
     failed = np.flatnonzero(~found.closed)
     if limit or not len(failed):
         return found
@@ -87,10 +87,6 @@ def solve_on(start, limit=0, budget=BUDGET):
     return Iterated(at, closed, count)
 
 
-def _newton(start, limit=newton.LIMIT):
-    return iterate(start.cases, start, newton.step, limit)
-
-
 def _by_radius(cases, mesh, most):
     """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together.
 
@@ -101,7 +97,7 @@ def _by_radius(cases, mesh, most):
 
     def at_radius(eta, index):
         fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
-        found = _newton(smooth_start(fixed, mesh), np.minimum(newton.LIMIT, (most - spent)[index]))
+        found = iterate(smooth_start(fixed, mesh), newton.step, np.minimum(newton.LIMIT, (most - spent)[index]))
         np.add.at(spent, index, found.count)
         return found
 
@@ -116,5 +112,5 @@ def _by_radius(cases, mesh, most):
     found = at_radius(eta, np.arange(len(eta)))
     if cases.control == "a":
         return Iterated(replace(found.at, cases=cases), found.closed, spent)
-    found = _newton(replace(found.at, cases=cases), np.minimum(newton.LIMIT, most - spent))
+    found = iterate(replace(found.at, cases=cases), newton.step, np.minimum(newton.LIMIT, most - spent))
     return Iterated(found.at, found.closed, spent + found.count)

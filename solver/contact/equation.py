@@ -8,7 +8,7 @@ at the nodes of the mesh. The control (load, radius or depth) is one more equati
 η = ln a. The body has E, the springs C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
@@ -62,16 +62,16 @@ class State(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Evaluation:
-    """The equation of `cases` at a state: the operator of the body there, the groups X, Y, Z (B, 1), the curve of the
-    law, K q and the residual F at the nodes (B, n), and edge @ q (B,)."""
+    """The equation of `cases` at a state: the operator of the body and the curve of the law there, the groups X, Y, Z
+    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,)."""
 
     cases: Cases
     state: State
     operator: Operator
+    curve: Curve
     X: np.ndarray
     Y: np.ndarray
     Z: np.ndarray
-    curve: Curve
     Kq: np.ndarray
     edge_q: np.ndarray
     F: np.ndarray
@@ -136,28 +136,26 @@ class Evaluation:
 
     def take(self, index):
         """The sub-batch at `index`, ascending."""
-        curve = Curve(*(v[index] for v in self.curve))
-        X, Y, Z, Kq, edge_q, F = (v[index] for v in (self.X, self.Y, self.Z, self.Kq, self.edge_q, self.F))
-        parts = (part.take(index) for part in (self.cases, self.state, self.operator))
-        return Evaluation(*parts, X, Y, Z, curve, Kq, edge_q, F)
+        return _of_arrays(self.cases.take(index), self.operator.take(index), (v[index] for v in self._arrays()))
 
     def join(self, cases, parts, places):
         """The equation of the batch `cases` from those of its sub-batches `parts`, each at its `places` (b,) in it."""
-
-        def joined(arrays):
-            whole = np.empty((len(cases.value), *arrays[0].shape[1:]))
-            for place, array in zip(places, arrays, strict=True):
-                whole[place] = array
-            return whole
-
-        state, curve = (
-            type(kind)(*map(joined, zip(*(getattr(part, name) for part in parts), strict=True)))
-            for name, kind in (("state", self.state), ("curve", self.curve))
-        )
         operator = self.operator.join([part.operator for part in parts], places)
-        names = [f.name for f in fields(self) if f.type is np.ndarray]
-        arrays = {name: joined([getattr(part, name) for part in parts]) for name in names}
-        return Evaluation(cases=cases, state=state, operator=operator, curve=curve, **arrays)
+        return _of_arrays(cases, operator, joined([part._arrays() for part in parts], places))
+
+    def _arrays(self):
+        return (*self.state, *self.curve, self.X, self.Y, self.Z, self.Kq, self.edge_q, self.F)
+
+
+def _of_arrays(cases, operator, arrays):
+    y, eta, q, g, dq, dg, *others = arrays
+    return Evaluation(cases, State(y, eta), operator, Curve(q, g, dq, dg), *others)
+
+
+def joined(parts, places):
+    """Arrays of a batch from those of its sub-batches, ``parts``, tuples of arrays; each at its places (b,) in it."""
+    order = np.argsort(np.concatenate(places))
+    return (np.concatenate(arrays)[order] for arrays in zip(*parts, strict=True))
 
 
 def _floor(body, a, nodes):
@@ -179,7 +177,7 @@ def evaluate(cases, state, mesh, near=None):
     operator = cases.body.at(np.exp(state.eta), mesh, near)
     Kq, edge_q = operator.products(curve.q)
     F = X * Kq + Y * curve.q + Z * curve.g - mesh.s**2
-    return Evaluation(cases, state, operator, X, Y, Z, curve, Kq, edge_q, F)
+    return Evaluation(cases, state, operator, curve, X, Y, Z, Kq, edge_q, F)
 
 
 def control_residual(cases, eta, X, q, edge_q, mesh):

@@ -12,7 +12,7 @@ from ..body.operator import Operator
 from ..numerics.bracket import false_position
 from ..status import Status
 from .driver import Iterated, iterate
-from .equation import Cases, State, control_residual, evaluate, groups
+from .equation import Cases, State, control_residual, evaluate, groups, joined
 from .start import guess_radius
 
 #: Most successive approximations at one radius.
@@ -59,21 +59,18 @@ class Approximation:
         return np.einsum("bj,bj->b", self.operator.edge + 0 * self.q, self.q)
 
     def _arrays(self):
-        return (self.k, self.rtol, self.q, self.change, self.load_change, self.earlier)
+        return (*self.groups, self.k, self.rtol, self.q, self.change, self.load_change, self.earlier)
 
     def take(self, index):
         """The sub-batch at `index`, ascending."""
-        arrays, own = (v[index] for v in self._arrays()), tuple(v[index] for v in self.groups)
-        parts = self.cases.take(index), self.operator.take(index), own
-        return Approximation(*parts, *arrays, self.done)
+        X, Y, Z, *arrays = (v[index] for v in self._arrays())
+        return Approximation(self.cases.take(index), self.operator.take(index), (X, Y, Z), *arrays, self.done)
 
     def join(self, cases, parts, places):
         """The batch `cases` from its sub-batches `parts`, each at its `places` (b,)."""
-        order = np.argsort(np.concatenate(places))
-        arrays = (np.concatenate(v)[order] for v in zip(*(part._arrays() for part in parts), strict=True))
-        own = tuple(np.concatenate(v)[order] for v in zip(*(part.groups for part in parts), strict=True))
+        X, Y, Z, *arrays = joined([part._arrays() for part in parts], places)
         operator = self.operator.join([part.operator for part in parts], places)
-        return Approximation(cases, operator, own, *arrays)
+        return Approximation(cases, operator, (X, Y, Z), *arrays)
 
 
 def solve(cases, mesh, k, rtol, limit):
@@ -126,7 +123,7 @@ def approximate(cases, eta, mesh, k, rtol, limit):
     operator = alone[0].join(alone, np.arange(len(eta))[:, None])
     own = cases, operator, groups(cases, eta), k, rtol, q
     first = Approximation(*own, never, never, never)
-    return iterate(cases, first, lambda now: _next(now, limit // 2), limit)
+    return iterate(first, lambda now: _next(now, limit // 2), limit)
 
 
 def _next(now, half):

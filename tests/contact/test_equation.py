@@ -22,7 +22,7 @@ def evaluation(q, F, G):
     curve = Curve(q=q, g=np.full_like(q, 1e-3), dq=np.ones_like(q), dg=np.ones_like(q))
     body = BODIES["half_space"](ONE, ONE, ONE, ONE, ONE > 0, 0 * ONE)
     cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE)
-    return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh_of(2)), one, one, one, curve, q, q[:, 0], F)
+    return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh_of(2)), curve, one, one, one, q, q[:, 0], F)
 
 
 @pytest.mark.parametrize(("F", "G", "expected"), [([1e-3, -0.2], 0.1, 0.2), ([1e-3, -0.2], -0.5, 0.5)])

@@ -104,7 +104,6 @@ class Problem:
         return len(self.value)
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return Problem(self.control, self.value[index], {name: own[index] for name, own in self.parameters.items()})
 
     def but(self, **parameters):

@@ -109,7 +109,6 @@ class Solution:
         return cls(**whole)
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
     def not_finite(self):

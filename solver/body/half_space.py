@@ -1,6 +1,6 @@
 """The half-space, Eq. (4), and the thin layer, Eq. (3): a half-space that carries springs.
 
-Its K is H of :mod:`..numerics.mesh`, one matrix for all cases and radii.
+K is H of :mod:`..numerics.mesh`. What the methods return is said in :mod:`.operator`.
 """
 
 from typing import NamedTuple
@@ -18,66 +18,56 @@ _STEP = 150
 
 
 class HalfSpaceOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of a half-space on a mesh, of any number of cases."""
+    """The :class:`~solver.body.operator.Operator` of a half-space on a mesh: one for all cases and radii, so that its
+    sub-batches are itself and its slopes 0."""
 
     mesh: Mesh
 
     @property
     def K(self):
-        """The matrix (1, n, n)."""
         return self.mesh.K[None]
 
     @property
     def edge(self):
-        """The row (1, n) of the edge."""
         return self.mesh.edge[None]
 
     def take(self, index):
-        """Itself: it is the same for all cases."""
         return self
 
     def join(self, operators, places):
-        """Itself."""
         return self
 
     def products(self, q):
-        """K q (B, n) and edge @ q (B,)."""
         return q @ self.mesh.K.T, q @ self.mesh.edge
 
     def slopes(self, q):
-        """Zeros (B, n) and (B,): K does not depend on the radius."""
         none = np.broadcast_to(0.0, q.shape)  # takes no memory
         return none, none[:, 0]
 
     def between(self, q, s, half_space):
-        """K q (B, m) between the nodes: that of the half-space, as it is given."""
         return half_space
 
 
 class HalfSpace(NamedTuple):
-    """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0."""
+    """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0. Its
+    operator is exact to rounding, and there is no cheaper one."""
 
     E: np.ndarray
     C: np.ndarray
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return HalfSpace(self.E[index], self.C[index])
 
     def within(self, rtol, a):
-        """Itself: there is no cheaper operator."""
         return self
 
     def at(self, a, mesh, near=None):
-        """The operator on a mesh, the same for all radii."""
         return HalfSpaceOperator(mesh)
 
     def softness(self, a):
-        """1 (B,)."""
         return np.ones_like(a)
 
     def error(self, a, nodes):
-        """0 (B,): the quadrature of its kernel is exact to rounding."""
         return np.zeros_like(a)
 
     def unseen(self, a, s1):
@@ -85,17 +75,16 @@ class HalfSpace(NamedTuple):
         return np.zeros_like(a)
 
     def work(self, a, nodes):
-        """Work (B,) of a mesh with its operator, and of one step."""
         return np.full_like(a, nodes**2), np.full_like(a, _STEP)
 
     def order(self, a):
-        """None: all cases share one operator."""
+        return None
 
     def alike(self, a):
-        """None: nothing is cheaper."""
+        return None
 
     def first_nodes(self, rtol, a, rise=None):
-        """Number of nodes (B,); on springs the pressure begins more gently at the edge than on a half-space."""
+        """On springs the pressure begins more gently at the edge than on a half-space."""
         springs = self.C > 0
         digits, factor = np.where(springs, 3.4, 1.1), np.where(springs, 0.97, 0.93)
         nodes = fitted_nodes(rtol, 0.0 if rise is None else rise, digits, factor)

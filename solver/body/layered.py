@@ -56,12 +56,10 @@ class Layered(NamedTuple):
 
     @property
     def E(self):
-        """Modulus (B,) in E2* to which K is relative, that of the layer's material and the punch together."""
         return layer_modulus(self.n) / (1 + self.m)
 
     @property
     def material(self):
-        """n, nu1, nu2, bonded."""
         return self[1:5]
 
     def whole(self, u):
@@ -70,22 +68,18 @@ class Layered(NamedTuple):
 
     @property
     def C(self):
-        """0 (B,): no springs."""
         return 0 * self.n
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return Layered(*(None if field is None else field[index] for field in self))
 
     def within(self, rtol, a):
-        """The body for contacts of about the radius a; its operator is loose where that is right to a hundredth of
-        rtol (B,)."""
         every = self._replace(loose=np.ones(len(a), dtype=bool))
         may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not be: their class may change with the radius
         return self._replace(loose=may_be & (every.error(a, 1) <= _OF_RTOL * rtol))
 
     def at(self, a, mesh, near=None):
-        """The :class:`LayeredOperator` at the radii a (B,). Cases whose radius is that of `near` have its kernel."""
+        """Cases whose radius is that of `near` have its kernel."""
         parts, far = [], np.ones(len(a), dtype=bool)
         for part in () if near is None else near.parts:
             same = np.flatnonzero(a[part.index] == part.radius)
@@ -98,12 +92,11 @@ class Layered(NamedTuple):
         return LayeredOperator(mesh, parts, _rows(parts, mesh))
 
     def softness(self, a):
-        """The kernel (B,) at the wave number 1.5/a: about what the contact feels."""
+        """The kernel at the wave number 1.5/a."""
         return self.whole(1.5 * self.h / a)
 
     def error(self, a, nodes):
-        """Relative error (B,) of the operator: rounding, what a loose one leaves out, and for films that of the
-        convolution."""
+        """Rounding, what a loose operator leaves out, and for films the error of the convolution."""
         L, below = self.whole(10 * self.h / a), (self.n + self.m) / (1 + self.m)
         octave, stiffness = place_of(self, a)
         local = np.abs(L - below) / np.maximum(L, below)
@@ -124,23 +117,21 @@ class Layered(NamedTuple):
         return shift
 
     def work(self, a, nodes):
-        """Work (B,) of a mesh with its operator, and of one step."""
         film = place_of(self, a)[0] == FILM
         mesh, least, entry = (np.where(film, *two) for two in (_MESH, _STEP, _ENTRY))
         return mesh * np.where(film, nodes, nodes**2), least + entry * nodes**2
 
     def order(self, a):
-        """Permutation (B,) that puts cases with the same table together: fewer and larger matrix products."""
+        """Cases with the same table are together: fewer and larger matrix products."""
         return np.lexsort(place_of(self, a))
 
     def alike(self, a):
-        """The thin layer, if all cases are much thinner than a and it applies to them; else None."""
+        """The thin layer, if all cases are much thinner than a and it applies to them."""
         thin = thin_layer(*self[:6])
         return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
 
     def first_nodes(self, rtol, a, rise=None):
-        """Number of nodes (B,): under asperities as on a half-space; under a smooth punch, the fewer the thicker the
-        layer."""
+        """Under asperities as on a half-space; under a smooth punch, the fewer the thicker the layer."""
         smooth = 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3
         return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))
 
@@ -155,16 +146,14 @@ class LayeredOperator(NamedTuple):
 
     @property
     def K(self):
-        """The matrix (B, n, n)."""
         return self.rows[:, :-1]
 
     @property
     def edge(self):
-        """The row (B, n) of the edge."""
         return self.rows[:, -1]
 
     def take(self, index):
-        """The sub-batch at `index`, ascending."""
+        """`index` ascends."""
         place = np.full(len(self.rows), -1)
         place[index] = np.arange(len(index))
         at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
@@ -173,24 +162,20 @@ class LayeredOperator(NamedTuple):
         return LayeredOperator(self.mesh, parts, rows)
 
     def join(self, operators, places):
-        """The batch of sub-batches, each at its places (b,)."""
         size, n = sum(len(place) for place in places), self.mesh.n
         rows, groups = np.empty((n + 1, n, size)).transpose(2, 0, 1), {}
         for operator, place in zip(operators, places, strict=True):
             rows[place] = operator.rows
             for part in operator.parts:
-                groups.setdefault((part.stiffness, part.film is None), []).append(
-                    part._replace(index=place[part.index])
-                )
+                part = part._replace(index=place[part.index])
+                groups.setdefault((part.stiffness, part.film is None), []).append(part)
         return LayeredOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
 
     def products(self, q):
-        """K q (B, n) and edge @ q (B,)."""
         found = np.einsum("bij,bj->bi", self.rows, q)
         return found[:, :-1], found[:, -1]
 
     def slopes(self, q):
-        """Derivatives of the products by ln a: (B, n) and (B,)."""
         out = np.empty((len(q), self.mesh.n + 1))
         for part in self.parts:
             for tab, rows in part.tables(self.mesh):
@@ -206,7 +191,6 @@ class LayeredOperator(NamedTuple):
         return out[:, :-1], out[:, -1]
 
     def between(self, q, s, half_space):
-        """K q (B, m) at points s (m,) between the nodes; half_space (B, m) is H[q] - H[q](edge) there."""
         out, x = np.empty(half_space.shape), np.sqrt((1 - s) * (1 + s))
         for part in self.parts:
             for tab, rows in part.tables(self.mesh):

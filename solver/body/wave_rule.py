@@ -70,14 +70,10 @@ def place_of(layer, a):
     return octave, stiffness if layer.loose is None else stiffness + len(STIFFEST) * (layer.loose & (octave != FILM))
 
 
+@lru_cache(maxsize=256)
 def quadrature(octave, stiffness):
     """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness, loose or not."""
-    return _quadrature(octave, stiffness % len(STIFFEST))
-
-
-@lru_cache(maxsize=256)
-def _quadrature(octave, stiffness):
-    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness]
+    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness % len(STIFFEST)]
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
     for low, high in pairwise(ends):

@@ -44,7 +44,6 @@ class Answer(NamedTuple):
     finer: State | None
 
     def take(self, index):
-        """The sub-batch at `index`."""
         finer = None if self.finer is None else self.finer.take(index)
         return Answer(self.solution.take(index), *(values[index] for values in self[1:-1]), finer)
 

@@ -41,7 +41,6 @@ class Cases(NamedTuple):
     value: np.ndarray
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return Cases(self.control, self.law.take(index), self.body.take(index), self.value[index])
 
 
@@ -52,7 +51,6 @@ class State(NamedTuple):
     eta: np.ndarray
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return State(self.y[index], self.eta[index])
 
     def join(self, states):

@@ -39,12 +39,7 @@ def spot_curve(y):
     q, dq, sin, sin2, cos2, theta, sc, slope = _pressure(y)
     # d(q sinθ)/dθ, written so that nothing cancels but in θ - sinθ cosθ, which has a series
     d_q_sin = slope / (theta + sc) * ((cos2 - 3 * sin2) * _theta_minus_sc(theta, sc) - 6 * sin2 * sc)
-    return Curve(
-        q,
-        cos2 - (4 / 3) * q * sin,
-        dq,
-        sin2 * (2 * sc + (4 / 3) * d_q_sin),
-    )
+    return Curve(q, cos2 - (4 / 3) * q * sin, dq, sin2 * (2 * sc + (4 / 3) * d_q_sin))
 
 
 def _pressure(y):

@@ -123,7 +123,6 @@ class Bound(NamedTuple):
         return self.law.rough
 
     def take(self, index):
-        """The sub-batch at `index`."""
         return Bound(self.law, self.p_star[index], self.A_star[index], tuple(v[index] for v in self.own))
 
     def evaluate(self, y):

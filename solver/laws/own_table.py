@@ -90,9 +90,8 @@ def _columns(text, names, fewest):
     heading = [word.strip() for word in rows[0]] if rows else []
     missing = [name for name in names if heading.count(name) != 1]
     if missing:
-        raise ValueError(
-            f"column {missing[0]}: the heading must have it once, with {', '.join(names)}, separated by commas"
-        )
+        words = f"the heading must have it once, with {', '.join(names)}, separated by commas"
+        raise ValueError(f"column {missing[0]}: {words}")
     if len(rows) <= fewest:
         raise ValueError(f"has {len(rows) - 1} rows: must have at least {fewest}")
     return {name: np.array([_number(name, i, row, heading) for i, row in enumerate(rows[1:], 1)]) for name in names}
@@ -133,9 +132,8 @@ def _check(p, A, lam, p_max):
     last = max(1, int(((p <= 10 * p[0]) & (lam < _LIGHT)).sum())) - 1
     rise = {name: np.log(X[last] / X[0]) for name, X in (("p", p), ("A", A), ("lam", lam), ("p_max", p_max))}
     if rise["lam"] < 0.75 * rise["p_max"] and rise["A"] < _ROUND * rise["p"]:
-        raise ValueError(
-            f"columns lam and p_max, rows 1 to {last + 1}: lam rises more slowly than p_max: are they exchanged?"
-        )
+        words = "lam rises more slowly than p_max: are they exchanged?"
+        raise ValueError(f"columns lam and p_max, rows 1 to {last + 1}: {words}")
 
 
 def of_columns(name, p, A, lam, p_max):
@@ -187,9 +185,7 @@ def _curve(column, t, q, X, power):
     falls = np.array([column == "A" and _falls(found, t) for found, _ in tried])
     good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= _FAR)
     if not good.any():
-        raise ValueError(
-            f"column {column}: no smooth curve through the rows rises throughout: add rows, or smooth them"
-        )
+        raise ValueError(f"column {column}: no smooth curve through the rows rises: add rows, or smooth them")
     best = int(np.argmax(good))
     return tried[best][0], float(far[best])
 

@@ -7,8 +7,8 @@ one on each of several panels. The nodes are Gauss-Radau: the centre is one of t
 not be interpolated.
 """
 
-from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from dataclasses import dataclass, field
+from functools import lru_cache
 
 import numpy as np
 from scipy.special import ellipkm1
@@ -22,13 +22,14 @@ HERTZ = np.pi**2 / 16
 WHOLE = (0.0, 1.0)
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True)
 class Mesh:
     """Discretisation of the contact radius with n nodes.
 
-    The number of nodes and the panels determine all the rest. Meshes that agree in these are equal: what is kept for
-    one (solver/body/tables.py) serves the other.
+    The panels and the number of nodes on each determine all the rest. Meshes that agree in these are equal: what is
+    kept for one (solver/body/tables.py) serves the other.
 
+    order : number of nodes of a panel
     breaks : ends of the panels in s, from 0 to 1
     s, x : (n,), nodes sqrt(1 - x²), ascending, the last one the centre s = 1; and the radii x = r/a
     w : (n,), weights of ∫₀¹ q x dx; exact for polynomials in s (on each panel)
@@ -37,33 +38,18 @@ class Mesh:
     edge : (n,), H[q](1): the displacement at the edge of the contact, which gives D without an interpolation
     """
 
+    order: int
     breaks: tuple
-    s: np.ndarray
-    x: np.ndarray
-    w: np.ndarray
-    K: np.ndarray
-    edge: np.ndarray
-
-    def __eq__(self, other):
-        return self is other or (isinstance(other, Mesh) and self.n == other.n and self.breaks == other.breaks)
-
-    def __hash__(self):
-        return self._hash
-
-    @cached_property
-    def _hash(self):
-        """Kept, because tables are looked up by it."""
-        return hash((self.n, self.breaks))
+    s: np.ndarray = field(compare=False)
+    x: np.ndarray = field(compare=False)
+    w: np.ndarray = field(compare=False)
+    K: np.ndarray = field(compare=False)
+    edge: np.ndarray = field(compare=False)
 
     @property
     def n(self):
         """Number of nodes."""
         return len(self.s)
-
-    @property
-    def order(self):
-        """Number of nodes of a panel."""
-        return self.n // (len(self.breaks) - 1)
 
     def basis(self, points):
         """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others."""
@@ -102,7 +88,7 @@ def panel_mesh(order, breaks):
     x = np.sqrt((1 - s) * (1 + s))
     for array in (s, x, w, K, edge):
         array.flags.writeable = False
-    return Mesh(breaks=breaks, s=s, x=x, w=w, K=K, edge=edge)
+    return Mesh(order, breaks, s, x, w, K, edge)
 
 
 def on_panels(points, breaks):

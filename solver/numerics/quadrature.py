@@ -4,6 +4,7 @@ Barycentric interpolation is that of Berrut & Trefethen, SIAM Review 46 (2004) 5
 """
 
 from functools import lru_cache
+from itertools import pairwise
 
 import numpy as np
 from scipy.special import roots_jacobi
@@ -78,19 +79,14 @@ def log_rule(n, everywhere=False, panels=_PANELS):
     integrand varies near 0, as under a film, `everywhere` gives all of them `n` points. Fewer `panels` are enough if
     the singularity is before 0, by at least a third of the last subpanel, [0, 4^-panels].
     """
-    upper, least = 4.0 ** -np.arange(panels), n if everywhere else min(n, _LEAST)
+    least = n if everywhere else min(n, _LEAST)
     distance, weight = [], []
-    for j, end in enumerate(upper):
-        nodes, weights = gauss_legendre(least + -(-(n - least) // 2**j))
-        distance.append(end / 4 + 3 / 4 * end * nodes)
-        weight.append(3 / 4 * end * weights)
-    end = 4.0**-panels
-    if panels < _PANELS:
-        nodes, weights = gauss_legendre(least + -(-(n - least) // 2**panels))
-        return _frozen(np.concatenate([*distance, end * nodes])), _frozen(np.concatenate([*weight, end * weights]))
-    last, last_weights = gauss_legendre(least + 8)
-    distance.append(end * last**_POWER)
-    weight.append(end * _POWER * last ** (_POWER - 1) * last_weights)
+    for j, (high, low) in enumerate(pairwise([*4.0 ** -np.arange(panels + 1), 0.0])):
+        nodes, weights = gauss_legendre(least + (8 if j == _PANELS else -(-(n - least) // 2**j)))
+        if j == _PANELS:
+            nodes, weights = nodes**_POWER, _POWER * nodes ** (_POWER - 1) * weights
+        distance.append(low + (high - low) * nodes)
+        weight.append((high - low) * weights)
     return _frozen(np.concatenate(distance)), _frozen(np.concatenate(weight))
 
 

@@ -9,8 +9,6 @@ BONDINGS = ("frictionless", "bonded")
 BASES = ("half_space", "thin_layer", "layered", "auto")
 #: How the model error of a thin layer asked for by name is estimated: free of cost, or by solving the exact layer.
 MODEL_CHECKS = ("closed_form", "first_order")
-
-
 #: The condition that every case meets, of `needed_by` and `used_by` below.
 EVERY = ("", ())
 

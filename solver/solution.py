@@ -7,11 +7,12 @@ import numpy as np
 
 from .status import Status
 
-#: Numbers of a converged case, in units R = E2* = 1: those that are positive, and those that may also be 0.
-_POSITIVE = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
-_NOT_NEGATIVE = ("A0", "residual", "error", "profile_error")
+#: The largest relative error of these is the error of a case.
+JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
+#: Numbers of a converged case, in units R = E2* = 1: those that are positive, and with them those that may be 0.
+_POSITIVE = (*JUDGED, "dP_dD")
 _PROFILES = ("p", "lam")
-_NUMBERS = (*_POSITIVE, *_NOT_NEGATIVE, *_PROFILES)
+_NUMBERS = (*_POSITIVE, "A0", "residual", "error", "profile_error", *_PROFILES)
 #: Integers: codes and counts.
 _WHOLE = {"status": np.int8, "model_used": np.int8, "iterations": np.int32, "nodes": np.int32}
 #: Shares of an area are at most 1. A sum over 256 nodes may round to 1 + 256 eps, which is 1 + 6e-14. What is above
@@ -79,10 +80,8 @@ class Solution:
     lam: np.ndarray
 
     def __repr__(self):
-        values, counts = np.unique(self.status, return_counts=True)
-        ended = ", ".join(
-            f"{n} {Status(v).name.lower()}" for v, n in zip(values.tolist(), counts.tolist(), strict=True)
-        )
+        values, counts = (found.tolist() for found in np.unique(self.status, return_counts=True))
+        ended = ", ".join(f"{n} {Status(v).name.lower()}" for v, n in zip(values, counts, strict=True))
         return f"Solution({len(self.a)} cases: {ended or 'none'}; profiles at {self.p.shape[1]} radii)"
 
     @classmethod
@@ -92,9 +91,7 @@ class Solution:
         def array(name):
             shape = (size, points) if name in _PROFILES else (size,)
             kind = _WHOLE.get(name, float)
-            found = np.empty(shape, dtype=kind)
-            found[...] = values.get(name, np.nan if kind is float else 0)
-            return found
+            return np.full(shape, values.get(name, np.nan if kind is float else 0), dtype=kind)
 
         return cls(**{f.name: array(f.name) for f in fields(cls)})
 
@@ -112,10 +109,7 @@ class Solution:
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
     def not_finite(self):
-        """(B,) bool: by its status the case has numbers, but one of them is NaN or infinite.
-
-        `model_error` may always be NaN.
-        """
+        """(B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or infinite."""
         ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
         return ended & ~np.all([_of_all(np.isfinite(getattr(self, name))) for name in _NUMBERS], axis=0)
 

@@ -38,6 +38,10 @@ REACH = 128.0
 _SMOOTH = 12.0
 #: So many cases or more get their matrices as products with one table.
 MANY = 8
+#: The Chebyshev nodes of an octave, from 0 to 1; and the matrix (_TAU, _TAU) from values there to the coefficients of
+#: their Chebyshev series.
+_NODES = (1 - np.cos(np.pi * (np.arange(_TAU) + 0.5) / _TAU)) / 2
+_SERIES = np.linalg.inv(chebvander(2 * _NODES - 1, _TAU - 1))
 
 
 def step(kappa):
@@ -57,7 +61,7 @@ def waves():
     kappa = (low[:, None] + width[:, None] * t).ravel()
     stop = 2.0 ** np.arange(-_OCTAVES, np.log2(REACH) + 1)
     start = np.append(0.0, stop[:-1])
-    tau = (start[:, None] + (stop - start)[:, None] * _chebyshev_nodes()).ravel()
+    tau = (start[:, None] + (stop - start)[:, None] * _NODES).ravel()
     degree = np.arange(_KAPPA)
     legendre = np.linalg.inv(np.polynomial.legendre.legvander(2 * t - 1, _KAPPA - 1))
     bessel = spherical_jn(degree[:, None, None], tau[:, None] * width / 2)
@@ -104,7 +108,7 @@ class Convolution(NamedTuple):
         """The matrices (b, m, n) for c (b, T)."""
         size = len(c), self.shape[0], self.shape[1] * self.shape[2]
         out, values = np.zeros((len(c), *self.shape)), np.empty((len(c), len(self.place)))
-        series = _series() @ c.reshape(len(c), -1, _TAU, 1)
+        series = _SERIES @ c.reshape(len(c), -1, _TAU, 1)
         for octave, (low, high) in enumerate(pairwise(self.ends)):
             values[:, self.place[low:high]] = chebval(self.local[low:high], series[:, octave, :, 0].T)
         for share, rows in self._parts():
@@ -117,7 +121,7 @@ class Convolution(NamedTuple):
         m, panels, order = self.shape
         count, first = len(waves()[1]), np.repeat(np.arange(len(self.ends) - 1) * _TAU, np.diff(self.ends))
         back = np.argsort(self.place)
-        first, basis = first[back], (chebvander(self.local, _TAU - 1) @ _series())[back]
+        first, basis = first[back], (chebvander(self.local, _TAU - 1) @ _SERIES)[back]
         out = np.zeros((count, m, panels, order))
         for (row, panel, weight, columns), rows in self._parts():
             pair = np.arange(len(row)).repeat(weight.shape[1]) * count
@@ -179,10 +183,6 @@ def _tau(s, point, shift, cut):
     return cut * np.abs(shift) * (s + point) / (np.sqrt((1 - s) * (1 + s)) + np.sqrt((1 - point) * (1 + point)))
 
 
-def _chebyshev_nodes():
-    return (1 - np.cos(np.pi * (np.arange(_TAU) + 0.5) / _TAU)) / 2
-
-
 def _in_octaves(tau):
     """`place`, `local` and `ends` of a :class:`Convolution` for τ > 0 (N,). The first octave begins at 0."""
     octave = np.maximum(np.floor(np.log2(tau)) + (_OCTAVES + 1), 0).astype(np.int8)
@@ -192,9 +192,3 @@ def _in_octaves(tau):
     start = np.where(octave == 0, 0.0, stop / 2)
     ends = np.searchsorted(octave, np.arange(len(waves()[1]) // _TAU + 1)).tolist()
     return place, 2 * (tau[place] - start) / (stop - start) - 1, ends
-
-
-@lru_cache(maxsize=1)
-def _series():
-    """The matrix (_TAU, _TAU) from values at the nodes of an octave to the coefficients of its Chebyshev series."""
-    return np.linalg.inv(chebvander(2 * _chebyshev_nodes() - 1, _TAU - 1))

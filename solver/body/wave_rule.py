@@ -35,8 +35,6 @@ _FEW = (52, 90, 104, 104, 36, 61)
 #: The few nodes are chosen by the L - 1 and u dL/du of so many random layers. They are enough when what they leave out
 #: of any of these functions is at most this part of the largest of them, which is rounding; or LOOSE.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
-
-
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
 #: u = 1/2, the second above, with u = k η at the lower end of the octave. For each digit by which L - 1 has decayed
 #: where the panel begins it has _LESS points fewer. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).

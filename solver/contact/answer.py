@@ -109,7 +109,7 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     ends = {"nodes": ev.mesh.n, "iterations": count}
     solution = Solution.of(len(error), len(x), **own._asdict(), **rest, **ends)
     tension = np.zeros(len(error))
-    if not ev.cases.law.law.rough:  # there can be tension only where the equation is linear: without asperities
+    if not ev.cases.law.rough:  # there can be tension only where the equation is linear: without asperities
         basis, w = _between(ev.mesh)
         q = ev.curve.q @ basis
         tension = np.where(finite, np.maximum(-q, 0.0) @ w / np.abs(q @ w), 0.0)

@@ -76,7 +76,6 @@ class Evaluation:
 
     @property
     def mesh(self):
-        """The mesh of the state."""
         return self.operator.mesh
 
     @cached_property
@@ -129,7 +128,6 @@ class Evaluation:
 
     @property
     def lost(self):
-        """(B,) bool: the residual is NaN or infinite."""
         return ~np.isfinite(self.residual)
 
     def take(self, index):

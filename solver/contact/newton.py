@@ -33,7 +33,6 @@ def advance(ev):
 
 
 def step(ev):
-    """The :class:`~solver.contact.equation.Evaluation` after one step."""
     state, _ = advance(ev)
     return evaluate(ev.cases, state, ev.mesh, ev.operator)
 

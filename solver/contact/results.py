@@ -7,6 +7,7 @@ import numpy as np
 
 from ..numerics.mesh import gauss_rule
 from ..numerics.quadrature import gauss_legendre, lagrange
+from ..solution import JUDGED
 
 #: Most Newton steps for y between the nodes. A few are enough, except near full contact.
 _STEPS = 40
@@ -16,10 +17,6 @@ _APART = 1e-4
 #: For a law with corners: the number of Gauss points between two nodes to which y is interpolated, and that of points
 #: at which λ is looked up; and the relative `tolerance` of the interpolated y.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
-
-
-#: The largest relative error of these is the error of a case.
-JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 #: Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`.
 Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 

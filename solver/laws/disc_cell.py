@@ -10,6 +10,8 @@ all follow without cancellation, from isolated spots (y → 0: q ~ (2/π) y³, g
 g → 1/3).
 """
 
+from functools import cache
+
 import numpy as np
 
 from ..parameters import Parameter
@@ -102,18 +104,17 @@ def spot_from_displacement(g):
     """y = cot θ with g(y) = g: the inverse of Eq. (6). g <= 0 gives 0; g >= 1/3 (beyond full contact) gives NaN."""
     g = np.asarray(g, dtype=float)
     odds = np.where(g < 1 / 3, g, np.nan) / (1 - 3 * g)
-    start = np.sqrt(np.maximum(odds, 0.0)) * np.interp(odds, *_NEAR)
+    start = np.sqrt(np.maximum(odds, 0.0)) * np.interp(odds, *_near())
     return inverse(lambda y: _odds(spot_curve(y)), odds, start)
 
 
+@cache
 def _near():
     """A table (2, 200) of the odds, ascending, and of y over their square root. Interpolated, y is right to 0.5 %."""
     y = np.geomspace(1e-2, 1e2, 200)
     odds, _ = _odds(spot_curve(y))
     return odds, y / np.sqrt(odds)
 
-
-_NEAR = _near()
 
 LAW = Law(
     name="disc_cell",
@@ -145,7 +146,7 @@ def displacement(p, E, Nbar, Ra):
 
 
 def contact_fraction(p, E, Nbar, Ra):
-    """Relative contact area λ = (b/B̄)², Eqs (11) and (7), in [0, 1). Arguments as in :func:`displacement`."""
+    """Relative contact area λ, Eqs (11) and (7), in [0, 1). Arguments as in :func:`displacement`."""
     return LAW.at(p, E, Nbar=Nbar, Ra=Ra).lam
 
 

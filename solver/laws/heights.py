@@ -32,7 +32,6 @@ ERROR, STEPPED, _FINE = 2e-4, 5e-4, 4
 #: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of those above it.
 #: The error then grows with this power of that ratio (tests/laws/test_histograms.py).
 _RARE, _SHARPER = 25.0, 1.7
-
 #: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/test_touching.py), and how
 #: many cases have it at a time.
 _ENOUGH, _ROWS = 32, 10_000

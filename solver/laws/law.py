@@ -119,7 +119,6 @@ class Bound(NamedTuple):
 
     @property
     def rough(self):
-        """Whether there are asperities."""
         return self.law.rough
 
     def take(self, index):

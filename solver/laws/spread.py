@@ -35,8 +35,6 @@ LAST = np.exp(FIRST + STEP * (KNOTS - 3))
 #: The relief <ζ> + 1/3 above which w is not 1, and the one above which u is not: the tables then begin where δ is 1e-16
 #: of the relief. tests/laws/test_heights_far.py has heights below, between and above both.
 _FAR, _FARTHEST = 10.0, 1e8
-
-
 #: Every sixth knot is solved first. The others begin at what is interpolated between these, and take fewer steps.
 _EVERY = 6
 

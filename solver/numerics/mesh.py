@@ -48,7 +48,6 @@ class Mesh:
 
     @property
     def n(self):
-        """Number of nodes."""
         return len(self.s)
 
     def basis(self, points):

@@ -11,8 +11,7 @@ import numpy as np
 from scipy.special import ellipkm1
 
 from solver import Problem, Status
-from solver.body.springs import local_compliance
-from solver.laws import LAWS
+from solver.scaling import as_cases, dimensionless
 from solver.threads import one_blas_thread
 
 LIMIT, LIMIT_RELAXED = 200, 40
@@ -112,11 +111,8 @@ class Contact:
     """B cases of one law on one base, with the last pressure p (B, n) and the number of approximations of each."""
 
     def __init__(self, problem: Problem, mesh: UniformMesh, k: float, tolerance: float, limit: int | None):
-        law, layered = LAWS[str(problem.micro[0])], problem.base[0] == "thin_layer"
-        E = problem.n if layered else np.ones(len(problem))
-        self.law = law.bind(E, **{name: getattr(problem, name) for name in law.parameters})
-        material = problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded"
-        self.C = local_compliance(problem.h, *material) if layered else np.zeros(len(problem))
+        cases = as_cases(dimensionless(problem))
+        self.law, self.C = cases.law, cases.body.C
         self.given, self.value = problem.control, problem.value
         self.mesh, self.k, self.tolerance = mesh, k, tolerance
         self.limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))

@@ -59,10 +59,8 @@ def with_rigid_punch(problem):
 
 
 def with_a_stiff_base(problem):
-    """The problem with rigid bases, n = 0, under thin layers replaced by half-spaces that yield less than rounding.
-
-    Layers whose model error comes from the exact layer stay as they are.
-    """
+    """The problem with rigid bases, n = 0, under thin layers replaced by half-spaces that yield less than rounding; not
+    where the model error comes from the exact layer."""
     stiff = (problem.base == "thin_layer") & (problem.n == 0) & (problem.model_check != "first_order")
     if not stiff.any():
         return problem
@@ -87,10 +85,8 @@ def as_cases(part):
 
 
 def law_of(part):
-    """:class:`~solver.laws.Bound`: the one law of the cases, with their numbers.
-
-    Raises ValueError for a law of somebody else's with a slip that :func:`~solver.laws.try_out` finds.
-    """
+    """The one law of the cases with their numbers, :class:`~solver.laws.Bound`. ValueError where
+    :func:`~solver.laws.try_out` finds a slip in a law of somebody else's."""
     law = LAWS[str(part.micro[0])]
     E, given = layer_modulus(part.n) / (1 + part.m), {name: getattr(part, name) for name in law.parameters}
     try_out(law, E, given)
@@ -102,10 +98,8 @@ def _layer(problem):
 
 
 def restore(solution, problem):
-    """The solution in the units of the problem: every way to solve ends here.
-
-    A case with a number that cannot be is ``Status.DIVERGED``; so is one with a number that its unit makes infinite.
-    """
+    """The solution in the units of the problem: every way to solve ends here. A case with a number that cannot be, or
+    that its unit makes infinite, is ``Status.DIVERGED``."""
     solution = solution.refused(solution.out_of_range(), Status.DIVERGED)
     arrays = {}
     for name, (of_E2, of_R) in _UNITS.items():

@@ -1,7 +1,7 @@
 """One BLAS thread while the solver computes.
 
-Its matrix products and linear systems are small. A BLAS library that shares them among threads gains nothing, and
-where other processes keep the processors busy its threads spin while they wait for each other (docs/threads.md).
+Its matrices are small: threads that share them gain nothing, and spin while other processes keep the processors busy
+(docs/threads.md).
 """
 
 import os
@@ -17,8 +17,8 @@ from threadpoolctl import LibController, ThreadpoolController
 class _OfTheProcess:
     """For libraries with one number of threads for the whole process: it is 1 from the first enter to the last exit.
 
-    Calls overlap when they come from several threads. If each saved and restored the number for itself, it would stay
-    1 for good: the second call would save the 1 of the first, and restore it after the first has ended.
+    Calls of several threads overlap. If each restored the number that it found, 1 would stay for good: a second call
+    finds the 1 of the first, and restores it after the first has ended.
     """
 
     def __init__(self, libraries: list[LibController]):
@@ -55,8 +55,8 @@ class _OfTheProcess:
 def _set(library: LibController, count: int) -> None:
     """Set the number of threads of a library, from whichever thread.
 
-    From version 3.8 on, threadpoolctl lets only the thread that did so first set the number of a whole process; calls
-    of other threads do nothing. Here this is switched off: the lock and the count of :class:`_OfTheProcess` do instead.
+    From version 3.8 on, threadpoolctl obeys the thread alone that was first to set the number of a whole process. Here
+    this is switched off: the lock and the count of :class:`_OfTheProcess` do instead.
     """
     let_go = getattr(library, "clear_controlling_thread", lambda force: None)
     let_go(force=True)
@@ -80,9 +80,8 @@ def _blas() -> tuple[_OfTheProcess, ThreadpoolController]:
 def one_blas_thread() -> Iterator[None]:
     """BLAS on one thread inside a ``with`` block or a decorated function; then as before, whatever happened inside.
 
-    Blocks may be nested, and may overlap in several threads. BLAS libraries keep one number of threads for the whole
-    process, so what other threads of the program compute meanwhile has one BLAS thread as well. A number that the
-    program sets meanwhile stays.
+    Blocks may be nested, and may overlap in several threads. Most BLAS libraries have one number for the process, so
+    other threads of the program meanwhile have one BLAS thread too. A number that the program sets stays.
     """
     of_process, of_threads = _blas()
     with of_process, of_threads.limit(limits=1):

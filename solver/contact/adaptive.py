@@ -80,10 +80,8 @@ def _hopeless(found, rtol):
 
 
 def _ended(solution, missed, lifted, spent):
-    """The solution with its final status.
-
-    missed, lifted, spent : (B,) bool: the error is above rtol, the punch lifts off, the budget is spent
-    """
+    """The solution with its final status. missed, lifted, spent : (B,) bool: the error is above rtol, the punch lifts
+    off, the budget is spent."""
     status = np.where(missed, np.where(spent, Status.BUDGET_SPENT, Status.TOLERANCE_NOT_MET), solution.status)
     over = (status == Status.ITERATION_LIMIT) & (spent | (solution.iterations >= newton_steps(solution.nodes)))
     status = np.where(over, Status.BUDGET_SPENT, status).astype(np.int8)
@@ -91,10 +89,8 @@ def _ended(solution, missed, lifted, spent):
 
 
 def _on_panels(case, before, rtol, x, left):
-    """:class:`~solver.solution.Solution` of one case on panels of its own, or that of `before`, the
-    :class:`.answer.Answer` on the finest mesh, if its error is smaller.
-
-    left : what is left of its budget.
+    """:class:`~solver.solution.Solution` of one case on panels of its own, with `left` of its budget; or that of
+    `before`, the :class:`.answer.Answer` on the finest mesh, if its error is smaller.
 
     Tension and gaps count only if finer panels show them too: panels that are too coarse show some that are not there.
     """

@@ -88,10 +88,11 @@ def solve_on(start, limit=0, budget=BUDGET):
 
 
 def _by_radius(cases, mesh, most):
-    """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together.
+    """:class:`Iterated` of cases by a search for their radius, in at most `most` (B,) steps at all radii together. At
+    each radius Newton's method starts from the smooth contact.
 
-    At each radius Newton's method starts from the smooth contact. The load under a very stiff film, for example, hardly
-    depends on the radius: there Newton's method on pressure and radius together leaves the branch of solutions.
+    Under a very stiff film, for example, the load hardly depends on the radius: Newton's method on pressure and radius
+    together leaves the branch of solutions.
     """
     spent, radius = np.zeros(len(cases.value), int), guess_radius(cases)
 

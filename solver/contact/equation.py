@@ -101,11 +101,8 @@ class Evaluation:
 
     @cached_property
     def residual(self):
-        """Largest residual of a case (B,): of the equation, relative to the largest right-hand side s² = 1, and of the
-        control.
-
-        Where asperities hang over the surface without pressure, the equation need not hold.
-        """
+        """Largest residual of a case (B,): of the equation, over the largest right-hand side s² = 1, and of the
+        control. The equation need not hold where asperities without pressure hang over the surface."""
         F = np.abs(self.F)
         F[self.gap > 0] = 0.0
         return np.maximum(F.max(axis=1), np.abs(self.G))
@@ -198,8 +195,8 @@ def control_gradient(control, ev):
 
 
 def jacobian(ev):
-    """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. The first is by q and not by
-    y, because the operator is linear in q."""
+    """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. By q and not by y, because
+    the operator is linear in q."""
     own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X
     return own / ev.X, dF_deta

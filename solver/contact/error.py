@@ -22,7 +22,7 @@ _UNSEEN = 8.0
 _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
 #: is multiplied by this. Of such extreme cases on 6 nodes 10 % have an error above the estimate without the factor, 3 %
-#: above that with it (`python tests/error_bars.py`); two that need it are "blind" of tests/contact/test_error_bars.py.
+#: with it (`python tests/error_bars.py`; two of them: "blind" of tests/contact/test_error_bars.py).
 _BLIND = 3.0
 #: At one point, the centre, the pressures of two meshes may agree by chance: those of "centre" of
 #: tests/contact/test_error_bars.py do, to a twentieth of their error. So what the step changes of the pressure counts
@@ -58,9 +58,8 @@ class Refined(NamedTuple):
 def refine(ev, own):
     """:class:`Refined` of the equation at a solution with the quantities `own`.
 
-    For a law with corners, Ar/An is that of `own` plus what the step changes on the finer mesh. The nodes of the two
-    meshes see the corners differently, but this is no error of the quadrature that such a law has
-    (:func:`~.results.cornered`): so it is left out.
+    For a law with corners, Ar/An is that of `own` plus what the step changes on the finer mesh. That the two meshes see
+    the corners differently is no error of the quadrature that such a law has (:func:`~.results.cornered`).
     """
     fine, corners = finer_mesh(ev.mesh), ev.cases.law.law.corners
     y = interpolate(ev, fine.s, 1e-10 if corners else _NEAR)
@@ -124,7 +123,7 @@ def of_profiles(ev, refined, rows):
 def completed(ev, Ar_An, error, rows):
     """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with what both meshes may miss alike.
 
-    Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`.
+    Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`
 
     If λ has risen before the first node, what is missed there is counted by _UNSEEN. If asperities saturate in the
     centre, or their displacement hardly depends on the pressure, Ar/An is compared with another quadrature. A law

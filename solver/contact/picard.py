@@ -115,8 +115,8 @@ def _status(at, missed, spent):
 def approximate(cases, eta, mesh, k, rtol, limit):
     """:class:`~solver.contact.driver.Iterated` of successive approximations at the radii exp(eta) (B,) from p = 0.
 
-    Where they do not settle quickly they amplify rounding. So each case is computed as if it were alone: its numbers do
-    not depend on the batch.
+    Where they do not settle quickly they amplify rounding. So the operator of each case is made as if it were alone:
+    its numbers do not depend on the batch.
     """
     never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n))
     alone = [cases.body.take([i]).at(np.exp(eta[i : i + 1]), mesh) for i in range(len(eta))]

@@ -64,8 +64,8 @@ def half_space(control, value, x):
 
 
 def thin_layer(control, value, C, rtol, nodes, x):
-    """:class:`~solver.solution.Solution` of a smooth punch on a thin layer in units R = E2* = 1; value, C, rtol, nodes
-    (B,), x (m,)."""
+    """:class:`~solver.solution.Solution` of smooth punches on thin layers in units R = E2* = 1; all arrays (B,), x
+    (m,)."""
 
     def on_mesh(index, n, start):
         found = _solution(_on_mesh(control, value[index], C[index], n, x))

@@ -58,9 +58,9 @@ def smooth_start(cases, mesh):
 
 
 def nodes_wanted(cases, rtol, a):
-    """Number of nodes (B,) that just about meet rtol (B,), by a fit to random cases. Asperities need fewer, the wider
-    the ring at the edge in which they yield more than the body; a smooth punch fewer, the thicker the layer. a (B,) is
-    that of :func:`guess_radius`."""
+    """Number of nodes (B,) that just about meet rtol (B,), by a fit to random cases at the radii a (B,). Asperities
+    need fewer, the wider the ring at the edge in which they yield more than the body; a smooth punch fewer, the thicker
+    the layer."""
     if not cases.law.rough:
         return cases.body.first_nodes(rtol, a, None)
     q = guess_pressure(cases, a, np.ones(1))

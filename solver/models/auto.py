@@ -49,11 +49,10 @@ def model_of(problem):
 
 
 def cheapest(problem, x, solve):
-    """:class:`Solution` of cases in units R = E2* = 1, each on the cheapest model whose bound is within its accuracy.
+    """:class:`Solution` of cases of the base "auto" in units R = E2* = 1, each on the cheapest model whose bound is
+    within its accuracy. Where that model fails, the exact layer is solved.
 
-    A case that its cheap model cannot solve is solved on the exact layer.
-
-    problem : all of base "auto"; x : (m,) radii; solve : ``solve(problem, x)`` for the bases with a name.
+    x : (m,) radii; solve : ``solve(problem, x)`` for the bases with a name
     """
     pieces, left = [], np.ones(len(problem), dtype=bool)
     for micro in np.unique(problem.micro):
@@ -75,11 +74,9 @@ def cheapest(problem, x, solve):
 
 
 def bounds(part):
-    """Model -> bound (B,) of its largest relative error over a, P, D, p0, p_max, Ar_An, of cases of one micro law.
-
-    Closed forms at the first guess of the contact radius; the cheapest model comes first. tests/models/test_auto.py
-    holds them against the exact layer.
-    """
+    """Model -> bound (B,) of its largest relative error over a, P, D, p0, p_max, Ar_An, the cheapest model first, for
+    cases of one micro law. Closed forms at the first guess of the radius; tests/models/test_auto.py compares them with
+    the exact layer."""
     cases = as_cases(part.but(base="layered"))
     a = guess_radius(cases)
     x, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")

@@ -1,8 +1,8 @@
 """The error of a cheap model against the exact layer with its asperities, estimated from the solution of the cheap one.
 
-Newton's method on the exact equation begins at the pressure and the radius of the cheap solution, on a coarse mesh. The
-estimate is the largest relative difference over a, P, D, p(0), p_max, Ar/An to what it finds under the same control,
-and what that mesh changes of the cheap solution itself.
+From there Newton's method solves the exact equation, and the cheap one too, on a coarse mesh under the same control.
+The estimate is the largest relative difference of the first over a, P, D, p(0), p_max, Ar/An, plus that of the second,
+which is what the mesh misses.
 """
 
 from dataclasses import replace
@@ -17,8 +17,7 @@ from ..scaling import as_cases
 from ..solution import Solution
 from .thin_layer_error import largest_error
 
-#: Nodes of the mesh. It may miss a part of the error at the edge; of the cheap solution it misses a similar part, so
-#: that is added.
+#: Nodes of the mesh.
 NODES = 24
 
 
@@ -46,8 +45,8 @@ def distance(cases, cheap, p):
     One step would not do: on a layer that is nearly incompressible the exact pressure at the edge is several times that
     of the thin layer, and a step finds a part of this only (tests/models/test_first_order.py).
 
-    cases : an equation in units R = E2* = 1; cheap : the cheap solution in the same units, and p (B, NODES) its
-        nominal pressure at the nodes ``mesh_of(NODES).x``
+    cases : in units R = E2* = 1; cheap : the cheap solution in the same units
+    p : (B, NODES), its nominal pressure at the nodes ``mesh_of(NODES).x``
     """
     state = State(cases.law.from_pressure(p / cases.law.p_star[:, None]), np.log(cheap.a))
     found = solve_on(evaluate(cases, state, mesh_of(NODES)))
@@ -56,11 +55,11 @@ def distance(cases, cheap, p):
 
 
 def closed_form(problem, a):
-    """Estimated relative error (B,) of the thin-layer model, as if asperities did not yield; nothing is solved for it.
+    """Estimated relative error (B,) of the thin-layer model, as if asperities did not yield, by
+    :func:`~solver.models.thin_layer_error.largest_error`; NaN where the thin-layer equation does not apply.
 
-    `a` (B,) are its contact radii, in the unit of `problem.h`. NaN where the thin-layer equation does not apply. The
-    estimate, :func:`~solver.models.thin_layer_error.largest_error`, is made for a rigid punch. Under an elastic one its
-    value at given a, which is the largest of the three controls, is taken for each control.
+    `a` (B,) are its contact radii, in the unit of `problem.h`. The estimate is made for a rigid punch. Under an elastic
+    one its value at given a, the largest of the three, is taken for each control.
     """
 
     def error(part, radius, control):

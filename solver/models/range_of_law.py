@@ -21,10 +21,8 @@ def has_range(problem):
 
 
 def outside_law(problem, solution):
-    """(B,) bool: p(0) is below the range of the law, or p(0) or a pressure of the profile is above it.
-
-    `solution` is in the units of `problem`. NaN counts as within the range.
-    """
+    """(B,) bool: p(0) is below the range of the law, or p(0) or a pressure of the profile is above it; NaN is within.
+    `solution` is in the units of `problem`."""
     outside = np.zeros(len(problem), dtype=bool)
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)

@@ -24,10 +24,9 @@ _STEP = 0.5
 _U = np.exp(np.arange(-16.0, 36.0, _STEP))
 #: Number of these points below u = 45. Beyond, L - 1 < e^-90: L is 1 and is not evaluated.
 _NEAR = int(np.sum(_U < 45.0))
-#: Smallest x0, the fitted number of :func:`thin_layer_error`. The fit falls below 0 for stiff layers without friction
-#: (n > 1.33) and for soft bonded ones that are nearly incompressible: the estimate would have a pole there, and be
-#: negative beside it. All values from 0.2 to 0.5 serve alike (test_materials_beyond_the_fit in
-#: tests/models/test_thin_layer_error.py).
+#: Smallest x0, the fitted number of :func:`_terms`. The fit falls below 0, where the estimate would have a pole, for
+#: stiff layers without friction (n > 1.33) and soft bonded ones that are nearly incompressible. All values from 0.2 to
+#: 0.5 serve alike (test_materials_beyond_the_fit in tests/models/test_thin_layer_error.py).
 _LEAST_LENGTH = 0.3
 #: The least |κ| under asperities, over the integral of the absolute value: with it, and the factor that the base "auto"
 #: has, bounds are twice the errors or more (test_kappa_of_waves_that_cancel in tests/models/test_auto.py).
@@ -50,10 +49,10 @@ class ThinLayerError(NamedTuple):
 
 @one_blas_thread()
 def edge_shift(n, nu1, nu2, bonded):
-    """κ: by how many thicknesses h the contact of the thin layer is wider than that of the exact layer, for h << a.
+    """κ: by how many thicknesses h the contact of the thin layer is wider than that of the exact layer, for h << a; to
+    about 1e-6. Below 0 it is the narrower one. NaN where the thin-layer equation does not apply (A2 <= 0).
 
-    To about 1e-6. Negative where the contact of the thin layer is the narrower one. NaN where the thin-layer equation
-    does not apply (A2 <= 0). Arguments as those of :func:`~solver.body.kernel.layered_kernel`.
+    Arguments as those of :func:`~solver.body.kernel.layered_kernel`.
 
     >>> print(f"{edge_shift(0.5, 0.3, 0.3, False):.4f} {edge_shift(0.5, 0.3, 0.3, True):.4f}")
     0.2326 0.1447
@@ -96,16 +95,14 @@ def _integrated(n, nu1, nu2, bonded):
 
 
 def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
-    """Estimated relative errors of the thin-layer model for a smooth sphere: of P at given a, and of a at given P.
-
-    :class:`ThinLayerError`: P_thin/P - 1 at given a and a_thin/a - 1 at given P; NaN where the thin-layer equation does
-    not apply.
+    """:class:`ThinLayerError` of a smooth sphere: P_thin/P - 1 at given a and a_thin/a - 1 at given P, estimated; NaN
+    where the thin-layer equation does not apply.
 
     h_a : x = h/a > 0, thickness of the layer over the true contact radius
     n, nu1, nu2, bonded : the layer, as in :func:`edge_shift`; all broadcast
 
-    P_thin/P is right to 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the edge: with them the error at
-    h/a < 0.3 is smaller.
+    P_thin/P is right to 30 % where A2 almost vanishes (ν1 > ν2). Asperities soften the edge: with them the error at h/a
+    < 0.3 is smaller.
 
     >>> error = thin_layer_error(0.5, 0.5)
     >>> print(f"{error.P:.2f} {error.a:.2f}")
@@ -117,19 +114,20 @@ def thin_layer_error(h_a, n, nu1=0.3, nu2=0.3, bonded=False):
 
 
 def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
-    """Estimated relative error of the thin-layer model: the largest over a, P, D, p(0), p_max and Ar/An.
+    """Estimated relative error of the thin-layer model: the largest over a, P, D, p(0), p_max and Ar/An; NaN where the
+    thin-layer equation does not apply.
 
-    NaN where the thin-layer equation does not apply. For true errors above 0.001 of a smooth sphere, 0.23 to 9 times
-    the true one (tests/models/test_thin_layer_error.py and test_auto.py), most often 1 to 2 times. Under asperities it
-    may be too large, a hundred times and more where these yield more than the layer.
+    For true errors above 0.001 of a smooth sphere, 0.23 to 9 times the true one (tests/models/test_thin_layer_error.py
+    and test_auto.py), most often 1 to 2 times. Under asperities that yield more than the layer it may be a hundred
+    times too large.
 
     control : "P", "a" or "D", the quantity that is given, which has no error itself
     h_a, n, nu1, nu2, bonded : as in :func:`thin_layer_error`; rough : whether the punch has asperities
 
-    P/P_thin - 1 has a term of the edge and a term of thick layers, which may have different signs. Their sizes are
-    added: where they cancel in P, the other quantities are still wrong. The term of the edge counts in full at given a,
-    where it changes the load. At given P or D it changes the radius, and counts 1/m times. Where the contact of the
-    thin layer is the narrower one (κ < 0), p(0) is twice as wrong as the radius, and the term counts 2/m times.
+    P/P_thin - 1 has a term of the edge and a term of thick layers. Where these cancel in P, the other quantities are
+    still wrong: so their sizes are added. At given a the edge changes the load, and its term counts in full; at given P
+    or D it changes the radius, and counts 1/m times. Where the contact of the thin layer is the narrower one (κ < 0),
+    p(0) is twice as wrong as the radius, and the term counts 2/m times.
 
     In some bonded materials long waves and short ones cancel in κ; under asperities, which weigh them differently, they
     do not. There κ counts as no less than a part of the integral without the signs.

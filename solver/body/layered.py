@@ -5,9 +5,9 @@
 
 with k in units of 1/a, η = h/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1
 decays like e^(-2u), so Λ is smooth for every η. What depends on k and the mesh alone is tabulated for each octave of η
-(:mod:`.tables`). For a batch, the matrix is then one product of the values of L - 1 with that table; the derivatives
-by ln a come from u dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first
-octave are films. They all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
+(:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
+dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first octave are films. They
+all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
 """
 
 from typing import NamedTuple

@@ -35,13 +35,13 @@ _DEGREES = (16, 48, 144)
 class Table(NamedTuple):
     """What makes the operator, in one octave on one mesh of n nodes, from L - 1 (b, M) at the few nodes k.
 
-    L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; `product` is None for few
-    cases, or if it were too large. The rest is at all G nodes of the quadrature: `k` (G,); `J` (G, n + 1), which is
-    J0(k x_i) - J0(k), and last J0(k); `phi` (G, n). `spread` makes (π/2) w (L - 1) there, w the weights, from L - 1 at
-    the few nodes: (M, G); or (G,) for films, which have no few nodes.
+    L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
+    were too large. The rest is at all G nodes of the quadrature: `k` (G,); `J` (G, n + 1), J0(k x_i) - J0(k), and last
+    J0(k); `phi` (G, n); and `spread` (M, G), which makes (π/2) w (L - 1) there, w the weights, from L - 1 at the few
+    nodes; (G,) for films, which have no few nodes.
 
-    `film`, of films: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge
-    (T, n).
+    `film`, of films: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge (T,
+    n).
     """
 
     k: np.ndarray

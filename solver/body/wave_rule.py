@@ -96,11 +96,10 @@ class Few(NamedTuple):
 
 @lru_cache(maxsize=256)
 def few(octave, stiffness):
-    """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples.
+    """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples of w (L -
+    1)/(1 + k²). J0 φ falls like 1/k²: so what is left out is small beside the operator (tests/body/test_wave_rule.py).
 
-    The function that is decomposed is w (L - 1)/(1 + k²), since J0 φ falls like 1/k²: so what is left out is small
-    beside the operator (tests/body/test_wave_rule.py). The nodes are chosen without BLAS, whose rounding may differ
-    between machines: each would choose other nodes.
+    The nodes are chosen without BLAS, whose rounding may differ between machines: each would choose other nodes.
     """
     k, weight = quadrature(octave, stiffness)
     loose, of_layers = divmod(stiffness, len(STIFFEST))

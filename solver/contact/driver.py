@@ -79,12 +79,10 @@ def solve_on(start, limit=0, budget=BUDGET):
         return found
     rest = np.flatnonzero(found.closed)
     again = _by_radius(cases.take(failed), mesh, (most - found.count)[failed])
-    parts, places = ([found.at.take(rest)], [rest]) if len(rest) else ([], [])
-    at = again.at.join(cases, [*parts, again.at], [*places, failed])
-    closed, count = found.closed.copy(), found.count.copy()
-    closed[failed] = again.closed
-    count[failed] += again.count
-    return Iterated(at, closed, count)
+    ends = [found.at.take(rest), again.at], [rest, failed]
+    found.closed[failed] = again.closed
+    found.count[failed] += again.count
+    return found._replace(at=found.at.join(cases, *ends))
 
 
 def _by_radius(cases, mesh, most):

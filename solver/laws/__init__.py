@@ -35,10 +35,10 @@ _TRIED = WeakSet()
 
 
 def register(law):
-    """Make a :class:`Law` known by its name, and its parameters like any other. Returns the law.
+    """Make a :class:`Law` known by its name, in place of one registered before, and its parameters like any other.
+    Returns it.
 
-    It travels to worker processes with the cases; for that its functions must have a name in a module that can be
-    imported there. A law of the same name that was registered before is replaced.
+    To travel to worker processes with the cases, its functions must have a name in a module that can be imported there.
 
     Raises ValueError: the name is not allowed, or is that of a law of this package; there is no version; a parameter is
     declared wrongly, or has the name of something else, or of one of another law with other bounds.
@@ -69,10 +69,8 @@ def try_out(law, E, given):
 
 
 def _declare(laws):
-    """Put the parameters of `laws` (name -> Law) into the table of parameters; the choices of `micro` are their names.
-
-    Returns `laws`. Raises ValueError, and changes nothing, where a parameter cannot have its name.
-    """
+    """Put the parameters of `laws` (name -> Law), which are returned, into the table of parameters, and their names
+    into the choices of `micro`. Raises ValueError, and changes nothing, where a parameter cannot have its name."""
     declared = {}
     for law in laws.values():
         for name, own in law.parameters.items():
@@ -94,8 +92,7 @@ def load(parameters, micro):
     """Register the laws of installed packages, if some of the `parameters` (names), or of the words of `micro` (one, or
     an array), is not known. A law of the same name that the program has registered stays.
 
-    Raises ValueError where it is still not known, and an entry point cannot be loaded or registered, or two have laws
-    of one name.
+    Raises ValueError where it is still not known, and a law of an entry point cannot be had.
     """
     if not _known(parameters, micro) and (wrong := _load_installed()) and not _known(parameters, micro):
         raise ValueError("\n".join(wrong))
@@ -129,10 +126,7 @@ def _load_installed():
 
 def named(given):
     """The name of a law, or the names of a list of laws. A law given as an object, or as "table:" and the path of a
-    table of one's own, is registered first.
-
-    Raises ValueError for a table that cannot be used.
-    """
+    table of one's own (ValueError if it cannot be used), is registered first."""
     if isinstance(given, (list, tuple)):
         return [named(one) for one in given]
     if isinstance(given, str) and given.startswith(own_table.PREFIX):

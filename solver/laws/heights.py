@@ -44,7 +44,8 @@ UNIFORM = np.sqrt(3.0)
 
 
 class Symmetric(NamedTuple):
-    """A density of heights from c σ below their mean to c σ above it. x is the depth below the highest summit over σ.
+    """A density of heights from c σ below their mean to c σ above it. x is the depth below the highest summit over σ; c
+    (B, 1).
 
     shape : (x, c) -> density, of any shapes that broadcast; of : the name of the parameter that c is, or its value
     """
@@ -53,11 +54,10 @@ class Symmetric(NamedTuple):
     of: str | float
 
     def at(self, x, cut):
-        """The density at x (B, m, pieces, n) for c (B, 1, 1, 1)."""
         return self.shape(x, cut)
 
     def top(self, cut):
-        """The density (B, 1) at x = 0, for c (B, 1)."""
+        """The density at x = 0, (B, 1)."""
         return self.shape(np.zeros_like(cut), cut)
 
     def edges(self, cut):

@@ -171,19 +171,18 @@ class Bound(NamedTuple):
 
     def limit(self, new, old):
         """`new`, y after a Newton step, limited to a fifth and to five times `old`: so it stays positive. Without
-        asperities the step is exact, y may have any sign, and there is no limit."""
+        asperities the step is exact, and y may have any sign."""
         return np.clip(new, 0.2 * old, 5.0 * old) if self.law.rough else new
 
 
 def inverse(value, target, y):
-    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding.
+    """y with value(y)[0] = target, by Newton on ln value against ln y, to a few units of rounding, each element by
+    itself; 0 where target <= 0, NaN where it is NaN or no y is found.
 
     Where a law bends sharply, Newton's method may swing to and fro. So a step longer than half of the one before goes
     to the middle, in ln y, between the nearest y below and above the root, once both are known.
 
-    value : y -> (value, its derivative), increasing from 0; target : array; y : first guess, an array of its shape.
-
-    Returns 0 where target <= 0, and NaN where it is NaN or no y is found. Each element stops when it has converged.
+    value : y -> (value, its derivative), increasing from 0; target : array; y : first guess, an array of its shape
     """
     goal = np.where(target > 0, target, 1.0)
     y = np.where((target > 0) & (y > 0), y, 1.0)

@@ -1,9 +1,8 @@
 """A micro law from a table of one's own, ``micro = "table:mine.csv"``; docs/model.md says what stands in the file.
 
-Smooth curves are laid near the rows; the law's `error` is the largest distance of a row from the curve fitted to the
-other rows, or, between the rows, of the curve from one of a lower degree. Below the first row A goes on as the power of
-p that the first two rows have. With the columns z and share the law is that of ``heights.py`` with this histogram, and
-has the parameters Nbar and Ra.
+Smooth curves are laid near the rows. The law's `error` is the largest distance of a row from the curve fitted to the
+others, or, between the rows, of the curve from one of a lower degree. Below the first row A goes on as the power of p
+that the first two rows have. With the columns z and share it is the law of this histogram (``heights.py``).
 """
 
 import csv
@@ -39,10 +38,8 @@ _BETA = (0.2, 1.5)
 
 
 def read(name):
-    """:class:`~solver.laws.law.Law` of the table that `name`, "table:" and a path, stands for.
-
-    Its version is a digest of the numbers. Raises ValueError, with file, column and row.
-    """
+    """:class:`~solver.laws.law.Law` of the table that `name`, "table:" and a path, stands for; its version is a digest
+    of the numbers. Raises ValueError, with file, column and row."""
     file = name.removeprefix(PREFIX)
     try:
         if "\n" in file:
@@ -161,10 +158,8 @@ def _scales(p_star, A_star, E):
 
 
 def _curve(column, t, q, X, power):
-    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,), and its largest error at and between them.
-
-    Its degree is the lowest that is near enough. Raises ValueError where every degree is too far away, or falls.
-    """
+    """:class:`~solver.laws.tabulated.Quantity` near the rows X (n,), of the lowest degree that is near enough, and its
+    largest error at and between them. Raises ValueError where every degree is too far away, or falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
     apart, tried = _apart([found for found, _ in tried], t), tried[1:]

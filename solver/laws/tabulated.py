@@ -129,25 +129,25 @@ def law_of(table, **known):
     return Law(**{name: partial(function, table) for name, function in functions.items()}, **known)
 
 
-def _curve(table, y, *own):
+def _curve(table, y):
     t, q, dq = table.pressure(np.asarray(y, dtype=float))
     g, rest, slope = table.A.with_slope(t, q, dq)
     return Curve(q, g, dq, g * (g * rest) * slope)
 
 
-def _area(table, y, q, *own):
+def _area(table, y, q):
     return np.minimum(table.lam.at(y / (1 + y), q), 1.0)
 
 
-def _peak(table, y, q, *own):
+def _peak(table, y, q):
     return q + table.above.at(y / (1 + y), q)
 
 
-def _edge(table, *own):
+def _edge(table):
     return float(np.exp(table.A.exponent(np.zeros(1))[0][0])), 2 / (1 + table.s)
 
 
-def _from_pressure(table, q, *own):
+def _from_pressure(table, q):
     start = np.maximum(q, 0.0)
     if table.s == 2:
         return of_positive(q, _root(start))
@@ -170,9 +170,9 @@ def _inverse(table):
     return np.log([1 / rest[rest > 0], y[rest > 0]])
 
 
-def _from_displacement(inverse_curve, table, g, *own):
-    """y (B, m) at which A/A* is g. Solved for 1/rest: it is g if there is no limit, else it grows to infinity as g
-    comes near the limit."""
+def _from_displacement(inverse_curve, table, g):
+    """y (B, m) at which A/A* is g. Solved for 1/rest, which is g without a limit, and grows to infinity as g comes near
+    a limit."""
     A, g = table.A, np.asarray(g, dtype=float)
     odds = 1 / (1 / np.where(g < A.limit, g, np.nan) - 1 / A.limit)
 

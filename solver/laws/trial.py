@@ -51,11 +51,9 @@ def _is_interval(text):
 def tried(law, E, given):
     """Try a law at three of its cases: of modulus E (B,) and its parameters, name -> (B,).
 
-    It finds slips that would make a wrong number look right, or end deep in the solver. NaN is no slip: a case with NaN
-    gets a status.
-
-    Raises ValueError: a function of the law raises, or gives something of a wrong shape; q or g do not increase from 0;
-    a derivative or an inverse is not that of the curve.
+    It finds slips that would make a wrong number look right, or end deep in the solver; NaN is none, for such a case
+    gets a status. Raises ValueError: a function of the law raises, or gives something of a wrong shape; q or g do not
+    increase from 0; a derivative or an inverse is not that of the curve.
     """
     places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
     E, given = E[places], {name: given[name][places] for name in law.parameters}

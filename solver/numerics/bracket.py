@@ -4,12 +4,11 @@ import numpy as np
 
 
 def false_position(evaluate, start, tolerance):
-    """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`.
+    """Root of an increasing function of each of B cases by false position (Illinois) from a bracket around `start`: the
+    last x (B,) of each case, and the function there (B,).
 
-    Returns the last x (B,) of each case, and the function there (B,).
-
-    evaluate : ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), which may hold a case twice. NaN means
-        that there is no value; the case is then given up
+    evaluate : ``evaluate(x, index) -> g`` at x (b,) for the cases `index` (b,), which may hold a case twice. A case
+        whose g is NaN is given up
     start : (B,); the bracket begins as start ± 0.1, and its ends move outwards, by steps that double, until they
         enclose the root
     tolerance : (B,); a case is done, and not evaluated again, when abs(g) or the width of its bracket is below this

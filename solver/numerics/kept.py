@@ -7,11 +7,8 @@ import numpy as np
 
 
 class Kept:
-    """Values by their keys. The latest used are kept, as many as have arrays of at most `most` bytes together; one is
-    always kept.
-
-    An array that several values share counts once. Several threads may use it at the same time.
-    """
+    """Values by their keys. The latest used are kept, as many as have arrays of at most `most` bytes together, but at
+    least one. An array that several values share counts once. Several threads may use it at the same time."""
 
     def __init__(self, most):
         self.most, self.nbytes = most, 0

@@ -42,14 +42,13 @@ def finer_mesh(mesh):
 def climb(rtol, nodes, solve_on, first=None, order=None):
     """Let every case climb to the mesh that meets its tolerance rtol (B,).
 
-    Returns a list of (index, found), one of each stack that was solved. The answer of a case is in the last stack that
-    has it.
+    Returns a list of (index, found), one of each stack that was solved; the last one that has a case is its answer.
 
     nodes : (B,) int, a fixed mesh, or 0: begin on `first`
     solve_on : ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. `start` is the
-        `finer` of the mesh before, or None on the first mesh. error (b,): estimated errors, NaN where there is no use
-        in going on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and
-        ``finer.join(others)``; or None. found: the answer, which is passed on
+        `finer` of the mesh before, None on the first. error (b,): estimated errors, NaN where there is no use in going
+        on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and ``finer.join(others)``; or
+        None. found: the answer, which is passed on
     first : (B,) int, the mesh to begin on; None: chosen by rtol
     order : (B,) int, permutation of the cases; neighbours in it are solved together
     """
@@ -74,10 +73,9 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
 def _together(on, n):
     """The stacks (index, start) on n nodes of the cases `on`, (index, start), that go on from the mesh before."""
     index, start = np.concatenate([one for one, _ in on]), on[0][1]
-    if start is None:
-        return [(rows, None) for rows in _stacks(index, n)]
-    start = start.join([one for _, one in on])
-    return [(index[rows], start.take(rows)) for rows in _stacks(np.arange(len(index)), n)]
+    if start is not None:
+        start = start.join([one for _, one in on])
+    return [(index[rows], None if start is None else start.take(rows)) for rows in _stacks(np.arange(len(index)), n)]
 
 
 def _stacks(batch, n):

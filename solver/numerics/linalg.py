@@ -8,8 +8,8 @@ _FEWEST, _LARGEST = 200, 32
 
 
 def solve_stack(K, diagonal, rhs):
-    """x (B, n, k) of (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k). The solution of a
-    singular system is NaN; it does not spoil the others.
+    """x (B, n, k) of (K + diag(diagonal)) x = rhs: K (B or 1, n, n), diagonal (B, n), rhs (B, n, k). A singular system
+    has NaN, and does not spoil the others.
 
     Large stacks are eliminated without exchange of rows: the systems of an elastic body do not need it, since no number
     grows. Systems with a pivot that is not positive are left to LAPACK.

@@ -36,11 +36,9 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     >>> print(f"{float(layered_kernel(0.01, 0.5, 0.3, 0.3, False).L):.6f}")
     0.505000
     """
-    u, n, nu1, nu2, bonded = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
-    shape = u.shape
-    u, n, nu1, nu2, bonded = (np.atleast_1d(v) for v in (u, n, nu1, nu2, bonded))
-    L, L1, uL = whole(u, n, nu1, nu2, bonded), *decaying_part(u, n, nu1, nu2, bonded)
-    return Kernel(*(v.reshape(shape) for v in (L, L1, uL)))
+    given = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
+    flat = [np.atleast_1d(v) for v in given]
+    return Kernel(*(v.reshape(given[0].shape) for v in (whole(*flat), *decaying_part(*flat))))
 
 
 def whole(u, n, nu1, nu2, bonded):

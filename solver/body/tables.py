@@ -36,15 +36,14 @@ class Table(NamedTuple):
     """What makes the operator, in one octave on one mesh of n nodes, from L - 1 (b, M) at the few nodes k.
 
     L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
-    were too large. The rest is at all G nodes of the quadrature: `k` (G,); `J` (G, n + 1), J0(k x_i) - J0(k), and last
-    J0(k); `phi` (G, n); and `spread` (M, G), which makes (π/2) w (L - 1) there, w the weights, from L - 1 at the few
-    nodes; (G,) for films, which have no few nodes.
+    were too large. The rest is at all G nodes k of the quadrature: `J` (G, n + 1), J0(k x_i) - J0(k), and last J0(k);
+    `phi` (G, n); and `spread` (M, G), which makes (π/2) w (L - 1) there, w the weights, from L - 1 at the few nodes;
+    (G,) for films, which have no few nodes.
 
     `film`, of films: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge (T,
     n).
     """
 
-    k: np.ndarray
     J: np.ndarray
     phi: np.ndarray
     spread: np.ndarray
@@ -79,22 +78,22 @@ def _kept(make):
 @_kept
 def table(mesh, octave, stiffness, many):
     """The :class:`Table` of a mesh in an octave and a class of stiffness; `many` bool: for many cases, or for few."""
-    k, J, phi = _waves(mesh, octave, stiffness % len(STIFFEST))
+    J, phi = _waves(mesh, octave, stiffness % len(STIFFEST))
     product, is_film = None, octave == FILM
     spread = np.pi / 2 * quadrature(octave, stiffness)[1] if is_film else _spread(octave, stiffness)
     if is_film and many and J.size * mesh.n <= _KEEP:
-        product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(k), -1)
+        product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(J), -1)
     elif not is_film and (many or mesh.n <= _SMALL):
         product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
-    return Table(k, J, phi, spread, product, _film_table(mesh, many) if is_film else None)
+    return Table(J, phi, spread, product, _film_table(mesh, many) if is_film else None)
 
 
 @_kept
 def _waves(mesh, octave, stiffness):
-    """k, J and φ of a :class:`Table`, the same for many cases and for few."""
+    """J and φ of a :class:`Table`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
     edge = j0(k)[:, None]
-    return k, np.hstack([j0(k[:, None] * mesh.x) - edge, edge]), transform(mesh, k)
+    return np.hstack([j0(k[:, None] * mesh.x) - edge, edge]), transform(mesh, k)
 
 
 @_kept

@@ -105,9 +105,8 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     error = np.where(gap, np.maximum(error, 1.0), error)
     status = np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT)
     errors = {"residual": ev.residual, "error": error, "profile_error": np.maximum(error, between)}
-    rest = errors | {"dP_dD": slope, "p": p, "lam": lam, "status": status}
-    ends = {"nodes": ev.mesh.n, "iterations": count}
-    solution = Solution.of(len(error), len(x), **own._asdict(), **rest, **ends)
+    rest = {"dP_dD": slope, "p": p, "lam": lam, "status": status, "nodes": ev.mesh.n, "iterations": count}
+    solution = Solution.of(len(error), len(x), **own._asdict(), **errors, **rest)
     tension = np.zeros(len(error))
     if not ev.cases.law.rough:  # there can be tension only where the equation is linear: without asperities
         basis, w = _between(ev.mesh)

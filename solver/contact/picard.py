@@ -26,7 +26,7 @@ _TINY = np.finfo(float).tiny
 
 @dataclass(frozen=True, eq=False)
 class Approximation:
-    """B cases at given radii, after `done` approximations: the pressure q (B, n), and how much it still changes.
+    """B cases at the radii exp(eta), after `done` approximations: the pressure q (B, n), and how much it still changes.
 
     Changes, (B,) each: `change` is the last |p̂ - p| over the largest pressure, `earlier` what that was when half of all
     approximations had been made, and `load_change` the last relative change of the load.
@@ -34,6 +34,7 @@ class Approximation:
 
     cases: Cases
     operator: Operator
+    eta: np.ndarray
     groups: tuple
     k: np.ndarray
     rtol: np.ndarray
@@ -54,23 +55,24 @@ class Approximation:
         return np.isnan(self.change)
 
     @property
-    def edge_q(self):
-        """The displacement (B,) of the edge."""
-        return np.einsum("bj,bj->b", self.operator.edge + 0 * self.q, self.q)
+    def G(self):
+        """Logarithm of (load or depth/given value) (B,)."""
+        edge_q = np.einsum("bj,bj->b", self.operator.edge + 0 * self.q, self.q)
+        return control_residual(self.cases, self.eta, self.groups[0], self.q, edge_q, self.operator.mesh)
 
     def _arrays(self):
-        return (*self.groups, self.k, self.rtol, self.q, self.change, self.load_change, self.earlier)
+        return (self.eta, *self.groups, self.k, self.rtol, self.q, self.change, self.load_change, self.earlier)
 
     def take(self, index):
         """The sub-batch at `index`, ascending."""
-        X, Y, Z, *arrays = (v[index] for v in self._arrays())
-        return Approximation(self.cases.take(index), self.operator.take(index), (X, Y, Z), *arrays, self.done)
+        eta, X, Y, Z, *arrays = (v[index] for v in self._arrays())
+        return Approximation(self.cases.take(index), self.operator.take(index), eta, (X, Y, Z), *arrays, self.done)
 
     def join(self, cases, parts, places):
         """The batch `cases` from its sub-batches `parts`, each at its `places` (b,)."""
-        X, Y, Z, *arrays = joined([part._arrays() for part in parts], places)
+        eta, X, Y, Z, *arrays = joined([part._arrays() for part in parts], places)
         operator = self.operator.join([part.operator for part in parts], places)
-        return Approximation(cases, operator, (X, Y, Z), *arrays)
+        return Approximation(cases, operator, eta, (X, Y, Z), *arrays)
 
 
 def solve(cases, mesh, k, rtol, limit):
@@ -80,25 +82,23 @@ def solve(cases, mesh, k, rtol, limit):
     k, rtol : (B,) float, k >= 0; limit : int, approximations at one radius (0: LIMIT).
     """
     size, limit = len(cases.value), min(limit or LIMIT, APPROXIMATIONS)
-    count, last = np.zeros(size, dtype=int), [()] * size  # of each case the latest approximations and radius
+    count, last = np.zeros(size, dtype=int), [()] * size  # of each case the approximations at the latest radius
 
     def control_at(eta, index):
-        part = cases.take(index)
-        found = approximate(part, eta, mesh, k[index], rtol[index], limit)
+        found = approximate(cases.take(index), eta, mesh, k[index], rtol[index], limit)
         np.add.at(count, index, found.count)
         for row, i in enumerate(index.tolist()):
-            last[i] = found.at.take([row]), eta[row]
-        return np.where(count[index] < APPROXIMATIONS, _control(part, eta, found.at), np.nan)
+            last[i] = found.at.take([row])
+        return np.where(count[index] < APPROXIMATIONS, found.at.G, np.nan)
 
     if cases.control == "a":
         control_at(np.log(cases.value), np.arange(size))
     else:
         false_position(control_at, np.log(guess_radius(cases)), 0.1 * rtol)
-    eta = np.array([eta for _, eta in last])
-    at = last[0][0].join(cases, [at for at, _ in last], np.arange(size)[:, None])
-    status = _status(at, np.abs(_control(cases, eta, at)), count >= APPROXIMATIONS)
+    at = last[0].join(cases, last, np.arange(size)[:, None])
+    status = _status(at, np.abs(at.G), count >= APPROXIMATIONS)
     y = np.maximum(cases.law.from_pressure(at.q), _TINY)
-    at = evaluate(cases, State(y, eta), mesh)
+    at = evaluate(cases, State(y, at.eta), mesh)
     return Iterated(at, status == Status.CONVERGED, count), status
 
 
@@ -121,8 +121,7 @@ def approximate(cases, eta, mesh, k, rtol, limit):
     never, q = np.full(len(eta), np.inf), np.zeros((len(eta), mesh.n))
     alone = [cases.body.take([i]).at(np.exp(eta[i : i + 1]), mesh) for i in range(len(eta))]
     operator = alone[0].join(alone, np.arange(len(eta))[:, None])
-    own = cases, operator, groups(cases, eta), k, rtol, q
-    first = Approximation(*own, never, never, never)
+    first = Approximation(cases, operator, eta, groups(cases, eta), k, rtol, q, never, never, never)
     return iterate(first, lambda now: _next(now, limit // 2), limit)
 
 
@@ -147,8 +146,3 @@ def _pressure(law, groups, s2, q, Kq):
     if not springs.all():
         by_spots = law.evaluate(law.from_displacement(np.maximum(left / Z, 0.0))).q
     return np.where(springs, by_springs, by_spots)
-
-
-def _control(cases, eta, at):
-    """Logarithm of (load or depth/given value) (B,)."""
-    return control_residual(cases, eta, at.groups[0], at.q, at.edge_q, at.operator.mesh)

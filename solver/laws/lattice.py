@@ -23,16 +23,13 @@ FILE = Path(__file__).with_name("lattices.csv")
 #: p* and A* in units E = Ra = l = 1; and the radius of an isolated spot over y, for y -> 0.
 P_STAR, A_STAR = 2 / (3 * np.sqrt(np.pi)), 1 / np.pi
 _SPOT = np.cbrt(0.75 * P_STAR)
+#: Distance of neighbours on the hexagonal lattice, over l.
+_PITCH = (4 / 3) ** 0.25
 #: Full contact. J: the change of slope on a ridge, equal to the distance of neighbours. relief: the limit of A^. above:
 #: that of p_max^ - p^, from ``full_contact`` in tests/references/make_lattices.py. rate: both go as exp(-rate p^).
 ENDS = {
     "square": {"J": 1.0, "relief": 1 / 12, "above": 0.2206356, "rate": 3 * np.pi},
-    "hex": {
-        "J": (4 / 3) ** 0.25,
-        "relief": 5 / (36 * np.sqrt(3)),
-        "above": 0.2177788,
-        "rate": 4 * np.pi / (4 / 3) ** 0.25,
-    },
+    "hex": {"J": _PITCH, "relief": 5 / (36 * np.sqrt(3)), "above": 0.2177788, "rate": 4 * np.pi / _PITCH},
 }
 #: Largest relative error of A, λ and p_max (tests/laws/test_lattice.py). It is that of λ; A and p_max have 1e-5.
 ERROR = 2e-4

@@ -38,11 +38,7 @@ class Quantity(NamedTuple):
 
     def at(self, t, q):
         """X at t and q of any shape."""
-        if self.span == (0.0, 1.0):
-            V = polynomial.polyval(2 * t - 1, self.V)
-        else:
-            V, _ = self.exponent(t)
-        return 1 / (1 / self.limit + self.rest(t, q, V))
+        return 1 / (1 / self.limit + self.rest(t, q, self.exponent(t)[0]))
 
     def rest(self, t, q, V):
         """1/X - 1/limit."""

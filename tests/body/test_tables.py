@@ -31,7 +31,7 @@ def test_what_tables_have_in_common_is_kept_once(tables):
     first, *others = (module.table(mesh_of(8), 0, *kind) for kind in ((0, True), (0, False), (4, True)))
     assert all(other.J is first.J and other.phi is first.phi for other in others)
     whole = [v for table in (first, *others) for v in (table.product, table.spread) if v is not None]
-    distinct = {id(v): v.nbytes for v in (first.k, first.J, first.phi, *whole)}
+    distinct = {id(v): v.nbytes for v in (first.J, first.phi, *whole)}
     assert kept.nbytes == sum(distinct.values())
 
 

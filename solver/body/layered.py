@@ -25,9 +25,9 @@ from .wave_rule import CUT, FILM, LOOSE, place_of
 
 #: A layer thinner than this times the radius yields nearly as the thin layer does.
 _THIN = 0.02
-#: Work of a lone case in the unit of :meth:`.operator.Body.work`, of films first, of thicker layers second. _MESH: of a
-#: new mesh, for each node of films and for each entry of the matrix of others. _STEP and _ENTRY: of a Newton step, and
-#: more for each entry of the matrix. They are ratios of processor times to a factor of two: BUDGET needs no more.
+#: Work of a lone case in the unit of :meth:`.operator.Body.work`, for films and for thicker layers. _MESH: of a new
+#: mesh, for each node of a film, for each entry of the matrix of a thicker layer. _STEP and _ENTRY: of a Newton step,
+#: and more for each entry. They are ratios of processor times to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 #: A loose operator is right to this part of rtol. A solution may change by more than what the operator leaves out: in
 #: random cases by more than once and less than _COUNTS times that (tests/body/test_loose.py).

@@ -8,9 +8,9 @@ import numpy as np
 
 from .half_space import HalfSpace
 
-#: n of a base that stands for a rigid one under the thin layer. The equation divides by the half-space's part X, which
-#: must not be 0. With this n, X is below 1e-20 of the springs' part Y for every h and a within the bounds, and the
-#: squares and cubes of n are still far from the least float.
+#: n of a base that stands for a rigid one under the thin layer: the equation divides by the half-space's part X, which
+#: must not be 0. Then X is below 1e-20 of the springs' part Y for every h and a within the bounds, and n³ is no
+#: underflow.
 STIFF = 1e-50
 
 

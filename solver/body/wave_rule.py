@@ -26,8 +26,8 @@ _WIDEST = 200.0
 #: falls at u ~ 1/n: beyond the first class the first panel ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
 #: A loose operator is made of L at still fewer nodes, where rtol allows it (:meth:`.layered.Layered.within`). This is
-#: what it leaves out, over the largest L, in each class of stiffness. The two stiffest classes are never loose: the
-#: pressure under a plate can be a small difference of large terms.
+#: what it leaves out, over the largest L, in each class of stiffness; the two stiffest are never loose, for under a
+#: plate the pressure can be a small difference of large terms.
 LOOSE = (1e-10, 1e-11, np.inf, np.inf)
 #: The numbers of few nodes: of each class of stiffness, then of loose operators of the first two. They are the most
 #: that _LEFT_OUT or LOOSE asks for in any octave; tests/body/test_wave_rule.py checks what they leave out.

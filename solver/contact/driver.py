@@ -9,9 +9,8 @@ from ..numerics.bracket import false_position
 from . import newton
 from .start import guess_radius, smooth_start
 
-#: A case may take _STEPS Newton steps on a mesh of up to _NODES nodes. On finer ones, where a step takes longer, it may
-#: take fewer, but at least _FEWEST. A search for the radius takes the most, a hundred and more
-#: (tests/contact/test_counts.py).
+#: Most Newton steps of a case on a mesh: _STEPS on up to _NODES nodes; fewer on finer ones, where a step takes longer,
+#: but at least _FEWEST. A search for the radius takes the most, a hundred and more (tests/contact/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
 #: that are made for it alone. It is not counted in seconds, so that it is the same on every machine. With half of it,

@@ -14,19 +14,19 @@ from . import newton
 from .equation import Evaluation, State, evaluate, groups
 from .results import cornered, difference, interpolate, quantities
 
-#: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about
-#: λ s² to Ar/An. The error of Ar/An is taken to be at least _UNSEEN times λ s²/2. In cases that need it, it is at most
-#: 5.3 times λ s²/2 (`python tests/error_bars.py`); one of them is "ring" of tests/contact/test_error_bars.py.
+#: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
+#: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2 (`python tests/error_bars.py`; one
+#: such case is "ring" of tests/contact/test_error_bars.py). The estimate is at least _UNSEEN times λ s²/2.
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
-#: is multiplied by this. Of such extreme cases on 6 nodes 10 % have an error above the estimate without the factor, 3 %
-#: with it (`python tests/error_bars.py`; two of them: "blind" of tests/contact/test_error_bars.py).
+#: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
+#: with it 3 % (`python tests/error_bars.py`); two that need it are "blind" of tests/contact/test_error_bars.py.
 _BLIND = 3.0
-#: At one point, the centre, the pressures of two meshes may agree by chance: those of "centre" of
-#: tests/contact/test_error_bars.py do, to a twentieth of their error. So what the step changes of the pressure counts
-#: wherever s is above this. Not so on panels, which may enclose a corner there.
+#: In the centre the pressures of two meshes may agree by chance: those of "centre" of tests/contact/test_error_bars.py
+#: do, to a twentieth of their error. So any change of the pressure where s is above this counts; not on panels, which
+#: may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
 _NEAR = 1e-8
@@ -37,9 +37,9 @@ _FINER = 5
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
 #: that of a law with corners: "steep" of tests/contact/test_error_bars.py. Panels enclose that place.
 _STEEP = 0.1
-#: On a law with corners two meshes may agree by chance. So the error also counts what the mesh misses of the load
-#: between its nodes: the sum over the contact, in which misses of opposite sign cancel, and _CHANCE times the largest
-#: sum from the edge to any radius (test_random_heights of tests/contact/test_error_bars.py).
+#: On a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses between
+#: its nodes: its sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from the edge
+#: to any radius (test_random_heights of tests/contact/test_error_bars.py).
 _CHANCE = 1 / 2
 #: Control -> what a change of the radius of a smooth contact changes of the others, at most, over that of the radius.
 _OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}

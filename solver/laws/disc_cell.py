@@ -24,14 +24,9 @@ PARAMETERS = {
 }
 
 
-def cell_radius(Nbar):
-    """B̄ = 1/sqrt(pi Nbar), the radius of the cell of one asperity, in R. Nbar in R⁻²."""
-    return 1 / np.sqrt(np.pi * Nbar)
-
-
 def scales(E, Nbar, Ra):
     """p* = 2 E1* B̄/(3 Ra) (unit of E) and A* = B̄²/Ra (unit of Ra)."""
-    radius = cell_radius(Nbar)
+    radius = 1 / np.sqrt(np.pi * Nbar)  # B̄
     return 2 * E * radius / (3 * Ra), radius**2 / Ra
 
 

@@ -26,8 +26,8 @@ _ALIKE = 0.03
 #: Most tables that are kept, 2 KNOTS numbers each, and how many are made at a time.
 _KEPT, _AT_ONCE = 4096, 64
 #: Largest relative error of A, λ and p_max by the tables (tests/laws/test_heights.py). It is that of λ; A has 5e-6, and
-#: with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves; A has 1e-4 there.
-#: So its tables have _FINE times as many knots.
+#: with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves (A has 1e-4); its
+#: tables have _FINE times as many knots.
 ERROR, STEPPED, _FINE = 2e-4, 5e-4, 4
 #: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of those above it.
 #: The error then grows with this power of that ratio (tests/laws/test_histograms.py).

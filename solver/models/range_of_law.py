@@ -9,9 +9,8 @@ from ..laws import LAWS
 #: edge, where a hard film presses most.
 _S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
 RADII = np.sqrt((1 - _S) * (1 + _S))
-#: Where p is below the first row of a table, near the edge, A is a guess. With the first row at p1 this changes a, P,
-#: D, p(0), p_max and Ar/An by at most _GUESSED (p1/p(0))^1.5, as found with tables of the laws of this package
-#: (tests/laws/test_own_table_range.py).
+#: Near the edge p is below the first row of a table, p1, and A is a guess. That changes a, P, D, p(0), p_max and Ar/An
+#: by at most _GUESSED (p1/p(0))^1.5: so it is with tables of our laws (tests/laws/test_own_table_range.py).
 _GUESSED = 0.2
 
 

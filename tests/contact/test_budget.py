@@ -54,10 +54,10 @@ def test_a_search_for_the_radius_ends(monkeypatch):
     case = Problem.of(P=LOAD, **MAIN, base="thin_layer", nodes=16)
     steps = []
 
-    def failing(cases, *arguments):
-        found = plain(cases, *arguments)
+    def failing(start, *arguments):
+        found = plain(start, *arguments)
         steps.append(int(found.count.sum()))
-        return found._replace(closed=found.closed & (cases.control == "a"))
+        return found._replace(closed=found.closed & (start.cases.control == "a"))
 
     plain = driver.iterate
     monkeypatch.setattr(driver, "iterate", failing)
@@ -130,10 +130,10 @@ def test_a_search_for_the_radius_takes_what_is_left_of_the_budget(monkeypatch, g
     """Newton fails on purpose wherever there are panels, so that the radius is searched for."""
     plain, work = driver.iterate, []
 
-    def failing(cases, start, *arguments):
-        found = plain(cases, start, *arguments)
+    def failing(start, *arguments):
+        found = plain(start, *arguments)
         if len(start.mesh.breaks) > 2:
-            work.append(found.count[0] * cases.body.work(np.ones(1), start.mesh.n)[1][0])
+            work.append(found.count[0] * start.cases.body.work(np.ones(1), start.mesh.n)[1][0])
             found = found._replace(closed=np.zeros(1, bool))
         return found
 

@@ -48,12 +48,12 @@ def test_what_newton_leaves_is_found_by_its_radius(steps, monkeypatch):
     """Newton from far away is made to fail: without the search no mesh and no panels find it. Its steps are counted
     with the others."""
 
-    def near(start, limit=loop.newton.LIMIT):
-        found = newton(start, limit)
+    def near(start, *arguments):
+        found = iterate(start, *arguments)
         return found._replace(closed=found.closed & ((start.cases.control == "a") | (found.count < 4)))
 
-    newton = loop._newton
-    monkeypatch.setattr(loop, "_newton", near)
+    iterate = loop.iterate
+    monkeypatch.setattr(loop, "iterate", near)
     s = solve(Problem.of(**PLATE))
     assert s.status[0] == Status.CONVERGED and s.error[0] <= 1e-6
     counted = sum(steps)

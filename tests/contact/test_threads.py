@@ -25,7 +25,7 @@ WATCHED = (
     "solver.contact.picard.approximate",
     "scipy.optimize.brentq",
     "solver.models.thin_layer_error._integrated",
-    "study.paper.uniform.local_compliance",
+    "study.paper.uniform.as_cases",
 )
 PAPER = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
 

@@ -94,9 +94,8 @@ class Problem:
         shape = np.broadcast_shapes((1,), *(v.shape for v in arrays.values()))
         if len(shape) != 1:
             raise ValueError(f"parameters broadcast to shape {shape}: give scalars and one-dimensional arrays")
-        missing = [message for name in PARAMETERS if name not in parameters for message in _missing(name, arrays)]
-        if missing:
-            raise ValueError("; ".join(missing))
+        if missing := "; ".join(_missing(parameters, arrays)):
+            raise ValueError(missing)
         arrays = {name: np.broadcast_to(v, shape) for name, v in arrays.items()}
         return cls(control, arrays.pop("value"), arrays)
 
@@ -143,10 +142,11 @@ def _array(name, value):
     return np.asarray(value, dtype=int if own.whole else float)
 
 
-def _missing(name, arrays):
-    """[message] if some case needs the parameter `name`, which is not given; else []."""
-    selector, needing = PARAMETERS[name].needed_by
-    if PARAMETERS[name].default is not None or not selector:
-        return []
-    found = [f'"{word}"' for word in needing if word in arrays[selector]]
-    return [f"{name} is missing: {selector} = {' or '.join(found)} needs it"] if found else []
+def _missing(given, arrays):
+    """Yield a message for each parameter that is not `given` and has no default, though some case needs it."""
+    for name, own in PARAMETERS.items():
+        selector, needing = own.needed_by
+        if name not in given and own.default is None:
+            found = [f'"{word}"' for word in needing if word in arrays[selector]]
+            if found:
+                yield f"{name} is missing: {selector} = {' or '.join(found)} needs it"

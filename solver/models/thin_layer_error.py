@@ -124,13 +124,12 @@ def largest_error(control, h_a, n, nu1, nu2, bonded, rough=False):
     control : "P", "a" or "D", the quantity that is given, which has no error itself
     h_a, n, nu1, nu2, bonded : as in :func:`thin_layer_error`; rough : whether the punch has asperities
 
-    P/P_thin - 1 has a term of the edge and a term of thick layers. Where these cancel in P, the other quantities are
-    still wrong: so their sizes are added. At given a the edge changes the load, and its term counts in full; at given P
+    P/P_thin - 1 has a term of the edge and a term of thick layers. Where these cancel in P, other quantities are still
+    wrong: so their sizes are added. At given a the term of the edge counts in full, for it changes the load; at given P
     or D it changes the radius, and counts 1/m times. Where the contact of the thin layer is the narrower one (κ < 0),
-    p(0) is twice as wrong as the radius, and the term counts 2/m times.
-
-    In some bonded materials long waves and short ones cancel in κ; under asperities, which weigh them differently, they
-    do not. There κ counts as no less than a part of the integral without the signs.
+    p(0) is twice as wrong as the radius: 2/m times. In some bonded materials long waves and short ones cancel in κ, but
+    not under asperities, which weigh them differently: there κ is no less than a part of the integral without the
+    signs.
     """
     edge, far, m = _terms(h_a, n, nu1, nu2, bonded, rough)
     inwards = np.where(edge < 0, 2, 1)

@@ -81,8 +81,8 @@ def transform(f, level, p):
 
 
 class Share(NamedTuple):
-    """The part of a convolution that r pairs have, each of a point and a panel, `row` and `panel` (r,). A pair has a
-    rule of g points; there the `weight` of c (r, g) and the basis of the panel, `columns` (r or 1, g, order)."""
+    """The part of a convolution of r pairs of a point and a panel, `row` and `panel` (r,). A pair has a rule of g
+    points; there the `weight` of c (r, g) and the basis of the panel, `columns` (r or 1, g, order)."""
 
     row: np.ndarray
     panel: np.ndarray

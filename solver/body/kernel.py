@@ -104,8 +104,8 @@ def _frictionless(u, n):
 
 
 class _Bond(NamedTuple):
-    """Constants of the bonded kernel: with alpha = G1/G2 and g = 3 - 4 nu, a = (alpha g2 - g1)/(1 + alpha g2) and
-    b = (alpha - 1)/(alpha + g1), c1 and c2 of docs/model.md; and 1 - a, 1 - b, 1 + a, 1 - ab in product form."""
+    """Constants of the bonded kernel, alpha = G1/G2, g = 3 - 4 nu: a = (alpha g2 - g1)/(1 + alpha g2) and b = (alpha -
+    1)/(alpha + g1), c1 and c2 of docs/model.md; and 1 - a, 1 - b, 1 + a, 1 - ab in product form."""
 
     a: np.ndarray
     b: np.ndarray

@@ -15,13 +15,12 @@ STIFF = 1e-50
 
 
 def thin_layer_coefficients(n, nu1, nu2, bonded):
-    """Coefficients A1 and A2 (B,) of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios.
+    """Coefficients A1 and A2 (B,) of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios. Arguments
+    as those of :func:`~solver.body.kernel.layered_kernel`, (B,) each.
 
-    A1 = n; A2 = 1/2 without friction. Bonded, with alpha = G1/G2 = n (1 - nu1)/(1 - nu2), it is
-    (1 + alpha (1 - 2 nu2)) (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 that is the paper's Eq. (2).
-    A2 <= 0 (nu1 = 1/2, or alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the thin-layer equation does not apply.
-
-    Arguments as those of :func:`~solver.body.kernel.layered_kernel`, (B,) each.
+    A1 = n; A2 = 1/2 without friction. Bonded, with alpha = G1/G2 = n (1 - nu1)/(1 - nu2), it is (1 + alpha (1 - 2 nu2))
+    (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 that is the paper's Eq. (2). A2 <= 0 (nu1 = 1/2, or
+    alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the thin-layer equation does not apply.
 
     >>> A1, A2 = thin_layer_coefficients(0.5, 0.3, 0.3, True)
     >>> print(float(A1), round(float(A2), 12))
@@ -34,8 +33,8 @@ def thin_layer_coefficients(n, nu1, nu2, bonded):
 
 
 def local_compliance(h, n, nu1, nu2, bonded):
-    """C = 2 A2 h/E1* of Eq. (3), (B,) in R/E2*, for h (B,) in R and the other arguments as above. C <= 0 where the
-    thin-layer equation does not apply."""
+    """C = 2 A2 h/E1* of Eq. (3), (B,) in R/E2*; h (B,) in R, the other arguments as above. Where C <= 0 the thin-layer
+    equation does not apply."""
     _, A2 = thin_layer_coefficients(n, nu1, nu2, bonded)
     return 2 * A2 * h / layer_modulus(n)
 

@@ -55,10 +55,8 @@ CUT = _end(FILM) * 2.0**-FILM
 
 
 def place_of(layer, a):
-    """Octave of h/a, or FILM, and class of stiffness (its place in STIFFEST), (B,) int each.
-
-    The class of a loose operator is that of its stiffness plus len(STIFFEST); films are never loose.
-    """
+    """Octave of h/a, or FILM, and class of stiffness, (B,) int each: its place in STIFFEST, plus len(STIFFEST) for a
+    loose operator, which films never have."""
     eta = layer.h / a
     octave = np.floor(np.log2(eta))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)

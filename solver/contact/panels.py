@@ -20,6 +20,8 @@ from .start import first_guess, guess_radius
 START = (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0)
 ORDER = 12
 DEPTH = 30
+#: From values at the nodes of a panel to the last two coefficients of their Legendre series: (ORDER, 2).
+_LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]
 #: Most panels: the operator is not accurate enough to resolve more.
 _MOST = 32
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
@@ -75,8 +77,8 @@ def _first(case, rtol, budget):
 
 
 def resolve(ev, rtol):
-    """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) at their nodes. If its own panels resolve
-    it, these are returned."""
+    """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) at their nodes; its own panels, if these
+    do."""
     mesh, law = ev.mesh, ev.cases.law
     values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
     scale = values @ mesh.w * max(_SHARE * rtol, _FLOOR)
@@ -102,10 +104,6 @@ def _between(ev, panels):
 
 
 def _tail(law, y):
-    """Sizes (2,) of the last two Legendre coefficients together, of q and of λ, for y (1, ORDER) at the nodes of a
-    panel."""
+    """Sizes (2,) of those two coefficients together, of q and of λ, for y (1, ORDER) at the nodes of a panel."""
     q = law.evaluate(y).q
     return np.abs(np.concatenate([q, law.area(y, q)]) @ _LAST).sum(axis=1)
-
-
-_LAST = np.linalg.inv(np.polynomial.legendre.legvander(2 * radau_nodes(ORDER) - 1, ORDER - 1)).T[:, -2:]

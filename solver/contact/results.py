@@ -69,8 +69,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         (X κ + Y) q + Z g(q) = s² - X (K[q_L] - κ q_L).
 
     Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
-    nothing it is q_L. Newton's method solves it until the next step would be below the relative `tolerance`. It begins
-    at a closed form for two terms, times the factor by which that is wrong at the nodes, interpolated.
+    nothing it is q_L. Newton's method solves it to the relative `tolerance`, from a closed form for two terms, times
+    the factor by which that is wrong at the nodes, interpolated.
     """
     s = np.ascontiguousarray(s, dtype=float)
     L, H, kappa, node_kappa = _between(ev.mesh, s.tobytes())
@@ -108,7 +108,7 @@ def cornered(ev, rows):
 
     Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too far
     apart. So y is interpolated to _FEW points between each two nodes, and from these by a polynomial to _MANY, where λ
-    is looked up. The error is taken to be the difference of the two quadratures; it is a small part of that.
+    is looked up. Their difference, far above the error of the finer one, is taken for its error.
     """
     law, pieces = ev.cases.law.take(rows), (0.0, *ev.mesh.s.tolist())
     (s, w), (fine_s, fine_w) = gauss_rule(_FEW, pieces), gauss_rule(_MANY, pieces)

@@ -2,9 +2,8 @@
 
 The variable is s = sqrt(1 - x²), x = r/a: the centre is s = 1, the edge s = 0. In s the pressure is smooth at the
 centre, where it is a function of x², and at the edge, where it is a series in sqrt(1 - x). Hertz's pressure is the
-polynomial s, the right-hand side of Eq. (4) is s², and x dx = -s ds. On a mesh the pressure is one polynomial in s, or
-one on each of several panels. The nodes are Gauss-Radau: the centre is one of them, so that p(0) is an unknown and need
-not be interpolated.
+polynomial s, the right-hand side of Eq. (4) is s², and x dx = -s ds. The pressure is one polynomial in s, or one on
+each of several panels. The nodes are Gauss-Radau: the centre is one, so that p(0) is an unknown.
 """
 
 from dataclasses import dataclass, field

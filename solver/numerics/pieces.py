@@ -41,8 +41,8 @@ def pieces(s, breaks, order, near=None, rough=None):
     """Yield each :class:`Piece` of targets s (m,) and polynomials of `order` nodes on the p panels between `breaks`.
 
     A panel farther from the target than its own length has a plain Gauss rule. A nearer one, and each side of one that
-    contains the target, is divided into subpanels towards the target (:func:`.quadrature.log_rule`), no more of them
-    than the distance asks for.
+    contains the target, is divided into subpanels towards the target (:func:`.quadrature.log_rule`), as many as the
+    distance asks for.
 
     near : (m, p) bool, the pairs that count; None: all
     rough : (m, p) bool, the pairs for which another factor of the integrand is not smooth away from the target: they

@@ -61,9 +61,8 @@ def lagrange(nodes, points):
 
 
 def panels_towards(gap, length):
-    """How many subpanels (...) of :func:`log_rule` an interval of `length` needs if the singularity is `gap` before it:
-    so many that the distance of the last one is at least a third of its length, as it is for the others. It is one of
-    _FEWER."""
+    """How many subpanels (...) of :func:`log_rule` an interval of `length` needs if the singularity is `gap` before it,
+    one of _FEWER: the last one is at most three times as long as it is distant, as the others are."""
     with np.errstate(divide="ignore"):
         wanted = np.log(length / (3 * gap)) / np.log(4.0)
     return np.array(_FEWER)[np.minimum(np.searchsorted(_FEWER, wanted), len(_FEWER) - 1)]

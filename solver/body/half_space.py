@@ -71,7 +71,7 @@ class HalfSpace(NamedTuple):
         return np.zeros_like(a)
 
     def unseen(self, a, s1):
-        """0 (B,): it has no length of its own. Smooth contacts on springs have a bound of :mod:`..contact.smooth`."""
+        """It has no length of its own. Smooth contacts on springs have a bound of :mod:`..contact.smooth`."""
         return np.zeros_like(a)
 
     def work(self, a, nodes):

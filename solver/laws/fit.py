@@ -7,33 +7,40 @@ import numpy as np
 from ..threads import one_blas_thread
 from .disc_cell import displacement
 
-#: Pressures of the fit, and those at which its error is found, in E1*: the ranges of the paper.
-PRESSURES, _CHECKED = np.linspace(1e-4, 0.025, 250), np.linspace(0.0025, 0.025, 2001)
-
 
 class Fit(NamedTuple):
-    """B (unit Ra/E1*^β), β, and the largest relative error |B p^β/A[p] - 1| from 0.0025 to 0.025 E1*."""
+    """B (unit Ra/E1*^β), β, and the largest relative error |B p^β/A[p] - 1| over the interval of check."""
 
     B: float
     beta: float
     max_error: float
 
 
-@one_blas_thread()
-def fit_power_law(Nbar_Ra2):
-    """:class:`Fit` of A[p] = B p^β to the exact law, by least squares at pressures from 1e-4 to 0.025 E1* in steps of
-    1e-4 (Table 1 of the paper).
+def pressures(p_min, p_max, step, mesh):
+    """Abscissas of the fit, unit E1*: uniform with `step`, or as many points graded geometrically."""
+    count = int(round((p_max - p_min) / step)) + 1
+    return np.linspace(p_min, p_max, count) if mesh == "uniform" else np.geomspace(p_min, p_max, count)
 
-    Nbar_Ra2 : N̄ Ra² > 0, finite (else ValueError). B in Ra/E1*^β and β depend on nothing else
+
+@one_blas_thread()
+def fit_power_law(Nbar_Ra2, *, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
+    """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1): a :class:`Fit`.
+
+    Nbar_Ra2 : N̄ Ra² > 0; B in Ra/E1*^β and β depend on nothing else
+    p_min, p_max, step : range and spacing of the abscissas in E1*, 0 < p_min < p_max, 0 < step <= p_max - p_min
+    mesh : "uniform", equal steps as in the paper, or "graded", as many points in geometric progression
+    check : interval in E1*, 0 < low < high, over which `max_error` is taken (2001 points)
+
+    Raises ValueError for what is outside these bounds.
 
     >>> B, beta, _ = fit_power_law(4.0)
     >>> print(f"{B:.4f} {beta:.4f}")
     0.0919 0.4908
     """
-    if not 0 < Nbar_Ra2 < np.inf:
-        raise ValueError(f"Nbar_Ra2 = {Nbar_Ra2}: must be > 0 and finite")
-    B, beta = least_squares(PRESSURES, displacement(PRESSURES, 1.0, Nbar_Ra2, 1.0))
-    return Fit(B, beta, power_law_error(B, beta, Nbar_Ra2))
+    _check(Nbar_Ra2, p_min, p_max, step, mesh, check)
+    p = pressures(p_min, p_max, step, mesh)
+    B, beta = least_squares(p, displacement(p, 1.0, Nbar_Ra2, 1.0))
+    return Fit(B, beta, power_law_error(B, beta, Nbar_Ra2, check))
 
 
 def least_squares(p, A):
@@ -60,7 +67,20 @@ def least_squares(p, A):
     return float(B), float(beta)
 
 
-def power_law_error(B, beta, Nbar_Ra2):
-    """Largest relative error |B p^β/A[p] - 1| of a power law from 0.0025 to 0.025 E1*, B in Ra/E1*^β."""
-    A = displacement(_CHECKED, 1.0, Nbar_Ra2, 1.0)
-    return float(np.max(np.abs(B * _CHECKED**beta / A - 1)))
+def power_law_error(B, beta, Nbar_Ra2, check=(0.0025, 0.025)):
+    """Largest relative error |B p^β/A[p] - 1| of a power law over `check` (unit E1*), B in Ra/E1*^β."""
+    p = np.linspace(*check, 2001)
+    return float(np.max(np.abs(B * p**beta / displacement(p, 1.0, Nbar_Ra2, 1.0) - 1)))
+
+
+def _check(Nbar_Ra2, p_min, p_max, step, mesh, check):
+    if not (np.isfinite(Nbar_Ra2) and Nbar_Ra2 > 0):
+        raise ValueError(f"Nbar_Ra2 = {Nbar_Ra2}: must be > 0 and finite")
+    if not 0 < p_min < p_max < np.inf:
+        raise ValueError(f"p_min = {p_min}, p_max = {p_max}: must satisfy 0 < p_min < p_max")
+    if not 0 < step <= p_max - p_min:
+        raise ValueError(f"step = {step}: must be > 0 and at most p_max - p_min")
+    if mesh not in ("uniform", "graded"):
+        raise ValueError(f'mesh = "{mesh}": must be "uniform" or "graded"')
+    if not 0 < check[0] < check[1] < np.inf:
+        raise ValueError(f"check = {list(check)}: must be [low, high] with 0 < low < high")

@@ -6,13 +6,13 @@ The law of the lattice takes each neighbour where it is; the paper's disc cell s
 import numpy as np
 import xarray as xr
 
-from solver.laws.fit import PRESSURES, least_squares
+from solver.laws.fit import least_squares
 
 from ..figures.annotate import name_curve
 from ..figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 from . import numbers
 from .curves import PAPER, pressures
-from .law_fits import EXACT_LAW, PANELS, exact, largest_error, printed
+from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, largest_error, printed
 
 DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
 

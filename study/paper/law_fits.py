@@ -7,12 +7,13 @@ import numpy as np
 
 from solver import fit_power_law
 from solver.laws import LAWS
-from solver.laws.fit import PRESSURES, Fit
+from solver.laws.fit import Fit
 
 from ..figures.annotate import name_curve
 from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 from . import numbers
 
+PRESSURES = np.linspace(1e-4, 0.025, 250)  # p/E1* of the paper's fit, Section 4.1: from 1e-4 to 0.025 in steps of 1e-4
 EXACT_LAW = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
 PAPERS_LAW = {"linestyle": (0, (1, 1.2)), "linewidth": 1.3}
 PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_000) for Ra in (0.004, 0.002, 0.001)]}

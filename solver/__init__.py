@@ -5,6 +5,7 @@ limits are in docs/model.md. It needs numpy, scipy, and threadpoolctl, which kee
 """
 
 from . import closed_forms
+from .laws import disc_cell as micro
 from .laws import register
 from .laws.fit import Fit, fit_power_law
 from .problem import Problem
@@ -24,6 +25,7 @@ __all__ = [
     "Status",
     "closed_forms",
     "fit_power_law",
+    "micro",
     "register",
     "solve",
 ]

@@ -57,8 +57,8 @@ def least_squares(p, A):
         return power, factor, A - factor * power
 
     def slope(beta):
-        """The misfit falls with β where this is positive: its root is the best β, to rounding. A minimum is found only
-        to the square root of that."""
+        """The misfit falls with β where this is positive, so its root is the best β. A root is found to rounding, a
+        minimum only to the square root of that."""
         power, _, rest = best(beta)
         return rest @ (power * logarithm)
 

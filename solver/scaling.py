@@ -11,9 +11,9 @@ from .laws import LAWS, try_out
 from .parameters import CONTROL, PARAMETERS, allowed
 from .status import Status
 
-#: (i, j) of the unit E2*^i R^j of each quantity.
-_UNITS = {name: own.powers for name, own in CONTROL.items()}
-_UNITS |= {"A0": (0, 1), "p0": (1, 0), "p_max": (1, 0), "p": (1, 0), "dP_dD": (1, 1)}
+#: (i, j) of the unit E2*^i R^j of each quantity that has one.
+_UNITS = {"A0": (0, 1), "p0": (1, 0), "p_max": (1, 0), "p": (1, 0), "dP_dD": (1, 1)}
+_UNITS = _UNITS | {name: own.powers for name, own in CONTROL.items()}
 
 
 def dimensionless(problem):

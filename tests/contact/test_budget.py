@@ -128,23 +128,22 @@ def test_a_case_without_budget_is_not_said_to_lift_off(monkeypatch):
 @pytest.mark.parametrize("given", [{"a": 0.1}, {"P": 1e-3}])
 def test_a_search_for_the_radius_takes_what_is_left_of_the_budget(monkeypatch, given):
     """Newton fails on purpose wherever there are panels, so that the radius is searched for."""
-    plain, work = driver.iterate, []
+    plain, work = driver.iterate, {False: [], True: []}  # on panels, or not
 
     def failing(start, *arguments):
-        found = plain(start, *arguments)
-        if len(start.mesh.breaks) > 2:
-            work.append(found.count[0] * start.cases.body.work(np.ones(1), start.mesh.n)[1][0])
-            found = found._replace(closed=np.zeros(1, bool))
-        return found
+        found, panels = plain(start, *arguments), len(start.mesh.breaks) > 2
+        work[panels].append(found.count[0] * start.cases.body.work(np.ones(1), start.mesh.n)[1][0])
+        return found._replace(closed=found.closed & (not panels))
 
     monkeypatch.setattr(driver, "iterate", failing)
     case, totals = {name: value[0] for name, value in CORNER.items() if name != "a"} | given, []
     for budget in (1e6, 6000):
-        work.clear()
+        work |= {False: [], True: []}
         monkeypatch.setattr(adaptive, "BUDGET", budget)
         assert solve(Problem.of(**case, base="thin_layer", rtol=1e-9), X).status[0] != Status.CONVERGED
-        totals.append(sum(work))
-    assert totals[0] > 6000 and 0 < totals[1] <= 6000 - 60**2  # work of the first panels, on 60 nodes
+        totals.append(sum(work[True]))
+    left = 6000 - sum(work[False]) - 60**2  # 60**2: work of the first panels, on 60 nodes
+    assert totals[0] > 6000 and 0 < totals[1] <= left + 150  # of the last step, which may spend a little more
 
 
 def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):

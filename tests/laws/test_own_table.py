@@ -77,6 +77,22 @@ def test_the_error_covers_what_is_between_few_rows(rows):
     assert truth < law.error < 10 * truth
 
 
+def test_the_error_covers_tables_of_random_rows():
+    """Of a few rows, each of which determines the curve beside it. If that did not count, two of the errors would be
+    too small, one by a factor of 2.9."""
+    random, missed = np.random.default_rng(3), []
+    for _ in range(100):
+        asperities = {"Nbar": 250_000.0, "Ra": np.sqrt(10 ** random.uniform(-1.5, 1.5) / 250_000)}
+        p = 10 ** random.uniform(-6, -3) * np.geomspace(1, 10 ** random.uniform(1, 2.5), random.integers(6, 14))
+        p = np.sort(p * np.exp(random.normal(0, 0.1, len(p))))
+        between = np.geomspace(p[0], p[-1], 300)
+        table, truth = (laws.LAWS["disc_cell"].at(points, 1.0, **asperities) for points in (p, between))
+        law = own_table.of_columns("table:random.csv", p, *table)
+        error = max(np.abs(f / true - 1).max() for f, true in zip(law.at(between, 1.0), truth, strict=True))
+        missed.append(error / law.error)
+    assert max(missed) < 1
+
+
 def test_outside_its_range(table):
     """p(0) below the first row, pressures above the last one; in any units."""
     problem = {"h": 0.02, "n": 0.5, "base": ["half_space", "layered", "auto"], "micro": table()}

@@ -69,8 +69,8 @@ class Body(Protocol):
         """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""
 
     def unseen(self, a, s1):
-        """What a mesh whose first node is s1 may miss of the radius of a smooth contact, over the radius, (B,): what
-        the body's short waves do, which only the ring between that node and the edge feels."""
+        """By how much, over the radius, a mesh whose first node is s1 may misplace the edge of a smooth contact, (B,).
+        The body's short waves move it, and only the ring between that node and the edge feels them."""
 
     def work(self, a, nodes):
         """The work of a case that is solved alone: (B,) for making a mesh of `nodes` nodes and the operator on it, and

@@ -41,7 +41,8 @@ _STEEP = 0.1
 #: its nodes: its sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from the edge
 #: to any radius (test_random_heights of tests/contact/test_error_bars.py).
 _CHANCE = 1 / 2
-#: Control -> what a change of the radius of a smooth contact changes of the others, at most, over that of the radius.
+#: For each control: the largest relative change of the quantities that are judged, over that of the radius of a smooth
+#: contact.
 _OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}
 
 

@@ -109,6 +109,8 @@ class Layered(NamedTuple):
         the logarithm: where waves cancel at the edge, they may not in the pressure."""
         eta, shift = self.h / a, np.zeros(len(a))
         thin = np.flatnonzero(eta < _SHORT * s1**2)
+        if not len(thin):
+            return shift
         u = np.geomspace(eta[thin] / s1**2, _SHORT, _POINTS, axis=1)
         n, nu1, nu2, bonded, m = (field[thin, None] for field in self[1:6])
         level = np.log(whole(u, n, nu1, nu2, bonded) + m)

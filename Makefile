@@ -47,10 +47,10 @@ picard_domain: figures/picard_domain.pdf ## where the paper's successive approxi
 literature: figures/literature.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
 	$(RUN) table --run literature literature_coatings literature_decided literature_rough
 	@cp figures/literature.png docs/
-	$(VENV)/bin/python tests/literature_page.py docs/literature.md
+	$(VENV)/bin/python tests/literature/literature_page.py docs/literature.md
 
 validate: $(READY) ## rough spheres with every asperity resolved beside the two scales: docs/validate.md, .nc, .png
-	$(VENV)/bin/python tests/validate.py docs
+	$(VENV)/bin/python tests/resolved/validate.py docs
 
 test: $(READY) ## all tests
 	$(PYTEST)
@@ -67,30 +67,30 @@ kernels: $(READY) ## the tests in tests/computing.txt under the BLAS kernels of 
 
 lowest: ## all tests with the lowest versions that pyproject.toml allows, installed into .venv-lowest
 	$(PYTHON) -m venv .venv-lowest
-	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: $$($(PYTHON) tests/lowest.py)
+	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: $$($(PYTHON) tests/repository/lowest.py)
 	.venv-lowest/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch .venv-lowest/.ready
 	@$(MAKE) --no-print-directory test VENV=.venv-lowest
 
 mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
-	$(VENV)/bin/python tests/mutate.py --table docs/mutants.md
+	$(VENV)/bin/python tests/mutants/mutate.py --table docs/mutants.md
 
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
-	$(VENV)/bin/python tests/fuzz_solver.py --cases 4800
-	$(VENV)/bin/python tests/fuzz_studies.py 2000
-	$(VENV)/bin/python tests/fuzz_files.py 400
+	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800
+	$(VENV)/bin/python tests/fuzz/fuzz_studies.py 2000
+	$(VENV)/bin/python tests/fuzz/fuzz_files.py 400
 
 bench: $(READY) ## speed of the solver: bench.json
-	$(VENV)/bin/python tests/benchmark.py bench.json
+	$(VENV)/bin/python tests/bench/benchmark.py bench.json
 
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
-	$(VENV)/bin/python tests/benchmark.py --page docs/speed.md
+	$(VENV)/bin/python tests/bench/benchmark.py --page docs/speed.md
 
 lint: $(READY) ## ruff
 	$(VENV)/bin/ruff check .
 
 clean: ## remove figures and tables that the program draws, and caches; results and .venv stay
-	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tests/clean.py; fi
+	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tests/repository/clean.py; fi
 
 # Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
 # the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.

@@ -25,7 +25,7 @@ from study import open_results
 from study.files.lock import held
 from study.spec.laws import update_vocabulary
 
-collect_ignore = ["hold.py"]  # importing it changes `study`: it is for processes of their own
+collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]
 STUDIES = sorted((ROOT / "studies").glob("*.toml"))
 
@@ -78,7 +78,7 @@ def results(tmp_path_factory) -> Path:
     with held(folder.with_name("lock")):
         if not folder.exists():
             unfinished = folder.with_name("unfinished")
-            if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutate.py: this mutant does not change them
+            if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutants/mutate.py: this mutant does not change them
                 shutil.copytree(os.environ["ROUGHCOAT_RESULTS"], unfinished)
             else:
                 compute_results(unfinished)

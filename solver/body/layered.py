@@ -33,7 +33,7 @@ _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
 #: random cases by more than once and less than _COUNTS times that (tests/body/test_loose.py).
 _OF_RTOL, _COUNTS = 0.01, 3.0
 #: Waves u = kh above _SHORT feel the layer alone. The integral of a bound up to there has _POINTS points, evenly in
-#: ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/test_accuracy.py).
+#: ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/errors/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
 
 

@@ -10,12 +10,13 @@ from . import newton
 from .start import guess_radius, smooth_start
 
 #: Most Newton steps of a case on a mesh: _STEPS on up to _NODES nodes; fewer on finer ones, where a step takes longer,
-#: but at least _FEWEST. A search for the radius takes the most, a hundred and more (tests/contact/test_counts.py).
+#: but at least _FEWEST. A search for the radius takes the most, a hundred and more
+#: (tests/contact/errors/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
 #: that are made for it alone. It is not counted in seconds, so that it is the same on every machine. With half of it,
 #: about 1 % of the 3,000 cases of studies/extremes_layered.toml spend it; with all of it, none (`make extremes`).
-#: `python tests/fuzz_solver.py` prints the longest time of a lone case.
+#: `python tests/fuzz/fuzz_solver.py` prints the longest time of a lone case.
 BUDGET = 1_500_000
 
 

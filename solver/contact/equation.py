@@ -23,7 +23,8 @@ _NOTHING = 1e-16
 #: error of the operator, or is the rounding of a soft layer.
 _CLOSED, _OF_OPERATOR = 1e-13, 1e-2
 #: A residual above this is too large for any operator: whether the iteration has closed is then known without the error
-#: of the operator. It is far above what closes an iteration with the worst operator (tests/contact/test_extremes.py).
+#: of the operator. It is far above what closes an iteration with the worst operator
+#: (tests/contact/extremes/test_extremes.py).
 _OPEN = 1e-5
 #: Rounding of the residual of a soft layer, times its softness. In its operator the terms of the half-space and L - 1
 #: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters

@@ -15,31 +15,34 @@ from .equation import Evaluation, State, evaluate, groups
 from .results import cornered, difference, interpolate, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
-#: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2 (`python tests/error_bars.py`; one
-#: such case is "ring" of tests/contact/test_error_bars.py). The estimate is at least _UNSEEN times λ s²/2.
+#: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
+#: (`python tests/contact/errors/error_bars.py`; one such case is "ring" of tests/contact/errors/test_error_bars.py).
+#: The estimate is at least _UNSEEN times λ s²/2.
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
 #: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
-#: with it 3 % (`python tests/error_bars.py`); two that need it are "blind" of tests/contact/test_error_bars.py.
+#: with it 3 % (`python tests/contact/errors/error_bars.py`); two that need it are "blind" of
+#: tests/contact/errors/test_error_bars.py.
 _BLIND = 3.0
-#: In the centre the pressures of two meshes may agree by chance: those of "centre" of tests/contact/test_error_bars.py
-#: do, to a twentieth of their error. So any change of the pressure where s is above this counts; not on panels, which
-#: may enclose a corner there.
+#: In the centre the pressures of two meshes may agree by chance: those of "centre" of
+#: tests/contact/errors/test_error_bars.py do, to a twentieth of their error. So any change of the pressure where s is
+#: above this counts; not on panels, which may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
 _NEAR = 1e-8
 #: If λ in the centre is above this, λ may rise sharply inside the contact. Then Ar/An is compared with another rule,
-#: which has _FINER more points on each panel than the mesh has nodes: "saturated" of tests/contact/test_error_bars.py.
+#: which has _FINER more points on each panel than the mesh has nodes: "saturated" of
+#: tests/contact/errors/test_error_bars.py.
 _SATURATED = 0.5
 _FINER = 5
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
-#: that of a law with corners: "steep" of tests/contact/test_error_bars.py. Panels enclose that place.
+#: that of a law with corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
 _STEEP = 0.1
 #: On a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses between
 #: its nodes: its sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from the edge
-#: to any radius (test_random_heights of tests/contact/test_error_bars.py).
+#: to any radius (test_random_heights of tests/contact/errors/test_error_bars.py).
 _CHANCE = 1 / 2
 #: For each control: the largest relative change of the quantities that are judged, over that of the radius of a smooth
 #: contact.

@@ -34,7 +34,7 @@ _BLEND = 3.21
 #: Most Newton steps for ln a; a step below _LAST is the last one. A step leaves an error below 0.04 times its square
 #: (tests/contact/test_smooth.py), so that after one below _LAST the error is below rounding.
 _STEPS, _LAST = 30, 2e-7
-#: Control -> the factor with which :func:`_unseen` is an upper bound (tests/contact/test_accuracy.py).
+#: Control -> the factor with which :func:`_unseen` is an upper bound (tests/contact/errors/test_accuracy.py).
 _ENCLOSING = {"a": 0.5, "P": 0.2, "D": 0.25}
 
 

@@ -25,15 +25,15 @@ from .law import Curve, Law
 _ALIKE = 0.03
 #: Most tables that are kept, 2 KNOTS numbers each, and how many are made at a time.
 _KEPT, _AT_ONCE = 4096, 64
-#: Largest relative error of A, λ and p_max by the tables (tests/laws/test_heights.py). It is that of λ; A has 5e-6, and
-#: with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves (A has 1e-4); its
-#: tables have _FINE times as many knots.
+#: Largest relative error of A, λ and p_max by the tables (tests/laws/heights/test_heights.py). It is that of λ; A has
+#: 5e-6, and with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves (A has
+#: 1e-4); its tables have _FINE times as many knots.
 ERROR, STEPPED, _FINE = 2e-4, 5e-4, 4
 #: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of those above it.
-#: The error then grows with this power of that ratio (tests/laws/test_histograms.py).
+#: The error then grows with this power of that ratio (tests/laws/heights/test_histograms.py).
 _RARE, _SHARPER = 25.0, 1.7
-#: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/test_touching.py), and how
-#: many cases have it at a time.
+#: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/heights/test_touching.py),
+#: and how many cases have it at a time.
 _ENOUGH, _ROWS = 32, 10_000
 
 #: Standard deviation σ of the heights, in R; and c, the largest height above the mean, over σ.

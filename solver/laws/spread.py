@@ -28,12 +28,12 @@ _SPOTS, _FILLED = 24, 16
 #: below _NEAR is taken even if it leaves the bracket of the root, which then is rounding; the largest change.
 _STEPS, _LAST, _NEAR, _LONGEST = 60, 1e-9, 1e-6, 2.0
 #: Knots of a table in ln y: the first, their distance, their number. A quintic through six of them errs by less than
-#: 5e-6 in q and 2e-4 in λ, and at the last knot δ is as near to its limit (tests/laws/test_heights.py).
+#: 5e-6 in q and 2e-4 in λ, and at the last knot δ is as near to its limit (tests/laws/heights/test_heights.py).
 FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 992
 #: The largest y that a table knows; the last three knots are beyond it.
 LAST = np.exp(FIRST + STEP * (KNOTS - 3))
 #: The relief <ζ> + 1/3 above which w is not 1, and the one above which u is not: the tables then begin where δ is 1e-16
-#: of the relief. tests/laws/test_heights_far.py has heights below, between and above both.
+#: of the relief. tests/laws/heights/test_heights_far.py has heights below, between and above both.
 _FAR, _FARTHEST = 10.0, 1e8
 #: Every sixth knot is solved first. The others begin at what is interpolated between these, and take fewer steps.
 _EVERY = 6

@@ -24,7 +24,7 @@ def main():
     """Write the table beside this file."""
     with tempfile.TemporaryDirectory() as folder:
         shutil.copytree(ROOT / "solver", Path(folder) / "solver")
-        file = Path(folder) / "solver" / "layer_quadrature.py"
+        file = Path(folder) / "solver" / "body" / "wave_rule.py"
         text = file.read_text(encoding="utf-8")
         assert "OCTAVES = (-8, 40)" in text
         file.write_text(text.replace("OCTAVES = (-8, 40)", "OCTAVES = (-13, 40)"), encoding="utf-8")

@@ -1,4 +1,4 @@
-"""Mutated study files through the command line: `python tests/fuzz_studies.py [COUNT [SEED]]`, 5,000 by default.
+"""Mutated study files through the command line: `python tests/fuzz/fuzz_studies.py [COUNT [SEED]]`, 5,000 by default.
 
 Each is a study of the repository, made small, with a few things done to it: bytes flipped, lines dropped, doubled and
 swapped, values replaced by nasty ones, keys misspelled, types changed. All are checked; of those that are accepted some
@@ -20,7 +20,7 @@ import warnings
 from collections import Counter
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 PATIENCE = 60  # seconds of this process for one file, of which the slowest takes some; more is a hang
 MEMORY = 6_000_000_000  # bytes that the process may ask for: it needs half of it for its libraries and tables
 LONGEST = 31 * 1000  # characters of all messages: thirty, and how many more

@@ -1,4 +1,4 @@
-"""The mutants of tests/mutants.toml are there to be run (`make mutants`), and the runner tells what becomes of them."""
+"""The mutants of mutants.toml are there to be run (`make mutants`), and the runner tells what becomes of them."""
 
 import ast
 import re
@@ -15,7 +15,7 @@ TREE = {
     "tests/conftest.py": "def compute_results(folder):\n    import solver.one\n\n    folder.mkdir()\n",
     "tests/test_one.py": "from solver.one import square\n\n\ndef test_square():\n    assert square(3) == 9\n\n\n"
     "def test_that_fails():\n    assert square(3) == 6\n",
-    "tests/mutants.toml": """
+    "tests/mutants/mutants.toml": """
 [solver.one.sum]
 old = 'x * x'
 new = 'x + x'
@@ -49,7 +49,8 @@ def run(folder: Path, *arguments: str, patience: float = 60.0) -> tuple[int, dic
         file.write_text(text)
     (folder / "tree/study").mkdir(exist_ok=True)
     command = [sys.executable, "-c", RUN, str(patience), *arguments]
-    found = subprocess.run(command, cwd=folder, env={"PYTHONPATH": str(ROOT / "tests")}, capture_output=True, text=True)
+    environment = {"PYTHONPATH": str(ROOT / "tests/mutants")}
+    found = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     said = re.findall(r"^\d of \d: solver\.one\.(\S+) (.*)$", found.stdout, flags=re.MULTILINE)
     assert said, found.stderr
     return found.returncode, dict(said)

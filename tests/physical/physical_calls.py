@@ -1,6 +1,6 @@
 """What units cost: 1,000 calls of study.solve with physical values beside the same contacts without units.
 
-python tests/specimen/physical_calls.py      prints processor times and their ratio, which is to be at most 1.2
+python tests/physical/physical_calls.py      prints processor times and their ratio, which is to be at most 1.2
 """
 
 import statistics

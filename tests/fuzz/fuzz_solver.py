@@ -1,6 +1,6 @@
 """Random calls of the solver within the bounds of every number: nothing silently wrong, no warning, no case above 10 s.
 
-    python tests/fuzz_solver.py [--cases 20000] [--seed 0] [--singles 0.1]
+    python tests/fuzz/fuzz_solver.py [--cases 20000] [--seed 0] [--singles 0.1]
 
 Cases of every base, law, control, interface and scheme, from rtol 1e-12 to 0.1. They are drawn in groups and solved as
 batches; a random part of them once more, alone, and timed. What is wrong is printed with its case; the exit code is

@@ -1,6 +1,6 @@
 """Spreads of results, propagated to first order, beside those of random draws of the inputs, for six real systems.
 
-python tests/specimen/monte_carlo.py [DRAWS]      10,000 draws of each system
+python tests/physical/monte_carlo.py [DRAWS]      10,000 draws of each system
 
 The draws are normal, made to have exactly the means, the spreads and no correlation: the deviation of a nearly linear
 result is then known to far better than the 0.7 % of 10,000 plain draws. The spreads are those of somebody who has

@@ -16,11 +16,11 @@ from same import assert_same
 import study
 
 pytest.importorskip("distributed")
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[3]
 WALK = (ROOT / "docs" / "cluster.md").read_text(encoding="utf-8")
 ENVIRONMENT = os.environ | {
     "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]]),
-    "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests")]),
+    "PYTHONPATH": os.pathsep.join([str(ROOT), str(ROOT / "tests/shared")]),
     "DASK_DISTRIBUTED__WORKER__DAEMON": "False",
 }
 

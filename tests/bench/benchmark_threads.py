@@ -1,6 +1,6 @@
 """What one BLAS thread is worth: processor and wall time of calls on the exact layer, alone and beside busy processes.
 
-    python tests/benchmark_threads.py
+    python tests/bench/benchmark_threads.py
 
 Each row is a process of its own, whose BLAS is told by OPENBLAS_NUM_THREADS to have so many threads. "free" takes the
 limit of the solver away (solver/threads.py), "limited" is the solver as it is. A number above that of the processors

@@ -1,4 +1,4 @@
-"""What the factors in solver/contact/error.py are worth: `python tests/error_bars.py [SIZE]`, a minute.
+"""What the factors in solver/contact/error.py are worth: `python tests/contact/errors/error_bars.py [SIZE]`, a minute.
 
 SIZE random cases (2,000 by default) of each law on each base, far beyond any scene, are solved on few nodes and on 96,
 which are the truth. A line for each number of nodes:
@@ -12,9 +12,12 @@ which are the truth. A line for each number of nodes:
 """
 
 import sys
+from pathlib import Path
 
 import numpy as np
-from solver_cases import EXTREMES, ROUGH_KINDS, random_cases
+
+sys.path.append(str(Path(__file__).parents[2] / "shared"))  # pytest has it there already
+from solver_cases import EXTREMES, ROUGH_KINDS, random_cases  # noqa: E402
 
 from solver import Problem
 from solver.contact.driver import solve_on

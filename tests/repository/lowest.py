@@ -17,5 +17,5 @@ def lowest(pyproject: dict) -> list[str]:
 
 
 if __name__ == "__main__":
-    text = Path(__file__).parents[1].joinpath("pyproject.toml").read_text(encoding="utf-8")
+    text = Path(__file__).parents[2].joinpath("pyproject.toml").read_text(encoding="utf-8")
     print(*lowest(tomllib.loads(text)))

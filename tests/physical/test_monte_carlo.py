@@ -1,4 +1,4 @@
-"""Spreads to first order against draws: a small sample of `python tests/specimen/monte_carlo.py`."""
+"""Spreads to first order against draws: a small sample of `python tests/physical/monte_carlo.py`."""
 
 import pytest
 from monte_carlo import SYSTEMS, compared

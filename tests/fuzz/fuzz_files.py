@@ -1,6 +1,6 @@
 """Random bit flips over results and block files of five studies; seeded, 10,000 by default, which takes an hour:
 
-    python tests/fuzz_files.py [FLIPS [SEED]]
+    python tests/fuzz/fuzz_files.py [FLIPS [SEED]]
 
 After each flip of a results file, or of a block of a run that was stopped: `status`, `open`, `verify` and `run` end
 without a traceback, and every number that is given out is the one that was computed. Exit code 0 if so.

@@ -1,4 +1,4 @@
-"""Would the tests notice? `make mutants`; the mutants are in tests/mutants.toml.
+"""Would the tests notice? `make mutants`; the mutants are in tests/mutants/mutants.toml.
 
 Each mutant runs in a copy of the tree, in a process forked from this one, which has imported the libraries but nothing
 of the project. Tests that fail on the code as it is prove nothing: their mutants count as survived.
@@ -94,7 +94,7 @@ def _begun(task: Task, folder: Path) -> int:
         log = os.open(folder.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(log, 1), os.dup2(log, 2)
         os.chdir(folder)
-        sys.path[:] = [str(folder), str(folder / "tests"), *sys.path[1:]]  # the first was the folder of this file
+        sys.path[:] = [str(folder), *sys.path[1:]]  # the first was the folder of this file
         sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
         del sys.modules["mutants"]
         sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size

@@ -1,7 +1,7 @@
 """Displacement of an elastic body under square elements of constant pressure: a half-space, and a layer on one.
 
 The half-space is Love's closed form. The layer adds what its kernel L differs by from 1, which decays as e^(-2kh): a
-smooth function of the distance, by a Hankel transform. The kernel is that of tests/layered_independent.py, which shares
+smooth function of the distance, by a Hankel transform. The kernel is that of layered_independent.py, which shares
 nothing with the solver. E2* = 1.
 """
 

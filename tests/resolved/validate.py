@@ -1,7 +1,7 @@
 """`make validate`: the two scales against one. Rough spheres with every asperity resolved, on a half-space and on
 layers, of one height and of random heights, beside the predictions: docs/validate.nc, .md, .png, validate_limits.png.
 
-    python tests/validate.py
+    python tests/resolved/validate.py
 
 Each contact is kept in results/validate as soon as it is solved; what is there is not solved again. Delete that folder
 where this code has changed.

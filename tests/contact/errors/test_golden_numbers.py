@@ -14,7 +14,7 @@ import pytest
 from solver import NUMERICS_VERSION
 
 spec = spec_from_file_location(
-    "make_golden_numbers", Path(__file__).parents[1] / "references" / "make_golden_numbers.py"
+    "make_golden_numbers", Path(__file__).parents[2] / "references" / "make_golden_numbers.py"
 )
 golden = module_from_spec(spec)
 spec.loader.exec_module(golden)

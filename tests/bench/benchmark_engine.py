@@ -1,6 +1,6 @@
 """Worker processes of our own beside those of a local dask cluster, in alternation, on two workers:
 
-    python tests/benchmark_engine.py [REPEATS [THOUSANDS]]
+    python tests/bench/benchmark_engine.py [REPEATS [THOUSANDS]]
 
 For each, seconds until both workers have given a first answer, and wall and processor time of a run of so many
 thousand thin rough cases, 200 by default. Each measurement is a process of its own. The module

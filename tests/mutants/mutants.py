@@ -1,4 +1,4 @@
-"""The mutants of tests/mutants.toml, and the table of what became of them. `make mutants` runs them (mutate.py)."""
+"""The mutants of mutants.toml, and the table of what became of them. `make mutants` runs them (mutate.py)."""
 
 import os
 import re
@@ -7,12 +7,12 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 WANTED = 0.95  # share of the mutants of each package that must be killed
 HEAD = """# Mutants
 
-Written by `make mutants`. It breaks the code in one place at a time, as tests/mutants.toml says, and runs the tests
-that ought to notice: a mutant is killed when one of them fails, or takes far longer than without it.
+Written by `make mutants`. It breaks the code in one place at a time, as tests/mutants/mutants.toml says, and runs the
+tests that ought to notice: a mutant is killed when one of them fails, or takes far longer than without it.
 
 {totals}
 
@@ -61,7 +61,7 @@ def read(root: Path = ROOT) -> list[Mutant]:
 
     They are of the file MODULE.py, or of the `file` that they name.
     """
-    return list(_within(tomllib.loads((root / "tests/mutants.toml").read_text(encoding="utf-8")), ()))
+    return list(_within(tomllib.loads((root / "tests/mutants/mutants.toml").read_text(encoding="utf-8")), ()))
 
 
 def _within(tables: dict, path: tuple[str, ...]) -> Iterator[Mutant]:

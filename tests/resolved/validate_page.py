@@ -16,7 +16,7 @@ PAGE = """# Two scales against one
 not periodic, and compares them with what two scales say: a base and a micro law. It writes this page, its figures and
 `docs/validate.nc`. Each contact is kept once it is solved, so a run that was interrupted goes on where it was.
 R = E2* = 1 and Ra = {Ra:g}, on square lattices. `tests/laws/test_lattice_sphere.py`,
-`tests/body/test_layered_sphere.py` and `tests/laws/test_heights_sphere.py` have coarse ones.
+`tests/resolved/test_layered_sphere.py` and `tests/laws/heights/test_heights_sphere.py` have coarse ones.
 
 A percentage is the error of the prediction. "Resolved" is extrapolated from the two finest meshes, ± half the change
 from the finest to it. The width is sqrt(5/2 <r²>), r² weighted with the pressure: Hertz's radius of a smooth contact,

@@ -1,6 +1,6 @@
 """A sphere on a half-space with other codes, if they are installed (extra `peers`): time against error of D.
 
-    python tests/benchmark_peers.py
+    python tests/bench/benchmark_peers.py
 
 They solve on a square grid with a free (not periodic) kernel, three contact radii wide for the smooth sphere. Beside
 them stands this solver on the exact layer, bonded to a half-space of its own material: a Hertz contact that it does not

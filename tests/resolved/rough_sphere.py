@@ -37,7 +37,7 @@ def resolved(punch: Punch, P, half, points, layer: Layer | None = None, start=No
     """The punch pressed by P on a half-space, or on a layer on one.
 
     Square elements of constant pressure over a square of 2 `half`, `points` a side, not periodic; of summits of one
-    height a quarter of them. tests/conjugate_gradients.py solves it, from the pressure `start` (points, points).
+    height a quarter of them. conjugate_gradients.py solves it, from the pressure `start` (points, points).
     """
     side = 2 * half / points
     middle = (np.arange(points) + 0.5) * side - half

@@ -1,6 +1,6 @@
 """Remove the figures and tables that the program draws, and caches: `make clean`. Results stay, and your own figures.
 
-Usage: python tests/clean.py, in the folder that is to be cleaned
+Usage: python tests/repository/clean.py, in the folder that is to be cleaned
 """
 
 import shutil

@@ -1,7 +1,7 @@
 """Speed of the solver: cases per second on one thread, and that over the speed of stacked 17 x 17 linear solves.
 
-    python tests/benchmark.py [bench.json]
-    python tests/benchmark.py --page docs/speed.md
+    python tests/bench/benchmark.py [bench.json]
+    python tests/bench/benchmark.py --page docs/speed.md
 
 The ratio r takes the machine out: it counts the linear systems that numpy solves in the time of one case, both in
 processor time and by turns. Beside it: time and memory against the number of cases, one and two threads, a study of a

@@ -1,6 +1,6 @@
 """Eight threads that solve, run, open, read lazily and ask for the state of studies at once, for some seconds:
 
-    python tests/stress_threads.py SECONDS
+    python tests/fuzz/stress_threads.py SECONDS
 
 Exit code 0 if nothing crashed and every number was right. As a process of its own, for what it looks for ends the
 interpreter.

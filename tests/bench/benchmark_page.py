@@ -1,4 +1,4 @@
-"""docs/speed.md as the benchmark writes it: measured by `python tests/benchmark.py --page docs/speed.md`."""
+"""docs/speed.md as the benchmark writes it: measured by `python tests/bench/benchmark.py --page docs/speed.md`."""
 
 import os
 import platform

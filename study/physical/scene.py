@@ -10,9 +10,8 @@ from ..data.dataset import Parts
 from ..data.units import PHYSICAL_SCALE, physical_attributes, with_unit
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
-from ..spec.vocabulary import NUMERICS, VOCABULARY
+from ..spec.vocabulary import NUMERICS, ROWS, VOCABULARY
 from .index import searchable
-from .names import SCENE, unit_of
 
 #: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
 #: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
@@ -120,8 +119,7 @@ def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
 
 def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
     """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
-    words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
-    found = _variable(value, {"long_name": long_name or words} | _units(unit_of(name)))
+    found = _variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
     return found.isel({MOVED: 0}) if MOVED in found.dims else found
 
 
@@ -167,5 +165,5 @@ def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[
         change = change.where((plus == minus) | change.isnull(), of_one_side)
     spread = np.sqrt(((change / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
     long_name = f"standard deviation of {name}, from the spreads of the inputs"
-    spread.attrs = {"long_name": long_name} | _units(unit_of(name))
+    spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
     return {f"{name}_spread": spread}

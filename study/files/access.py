@@ -21,11 +21,9 @@ from ..spec.definition import StudyError
 class Unusable(StudyError, OSError):
     """A results file that cannot be used. `kind`: "damaged", "foreign" (not written by roughcoat) or "unreadable"."""
 
-    code = 1
-
     def __init__(self, path: Path, kind: str, reason: str):
         self.kind, self.reason = kind, reason
-        super().__init__([f"{path}: {reason}"])
+        super().__init__([f"{path}: {reason}"], code=1)
 
 
 class Access:

@@ -43,7 +43,6 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
 
     draft, given = definition.new_draft(tables, where)
-    definition.add_numerics(draft, given)
     before = len(draft.errors)
     parameters = _parameters(draft, given)
     if draft.errors and "sample" in given:  # what it draws would be missing

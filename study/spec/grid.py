@@ -91,16 +91,12 @@ def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
 
     chunk : largest number of cases in a chunk; see `box`
     """
-    lengths = box(grid.shape, max(chunk, most))
-    lengths = [
-        length if length == size else length - length % within
-        for length, within, size in zip(lengths, box(grid.shape, chunk), grid.shape, strict=True)
-    ]
-    for corner in product(*(range(0, size, length) for size, length in zip(grid.shape, lengths, strict=True))):
-        yield {
-            dim: slice(low, min(low + length, size))
-            for (dim, size), low, length in zip(grid.sizes.items(), corner, lengths, strict=True)
-        }
+    parts, lengths = [], zip(grid.shape, box(grid.shape, max(chunk, most)), box(grid.shape, chunk), strict=True)
+    for size, length, within in lengths:
+        step = length if length == size else length - length % within
+        parts.append([slice(low, min(low + step, size)) for low in range(0, size, step)])
+    for window in product(*parts):
+        yield dict(zip(grid.sizes, window, strict=True))
 
 
 def box(shape: tuple[int, ...], most: int) -> list[int]:

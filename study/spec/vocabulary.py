@@ -94,13 +94,11 @@ SCENE = entries({"scene": _TABLES.pop("scene")})
 VOCABULARY = entries(_TABLES)
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Both, and with them the parameters of registered laws."""
-ROLES = {name: entry.role for name, entry in VOCABULARY.items()}
-"""Name -> role, of the rows of the file alone. VOCABULARY also gets the parameters of registered laws."""
 
 
 def names(*roles: str) -> tuple[str, ...]:
-    """Names that have one of the roles, in the order of the table."""
-    return tuple(name for name, role in ROLES.items() if role in roles)
+    """Names that have one of the roles, in the order of the table; without the parameters of registered laws."""
+    return tuple(name for role, table in _TABLES.items() if role in roles for name in table)
 
 
 CONTROLS = names("control")

@@ -60,9 +60,6 @@ class Access:
             NETCDF4_PYTHON_LOCK.release()
         Access._mine.release()
 
-    def locked(self) -> bool:
-        return NETCDF4_PYTHON_LOCK.locked()
-
     def __enter__(self) -> None:
         self.acquire()
 

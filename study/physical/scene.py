@@ -102,14 +102,8 @@ class Scene:
         # last, since `xr.concat` compares no coordinate behind one that only the first dataset has
         coords |= {name: coords.pop(name) for name in NUMERICS if name in coords}
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
-        return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
-
-    def _renamed(self, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
-        """The variables over the dimensions that the results have."""
-        if not self.dims:
-            return variables
-        dims = {name: [self.dims.get(dim, dim) for dim in variable.dims] for name, variable in variables.items()}
-        return {name: xr.Variable(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
+        named = {dim: name for dim, name in self.dims.items() if dim != name}
+        return searchable(Parts(results, coords, attributes).dataset().swap_dims(named))
 
 
 def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
@@ -135,14 +129,10 @@ def _units(unit: str) -> dict[str, str]:
 
 def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
-    powers, dims = VOCABULARY[name].powers, variable.dims
-    if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
-        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*dims, ...)
-        dims, data = found.dims, found.data
-    else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
-        data = with_unit(variable.data, powers, unit, R)
-    data = data.astype(variable.dtype, copy=False)
-    return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
+    powers = VOCABULARY[name].powers
+    found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
+    data = found.data.astype(variable.dtype, copy=False)
+    return xr.Variable(found.dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 
 def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[str, xr.Variable]:

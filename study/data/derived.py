@@ -62,10 +62,7 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     """
     if _has_units(dataset):
         raise ValueError("validity follows from results without units; those with units hold it: dataset.validity")
-    found = validity_of(dataset.variables)
-    flags = named(xr.DataArray(found, dataset["status"].coords), "validity")
-    flags.attrs = found.attrs
-    return flags
+    return xr.DataArray(validity_of(dataset.variables), dataset["status"].coords, name="validity")
 
 
 def validity_of(variables: Mapping) -> xr.Variable:

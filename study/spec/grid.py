@@ -60,11 +60,6 @@ def along(grid: Grid, name: str) -> np.ndarray:
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
 
 
-def on_rigid_base(grid: Grid) -> np.ndarray:
-    """Where n = 0 says that the base is rigid, along the dimensions of the grid as `along` has them."""
-    return along(grid, "n") == 0
-
-
 def columns(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
     """Parameters of the cases numbered `index` (k,), each (k,); NaN where the case does not need it."""
     places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}

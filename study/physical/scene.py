@@ -63,9 +63,7 @@ class Scene:
         """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
 
         def cut(value: Any) -> Any:
-            if not isinstance(value, xr.DataArray):
-                return value
-            return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
+            return value.isel(window, missing_dims="ignore") if isinstance(value, xr.DataArray) else value
 
         tables = (self.given, self.spreads, self.given_in)
         given, spreads, given_in = ({name: cut(v) for name, v in table.items()} for table in tables)
@@ -113,13 +111,9 @@ def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
 
 def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
     """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
-    found = _variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
-    return found.isel({MOVED: 0}) if MOVED in found.dims else found
-
-
-def _variable(value: Any, attributes: dict | None = None) -> xr.Variable:
-    dims, data = (value.dims, value.data) if isinstance(value, xr.DataArray) else ((), value)
-    return xr.Variable(dims, data, attributes)
+    found = xr.as_variable(value).isel({MOVED: 0}, missing_dims="ignore")
+    found.attrs = {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit)
+    return found
 
 
 def _units(unit: str) -> dict[str, str]:
@@ -130,7 +124,7 @@ def _units(unit: str) -> dict[str, str]:
 def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
     powers = VOCABULARY[name].powers
-    found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*variable.dims, ...)
+    found = with_unit(variable, powers, xr.as_variable(unit), xr.as_variable(R)).transpose(*variable.dims, ...)
     data = found.data.astype(variable.dtype, copy=False)
     return xr.Variable(found.dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 

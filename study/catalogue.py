@@ -13,8 +13,9 @@ import solver
 from . import evidence, figures, literature, paper
 from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
-from .figures.registry import FIGURES, TABLES, Columns, NotMade, entry, open_studies
+from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
 from .figures.style import style
+from .spec.definition import StudyError
 
 SCHEMES = {
     "fig01": "The contact: a sphere of radius R with asperities, pressed by P on a coated half-space.",
@@ -61,8 +62,8 @@ def outdated(name: str, known: dict, results, folder) -> bool:
 def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     """A figure as it will be written, the columns of numbers that it shows, and the title that its files carry.
 
-    Raises StudyError when there is no such figure, or a study it needs has no results; NotMade if the function does not
-    return columns.
+    Raises StudyError when there is no such figure, a study it needs has no results, or its function does not return
+    columns.
     """
     recipe, datasets = entry(name, FIGURES), open_studies(name, FIGURES, results)
     digests = [dataset.attrs["study_digest"][:16] for dataset in datasets]
@@ -71,7 +72,8 @@ def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
         columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
         shapes = [np.shape(column) for column in columns.values()] if isinstance(columns, dict) else [()]
         if any(len(shape) != 1 or shape != shapes[0] for shape in shapes):
-            raise NotMade([f"{name}: the function must return its numbers: heading -> column, all of one length"])
+            wrong = "the function must return its numbers: heading -> column, all of one length"
+            raise StudyError([f"{name}: {wrong}"], code=1)
         if not figure.get_suptitle():
             figure.suptitle(wrapped(stated(datasets), LETTERS * recipe.size[0]), fontsize=7)
     return figure, columns, f"{name}, studies {' '.join(digests)}".removesuffix(", studies ")
@@ -119,7 +121,8 @@ def tabulate(name: str, results="results", folder="tables") -> list[Path]:
     table, datasets = entry(name, TABLES), open_studies(name, TABLES, results)
     rows = table.rows(*datasets)
     if not isinstance(rows, list) or any(len(row) != len(table.columns) for row in rows):
-        raise NotMade([f"{name}: the function must return a list of tuples of {len(table.columns)} cells, one a row"])
+        wrong = f"the function must return a list of tuples of {len(table.columns)} cells, one a row"
+        raise StudyError([f"{name}: {wrong}"], code=1)
     text_csv = csv_text([column.text for column in table.columns], rows)
     texts = {"txt": as_text(table, rows), "csv": text_csv, "tex": as_latex(table, rows)}
     return [write(Path(folder) / f"{name}.{suffix}", text) for suffix, text in texts.items()]

@@ -10,10 +10,9 @@ from .data.dataset import broken, decode
 from .physical.bodies import BODIES
 from .physical.bounds import INPUTS, absurd
 from .physical.inputs import is_rigid, used_inputs
-from .physical.names import unit_of
 from .physical.scene import ASSUMED
 from .spec.laws import smooth_laws
-from .spec.vocabulary import CONTROLS, VOCABULARY
+from .spec.vocabulary import CONTROLS, ROWS, VOCABULARY
 from .specimen.quantities import READABLE, readable
 from .specimen.roughness import looks_like_iso_ra
 
@@ -196,7 +195,7 @@ def doubts(contact: xr.Dataset) -> list[str]:
     tables = "R" in v and np.char.startswith(v["micro"].values.astype(str), "table:").any()
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         found.append(OF_SEVERAL_RADII)
-    given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == unit_of(name)}
+    given = {name: v[name] for name in INPUTS if name in v and v[name].attrs.get("units") == ROWS[name].unit}
     given |= {ratio: v[ratio] for _, ratio, _ in BODIES.values() if ratio in v}
     return found + _yielding(v) + absurd(given, {name: v[f"{name}_spread"] for name in given if f"{name}_spread" in v})
 

@@ -98,8 +98,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
     """Completions of a word of a command or option: names of studies, figures ... that begin with `prefix`."""
     if command == "point":
         from ..physical.bodies import BODIES
-        from ..physical.names import SCENE
-        from ..spec.vocabulary import CONTROLS, names
+        from ..spec.vocabulary import CONTROLS, SCENE, names
 
         known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"))]
     elif command in ("plot", "table"):
@@ -109,8 +108,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
         known = ["all", *(figures if command == "plot" else catalogue.TABLES)]
     elif command == "--x":
         from ..data.derived import QUANTITIES
-        from ..physical.names import SCENE
-        from ..spec.vocabulary import VOCABULARY
+        from ..spec.vocabulary import SCENE, VOCABULARY
 
         known = [*VOCABULARY, *SCENE, *QUANTITIES]
     elif command == "--status":

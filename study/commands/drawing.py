@@ -10,7 +10,6 @@ from ..api import load
 from ..data.provenance import command_line
 from ..evidence import tradeoff as measured
 from ..figures.lines import drawn
-from ..figures.registry import NotMade
 from ..figures.style import style
 from ..files.access import Unusable
 from ..files.results_file import open_results
@@ -94,7 +93,8 @@ def _write(options, name: str, known: dict, make) -> int:
     except Exception as error:  # of the function of the figure or table; the others are made
         log.info("%s", name, exc_info=True)
         reason = f"{type(error).__name__}: {on_one_line(str(error), 300)}"
-        raise NotMade([f"{name}: its function fails: {reason}; -v before the command shows where"]) from error
+        wrong = f"{name}: its function fails: {reason}; -v before the command shows where"
+        raise StudyError([wrong], code=1) from error
     return 0
 
 

@@ -9,7 +9,7 @@ from solver import Model, Status
 
 from ..spec.definition import Definition
 from ..spec.fitted import COMMENT
-from ..spec.grid import on_rigid_base, unflatten
+from ..spec.grid import along, unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
 from .derived import validity_attributes, validity_of
@@ -52,7 +52,7 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
 def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
     """`parts` of any of the arrays, even none, without `validity` and the names of flags."""
     grid = definition.grid
-    rigid = bool(on_rigid_base(grid).any())  # if one layer is on a rigid base, all are
+    rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
     values = grid.values | grid.labels
     known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
     for name in ("B", "beta") if grid.fitted else ():

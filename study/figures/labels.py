@@ -7,8 +7,7 @@ import numpy as np
 import xarray as xr
 
 from ..physical.inputs import all_inputs, is_rigid, used_inputs
-from ..physical.names import SCENE
-from ..spec.vocabulary import VOCABULARY, over_scale
+from ..spec.vocabulary import ROWS, VOCABULARY, over_scale
 from ..specimen import quantities
 from ..specimen.quantities import READABLE, readable
 
@@ -25,7 +24,7 @@ def symbol(name: str) -> str:
 
 def plain_symbol(name: str) -> str:
     """The symbol of a name in the vocabulary or of an input of a physical scene, as plain text; "" if it has none."""
-    return VOCABULARY[name].symbol if name in VOCABULARY else name.replace("nu_", "ν_") if name in SCENE else ""
+    return ROWS[name].symbol if name in ROWS else ""
 
 
 def mathtext(plain: str) -> str:

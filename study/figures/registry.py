@@ -27,12 +27,6 @@ def joined(parts: list[Columns]) -> Columns:
     return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
 
-class NotMade(StudyError):
-    """The results are right, the function of a figure or table is not."""
-
-    code = 1
-
-
 class Figure(NamedTuple):
     """See `figure`."""
 

@@ -21,11 +21,9 @@ from ..spec.definition import StudyError
 class Unusable(StudyError, OSError):
     """A results file that cannot be used. `kind`: "damaged", "foreign" (not written by roughcoat) or "unreadable"."""
 
-    code = 1
-
     def __init__(self, path: Path, kind: str, reason: str):
         self.kind, self.reason = kind, reason
-        super().__init__([f"{path}: {reason}"])
+        super().__init__([f"{path}: {reason}"], code=1)
 
 
 class Access:
@@ -61,9 +59,6 @@ class Access:
         if not Access._depth:
             NETCDF4_PYTHON_LOCK.release()
         Access._mine.release()
-
-    def locked(self) -> bool:
-        return NETCDF4_PYTHON_LOCK.locked()
 
     def __enter__(self) -> None:
         self.acquire()

@@ -8,11 +8,10 @@ import xarray as xr
 
 from solver.laws.fit import least_squares
 
-from ..figures.annotate import name_curve
 from ..figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 from . import numbers
 from .curves import PAPER, pressures
-from .law_fits import EXACT_LAW, PANELS, PRESSURES, exact, largest_error, printed
+from .law_fits import PAPERS_NAME, PRESSURES, draw_laws, exact, largest_error, printed
 
 DISC = {"linestyle": (0, (4, 2)), "linewidth": 0.9}
 
@@ -40,24 +39,12 @@ def table1_lattice() -> list[tuple]:
 def laws(panels) -> Columns:
     """Additional displacement against pressure: asperities on a square lattice, the disc cell of the paper (dashed),
     and the power law with the constants of its Table 1 (dotted). (a) Three densities of asperities, (b) three radii."""
-    p, columns = PRESSURES, {"p/E1*": PRESSURES}
-    for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
-        for i, (Ra, Nbar) in enumerate(roughnesses):
-            A = {"lattice": exact(Ra, Nbar, "square_lattice"), "disc": exact(Ra, Nbar), "paper": printed(Ra, Nbar)}
-            lines = axes.plot(p, A["lattice"] * 1e4, "-", color=f"C{i}")
-            lines += axes.plot(p, A["disc"] * 1e4, **EXACT_LAW)
-            lines += axes.plot(p, A["paper"] * 1e4, color=f"C{i}", linestyle=PAPER["linestyle"], linewidth=1.3)
-            name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
-            name_curve(axes, lines, name, 0.72 * p[-1], side="below", align="left")
-            columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": values for kind, values in A.items()}
-        axes.plot([], [], "-", color="0.5", label="square lattice")
-        axes.plot([], [], label="disc cell, Eqs (6), (7)", **EXACT_LAW)
-        axes.plot([], [], color="0.5", linestyle=PAPER["linestyle"], label="with the paper's $B$, $\\beta$")
-        given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
-        axes.legend(title=f"({panel}) {given}", loc="upper left")
-        limits = {"xlim": (0, p[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}
-        axes.set(xlabel="$p/E_1^*$", ylabel=r"$A[p]\ /\ (10^{-4} R)$", **limits)
-    return columns
+
+    def laws_of(Ra: float, Nbar: float) -> dict[str, np.ndarray]:
+        return {"lattice": exact(Ra, Nbar, "square_lattice"), "disc": exact(Ra, Nbar), "paper": printed(Ra, Nbar)}
+
+    names = {"lattice": "square lattice", "disc": "disc cell, Eqs (6), (7)", "paper": PAPERS_NAME}
+    return draw_laws(panels, laws_of, names, tuple(names), at=0.72 * PRESSURES[-1], side="below", align="left")
 
 
 @figure("fig10_lattice", "spot_density_lattice", "spot_density", size=(TWO_COLUMNS, 3.0), panels=(1, 2))

@@ -3,6 +3,8 @@
 No study is needed: the exact law is a formula, Eqs (6) and (7), and a fit takes milliseconds.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 
 from solver import fit_power_law
@@ -14,8 +16,11 @@ from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 from . import numbers
 
 PRESSURES = np.linspace(1e-4, 0.025, 250)  # p/E1* of the paper's fit, Section 4.1: from 1e-4 to 0.025 in steps of 1e-4
-EXACT_LAW = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
-PAPERS_LAW = {"linestyle": (0, (1, 1.2)), "linewidth": 1.3}
+_DISC = {"color": "black", "linestyle": (0, (4, 3)), "linewidth": 0.8}
+_PAPER = {"linestyle": (0, (1, 1.2)), "linewidth": 1.3}
+LOOKS = {"fit": {"linestyle": "-"}, "lattice": {"linestyle": "-"}, "exact": _DISC, "disc": _DISC, "paper": _PAPER}
+"""Law -> its lines; those of the last are drawn on top."""
+PAPERS_NAME = "with the paper's $B$, $\\beta$"
 PANELS = {"a": [(0.004, N) for N in (250_000, 62_500, 15_625)], "b": [(Ra, 250_000) for Ra in (0.004, 0.002, 0.001)]}
 """Ra and N̄ of the curves in each panel of Figure 9."""
 
@@ -71,22 +76,34 @@ def laws(panels) -> Columns:
     """Additional displacement against pressure: the exact law (dashed), the power law B p^beta fitted to it, and that
     with the constants of the paper's Table 1, which are rounded (dotted). (a) Three densities of asperities, (b) three
     radii."""
-    p, columns = PRESSURES, {"p/E1*": PRESSURES}
+
+    def laws_of(Ra: float, Nbar: float) -> dict[str, np.ndarray]:
+        B, beta, _ = fitted(Ra, Nbar)
+        return {"exact": exact(Ra, Nbar), "fit": B * PRESSURES**beta, "paper": printed(Ra, Nbar)}
+
+    names = {"exact": "exact, Eqs (6), (7)", "fit": r"fitted, $B p^{\beta}$", "paper": PAPERS_NAME}
+    return draw_laws(panels, laws_of, names, ("fit",), at=0.95 * PRESSURES[-1], align="right")
+
+
+def draw_laws(panels, laws_of: Callable, names: dict[str, str], beside: tuple[str, ...], **place) -> Columns:
+    """Draw A[p] of the roughnesses of PANELS by several laws; returns the numbers.
+
+    laws_of : (Ra, N̄) -> law, one of LOOKS -> A/R at PRESSURES; names : law -> what the legend calls it
+    beside : the laws beside whose curves the name of a roughness stands; place : where, see `name_curve`
+    """
+    columns = {"p/E1*": PRESSURES}
     for axes, (panel, roughnesses) in zip(panels, PANELS.items(), strict=True):
         for i, (Ra, Nbar) in enumerate(roughnesses):
-            B, beta, _ = fitted(Ra, Nbar)
-            A = {"exact": exact(Ra, Nbar), "fit": B * p**beta, "paper": printed(Ra, Nbar)}
-            lines = axes.plot(p, A["fit"] * 1e4, "-", color=f"C{i}")
-            axes.plot(p, A["exact"] * 1e4, **EXACT_LAW)
-            axes.plot(p, A["paper"] * 1e4, color=f"C{i}", **PAPERS_LAW)
-            name = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
-            name_curve(axes, lines, name, 0.95 * p[-1], align="right")
-            columns |= {f"A/R Ra={Ra} N={Nbar} {kind}": values for kind, values in A.items()}
-        axes.plot([], [], label="exact, Eqs (6), (7)", **EXACT_LAW)
-        axes.plot([], [], "-", color="0.5", label=r"fitted, $B p^{\beta}$")
-        axes.plot([], [], color="0.5", label="with the paper's $B$, $\\beta$", **PAPERS_LAW)
+            A = laws_of(Ra, Nbar)
+            looks = {law: {"color": f"C{i}"} | look for law, look in LOOKS.items() if law in A}
+            lines = {law: axes.plot(PRESSURES, A[law] * 1e4, **look)[0] for law, look in looks.items()}
+            text = rf"$\bar N R^2 = {Nbar}$" if panel == "a" else f"$R_a/R = {Ra}$"
+            name_curve(axes, [lines[law] for law in beside], text, **place)
+            columns |= {f"A/R Ra={Ra} N={Nbar} {law}": values for law, values in A.items()}
+        for law, name in names.items():
+            axes.plot([], [], label=name, **{"color": "0.5"} | LOOKS[law])
         given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
         axes.legend(title=f"({panel}) {given}", loc="upper left")
-        limits = {"xlim": (0, p[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}
+        limits = {"xlim": (0, PRESSURES[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}
         axes.set(xlabel="$p/E_1^*$", ylabel=r"$A[p]\ /\ (10^{-4} R)$", **limits)
     return columns

@@ -7,11 +7,11 @@ import numpy as np
 from solver import laws
 
 from ..spec.grid import equal_values
-from ..spec.vocabulary import VOCABULARY, finite
+from ..spec.vocabulary import SCENE, VOCABULARY, finite
 from ..specimen import materials
 from ..specimen.quantities import Quantity
 from ..terminal import shown
-from .names import RIGID_TEXTS, SCENE, CaseValues, QuantityList
+from .names import RIGID_TEXTS, CaseValues, QuantityList
 
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}

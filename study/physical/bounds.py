@@ -10,11 +10,11 @@ from solver.parameters import ends
 
 from ..data.units import with_unit
 from ..spec.grid import MOVED
-from ..spec.vocabulary import VOCABULARY, allowed
+from ..spec.vocabulary import ROWS, SCENE, VOCABULARY, allowed
 from ..specimen.quantities import multiple, quantity, readable, unit_in
 from ..terminal import on_one_line
 from .bodies import BODIES
-from .names import SCENE, QuantityList, unit_of
+from .names import QuantityList
 from .scene import Scene
 
 #: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
@@ -58,7 +58,7 @@ def absurd(given: dict, spreads: dict) -> list[str]:
         values = np.ravel(given.get(name, np.nan))
         outside = ((values < low) | (values > high)) & np.isfinite(values)
         if outside.any():
-            one = readable(float(values[outside][0]), unit_of(name))
+            one = readable(float(values[outside][0]), ROWS[name].unit)
             found.append(f"{name} = {one}: {words}; is its unit right?")
     for name, spread in spreads.items():
         value = given[name]
@@ -70,7 +70,7 @@ def absurd(given: dict, spreads: dict) -> list[str]:
             value, spread, limit = (np.ravel(zero + one) for one in (value, spread, limit))
         wide = np.flatnonzero((spread > 0) & (spread >= limit))
         if len(wide):
-            text = readable(float(value[wide[0]]), unit_of(name), float(spread[wide[0]]))
+            text = readable(float(value[wide[0]]), ROWS[name].unit, float(spread[wide[0]]))
             found.append(f"{name} = {text}: too wide a spread for the ± of results, which is to first order")
     return found
 
@@ -96,7 +96,7 @@ def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
     as_given = place | ({MOVED: 0} if MOVED in place else {})
     index = [as_given[dim] for dim in getattr(value, "dims", ()) if dim != MOVED]
     called = f"{name}{index}" if index else name
-    text, word, size = _written(given, index, _at(value, as_given), unit_of(name))
+    text, word, size = _written(given, index, _at(value, as_given), ROWS[name].unit)
     moved = "with its spread it " if place != as_given else ""
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     # the bounds in the unit of the value

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from xarray.indexes import PandasIndex
 
-from ..spec.vocabulary import VOCABULARY
+from ..spec.vocabulary import ROWS
 from ..specimen.quantities import has_unit
-from .names import SCENE, si, unit_of
+from .names import si
 
 
 class _AsPandasIndex(type):
@@ -34,7 +34,7 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 
         def number(one: Any) -> Any:
             text = isinstance(one, str) or has_unit(one)
-            return si(name, one).value if text and _known(name) else one
+            return si(name, one).value if text and name in ROWS else one
 
         if isinstance(label, slice):
             label = slice(number(label.start), number(label.stop), label.step)
@@ -56,10 +56,6 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
     for name, variable in dataset.variables.items():
-        if variable.dims == (name,) and _known(name) and variable.attrs.get("units") == unit_of(name) != "1":
+        if variable.dims == (name,) and name in ROWS and variable.attrs.get("units") == ROWS[name].unit != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset
-
-
-def _known(name: Any) -> bool:
-    return name in SCENE or name in VOCABULARY

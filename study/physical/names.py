@@ -1,21 +1,11 @@
-"""Names, SI units and dimensions of the inputs of a physical scene."""
+"""Values and dimensions of the inputs of a physical scene."""
 
 import math
 from typing import Any, NamedTuple
 
-from ..spec.vocabulary import SI, VOCABULARY
+from ..spec.vocabulary import ROWS
 from ..specimen.quantities import Quantity, quantity
 
-#: Inputs of a scene that are no parameters of the solver -> SI unit, long name.
-SCENE = {
-    "R": ("m", "radius of the punch"),
-    "R1": ("m", "radius of one body"),
-    "R2": ("m", "radius of the other body, negative: a cup, inf: flat"),
-    "E1": ("Pa", "Young's modulus of the layer"),
-    "E2": ("Pa", "Young's modulus of the body under the layer"),
-    "E_punch": ("Pa", "Young's modulus of the punch"),
-    "nu_punch": ("1", "Poisson ratio of the punch"),
-}
 #: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
 RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
 #: What may be infinite, and the texts that say so.
@@ -42,17 +32,7 @@ def dim_of(name: str) -> str:
     A parameter with a unit has a dimension "h in SI". The name alone is that of the dimensionless parameter h/R, which
     depends on the dimension of R as well.
     """
-    return name if unit_of(name) == "1" else f"{name} in SI"
-
-
-def unit_of(name: str) -> str:
-    """SI unit of a parameter or result; "1" for pure numbers and texts."""
-    return SCENE[name][0] if name in SCENE else VOCABULARY[name].unit
-
-
-def powers_of(name: str) -> tuple[int, int]:
-    """(i, j) of the SI unit Pa^i m^j of a parameter."""
-    return next(key for key, unit in SI.items() if unit == SCENE[name][0]) if name in SCENE else VOCABULARY[name].powers
+    return name if ROWS[name].unit == "1" else f"{name} in SI"
 
 
 def si(name: str, given: Any, called: str = "") -> Quantity:
@@ -62,4 +42,4 @@ def si(name: str, given: Any, called: str = "") -> Quantity:
     """
     if name in INFINITE and (given.lower() in INFINITE[name] if isinstance(given, str) else given == math.inf):
         return Quantity(math.inf)
-    return quantity(called or name, given, unit_of(name))
+    return quantity(called or name, given, ROWS[name].unit)

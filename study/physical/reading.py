@@ -13,13 +13,13 @@ from ..spec.definition import StudyError
 from ..spec.given import label_slips
 from ..spec.grid import MOVED, equal_values
 from ..spec.laws import is_parameter
-from ..spec.vocabulary import PARAMETERS, VOCABULARY, instead
+from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, instead
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import equal_cases, impossible, missing, moving_tables
-from .names import SCENE, CaseValues, QuantityList, dim_of, si, unit_of
+from .names import CaseValues, QuantityList, dim_of, si
 from .scales import make_dimensionless
 from .scene import STEP, Scene
 
@@ -141,7 +141,7 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
     materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
-    with_units = {name for name in parameters if name in VOCABULARY and unit_of(name) != "1"}
+    with_units = {name for name in parameters if name in VOCABULARY and ROWS[name].unit != "1"}
     taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)  # no dimension may have these names
     # Dimension -> the parameter that gave it first, and its coordinate there; then the same with its length.
     labels = {name: (name, arrays[name].values) for name in along_itself if name not in arrays[name].coords}
@@ -174,7 +174,7 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
 def _add(scene: Scene, name: str, given: Any) -> None:
     """Put the SI values and spreads of an input into the scene. Raises ValueError for values that it cannot have."""
     if isinstance(given, xr.DataArray):
-        value, spread = _of_array(name, given, unit_of(name)), 0.0
+        value, spread = _of_array(name, given, ROWS[name].unit), 0.0
     else:
         found = given if isinstance(given, (QuantityList, Quantity)) else _quantities(name, given)
         if isinstance(found, QuantityList):
@@ -184,7 +184,7 @@ def _add(scene: Scene, name: str, given: Any) -> None:
             value, spread = found.value, found.spread
     if isinstance(value, xr.DataArray) and value.dims == (dim_of(name),):
         scene.dims[dim_of(name)] = name
-        unit = f" {unit_of(name)}".removesuffix(" 1")
+        unit = f" {ROWS[name].unit}".removesuffix(" 1")
         for message in equal_values(name, value.values.tolist(), lambda one: f"{one:g}{unit}"):
             raise ValueError(message)
     if name in ("R1", "R2") and not np.all(value != 0):

@@ -13,8 +13,7 @@ import xarray as xr
 from ..data.units import reduced_modulus, without_unit
 from ..spec.definition import Definition
 from ..spec.grid import MOVED, Grid
-from ..spec.vocabulary import VOCABULARY
-from .names import SCENE
+from ..spec.vocabulary import SCENE, VOCABULARY
 from .scene import Scene
 
 Values = dict[str, tuple[tuple[str, ...], np.ndarray]]

@@ -10,9 +10,8 @@ from ..data.dataset import Parts
 from ..data.units import PHYSICAL_SCALE, physical_attributes, with_unit
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
-from ..spec.vocabulary import NUMERICS, VOCABULARY
+from ..spec.vocabulary import NUMERICS, ROWS, VOCABULARY
 from .index import searchable
-from .names import SCENE, unit_of
 
 #: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
 #: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
@@ -64,9 +63,7 @@ class Scene:
         """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
 
         def cut(value: Any) -> Any:
-            if not isinstance(value, xr.DataArray):
-                return value
-            return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
+            return value.isel(window, missing_dims="ignore") if isinstance(value, xr.DataArray) else value
 
         tables = (self.given, self.spreads, self.given_in)
         given, spreads, given_in = ({name: cut(v) for name, v in table.items()} for table in tables)
@@ -103,14 +100,8 @@ class Scene:
         # last, since `xr.concat` compares no coordinate behind one that only the first dataset has
         coords |= {name: coords.pop(name) for name in NUMERICS if name in coords}
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
-        return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
-
-    def _renamed(self, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
-        """The variables over the dimensions that the results have."""
-        if not self.dims:
-            return variables
-        dims = {name: [self.dims.get(dim, dim) for dim in variable.dims] for name, variable in variables.items()}
-        return {name: xr.Variable(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
+        named = {dim: name for dim, name in self.dims.items() if dim != name}
+        return searchable(Parts(results, coords, attributes).dataset().swap_dims(named))
 
 
 def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
@@ -120,14 +111,9 @@ def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
 
 def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
     """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
-    words = SCENE[name][1] if name in SCENE else VOCABULARY[name].long_name
-    found = _variable(value, {"long_name": long_name or words} | _units(unit_of(name)))
-    return found.isel({MOVED: 0}) if MOVED in found.dims else found
-
-
-def _variable(value: Any, attributes: dict | None = None) -> xr.Variable:
-    dims, data = (value.dims, value.data) if isinstance(value, xr.DataArray) else ((), value)
-    return xr.Variable(dims, data, attributes)
+    found = xr.as_variable(value).isel({MOVED: 0}, missing_dims="ignore")
+    found.attrs = {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit)
+    return found
 
 
 def _units(unit: str) -> dict[str, str]:
@@ -137,14 +123,10 @@ def _units(unit: str) -> dict[str, str]:
 
 def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
-    powers, dims = VOCABULARY[name].powers, variable.dims
-    if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
-        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*dims, ...)
-        dims, data = found.dims, found.data
-    else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
-        data = with_unit(variable.data, powers, unit, R)
-    data = data.astype(variable.dtype, copy=False)
-    return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
+    powers = VOCABULARY[name].powers
+    found = with_unit(variable, powers, xr.as_variable(unit), xr.as_variable(R)).transpose(*variable.dims, ...)
+    data = found.data.astype(variable.dtype, copy=False)
+    return xr.Variable(found.dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 
 def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[str, xr.Variable]:
@@ -167,5 +149,5 @@ def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[
         change = change.where((plus == minus) | change.isnull(), of_one_side)
     spread = np.sqrt(((change / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
     long_name = f"standard deviation of {name}, from the spreads of the inputs"
-    spread.attrs = {"long_name": long_name} | _units(unit_of(name))
+    spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
     return {f"{name}_spread": spread}

@@ -18,11 +18,11 @@ from ..spec.grid import axis_values
 from ..spec.identity import digest_of_array
 from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
-from ..spec.vocabulary import NUMERICS, VOCABULARY, Parameter, si_unit
+from ..spec.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, Parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
 from .bodies import BODIES, with_materials
-from .names import SCENE, CaseValues, QuantityList, dim_of, powers_of, si, unit_of
+from .names import CaseValues, QuantityList, dim_of, si
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
@@ -43,7 +43,6 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
 
     draft, given = definition.new_draft(tables, where)
-    definition.add_numerics(draft, given)
     before = len(draft.errors)
     parameters = _parameters(draft, given)
     if draft.errors and "sample" in given:  # what it draws would be missing
@@ -116,10 +115,10 @@ def _parameters(draft: Draft, given: dict) -> dict:
 
 def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
     """The values of an axis. A range with units becomes SI values."""
-    numeric = name in SCENE or (name in VOCABULARY and not VOCABULARY[name].own.choices)
-    with_unit = isinstance(raw, dict) and numeric and unit_of(name) != "1"
+    numeric = name in ROWS and not ROWS[name].own.choices
+    with_unit = isinstance(raw, dict) and numeric and ROWS[name].unit != "1"
     before = len(errors)
-    raw = _in_si(raw, name, unit_of(name), errors) if with_unit else raw
+    raw = _in_si(raw, name, ROWS[name].unit, errors) if with_unit else raw
     values = axis_values(raw, name, errors) if len(errors) == before else []
     if not values:  # what else is wrong is looked for, without a second message about this
         word = "PTFE" if name in BODIES else []  # any material
@@ -152,7 +151,7 @@ def _sampled(table: Any, draft: Draft) -> dict[str, CaseValues | QuantityList]:
         if name in BODIES:
             known[name] = Parameter(choices=("a material",))
         elif name in SCENE or is_parameter(name):
-            known[name] = VOCABULARY[name].own if unit_of(name) == "1" and name in VOCABULARY else ANY_NUMBER
+            known[name] = VOCABULARY[name].own if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
             if isinstance(raw, dict):
                 in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
         elif name not in LIMITS:
@@ -181,10 +180,10 @@ def _check_list(name: str, raw: list, draft: Draft) -> None:
 
 def _unit_of_range(name: str, raw: dict) -> str:
     """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
-    i, j = powers_of(name)
+    i, j = ROWS[name].powers
     other, power = divisor(raw)
-    if other in SCENE or other in VOCABULARY:
-        i, j = (own + power * more for own, more in zip((i, j), powers_of(other), strict=True))
+    if other in ROWS:
+        i, j = (own + power * more for own, more in zip((i, j), ROWS[other].powers, strict=True))
     return si_unit((i, j))
 
 

@@ -10,7 +10,7 @@ from solver.laws import LAWS, untried
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
-from .grid import Grid, along, on_rigid_base
+from .grid import Grid, along
 from .laws import smooth_laws
 from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, cases_with
 
@@ -60,10 +60,8 @@ def missing_parameters(grid: Grid) -> list[str]:
 
 def mixed_units(grid: Grid) -> list[str]:
     """A message if layers on a rigid base, whose numbers are in E1*, are among others, whose numbers are in E2*."""
-    if not on_rigid_base(grid).any():
-        return []
     n, layered = np.broadcast_arrays(along(grid, "n"), cases_with("n", partial(along, grid)))
-    if not (n[layered] > 0).any():
+    if not (n == 0).any() or not (n[layered] > 0).any():
         return []
     return [
         "n = 0, a rigid base, is among others: its numbers are in E1*, theirs in E2*. Make two studies, or give "

@@ -28,12 +28,13 @@ SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "ou
 
 
 class StudyError(ValueError):
-    """Input that cannot be used; `messages` has every reason, one line each; `code`: exit code of a command."""
+    """Input that cannot be used; `messages` has every reason, one line each.
 
-    code = 2
+    code : exit code of a command; 1 where the input is right, and what it leads to is wrong
+    """
 
-    def __init__(self, messages):
-        self.messages = tuple(messages)
+    def __init__(self, messages, code: int = 2):
+        self.messages, self.code = tuple(messages), code
         super().__init__("\n".join(self.messages))
 
 
@@ -121,7 +122,6 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     draft, given = new_draft(tables, where)
     for key, value in given["model"].items():
         draft.scalar(key, value, "[model]")
-    add_numerics(draft, given)
     if "cases" in tables:  # before the axes, as `case` is the first dimension wherever [[cases]] stand in the file
         draft.cases(tables["cases"])
     if "sample" in tables:
@@ -132,7 +132,8 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
 
 
 def new_draft(tables: dict, where: str) -> tuple[Draft, dict]:
-    """An empty draft, which has the messages about unknown sections and keys, and the tables with all sections."""
+    """A draft of the section [numerics], which has the messages about unknown sections and keys, and the tables with
+    all sections."""
     kind = tables.get("kind", "contact")
     if kind != "contact":
         gone = "; a micro law needs no study: call solver.fit_power_law" if kind == "micro_law" else ""
@@ -142,6 +143,8 @@ def new_draft(tables: dict, where: str) -> tuple[Draft, dict]:
         _no_section(key, tables[key]) for key in islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
     ]
     given = tables | {section: _table(tables, section, keys, draft.errors) for section, keys in KEYS.items()}
+    for key in [key for key in NUMERICS if key in given["numerics"]]:
+        draft.scalar(key, given["numerics"][key], "[numerics]")
     return draft, given
 
 
@@ -150,13 +153,6 @@ def _no_section(key: str, value: Any) -> str:
     near = suggest(key, SECTIONS)
     below = near.startswith("; known") and not isinstance(value, (dict, list))
     return f"{shown(key)} is not a section{near}{'; parameters stand below [model] or [axes]' * below}"
-
-
-def add_numerics(draft: Draft, given: dict) -> None:
-    """Add the parameters of the section [numerics]."""
-    for key in NUMERICS:
-        if key in given["numerics"]:
-            draft.scalar(key, given["numerics"][key], "[numerics]")
 
 
 def complete(draft: Draft, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:

@@ -173,10 +173,10 @@ class Draft:
             known = [*PARAMETERS, *["label"] * (section == "[[cases]]")]
             near = instead(name, known) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
-        elif name in self.sections:
-            self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
         elif section == "[model]" and name in NUMERICS:
             self.errors.append(f"{place}{name} belongs in [numerics]")
+        elif name in self.sections:
+            self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
         else:
             self.sections[name] = section
             return True

@@ -60,11 +60,6 @@ def along(grid: Grid, name: str) -> np.ndarray:
     return array.reshape([size if dim in dims else 1 for dim, size in grid.sizes.items()])
 
 
-def on_rigid_base(grid: Grid) -> np.ndarray:
-    """Where n = 0 says that the base is rigid, along the dimensions of the grid as `along` has them."""
-    return along(grid, "n") == 0
-
-
 def columns(grid: Grid, index: np.ndarray) -> dict[str, np.ndarray]:
     """Parameters of the cases numbered `index` (k,), each (k,); NaN where the case does not need it."""
     places = dict(zip(grid.sizes, np.unravel_index(index, grid.shape), strict=True)) if grid.sizes else {}
@@ -91,16 +86,12 @@ def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
 
     chunk : largest number of cases in a chunk; see `box`
     """
-    lengths = box(grid.shape, max(chunk, most))
-    lengths = [
-        length if length == size else length - length % within
-        for length, within, size in zip(lengths, box(grid.shape, chunk), grid.shape, strict=True)
-    ]
-    for corner in product(*(range(0, size, length) for size, length in zip(grid.shape, lengths, strict=True))):
-        yield {
-            dim: slice(low, min(low + length, size))
-            for (dim, size), low, length in zip(grid.sizes.items(), corner, lengths, strict=True)
-        }
+    parts, lengths = [], zip(grid.shape, box(grid.shape, max(chunk, most)), box(grid.shape, chunk), strict=True)
+    for size, length, within in lengths:
+        step = length if length == size else length - length % within
+        parts.append([slice(low, min(low + step, size)) for low in range(0, size, step)])
+    for window in product(*parts):
+        yield dict(zip(grid.sizes, window, strict=True))
 
 
 def box(shape: tuple[int, ...], most: int) -> list[int]:

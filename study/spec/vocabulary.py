@@ -4,6 +4,7 @@ import difflib
 import math
 import numbers
 import tomllib
+from collections import ChainMap
 from dataclasses import dataclass
 from decimal import Decimal
 from functools import cached_property
@@ -87,14 +88,17 @@ def entries(tables: dict) -> dict[str, Entry]:
     return {name: Entry(name, role, **own | {"powers": tuple(own.get("powers", (0, 0)))}) for name, role, own in rows}
 
 
-VOCABULARY = entries(tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8")))
-ROLES = {name: entry.role for name, entry in VOCABULARY.items()}
-"""Name -> role, of the rows of the file alone. VOCABULARY also gets the parameters of registered laws."""
+_TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
+SCENE = entries({"scene": _TABLES.pop("scene")})
+"""Inputs of a study with units that are no parameters of the solver, which only has what follows from them."""
+VOCABULARY = entries(_TABLES)
+ROWS = ChainMap(VOCABULARY, SCENE)
+"""Both, and with them the parameters of registered laws."""
 
 
 def names(*roles: str) -> tuple[str, ...]:
-    """Names that have one of the roles, in the order of the table."""
-    return tuple(name for name, role in ROLES.items() if role in roles)
+    """Names that have one of the roles, in the order of the table; without the parameters of registered laws."""
+    return tuple(name for role, table in _TABLES.items() if role in roles for name in table)
 
 
 CONTROLS = names("control")

@@ -21,12 +21,6 @@ from ..terminal import shown
 from .cost import PER_CASE, describe, estimate
 
 
-class CannotWrite(StudyError):
-    """The study is right, the place for its results is not."""
-
-    code = 1
-
-
 @dataclass(frozen=True)
 class Report:
     """What a run did.
@@ -141,7 +135,7 @@ def status_values(words: list[str]) -> tuple[int, ...]:
 
 
 def check_writable(path: Path) -> None:
-    """Raise CannotWrite when the results cannot be written to their folder, or to where a symbolic link leads."""
+    """Raise StudyError when the results cannot be written to their folder, or to where a symbolic link leads."""
     folder = path.parent
     try:
         str(path.absolute()).encode()
@@ -151,7 +145,7 @@ def check_writable(path: Path) -> None:
             pass
     except OSError as error:
         reason = "is a file, not a folder" if isinstance(error, FileExistsError) else error.strerror
-        raise CannotWrite([f"{folder}: cannot be written: {reason}"]) from None
+        raise StudyError([f"{folder}: cannot be written: {reason}"], code=1) from None
     except UnicodeEncodeError:  # Python has lone surrogates for bytes of a path that are not UTF-8
         wrong = f"{path.absolute()}: the path of results must be UTF-8: netCDF can open no other"
         raise StudyError([wrong]) from None

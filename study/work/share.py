@@ -113,31 +113,39 @@ def _processes_allowed(definition: Definition, workers: int | None) -> int:
 
 def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[str, np.ndarray]:
     """Solve all blocks, in this thread and in at most `most` processes. More are started only if much work is left."""
-    waiting, done, columns = deque(blocks), deque(), {}
+    waiting, failed, columns = deque(blocks), [], {}
+
+    def place(index: np.ndarray, found: dict) -> None:
+        """Write the columns of a block into those of the grid; threads write different parts of them."""
+        for name, array in found.items():
+            whole = columns.setdefault(name, np.empty((definition.grid.size, *array.shape[1:]), array.dtype))
+            whole[index[0] : index[-1] + 1] = array
 
     def feeder(call: Callable) -> None:
         for index in _taken(waiting):
             wanted = parcel(definition, index)
             try:
                 found = call(guarded, wanted)
-            except Exception as error:  # the block is then computed here
+            except Exception as error:
                 found = Failure(str(error), "")
-            done.append((index, found))
+            if isinstance(found, Failure):  # the calling thread then computes the block
+                log.debug("cases %d to %d: %s", wanted.first, wanted.last, found.message)
+                failed.append(index)
+            else:
+                place(index, found)
 
     begun, feeders = time.perf_counter(), []
     if ready := _pool.reuse(most):
         feeders = _pool.feed(feeder, ready)
     for index in _taken(waiting):
-        _place(columns, definition, index, compute(parcel(definition, index)))
+        place(index, compute(parcel(definition, index)))
         if most and not feeders:
             left = (time.perf_counter() - begun) / (len(blocks) - len(waiting)) * len(waiting)
             feeders = _pool.feed(feeder, min(most, int(left / START)))
-        for ended in _taken(done):
-            _place(columns, definition, *ended)
     for one in feeders:
         one.result()  # raises the error of a feeder, whose cases would be missing
-    for ended in _taken(done):
-        _place(columns, definition, *ended)
+    for index in failed:
+        place(index, compute(parcel(definition, index)))
     return columns
 
 
@@ -146,14 +154,3 @@ def _taken(queue: deque) -> Iterator:
     with suppress(IndexError):
         while True:
             yield queue.popleft()
-
-
-def _place(columns: dict, definition: Definition, index: np.ndarray, found: dict | Failure) -> None:
-    """Write the columns of a block into those of the grid. A block that failed in its process is computed here."""
-    if isinstance(found, Failure):
-        log.debug("cases %d to %d: %s", index[0], index[-1], found.message)
-        found = compute(parcel(definition, index))
-    for name, array in found.items():
-        if name not in columns:
-            columns[name] = np.empty((definition.grid.size, *array.shape[1:]), array.dtype)
-        columns[name][index[0] : index[-1] + 1] = array

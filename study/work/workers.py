@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import partial
 
-import dask.system
+from dask.system import cpu_count as available_workers  # no more than the limit of a container is worth
 
 from .cases import Failure
 from .processes import Processes
@@ -100,11 +100,6 @@ def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
         if handing.acquire(timeout=CONNECT):  # of a client that is closed, dask's thread waits for a result for ever
             handing.release()
         client.close(timeout=1)
-
-
-def available_workers() -> int:
-    """Processors that this process may use, no more than the limit of its container is worth, rounded up."""
-    return dask.system.cpu_count()
 
 
 def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterator[tuple[int, object]]:

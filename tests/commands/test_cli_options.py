@@ -12,6 +12,7 @@ from study import api, catalogue
 from study.__main__ import main
 from study.commands.computing import failure_lines
 from study.evidence import tradeoff
+from study.spec.definition import StudyError
 from study.work import plan
 from study.work.plan import Report
 
@@ -169,9 +170,9 @@ def test_the_exit_code_is_the_worst(monkeypatch, capsys):
         if name == "disk":
             raise OSError(28, "No space left on device")
         if name == "bad":
-            raise plan.StudyError(["bad"])
+            raise StudyError(["bad"])
         if name == "locked":
-            raise plan.CannotWrite(["locked"])
+            raise StudyError(["locked"], code=1)
         return [name]
 
     monkeypatch.setattr(catalogue, "draw", draw)

@@ -15,7 +15,8 @@ import numpy as np
 import xarray as xr
 
 import study
-from study.physical.names import si, unit_of
+from study.physical.names import si
+from study.spec.vocabulary import ROWS
 
 DRAWS = 10_000
 NAMES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
@@ -68,7 +69,7 @@ def drawn(given: dict, draws: int, seed: int) -> dict:
     normal = normal @ np.linalg.inv(np.linalg.cholesky(np.cov(normal.T, ddof=0))).T
     columns = zip(inputs.items(), normal.T, strict=True)
     return given | {
-        name: xr.DataArray(one.value + one.spread * column, dims="draw", attrs={"units": unit_of(name)})
+        name: xr.DataArray(one.value + one.spread * column, dims="draw", attrs={"units": ROWS[name].unit})
         for (name, one), column in columns
     }
 

@@ -169,8 +169,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     import study
     from solver.parameters import PARAMETERS as OWN
     from study.physical.bodies import BODIES
-    from study.physical.names import SCENE
-    from study.spec.vocabulary import PARAMETERS
+    from study.spec.vocabulary import PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters
     beside = {"cases", "x", "profiles", "title", "workers", "parameters"}

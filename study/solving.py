@@ -12,7 +12,7 @@ import xarray as xr
 
 from solver.laws import Law
 
-from .data.dataset import parts
+from .data.dataset import Parts, parts
 from .in_words import doubts
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
@@ -166,7 +166,7 @@ def solve(
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
     arrays = solved(definition, workers)
-    found = settings_apart(dataset_of(definition, parts(definition, arrays, "study.solve")))
+    found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
     if not scene:
         return found
     beyond = doubts(found)
@@ -191,8 +191,12 @@ def signature() -> inspect.Signature:
 solve.__signature__ = signature()
 
 
-def settings_apart(found: xr.Dataset) -> xr.Dataset:
-    """The dataset with numerical settings that all cases share as attributes, not as coordinates."""
-    shared = [name for name in NUMERICS if name in found.coords and not found.variables[name].ndim]
-    settings = {name: found.variables[name].values.item() for name in shared}
-    return found.drop_vars(shared).assign_attrs(settings)
+def settings_apart(found: Parts) -> Parts:
+    """The parts with numerical settings that all cases share as attributes, not as coordinates.
+
+    It is done before the dataset is made, since dropping variables of a dataset copies all others.
+    """
+    shared = [name for name in NUMERICS if name in found.coords and not found.coords[name].ndim]
+    coords = {name: own for name, own in found.coords.items() if name not in shared}
+    attributes = {name: found.coords[name].values.item() for name in shared}
+    return Parts(found.variables, coords, found.attributes | attributes)

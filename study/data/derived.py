@@ -68,7 +68,7 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 def validity_of(variables: Mapping) -> xr.Variable:
     """`validity` of the variables of a dataset. It computes with arrays, since DataArrays take as long as a contact."""
     status, used = variables["status"], variables["model_used"].attrs
-    v = {name: own.set_dims(status.dims).data for name, own in variables.items() if set(own.dims) <= set(status.dims)}
+    v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
     layered, rough = v["base"] != "half_space", _have("rough", v["micro"])
     h, n = v.get("h", np.nan), v.get("n", np.nan)
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
@@ -96,6 +96,14 @@ def validity_attributes() -> dict:
     """CF flags of `validity`."""
     masks = np.array(list(ASSUMPTIONS), dtype=np.int32)
     return {"flag_masks": masks, "flag_meanings": " ".join(ASSUMPTIONS.values())}
+
+
+def _along(dims: tuple, variable: xr.Variable):
+    """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
+    if variable.dims == dims:
+        return variable.data
+    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
 
 
 def quantity(name: str) -> Callable:

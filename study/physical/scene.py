@@ -63,7 +63,9 @@ class Scene:
         """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
 
         def cut(value: Any) -> Any:
-            return value.isel(window, missing_dims="ignore") if isinstance(value, xr.DataArray) else value
+            if not isinstance(value, xr.DataArray):
+                return value
+            return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
 
         tables = (self.given, self.spreads, self.given_in)
         given, spreads, given_in = ({name: cut(v) for name, v in table.items()} for table in tables)
@@ -100,8 +102,14 @@ class Scene:
         # last, since `xr.concat` compares no coordinate behind one that only the first dataset has
         coords |= {name: coords.pop(name) for name in NUMERICS if name in coords}
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
-        named = {dim: name for dim, name in self.dims.items() if dim != name}
-        return searchable(Parts(results, coords, attributes).dataset().swap_dims(named))
+        return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
+
+    def _renamed(self, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
+        """The variables over the dimensions that the results have."""
+        if not self.dims:
+            return variables
+        dims = {name: [self.dims.get(dim, dim) for dim in variable.dims] for name, variable in variables.items()}
+        return {name: xr.Variable(dims[name], v.data, v.attrs, v.encoding) for name, v in variables.items()}
 
 
 def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
@@ -111,9 +119,13 @@ def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
 
 def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
     """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
-    found = xr.as_variable(value).isel({MOVED: 0}, missing_dims="ignore")
-    found.attrs = {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit)
-    return found
+    found = _variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
+    return found.isel({MOVED: 0}) if MOVED in found.dims else found
+
+
+def _variable(value: Any, attributes: dict | None = None) -> xr.Variable:
+    dims, data = (value.dims, value.data) if isinstance(value, xr.DataArray) else ((), value)
+    return xr.Variable(dims, data, attributes)
 
 
 def _units(unit: str) -> dict[str, str]:
@@ -123,10 +135,14 @@ def _units(unit: str) -> dict[str, str]:
 
 def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
     """A dimensionless variable in the SI unit of its name, its dimensions first."""
-    powers = VOCABULARY[name].powers
-    found = with_unit(variable, powers, xr.as_variable(unit), xr.as_variable(R)).transpose(*variable.dims, ...)
-    data = found.data.astype(variable.dtype, copy=False)
-    return xr.Variable(found.dims, data, physical_attributes(name, variable.attrs), variable.encoding)
+    powers, dims = VOCABULARY[name].powers, variable.dims
+    if isinstance(unit, xr.DataArray) or isinstance(R, xr.DataArray):
+        found = with_unit(variable, powers, _variable(unit), _variable(R)).transpose(*dims, ...)
+        dims, data = found.dims, found.data
+    else:  # the usual case is made quick: arithmetic of labelled arrays takes as long as a contact
+        data = with_unit(variable.data, powers, unit, R)
+    data = data.astype(variable.dtype, copy=False)
+    return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
 
 
 def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[str, xr.Variable]:

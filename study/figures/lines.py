@@ -17,7 +17,7 @@ from ..data.derived import QUANTITIES
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
-from .labels import axis_label, multiple, stated, value_text, with_units, wrapped, written
+from .labels import axis_label, multiple, stated, tick_few_decades, value_text, with_units, wrapped, written
 from .registry import Columns, joined
 from .style import style
 
@@ -58,6 +58,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = found.sortby(x) if x in found.dims else found  # a curve through loads as they were given runs to and fro
     found = found.squeeze([dim for dim, size in found.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(found[x], found[y])
+    if not np.logical_and(*(np.isfinite(one.values) for one in pair)).any():
+        raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; status says what became of each"])
     if "validity" in found and not {*found["validity"].dims} <= {*pair[1].dims}:
         found = found.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
@@ -212,6 +214,8 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
     for axes in panels:
         grid = axes.get_subplotspec()
         axes.set(xscale="log" if log_x else "linear", yscale="log" if log_y else "linear")
+        for axis in (axes.xaxis, axes.yaxis):
+            tick_few_decades(axis)
         axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, found[x]))
         axes.label_outer()

@@ -39,3 +39,18 @@ def test_an_array_is_no_dataset_and_a_stacked_one_is_to_be_unstacked(found):
         study.plot(found.stack(z=("P", "nu2")), "P", "a")
     with pytest.raises(study.StudyError, match="a figure is of a dataset of contacts, not of a DataArray"):
         study.plot(found.a, "P", "a")
+
+
+def test_a_figure_without_a_number_is_not_drawn(found):
+    """It was empty, after a RuntimeWarning of numpy."""
+    with pytest.raises(study.StudyError, match="nothing to draw: no case has numbers for P and a; status says"):
+        study.plot(found.where(found.P > 1e9), "P", "a", hue="nu2")
+
+
+def test_numbers_of_a_logarithmic_axis_of_one_decade():
+    """2, 3, 4 and 6 times 10¹ were written over each other."""
+    given = {"R": "5 mm", "E2": "70 GPa", "base": "half_space", "micro": "smooth", "x": 2}
+    axes = study.plot(study.solve(**given, a=[f"{a} um" for a in (15, 30, 70, 180)]), "a", "P").axes[0]
+    low, high = axes.get_xlim()
+    shown = [text.get_text() for text in axes.get_xticklabels() if low <= text.get_position()[0] <= high]
+    assert shown == ["30", "100"] and not any(text.get_text() for text in axes.get_xticklabels(minor=True))

@@ -5,8 +5,6 @@ from collections.abc import Iterable
 
 import numpy as np
 import xarray as xr
-from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, NullFormatter
 
 from ..physical.inputs import all_inputs, is_rigid, used_inputs
 from ..physical.names import SCENE
@@ -89,18 +87,6 @@ def written(value: float) -> str:
         return str(int(value))
     mantissa, _, power = f"{value:.4g}".partition("e")
     return rf"${mantissa}\times10^{{{int(power)}}}$".replace(r"$1\times", "$") if power else mantissa
-
-
-def tick_few_decades(axis: Axis) -> None:
-    """Ticks at 1 and 3 of each decade of a logarithmic axis that has fewer than two.
-
-    matplotlib has one number there, or writes those at 2, 3, 4 and 6 over each other.
-    """
-    low, high = axis.get_view_interval()
-    if axis.get_scale() == "log" and high < 100 * low:
-        axis.set_major_locator(LogLocator(subs=(1, 3)))
-        axis.set_major_formatter(lambda value, _: written(value))
-        axis.set_minor_formatter(NullFormatter())
 
 
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -17,7 +16,8 @@ from ..data.derived import QUANTITIES
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
-from .labels import axis_label, multiple, stated, tick_few_decades, value_text, with_units, wrapped, written
+from .labels import axis_label, multiple, stated, value_text, with_units, wrapped, written
+from .marks import as_points, shades, spaced_by_factors, tick_decades
 from .registry import Columns, joined
 from .style import style
 
@@ -84,7 +84,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         parts += curves(axes, case, (x, y, hue, along), found)
     for axes in panels[count:]:
         axes.set_visible(False)
-    decorate(figure, panels[:count], found, (x, y, hue))
+    decorate(figure, panels[:count], found, (x, y, hue, along))
     return figure, with_units(joined(parts), found)
 
 
@@ -177,9 +177,15 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             valid = np.broadcast_to(one["validity"].values == 0, len(up))
         spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{y}_spread",) if name in one}
         for half in spread.values():
+            if along == "case":
+                axes.errorbar(across / sizes[0], up / sizes[1], half / sizes[1], fmt="none", color=colour, alpha=0.5)
+                continue
             axes.fill_between(across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND)
         axes.plot(across / sizes[0], up / sizes[1], color=colour, **NOT_VALID)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colour, linestyle="-")
+        if along == "case":
+            as_points(axes.lines[-2:-1], "none")
+            as_points(axes.lines[-1:], "full")
         fixed = {
             name: np.full(len(up), array.item())
             for name, array in one.coords.items()
@@ -188,11 +194,6 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         known = {"valid": valid.astype(int)} if "validity" in one else {}
         parts.append(fixed | {x: across, y: up} | spread | known)
     return parts
-
-
-def shades(count: int) -> list:
-    """Colours from dark to light, told apart in grey as well; black for a single curve."""
-    return [colormaps["viridis"](0.9 * i / (count - 1)) for i in range(count)] if count > 1 else ["black"]
 
 
 def name_of(found: xr.Dataset, dim: str, i: int) -> str:
@@ -208,14 +209,14 @@ def name_of(found: xr.Dataset, dim: str, i: int) -> str:
 
 def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
     """Labels, scales, the legend, and the parameters above the figure."""
-    x, y, hue = names
+    x, y, hue, along = names
     log_x = spaced_by_factors(found[x].values)
     log_y = log_x and np.nanmin(found[y].values) > 0 and np.nanmax(found[y].values) > 30 * np.nanmin(found[y].values)
     for axes in panels:
         grid = axes.get_subplotspec()
         axes.set(xscale="log" if log_x else "linear", yscale="log" if log_y else "linear")
         for axis in (axes.xaxis, axes.yaxis):
-            tick_few_decades(axis)
+            tick_decades(axis)
         axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, found[x]))
         axes.label_outer()
@@ -230,8 +231,12 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         named = range(0, found.sizes[hue], every)
         title, texts = legend_texts(found, hue)
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
+        if along == "case":
+            as_points(handles, "full")
     if "validity" in found and (found["validity"] != 0).any():
         handles.append(Line2D([], [], color="0.4", label="not valid", **NOT_VALID))
+        if along == "case":
+            as_points(handles[-1:], "none")
     if f"{y}_spread" in found:
         handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
@@ -245,12 +250,3 @@ def legend_texts(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
         return "", [name_of(found, hue, i) for i in range(found.sizes[hue])]
     size = multiple(found[known])[1]
     return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]
-
-
-def spaced_by_factors(values: np.ndarray) -> bool:
-    """Whether values grow by factors rather than by steps: their median is nearer to the geometric mean."""
-    known = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
-    if not len(known) or known.min() <= 0 or known.max() < 10 * known.min():
-        return False
-    middle = np.log(np.median(known))
-    return abs(middle - np.log(known).mean()) < abs(middle - np.log(known.mean()))

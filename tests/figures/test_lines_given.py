@@ -54,3 +54,14 @@ def test_numbers_of_a_logarithmic_axis_of_one_decade():
     low, high = axes.get_xlim()
     shown = [text.get_text() for text in axes.get_xticklabels() if low <= text.get_position()[0] <= high]
     assert shown == ["30", "100"] and not any(text.get_text() for text in axes.get_xticklabels(minor=True))
+
+
+def test_single_cases_are_points():
+    """Random cases were joined by a line, to and fro."""
+    rows = [{"P": f"{P} N", "R": f"{R} mm"} for P, R in ((1, 3), (5, 2), (2, 5))]
+    cases = study.solve(cases=rows, E2="70 ± 5 GPa", base="half_space", micro="smooth", x=2)
+    figure = study.plot(cases, "P", "a")
+    styles = [(line.get_linestyle(), line.get_marker(), line.get_fillstyle()) for line in figure.axes[0].lines]
+    assert styles == [("None", "o", "none"), ("None", "o", "full")]
+    (bars,) = figure.axes[0].collections
+    np.testing.assert_allclose(np.ptp(bars.get_segments(), axis=1)[:, 1], 2e6 * cases.a_spread, rtol=1e-9)

@@ -75,7 +75,9 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = found.assign(whole)  # without coordinates: it has them, and xarray 2026.2 refuses to align them
     columns = 2 if count == 4 else min(count, 3)
     rows = -(-count // columns)
-    figure = new(figsize=(max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), 2.2 * rows + 0.4), layout="constrained")
+    names = min(found.sizes[hue], MOST_NAMES) if hue else 0  # a long legend stands below what is stated, not on it
+    size = max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), max(2.2 * rows + 0.4, 0.17 * names + 1.2)
+    figure = new(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     parts = []
     for axes, place in zip(panels, product(*(range(found.sizes[dim]) for dim in rest)), strict=False):
@@ -134,7 +136,8 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
             near, exact = np.isclose(values, wanted, rtol=1e-6, atol=0), values == wanted
             fits = exact if exact.any() else near
         if not fits.any():
-            listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in values[:20])
+            few = values if is_text(dataset[name]) else values[np.argsort(np.abs(values - wanted), kind="stable")]
+            listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in few[:20])
             more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
             raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
         index = np.flatnonzero(fits)  # several of [[cases]] may have the value, and keep their numbers

@@ -65,3 +65,17 @@ def test_single_cases_are_points():
     assert styles == [("None", "o", "none"), ("None", "o", "full")]
     (bars,) = figure.axes[0].collections
     np.testing.assert_allclose(np.ptp(bars.get_segments(), axis=1)[:, 1], 2e6 * cases.a_spread, rtol=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
+def test_a_long_legend_is_below_what_is_stated():
+    """Its title stood on the parameters. And of many values the nearest are named, not the first."""
+    given = {"R": "5 mm", "E1": "2 ± 0.1 GPa", "E2": "70 GPa", "E_punch": "210 GPa", "Nbar": "1e4 1/mm^2", "Ra": "20 um"}
+    h = [f"{one} um" for one in range(1, 25)]
+    found = study.solve(**given, bonding="bonded", h=h, P=["1 N", "20 N"], x=2, profiles=False)
+    figure = study.plot(found, "P", "a", hue="h")
+    figure.canvas.draw()
+    assert "not valid" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert figure.legends[0].get_window_extent().y1 < figure._suptitle.get_window_extent().y0
+    with pytest.raises(study.StudyError, match="^h = 23.4 um is not there; there are 2.3e-05, 2.4e-05, 2.2e-05"):
+        study.plot(found, "P", "a", h="23.4 um")

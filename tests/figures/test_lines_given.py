@@ -70,7 +70,14 @@ def test_single_cases_are_points():
 @pytest.mark.filterwarnings("ignore:this contact is beyond")
 def test_a_long_legend_is_below_what_is_stated():
     """Its title stood on the parameters. And of many values the nearest are named, not the first."""
-    given = {"R": "5 mm", "E1": "2 ± 0.1 GPa", "E2": "70 GPa", "E_punch": "210 GPa", "Nbar": "1e4 1/mm^2", "Ra": "20 um"}
+    given = {
+        "R": "5 mm",
+        "E1": "2 ± 0.1 GPa",
+        "E2": "70 GPa",
+        "E_punch": "210 GPa",
+        "Nbar": "1e4 1/mm^2",
+        "Ra": "20 um",
+    }
     h = [f"{one} um" for one in range(1, 25)]
     found = study.solve(**given, bonding="bonded", h=h, P=["1 N", "20 N"], x=2, profiles=False)
     figure = study.plot(found, "P", "a", hue="h")

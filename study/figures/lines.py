@@ -16,7 +16,7 @@ from ..data.derived import QUANTITIES
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
-from .labels import axis_label, multiple, stated, value_text, with_units, wrapped, written
+from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
 from .marks import as_points, shades, spaced_by_factors, tick_decades
 from .registry import Columns, joined
 from .style import style
@@ -109,7 +109,7 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
 def check_roles(found: xr.Dataset, x: str, y: str, hue: str) -> None:
     """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or as abscissa and hue."""
     errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(found[name])]
-    if y in found.dims:
+    if y in found.dims and (x in found.dims or y not in found[x].dims):  # else the load may be drawn against the depth
         errors.append(f"y = {y} is an axis of these results: it may be x or the hue")
     if x == hue:
         errors.append(f"x and hue are both {x}")
@@ -170,6 +170,7 @@ def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
 def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
     """The curves of one panel, solid where the case is valid, dotted where not, in a band of ±; their numbers."""
     x, y, hue, along = names
+    of = x if y in whole.dims else y  # what has a band
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
     for i, colour in enumerate(colours):
@@ -178,12 +179,17 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         valid = np.ones(len(up), bool)
         if "validity" in one:
             valid = np.broadcast_to(one["validity"].values == 0, len(up))
-        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{y}_spread",) if name in one}
+        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{of}_spread",) if name in one}
         for half in spread.values():
-            if along == "case":
+            low, high = (across - half) / sizes[0], (across + half) / sizes[0]
+            if of == x:
+                axes.fill_betweenx(up / sizes[1], low, high, color=colour, **BAND)
+            elif along == "case":
                 axes.errorbar(across / sizes[0], up / sizes[1], half / sizes[1], fmt="none", color=colour, alpha=0.5)
-                continue
-            axes.fill_between(across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND)
+            else:
+                axes.fill_between(
+                    across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND
+                )
         axes.plot(across / sizes[0], up / sizes[1], color=colour, **NOT_VALID)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colour, linestyle="-")
         if along == "case":
@@ -197,17 +203,6 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         known = {"valid": valid.astype(int)} if "validity" in one else {}
         parts.append(fixed | {x: across, y: up} | spread | known)
     return parts
-
-
-def name_of(found: xr.Dataset, dim: str, i: int) -> str:
-    """The name of index i of a dimension, for a title: its value, or the label of the case."""
-    known = "label" if dim == "case" and "label" in found else dim
-    if known not in found.coords:
-        return f"{dim} {i}"
-    value = found[known].values[i]
-    if known == "case":
-        return f"case {value}"
-    return value_text(known, found[known], value if isinstance(value, str) else float(value))
 
 
 def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
@@ -240,16 +235,7 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         handles.append(Line2D([], [], color="0.4", label="not valid", **NOT_VALID))
         if along == "case":
             as_points(handles[-1:], "none")
-    if f"{y}_spread" in found:
+    if f"{x if y in found.dims else y}_spread" in found:
         handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
         figure.legend(handles=handles, title=title, loc="outside right center")
-
-
-def legend_texts(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
-    """Title of the legend, and what each curve is called in it."""
-    known = "label" if hue == "case" and "label" in found else hue
-    if known not in found.coords or found[known].dtype.kind not in "fi" or known == "case":
-        return "", [name_of(found, hue, i) for i in range(found.sizes[hue])]
-    size = multiple(found[known])[1]
-    return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]

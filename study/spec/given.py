@@ -174,7 +174,8 @@ class Draft:
             near = instead(name, known) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
             self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
         elif name in self.sections:
-            self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
+            other = f"in {section}" if section else "elsewhere"
+            self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
         elif section == "[model]" and name in NUMERICS:
             self.errors.append(f"{place}{name} belongs in [numerics]")
         else:

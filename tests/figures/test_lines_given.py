@@ -86,3 +86,21 @@ def test_a_long_legend_is_below_what_is_stated():
     assert figure.legends[0].get_window_extent().y1 < figure._suptitle.get_window_extent().y0
     with pytest.raises(study.StudyError, match="^h = 23.4 um is not there; there are 2.3e-05, 2.4e-05, 2.2e-05"):
         study.plot(found, "P", "a", h="23.4 um")
+
+
+def test_the_load_against_the_depth():
+    """The curve of an indenter: the load was "an axis of these results". What has a ± is the depth."""
+    gel = {"R": "2 um", "E2": "5 ± 1 kPa", "nu2": 0.5, "base": "half_space", "micro": "smooth", "x": 2}
+    found = study.solve(**gel, P=["10 pN", "20 pN", "40 pN"])
+    figure = study.plot(found, "D", "P")
+    (line, _), (band,) = figure.axes[0].lines, figure.axes[0].collections
+    np.testing.assert_allclose(line.get_xdata(), 1e9 * found.D, rtol=1e-12)
+    np.testing.assert_allclose(line.get_ydata(), [0.01, 0.02, 0.04], rtol=1e-12)
+    widths = [
+        np.ptp(band.get_paths()[0].vertices[np.isclose(band.get_paths()[0].vertices[:, 1], P), 0]) for P in (0.01, 0.04)
+    ]
+    np.testing.assert_allclose(widths, 2e9 * found.D_spread[[0, 2]], rtol=1e-9)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["± one standard\ndeviation"]
+    for x in ("P", "nu2"):
+        with pytest.raises(study.StudyError, match="y = P is an axis of these results"):
+            study.plot(found, x, "P")

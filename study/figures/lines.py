@@ -125,7 +125,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
     """The dataset at the wanted values of its axes. Raises StudyError for a value that is not there."""
     for name, value in where.items():
         if name not in dataset.coords or dataset[name].ndim != 1:
-            axes = [str(dim) for dim in dataset.dims]
+            axes = [str(name) for name, one in dataset.coords.items() if one.ndim == 1]
             raise StudyError([f"{name} is no axis of these results{suggest(name, axes)}"])
         values = dataset[name].values
         (dim,), unit = dataset[name].dims, dataset[name].attrs.get("units", "1")

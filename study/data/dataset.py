@@ -11,7 +11,7 @@ from ..spec.definition import Definition
 from ..spec.fitted import COMMENT
 from ..spec.grid import along, unflatten
 from ..spec.identity import law_versions
-from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, PARAMETERS, attributes, names
+from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
 from .derived import validity_attributes, validity_of
 from .provenance import provenance
 
@@ -36,8 +36,11 @@ class Parts(NamedTuple):
     attributes: dict
 
     def dataset(self) -> xr.Dataset:
-        """The dataset of these parts."""
-        return without_fill_values(xr.Dataset(*self))
+        """The dataset of these parts, settings last: `study.solve` has them as attributes, and `xr.concat` compares no
+        coordinate behind one that only the first dataset has."""
+        last = {name: own for name, own in self.coords.items() if name in NUMERICS}
+        coords = {name: own for name, own in self.coords.items() if name not in NUMERICS} | last
+        return without_fill_values(xr.Dataset(self.variables, coords, self.attributes))
 
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:

@@ -88,6 +88,26 @@ def written(value: float) -> str:
     return rf"${mantissa}\times10^{{{int(power)}}}$".replace(r"$1\times", "$") if power else mantissa
 
 
+def name_of(found: xr.Dataset, dim: str, i: int) -> str:
+    """The name of index i of a dimension, for a title: its value, or the label of the case."""
+    known = "label" if dim == "case" and "label" in found else dim
+    if known not in found.coords:
+        return f"{dim} {i}"
+    value = found[known].values[i]
+    if known == "case":
+        return f"case {value}"
+    return value_text(known, found[known], value if isinstance(value, str) else float(value))
+
+
+def legend_texts(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
+    """Title of the legend, and what each curve is called in it."""
+    known = "label" if hue == "case" and "label" in found else hue
+    if known not in found.coords or found[known].dtype.kind not in "fi" or known == "case":
+        return "", [name_of(found, hue, i) for i in range(found.sizes[hue])]
+    size = multiple(found[known])[1]
+    return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]
+
+
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     """What is stated above a figure: `value_text` of each input that has one value in all the datasets.
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from matplotlib import colormaps
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
@@ -17,7 +16,8 @@ from ..data.derived import QUANTITIES
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
-from .labels import axis_label, multiple, stated, value_text, with_units, wrapped, written
+from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
+from .marks import as_points, shades, spaced_by_factors, tick_decades
 from .registry import Columns, joined
 from .style import style
 
@@ -58,6 +58,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = found.sortby(x) if x in found.dims else found  # a curve through loads as they were given runs to and fro
     found = found.squeeze([dim for dim, size in found.sizes.items() if size == 1 and dim not in (x, hue)])
     pair = xr.broadcast(found[x], found[y])
+    if not np.logical_and(*(np.isfinite(one.values) for one in pair)).any():
+        raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; status says what became of each"])
     if "validity" in found and not {*found["validity"].dims} <= {*pair[1].dims}:
         found = found.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
@@ -73,7 +75,9 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     found = found.assign(whole)  # without coordinates: it has them, and xarray 2026.2 refuses to align them
     columns = 2 if count == 4 else min(count, 3)
     rows = -(-count // columns)
-    figure = new(figsize=(max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), 2.2 * rows + 0.4), layout="constrained")
+    names = min(found.sizes[hue], MOST_NAMES) if hue else 0  # a long legend stands below what is stated, not on it
+    size = max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), max(2.2 * rows + 0.4, 0.17 * names + 1.2)
+    figure = new(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     parts = []
     for axes, place in zip(panels, product(*(range(found.sizes[dim]) for dim in rest)), strict=False):
@@ -82,7 +86,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         parts += curves(axes, case, (x, y, hue, along), found)
     for axes in panels[count:]:
         axes.set_visible(False)
-    decorate(figure, panels[:count], found, (x, y, hue))
+    decorate(figure, panels[:count], found, (x, y, hue, along))
     return figure, with_units(joined(parts), found)
 
 
@@ -105,7 +109,7 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
 def check_roles(found: xr.Dataset, x: str, y: str, hue: str) -> None:
     """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or as abscissa and hue."""
     errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(found[name])]
-    if y in found.dims:
+    if y in found.dims and (x in found.dims or y not in found[x].dims):  # else the load may be drawn against the depth
         errors.append(f"y = {y} is an axis of these results: it may be x or the hue")
     if x == hue:
         errors.append(f"x and hue are both {x}")
@@ -121,7 +125,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
     """The dataset at the wanted values of its axes. Raises StudyError for a value that is not there."""
     for name, value in where.items():
         if name not in dataset.coords or dataset[name].ndim != 1:
-            axes = [str(dim) for dim in dataset.dims]
+            axes = [str(name) for name, one in dataset.coords.items() if one.ndim == 1]
             raise StudyError([f"{name} is no axis of these results{suggest(name, axes)}"])
         values = dataset[name].values
         (dim,), unit = dataset[name].dims, dataset[name].attrs.get("units", "1")
@@ -132,7 +136,8 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
             near, exact = np.isclose(values, wanted, rtol=1e-6, atol=0), values == wanted
             fits = exact if exact.any() else near
         if not fits.any():
-            listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in values[:20])
+            few = values if is_text(dataset[name]) else values[np.argsort(np.abs(values - wanted), kind="stable")]
+            listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in few[:20])
             more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
             raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
         index = np.flatnonzero(fits)  # several of [[cases]] may have the value, and keep their numbers
@@ -165,6 +170,7 @@ def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
 def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
     """The curves of one panel, solid where the case is valid, dotted where not, in a band of ±; their numbers."""
     x, y, hue, along = names
+    of = x if y in whole.dims else y  # what has a band
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
     for i, colour in enumerate(colours):
@@ -173,11 +179,22 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
         valid = np.ones(len(up), bool)
         if "validity" in one:
             valid = np.broadcast_to(one["validity"].values == 0, len(up))
-        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{y}_spread",) if name in one}
+        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{of}_spread",) if name in one}
         for half in spread.values():
-            axes.fill_between(across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND)
+            low, high = (across - half) / sizes[0], (across + half) / sizes[0]
+            if of == x:
+                axes.fill_betweenx(up / sizes[1], low, high, color=colour, **BAND)
+            elif along == "case":
+                axes.errorbar(across / sizes[0], up / sizes[1], half / sizes[1], fmt="none", color=colour, alpha=0.5)
+            else:
+                axes.fill_between(
+                    across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND
+                )
         axes.plot(across / sizes[0], up / sizes[1], color=colour, **NOT_VALID)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colour, linestyle="-")
+        if along == "case":
+            as_points(axes.lines[-2:-1], "none")
+            as_points(axes.lines[-1:], "full")
         fixed = {
             name: np.full(len(up), array.item())
             for name, array in one.coords.items()
@@ -188,30 +205,16 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
     return parts
 
 
-def shades(count: int) -> list:
-    """Colours from dark to light, told apart in grey as well; black for a single curve."""
-    return [colormaps["viridis"](0.9 * i / (count - 1)) for i in range(count)] if count > 1 else ["black"]
-
-
-def name_of(found: xr.Dataset, dim: str, i: int) -> str:
-    """The name of index i of a dimension, for a title: its value, or the label of the case."""
-    known = "label" if dim == "case" and "label" in found else dim
-    if known not in found.coords:
-        return f"{dim} {i}"
-    value = found[known].values[i]
-    if known == "case":
-        return f"case {value}"
-    return value_text(known, found[known], value if isinstance(value, str) else float(value))
-
-
 def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
     """Labels, scales, the legend, and the parameters above the figure."""
-    x, y, hue = names
+    x, y, hue, along = names
     log_x = spaced_by_factors(found[x].values)
     log_y = log_x and np.nanmin(found[y].values) > 0 and np.nanmax(found[y].values) > 30 * np.nanmin(found[y].values)
     for axes in panels:
         grid = axes.get_subplotspec()
         axes.set(xscale="log" if log_x else "linear", yscale="log" if log_y else "linear")
+        for axis in (axes.xaxis, axes.yaxis):
+            tick_decades(axis)
         axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
         axes.set_xlabel(axis_label(x, found[x]))
         axes.label_outer()
@@ -226,27 +229,13 @@ def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
         named = range(0, found.sizes[hue], every)
         title, texts = legend_texts(found, hue)
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
+        if along == "case":
+            as_points(handles, "full")
     if "validity" in found and (found["validity"] != 0).any():
         handles.append(Line2D([], [], color="0.4", label="not valid", **NOT_VALID))
-    if f"{y}_spread" in found:
+        if along == "case":
+            as_points(handles[-1:], "none")
+    if f"{x if y in found.dims else y}_spread" in found:
         handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
         figure.legend(handles=handles, title=title, loc="outside right center")
-
-
-def legend_texts(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
-    """Title of the legend, and what each curve is called in it."""
-    known = "label" if hue == "case" and "label" in found else hue
-    if known not in found.coords or found[known].dtype.kind not in "fi" or known == "case":
-        return "", [name_of(found, hue, i) for i in range(found.sizes[hue])]
-    size = multiple(found[known])[1]
-    return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]
-
-
-def spaced_by_factors(values: np.ndarray) -> bool:
-    """Whether values grow by factors rather than by steps: their median is nearer to the geometric mean."""
-    known = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
-    if not len(known) or known.min() <= 0 or known.max() < 10 * known.min():
-        return False
-    middle = np.log(np.median(known))
-    return abs(middle - np.log(known).mean()) < abs(middle - np.log(known.mean()))

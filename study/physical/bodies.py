@@ -29,6 +29,8 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
         if body not in parameters:
             continue
         given = found.pop(body)
+        if getattr(given, "dims", None) in ((), (body,)):  # of earlier results
+            given = given.values.tolist()
         errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
         several = isinstance(given, (list, tuple))
         try:
@@ -69,6 +71,8 @@ def _checked(name: Any) -> str | materials.Material:
     """The same name or material; "inf" of the number. Raises LookupError for anything else."""
     if isinstance(name, float) and name == np.inf:
         return "inf"
+    if hasattr(name, "dims"):
+        raise LookupError("a DataArray of names is over the dimension of its own name; give a list, or cases")
     if not isinstance(name, (str, materials.Material)):
         raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
     return name

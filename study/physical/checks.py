@@ -46,7 +46,10 @@ def missing(parameters: dict, names: set[str], errors: list[str]) -> list[str]:
         """The values of a parameter that has texts: its default, where it is not given."""
         return np.ravel(np.array(parameters.get(name, VOCABULARY[name].own.default), dtype=object)).tolist()
 
-    return messages + one_control(names) + not_given({*parameters, *names, "n"}, texts, errors)
+    absent = not_given({*parameters, *names, "n"}, texts, errors)
+    if absent and "micro = " in absent[-1] and "micro" not in names:
+        absent[-1] += ' (without asperities: micro = "smooth")'
+    return messages + one_control(names) + absent
 
 
 def equal_cases(scene: Scene) -> list[str]:

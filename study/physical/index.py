@@ -40,7 +40,7 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
             label = slice(number(label.start), number(label.stop), label.step)
         elif getattr(label, "dtype", None) is not None and label.dtype.kind in "OTU":  # an array of texts
             numbers = np.reshape([number(one) for one in np.asarray(label).ravel().tolist()], label.shape)
-            label = numbers if isinstance(label, np.ndarray) else label.copy(data=numbers)
+            label = label.copy(data=numbers) if isinstance(label, (xr.DataArray, xr.Variable)) else numbers
         else:
             label = [number(one) for one in label] if isinstance(label, (list, tuple)) else number(label)
         return super().sel({name: label}, method=method, tolerance=number(tolerance))

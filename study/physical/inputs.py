@@ -50,8 +50,13 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
 
 
 def is_rigid(contacts: xr.Dataset, body: str) -> bool:
-    """Whether the punch of all contacts, or the base under their layers, is rigid."""
-    if body == "punch":
-        return bool((contacts.get("m", xr.DataArray(0.0)) == 0).all())
-    has_n = "n" in contacts and bool((contacts["base"] != "half_space").all())
-    return has_n and bool((contacts["n"] == 0).all())
+    """Whether the punch of all contacts, or the base under their layers, is known to be rigid.
+
+    The modulus says it, if there is one: `groupby` and `mean` of xarray leave out m and n where these vary.
+    """
+    modulus, ratio = ("E_punch", "m") if body == "punch" else ("E2", "n")
+    if modulus in contacts:
+        return bool(np.isinf(contacts[modulus]).all())
+    if ratio not in contacts or (ratio == "n" and (contacts["base"] == "half_space").any()):
+        return False
+    return bool((contacts[ratio] == 0).all())

@@ -10,7 +10,7 @@ from ..data.dataset import Parts
 from ..data.units import PHYSICAL_SCALE, physical_attributes, with_unit
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
-from ..spec.vocabulary import NUMERICS, ROWS, VOCABULARY
+from ..spec.vocabulary import ROWS, VOCABULARY
 from .index import searchable
 
 #: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
@@ -99,8 +99,6 @@ class Scene:
             coords["label"] = xr.Variable("case", self.labels)
         for name in self.assumed:
             coords[name].attrs["comment"] = ASSUMED
-        # last, since `xr.concat` compares no coordinate behind one that only the first dataset has
-        coords |= {name: coords.pop(name) for name in NUMERICS if name in coords}
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
         return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
 

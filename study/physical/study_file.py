@@ -73,12 +73,11 @@ def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options)
     about, options : the other arguments of `study.spec.definition.complete`
     """
     draft.physical = True
-    for dim, size in scene.sizes(axes).items():
-        if dim == "case":
-            draft.number_cases(size)
-        draft.sizes[dim] = size
+    draft.sizes |= scene.sizes(axes)
     for name, value in scene.parameters.items():
         draft.of_any_form(name, value)
+    if "case" in draft.sizes and "case" not in draft.labels:  # DataArrays may bring numbers of their own
+        draft.number_cases(draft.sizes["case"])
     return replace(definition.complete(draft, *about, **options), scene=scene)
 
 

@@ -176,7 +176,8 @@ class Draft:
         elif section == "[model]" and name in NUMERICS:
             self.errors.append(f"{place}{name} belongs in [numerics]")
         elif name in self.sections:
-            self.errors.append(f"{name} is given twice: in {self.sections[name]} and in {section}")
+            other = f"in {section}" if section else "elsewhere"
+            self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
         else:
             self.sections[name] = section
             return True

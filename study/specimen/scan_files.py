@@ -45,11 +45,14 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
             f"{path.name}: give unit, such as unit='um', and height_unit if heights have another: units are not read "
             f"from text and .npy{said}"
         )
-    _as_headed(heading, {"unit": unit, "height_unit": height_unit or unit}, path.name)
     units = {"unit": unit, "height_unit": height_unit, "name": path.name}
+    width, places = table.shape[1], (0, -1)
     if columns is not None:
         table = _picked(table, columns, path.name)
-    elif table.shape[0] == 1:
+        places = np.atleast_1d(columns)[[0, -1]]
+    places = places if dx is None else (None, places[1])
+    _as_headed(heading, {"unit": unit, "height_unit": height_unit or unit}, path.name, width, places)
+    if columns is None and table.shape[0] == 1:
         table = table.T
     n = table.shape[1]
     if n >= FEWEST:
@@ -73,12 +76,20 @@ def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -
     return profile(table[:, -1], x=table[:, 0] if n == 2 else None, dx=dx, **units)
 
 
-def _as_headed(heading: str, given: dict[str, str], name: str) -> None:
-    """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some."""
-    said = [word for word in re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", heading) if word in UNITS]
+def _as_headed(heading: str, given: dict[str, str], name: str, width: int, places: tuple) -> None:
+    """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some.
+
+    Where it has one for each of `width` columns, x and z have those at their `places`, None if dx stands for x. A
+    single one is then that of z.
+    """
+    said = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", heading)
+    said = said if len(said) == width else [word for word in said if word in UNITS]
     of_heights = re.findall(r"Value units: *(\S+)", heading)  # as Gwyddion writes it; of lengths it says nothing
-    for argument, unit in given.items():
+    for (argument, unit), place in zip(given.items(), places, strict=True):
         own = of_heights if of_heights and argument == "height_unit" else said
+        if place is None and len(own) in (1, width):
+            continue
+        own = [own[place]] if len(own) == width else own
         if own and metres(unit, name) not in [UNITS.get(word) for word in own]:
             raise ValueError(
                 f'{name}: {argument} is {unit}, but the heading has {" and ".join(own)}: "{heading[:80]}". Give unit '

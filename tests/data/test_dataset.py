@@ -35,6 +35,20 @@ def test_nothing_is_lost_in_the_file(solved, reread):
         assert solved[name].dtype.kind == reread[name].dtype.kind or solved[name].dtype.kind == "U"
 
 
+def test_results_of_a_file_go_before_those_of_solve(tmp_path):
+    """In this order `xr.concat` raised: the labels stood behind the settings, which `study.solve` has as attributes."""
+    shared = {"base": "half_space", "micro": "smooth"}
+    (tmp_path / "one.toml").write_text(
+        '[model]\nbase = "half_space"\nmicro = "smooth"\n[[cases]]\nlabel = "a"\nP = 1e-5\n'
+    )
+    one = study.load(tmp_path / "one.toml", tmp_path)
+    one.run(workers=1)
+    both = [one.open(), study.solve(cases=[{"label": "b", "P": 2e-5}], **shared)]
+    for order in (both, both[::-1]):
+        joined = xr.concat(order, "origin")
+        assert joined.label.values.tolist() == [[found.label.item()] for found in order]
+
+
 def test_plain_xarray_opens_it(reread, tmp_path):
     results_file.write(reread, tmp_path / "again.nc")
     with xr.open_dataset(tmp_path / "again.nc") as plain:

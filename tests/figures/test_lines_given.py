@@ -39,3 +39,70 @@ def test_an_array_is_no_dataset_and_a_stacked_one_is_to_be_unstacked(found):
         study.plot(found.stack(z=("P", "nu2")), "P", "a")
     with pytest.raises(study.StudyError, match="a figure is of a dataset of contacts, not of a DataArray"):
         study.plot(found.a, "P", "a")
+
+
+def test_a_figure_without_a_number_is_not_drawn(found):
+    """It was empty, after a RuntimeWarning of numpy."""
+    with pytest.raises(study.StudyError, match="nothing to draw: no case has numbers for P and a; status says"):
+        study.plot(found.where(found.P > 1e9), "P", "a", hue="nu2")
+
+
+def test_numbers_of_a_logarithmic_axis_of_one_decade():
+    """2, 3, 4 and 6 times 10¹ were written over each other."""
+    given = {"R": "5 mm", "E2": "70 GPa", "base": "half_space", "micro": "smooth", "x": 2}
+    axes = study.plot(study.solve(**given, a=[f"{a} um" for a in (15, 30, 70, 180)]), "a", "P").axes[0]
+    low, high = axes.get_xlim()
+    shown = [text.get_text() for text in axes.get_xticklabels() if low <= text.get_position()[0] <= high]
+    assert shown == ["30", "100"] and not any(text.get_text() for text in axes.get_xticklabels(minor=True))
+
+
+def test_single_cases_are_points():
+    """Random cases were joined by a line, to and fro."""
+    rows = [{"P": f"{P} N", "R": f"{R} mm"} for P, R in ((1, 3), (5, 2), (2, 5))]
+    cases = study.solve(cases=rows, E2="70 ± 5 GPa", base="half_space", micro="smooth", x=2)
+    figure = study.plot(cases, "P", "a")
+    styles = [(line.get_linestyle(), line.get_marker(), line.get_fillstyle()) for line in figure.axes[0].lines]
+    assert styles == [("None", "o", "none"), ("None", "o", "full")]
+    with pytest.raises(study.StudyError, match='^r is no axis of these results; did you mean "R"'):
+        study.plot(cases, "P", "a", r="3 mm")  # over the cases, as R is, but no dimension
+    (bars,) = figure.axes[0].collections
+    np.testing.assert_allclose(np.ptp(bars.get_segments(), axis=1)[:, 1], 2e6 * cases.a_spread, rtol=1e-9)
+
+
+@pytest.mark.filterwarnings("ignore:this contact is beyond")
+def test_a_long_legend_is_below_what_is_stated():
+    """Its title stood on the parameters. And of many values the nearest are named, not the first."""
+    given = {
+        "R": "5 mm",
+        "E1": "2 ± 0.1 GPa",
+        "E2": "70 GPa",
+        "E_punch": "210 GPa",
+        "Nbar": "1e4 1/mm^2",
+        "Ra": "20 um",
+    }
+    h = [f"{one} um" for one in range(1, 25)]
+    found = study.solve(**given, bonding="bonded", h=h, P=["1 N", "20 N"], x=2, profiles=False)
+    figure = study.plot(found, "P", "a", hue="h")
+    figure.canvas.draw()
+    assert "not valid" in [text.get_text() for text in figure.legends[0].get_texts()]
+    assert figure.legends[0].get_window_extent().y1 < figure._suptitle.get_window_extent().y0
+    with pytest.raises(study.StudyError, match="^h = 23.4 um is not there; there are 2.3e-05, 2.4e-05, 2.2e-05"):
+        study.plot(found, "P", "a", h="23.4 um")
+
+
+def test_the_load_against_the_depth():
+    """The curve of an indenter: the load was "an axis of these results". What has a ± is the depth."""
+    gel = {"R": "2 um", "E2": "5 ± 1 kPa", "nu2": 0.5, "base": "half_space", "micro": "smooth", "x": 2}
+    found = study.solve(**gel, P=["10 pN", "20 pN", "40 pN"])
+    figure = study.plot(found, "D", "P")
+    (line, _), (band,) = figure.axes[0].lines, figure.axes[0].collections
+    np.testing.assert_allclose(line.get_xdata(), 1e9 * found.D, rtol=1e-12)
+    np.testing.assert_allclose(line.get_ydata(), [0.01, 0.02, 0.04], rtol=1e-12)
+    widths = [
+        np.ptp(band.get_paths()[0].vertices[np.isclose(band.get_paths()[0].vertices[:, 1], P), 0]) for P in (0.01, 0.04)
+    ]
+    np.testing.assert_allclose(widths, 2e9 * found.D_spread[[0, 2]], rtol=1e-9)
+    assert [text.get_text() for text in figure.legends[0].get_texts()] == ["± one standard\ndeviation"]
+    for x in ("P", "nu2"):
+        with pytest.raises(study.StudyError, match="y = P is an axis of these results"):
+            study.plot(found, x, "P")

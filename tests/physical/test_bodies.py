@@ -4,6 +4,7 @@ import tomllib
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import study
 from study import materials
@@ -53,6 +54,15 @@ def test_several_materials_are_one_axis():
     rows = [{"label": "soft", "layer": "PTFE"}, {"label": "hard", "layer": "PEEK"}]
     cases = study.solve(cases=rows, **{k: v for k, v in COATED.items() if k != "layer"}, P="10 N", x=2)
     assert cases.layer.values.tolist() == ["PTFE", "PEEK"] and cases.label.values.tolist() == ["soft", "hard"]
+
+
+def test_the_materials_of_earlier_results():
+    """As `P=earlier.P`: the names were no names of materials."""
+    earlier = study.solve(**COATED | {"layer": ["PTFE", "PEEK"]}, P="10 N", x=2)
+    again = study.solve(**COATED | {"layer": earlier.layer, "punch": earlier.punch}, P="10 N", x=2)
+    xr.testing.assert_identical(again.a_spread, earlier.a_spread)
+    with pytest.raises(study.StudyError, match="layer: a DataArray of names is over the dimension of its own name"):
+        study.solve(**COATED | {"layer": earlier.layer.rename(layer="film")}, P="10 N")
 
 
 def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):

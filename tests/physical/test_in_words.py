@@ -40,6 +40,14 @@ def test_what_was_not_given_is_said_where_it_counts():
     assert "assumed" not in half_space
 
 
+def test_a_body_is_rigid_only_where_that_is_known():
+    """`groupby` leaves out m and n: a steel punch was "a rigid punch", and a rigid base "E2 = infinite"."""
+    given = {"R": "5 mm", "layer": ["TiN", "CrN"], "h": "2 um", "micro": "smooth", "P": "1 N", "body": "rigid", "x": 2}
+    for punch, words in (("rigid", "a rigid punch, a rigid base, R"), ("steel M2", "a rigid base, R = 5 mm, punch of")):
+        found = study.solve(**given, punch=punch).groupby("layer").mean()
+        assert f"Given: {words}" in study.summary(found.isel(layer=0)) and "inf" not in study.summary(found)
+
+
 def test_an_assumption_that_may_be_far_off_has_a_sentence():
     """Bonded, and of rubber, this film carries 2.8 times what it does by the two defaults."""
     film = {"R": "3 mm", "E1": "20 MPa", "E2": "210 GPa", "nu2": 0.3, "h": "50 um", "a": "0.2 mm", "micro": "smooth"}

@@ -55,6 +55,14 @@ def test_arrays_over_an_input_are_taken_together():
     assert found.a.dims == ("h",) and found.P.values.tolist() == [1, 2]
 
 
+def test_cases_keep_their_own_numbers():
+    """Some of the cases of earlier results were refused: "n has other values of case than another parameter"."""
+    chosen = study.solve(**BALL, R="1 mm", cases=[{"P": "1 N"}, {"P": "2 N"}, {"P": "3 N"}]).isel(case=[1, 2])
+    again = study.solve(**BALL, R="1 mm", P=chosen.P)
+    assert again.case.values.tolist() == [1, 2]
+    np.testing.assert_array_equal(again.a, chosen.a)
+
+
 def test_an_array_over_itself_is_an_axis_whatever_the_modulus_depends_on():
     """`P=earlier.P` was refused wherever E2 has a spread, as that of every material has, or several values: the load in
     units of E2* R² lies along these too."""

@@ -115,6 +115,7 @@ def test_a_cup_that_fits_closely_is_beyond_the_model():
         ({"R": None, "R1": "5 mm", "R2": ["9 mm", "-5 mm"]}, "a cup .* must be wider than its ball"),
         ({"R": None, "R1": "5 mm", "R2": "0 mm"}, "R2 = 0 mm: must not be 0"),
         ({"R": None}, "R is missing: the radius of the punch, or R1 and R2 of two bodies"),
+        ({"micro": None}, r'Ra is missing: micro = "disc_cell" needs it \(without asperities: micro = "smooth"\)$'),
     ],
 )
 def test_slips_are_named(change, message):

@@ -26,6 +26,10 @@ def test_results_align_with_measured_values(found):
 def test_texts_in_arrays_select(found):
     for texts in (np.array(["5 N", "1 N"]), xr.DataArray(["5 N", "1 N"], dims="P")):
         assert found.sel(P=texts).P.values.tolist() == [5.0, 1.0]
+    assert found.sel(P=np.array(["5 N", "1 N"])[0]).P.item() == 5.0, "a text of numpy: copy() got no data"
+    pandas = pytest.importorskip("pandas")
+    for form in (pandas.Index, pandas.Series):
+        assert found.sel(P=form(["5 N", "1 N"])).P.values.tolist() == [5.0, 1.0]
     assert float(found.sel(P="1.2 N", method="nearest", tolerance="0.3 N").P) == 1.0
     with pytest.raises(KeyError):
         found.sel(P="1.2 N", method="nearest", tolerance="0.1 N")

@@ -139,7 +139,7 @@ def array(values, *dims, **coords):
         ({}, "exactly one of P, a, D must be given, not none"),
         ({"P": 1, "Nabr": 2}, '"Nabr" is not a parameter; did you mean "Nbar"?'),
         ({"P": 1, "nodes": 16.5}, "nodes = 16.5: must be a whole number"),
-        ({"cases": [{"P": 1}], "P": 1}, "P is given twice"),
+        ({"cases": [{"P": 1}], "P": 1}, "P is given twice: in [[cases]] and elsewhere"),
         ({"cases": [{"P": 1, 2: 3}]}, '[[cases]] "2" is not a parameter'),
         ({"P": 1, "x": 1}, "x = 1: must be a whole number in [2, 10000]"),
     ],

@@ -67,7 +67,7 @@ def test_the_page_prints_what_stands_there(tmp_path):
         ("", 1, {"dx": "0.5 um"}, "dx = '0.5 um': must be a number, in um"),
         ("", 20, {"dx": 1, "dy": "2"}, "dy = '2': must be a number, in um"),
         ("", 2, {"dx": "1 um"}, r"20 rows of 2 column\(s\) with dx = 1 um; .* A comma cannot separate columns and"),
-        ("x [mm]; z (nm)", 2, {}, 'unit is um, but the heading has mm and nm: "x .mm.; z .nm.". Give'),
+        ("x [mm]; z (nm)", 2, {}, 'unit is um, but the heading has mm: "x .mm.; z .nm.". Give'),
         ("z [um]", 1, {"dx": 1, "height_unit": "nm"}, "height_unit is nm, but the heading has um"),
     ],
 )
@@ -84,3 +84,5 @@ def test_a_heading_with_more_units_than_are_read(tmp_path):
     (tmp_path / "a.csv").write_text(f"x [um]; z [nm]; gain [V]\n{rows}\n", encoding="utf-8")
     scan = roughness.read(tmp_path / "a.csv", unit="µm", height_unit="nm", columns=(0, 1))
     assert scan.steps == (pytest.approx(5e-7),) and scan.z.max() == 2e-9
+    with pytest.raises(ValueError, match="height_unit is um, but the heading has V"):
+        roughness.read(tmp_path / "a.csv", unit="um", columns=(0, 2))

@@ -78,6 +78,21 @@ def test_the_heading_of_gwyddion_says_the_unit_of_heights(tmp_path):
         roughness.read(file, unit="um", dx=1.0)
 
 
+def test_a_heading_has_a_unit_for_each_column(tmp_path):
+    """Heights in nm were taken for µm, since x has these."""
+    file, z = tmp_path / "profile.csv", EGGS[5]
+    np.savetxt(file, np.c_[np.arange(80), z, z], delimiter=";", header="x [um];z [nm];raw [mm]", comments="")
+    for columns, own in (((0, 1), "nm"), ((0, 2), "mm")):
+        with pytest.raises(ValueError, match=f"height_unit is um, but the heading has {own}: "):
+            roughness.read(file, unit="um", columns=columns)
+    scan = roughness.read(file, unit="um", height_unit="nm", columns=(0, 1))
+    np.testing.assert_allclose(scan.z, z * 1e-9, rtol=1e-12)
+    np.savetxt(file, z, header="z [nm]")  # it was refused: dx is in µm
+    np.testing.assert_allclose(roughness.read(file, unit="um", height_unit="nm", dx=1).z, z * 1e-9, rtol=1e-12)
+    with pytest.raises(ValueError, match="height_unit is um, but the heading has nm"):
+        roughness.read(file, unit="um", dx=1)
+
+
 def test_coordinates_of_a_labelled_map():
     """Points twice as far apart along y, of which only dx was given, made N̄ twice too large."""
     z = xr.DataArray(EGGS, {"y": 2 * np.arange(64.0), "x": np.arange(80.0)})

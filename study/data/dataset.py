@@ -108,8 +108,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
     a name stays a number.
 
-    Raises ValueError: the array has none of these names, and no attribute `flag_meanings`; its numbers are of no case,
-    such as the mean of several.
+    Raises ValueError: it is no array, or one that has none of these names, and no attribute `flag_meanings`; its
+    numbers are of no case, such as the mean of several.
 
     >>> import study
     >>> found = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
@@ -119,9 +119,10 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     known = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
-        if flags.name not in known:
-            raise ValueError(f"{flags.name or 'the array'} is none of {', '.join(known)}")
-        attributes = known[flags.name]()
+        name = getattr(flags, "name", f"a {type(flags).__name__}")
+        if name not in known:
+            raise ValueError(f"{name or 'the array'} is none of {', '.join(known)}")
+        attributes = known[name]()
     words, values = attributes["flag_meanings"].split(), whole(flags.values, attributes)
     if "flag_masks" in attributes:
         masks = np.atleast_1d(attributes["flag_masks"]).tolist()

@@ -29,6 +29,8 @@ def test_names_survive_arithmetic_and_unknown_numbers_stay():
     assert study.decode(xr.DataArray(0, name="validity")).item() == ""
     with pytest.raises(ValueError, match="P is none of status, model_used, validity"):
         study.decode(xr.DataArray([1.0], name="P"))
+    with pytest.raises(ValueError, match="^a Dataset is none of status, model_used, validity"):
+        study.decode(bare.to_dataset())
 
 
 def test_flags_of_no_case_have_no_names():

@@ -34,3 +34,5 @@ def test_a_reduced_modulus_of_a_text():
     assert study.reduced_modulus("91 GPa", 0.3) == study.reduced_modulus(91e9, 0.3) == pytest.approx(1e11, rel=1e-15)
     with pytest.raises(ValueError, match='E = "91 N" is a force: must be a pressure'):
         study.reduced_modulus("91 N", 0.3)
+    with pytest.raises(ValueError, match=r"^nu must be in \(-1, 0.5\], and comes after E$"):
+        study.reduced_modulus(0.3, 91e9)

@@ -36,6 +36,10 @@ _OF_RTOL, _COUNTS = 0.01, 3.0
 #: yield are small differences of large terms, and in films of more of them. With k = 10 the depth of a film of nu1 =
 #: 1/2 on a rigid base was 30 times as far off as its error bar (test_rounding of tests/body/test_rigid_base.py).
 _ROUNDED = (2.5, 4.0)
+#: The kernel is rounded to _PLATE parts of its largest value, n. Short waves yield n times less, and so the pressure is
+#: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure, which
+#: was then up to a hundred times as far off as its error bar (tests/body/test_plates.py).
+_PLATE = 3 * np.finfo(float).eps
 #: Waves u = kh above _SHORT feel the layer alone. The integral of a bound up to there has _POINTS points, evenly in
 #: ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
@@ -108,6 +112,9 @@ class Layered(NamedTuple):
         left_out = np.append(np.zeros(len(LOOSE)), LOOSE)[stiffness] * np.maximum(below, 1.0)
         loose, convolution = _COUNTS * left_out / np.minimum(L, 1.0), np.where(octave == FILM, local / CUT**2, 0.0)
         return 1e-14 * nodes / soft + loose + convolution
+
+    def rounding(self):
+        return _PLATE * np.maximum((self.n + self.m) / (1 + self.m), 1.0)
 
     def unseen(self, a, s1):
         """(B,). Waves of k up to 1/s1² are in the solution. Those beyond, u > u1 = η/s1², move the edge by

@@ -70,6 +70,9 @@ class HalfSpace(NamedTuple):
     def error(self, a, nodes):
         return np.zeros_like(a)
 
+    def rounding(self):
+        return np.zeros_like(self.E)
+
     def unseen(self, a, s1):
         """It has no length of its own. Smooth contacts on springs have a bound of :mod:`..contact.smooth`."""
         return np.zeros_like(a)

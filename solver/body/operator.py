@@ -68,6 +68,9 @@ class Body(Protocol):
     def error(self, a, nodes):
         """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""
 
+    def rounding(self):
+        """Rounding (B,) of the pressure at any radius, over the largest pressure."""
+
     def unseen(self, a, s1):
         """By how much, over the radius, a mesh whose first node is s1 may misplace the edge of a smooth contact, (B,).
         The body's short waves move it, and only the ring between that node and the edge feels them."""

@@ -110,8 +110,11 @@ class Evaluation:
 
     @cached_property
     def floor(self):
-        """Error (B,) that no estimate may go below: rounding, and the error of the operator itself."""
-        return _floor(self.cases.body, np.exp(self.state.eta), self.mesh.n)
+        """Error (B,) that no estimate may go below: rounding, of a small p(0) under a plate too, and the error of the
+        operator itself."""
+        q = self.curve.q
+        centre = self.cases.body.rounding() * q.max(axis=1) / np.abs(q[:, -1])
+        return np.maximum(_floor(self.cases.body, np.exp(self.state.eta), self.mesh.n), centre)
 
     @property
     def closed(self):

@@ -47,6 +47,10 @@ _CHANCE = 1 / 2
 #: For each control: the largest relative change of the quantities that are judged, over that of the radius of a smooth
 #: contact.
 _OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}
+#: Both meshes miss a ring at the edge where asperities or springs yield more than the body, if their compliance over
+#: the body's is below RING s² at the first node s. The error is then at most this times :func:`of_ring`, for each
+#: control (tests/contact/errors/test_rings.py; test_accuracy.py for smooth punches on springs).
+RING, ENCLOSING = 16.0, {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
 class Refined(NamedTuple):
@@ -99,7 +103,29 @@ def estimate(ev, found, refined):
     if not ev.cases.law.rough:  # asperities show that a mesh is too coarse for the edge, by how they yield there
         unseen = ev.cases.body.unseen(np.exp(ev.state.eta), ev.mesh.s[0])
         change = np.maximum(change, _OF_RADIUS[ev.cases.control] * unseen)
-    return np.maximum(margin(ev) * change, ev.floor)
+        return np.maximum(margin(ev) * change, ev.floor)
+    s1, q1 = ev.mesh.s[0], ev.curve.q[:, 0]
+    body = ev.X[:, 0] * ev.cases.body.softness(np.exp(ev.state.eta) * s1**2)
+    springs, asperities = ev.Y[:, 0] / body, ev.Z[:, 0] * ev.curve.g[:, 0] / (body * q1)
+    error = np.maximum(margin(ev) * change, ev.floor)
+    blind = np.flatnonzero(springs + asperities < RING * s1**2)
+    if len(blind):
+        _, beta = ev.cases.law.take(blind).edge()
+        ring = of_ring(springs[blind], s1) + of_ring(asperities[blind], s1, beta)
+        error[blind] = np.maximum(error[blind], ENCLOSING[ev.cases.control] * ring)
+    return error
+
+
+def of_ring(t, s1, beta=1.0):
+    """What a compliance t (s/s1)^(β-1) over the body's, t (B,), adds to a and the like in the ring between the edge and
+    the first node s1.
+
+    It is 2 ∫ t (s/s1)^(β-1) ds/s to s1 from about the s where the compliance is s². There the ring ends in which it is
+    more than the body's. With β = 1, for springs, it is t ln(1 + s1²/2t).
+    """
+    end = 2 * (t / s1**2) ** (2 / (3 - beta))
+    wide, less = np.log1p(1 / end), np.maximum((1 - beta) / 2, 1e-9)
+    return np.where(t > 0, t * (wide if np.all(beta == 1) else end**-less * -np.expm1(-less * wide) / less), 0.0)
 
 
 def margin(ev):

@@ -18,6 +18,7 @@ from ..numerics.mesh import mesh_of
 from ..numerics.quadrature import lagrange
 from ..solution import Solution
 from ..status import Status
+from .error import ENCLOSING, RING, of_ring
 
 #: Quantity -> its value from the radius a and the sums S (3, B); each quantity has one row of S.
 _OF_SUMS = {
@@ -34,8 +35,6 @@ _BLEND = 3.21
 #: Most Newton steps for ln a; a step below _LAST is the last one. A step leaves an error below 0.04 times its square
 #: (tests/contact/test_smooth.py), so that after one below _LAST the error is below rounding.
 _STEPS, _LAST = 30, 2e-7
-#: Control -> the factor with which :func:`_unseen` is an upper bound (tests/contact/errors/test_accuracy.py).
-_ENCLOSING = {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
 class Modes(NamedTuple):
@@ -88,7 +87,7 @@ def _solution(arrays):
 
 def _on_mesh(control, value, C, n, x):
     """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes; `error` is the distance, to first order, to the
-    solution on the next finer mesh, or the bound of :func:`_unseen` if that is larger."""
+    solution on the next finer mesh, or that of a ring at the edge that neither sees, if it is larger."""
     mesh, modal = mesh_of(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)
@@ -97,7 +96,8 @@ def _on_mesh(control, value, C, n, x):
     residual = np.abs(mesh.K @ Xq + t * Xq - mesh.s[:, None] ** 2).max(axis=0)
     p = np.pi / 8 * a * np.maximum(_to_edge(mesh, np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
     error = np.maximum(MARGIN * _distance(control, t, S, slopes, modes(next_rung(n))), 4 * n * np.finfo(float).eps)
-    error = np.maximum(error, _unseen(control, t, mesh.s[0]))
+    ring = np.where(t < RING * mesh.s[0] ** 2, ENCLOSING[control] * of_ring(t, mesh.s[0]), 0.0)
+    error = np.maximum(error, ring)
     between = np.maximum(error, MARGIN * _between(mesh, Xq, t, next_rung(n)))
     names = ("a", "P", "D", "p0", "dP_dD", "p", "error", "profile_error", "residual", "nodes", "iterations")
     slope = P * slopes[0] / (D * slopes[1])
@@ -133,16 +133,6 @@ def _to_edge(mesh, points):
     """Values (m, n) at `points` (m,) in s of the polynomials that are 1 at one node and 0 at the others and the edge,
     where there is no pressure."""
     return lagrange(np.append(0.0, mesh.s), points)[:, 1:]
-
-
-def _unseen(control, t, s1):
-    """Upper bound (B,) of the error at the edge that neither of two meshes sees.
-
-    In a ring s < t at the edge the springs yield more than the half-space. If it ends before the first node s1, the
-    error is t times a function of t/s1², the same function on every mesh. The bound lies above that function.
-    """
-    blind = _ENCLOSING[control] * t * np.log1p(s1**2 / (2 * t))
-    return np.where((t > 0) & (t < 16 * s1**2), blind, 0.0)
 
 
 def _radius(control, value, C, modal):

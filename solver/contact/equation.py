@@ -30,6 +30,8 @@ _OPEN = 1e-5
 #: nearly cancel: rounding moves the pressure, and so the load, the more the softer the layer. The residual scatters
 #: from step to step: half are below 0.5 eps, few above 20 eps (tests/contact/test_equation.py).
 _ROUNDING = 20 * np.finfo(float).eps
+#: The paper's scheme may leave no pressure in the centre, and 0/0 is no error.
+_TINY = np.finfo(float).tiny
 
 
 class Cases(NamedTuple):
@@ -113,7 +115,8 @@ class Evaluation:
         """Error (B,) that no estimate may go below: rounding, of a small p(0) under a plate too, and the error of the
         operator itself."""
         q = self.curve.q
-        centre = self.cases.body.rounding() * q.max(axis=1) / np.abs(q[:, -1])
+        rounded = self.cases.body.rounding() * q.max(axis=1)
+        centre = rounded / np.maximum(np.abs(q[:, -1]), np.maximum(rounded, _TINY))
         return np.maximum(_floor(self.cases.body, np.exp(self.state.eta), self.mesh.n), centre)
 
     @property

@@ -44,6 +44,11 @@ def test_of_a_gap_no_residual_is_asked():
     assert evaluation([1.0, 0.1], [1e-3, 0.5], 0.0).residual.item() == 0.5
 
 
+def test_an_iterate_without_pressure_in_the_centre_has_an_error_bar():
+    """One of the paper's scheme: its p(0) is no small part of anything, and 0/0 made it a case without numbers."""
+    assert evaluation([1.0, 0.0], [0.0, 0.0], 0.0).floor.item() == 8 * np.finfo(float).eps
+
+
 @pytest.mark.parametrize("nodes", [12, 64])
 @np.errstate(all="ignore")  # as in the solver
 def test_rounding_of_soft_layers(nodes):

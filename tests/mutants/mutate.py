@@ -94,7 +94,8 @@ def _begun(task: Task, folder: Path) -> int:
         log = os.open(folder.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
         os.dup2(log, 1), os.dup2(log, 2)
         os.chdir(folder)
-        sys.path[:] = [str(folder), *sys.path[1:]]  # the first was the folder of this file
+        tests = folder / "tests"
+        sys.path[:] = [str(folder), str(tests), str(tests / "shared"), *sys.path[1:]]  # the first was that of this file
         sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
         del sys.modules["mutants"]
         sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size
@@ -162,6 +163,8 @@ def judged(mutants: list[Mutant], folders: list[Path], everything: bool) -> Iter
     """Verdicts as they come. everything: all tests there are for mutants that their own do not kill."""
     results = folders[0].with_name("kept-results")
     ((_, computing),) = answers([Task("results", lambda _: results_in(results))], folders)
+    if isinstance(computing, str):
+        raise RuntimeError(f"the studies of the tests cannot be computed: {computing}")
     seconds, failed = undisturbed(mutants, folders, results)
 
     def task(mutant, tests, limit):

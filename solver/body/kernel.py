@@ -104,8 +104,8 @@ def _frictionless(u, n):
 
 
 class _Bond(NamedTuple):
-    """Constants of the bonded kernel, alpha = G1/G2, g = 3 - 4 nu: c1 = (alpha g2 - g1)/(1 + alpha g2) and c2 = (alpha -
-    1)/(alpha + g1); and 1 - c1, 1 - c2, 1 + c1, 1 - c1 c2 in product form."""
+    """Constants of the bonded kernel: c1 = (alpha g2 - g1)/(1 + alpha g2) and c2 = (alpha - 1)/(alpha + g1), alpha =
+    G1/G2, g = 3 - 4 nu; and 1 - c1, 1 - c2, 1 + c1, 1 - c1 c2 in product form."""
 
     c1: np.ndarray
     c2: np.ndarray

@@ -220,7 +220,7 @@ class LayeredOperator(NamedTuple):
             if part.film is not None:
                 index, near = part.index, felt(self.mesh, x)
                 away = film_rows(self.mesh, s[near].tobytes(), len(part.film) >= MANY).of(part.film)
-                out[index] -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
+                out[index] -= ((part.film @ tab.film.edge) * q[index]).sum(axis=1)[:, None]
                 out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
             out[part.index] += part.share * half_space[part.index]
         return out
@@ -251,9 +251,8 @@ def _rows(parts, mesh):
 
 def _film(c, tab, n):
     """What a convolution c (b, T) adds to the matrix and to the row of the edge under it, (b, n + 1, n)."""
-    nodes, near, edge = tab.film
-    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ edge
+    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ tab.film.edge
     rows[:, :-1] -= at_edge[:, None]
-    rows[:, nodes] += near.of(c)
+    rows[:, tab.film.nodes] += tab.film.rows.of(c)
     rows[:, -1] = at_edge
     return rows

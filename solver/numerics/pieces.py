@@ -61,6 +61,7 @@ def pieces(s, breaks, order, near=None, rough=None):
         for kind in np.unique(kinds[there]).tolist():
             rows, panels = np.nonzero(there & (kinds == kind))
             count, inside = divmod(kind, 2)  # of subpanels; -1 of a panel that is far
+            # 12 or 14 points are for the singularity, the others for a polynomial of degree order - 1
             rule = gauss_legendre(12 + order // 2) if count < 0 else log_rule(14 + order // 2, rough is not None, count)
             (distance, weight), many = rule, max(1, _TOGETHER // (len(rule[0]) * order))
             for at in range(0, len(rows), many):

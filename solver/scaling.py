@@ -19,18 +19,18 @@ _UNITS = _UNITS | {name: own.powers for name, own in CONTROL.items()}
 def dimensionless(problem):
     """The problem in units R = E2* = 1; n is 1 on the half-space alone."""
 
-    def number(values, own):
+    def number(values, powers):
         """The values over E2^i R^j, divided one by one: R² may overflow where the quotient does not."""
-        for unit, power in zip((problem.R, problem.E2), own.powers[::-1], strict=True):
+        for unit, power in zip((problem.R, problem.E2), powers[::-1], strict=True):
             for _ in range(abs(power)):
                 values = values / unit if power > 0 else values * unit
         return values
 
     with_unit = {name: values for name, values in problem.parameters.items() if any(PARAMETERS[name].powers)}
-    own = {name: number(values, PARAMETERS[name]) for name, values in with_unit.items()}
+    own = {name: number(values, PARAMETERS[name].powers) for name, values in with_unit.items()}
     n, one = np.where(problem.base != "half_space", problem.n, 1.0), np.ones(len(problem))
     own |= {"n": n, "R": one, "E2": one}
-    value = number(problem.value, CONTROL[problem.control])
+    value = number(problem.value, CONTROL[problem.control].powers)
     return replace(problem, value=value, parameters=problem.parameters | own)
 
 

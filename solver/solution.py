@@ -9,7 +9,7 @@ from .status import Status
 
 #: The largest relative error of these is the error of a case.
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
-#: Numbers of a converged case, in units R = E2* = 1: those that are positive, and with them those that may be 0.
+#: Numbers of a converged case, in units R = E2* = 1: _POSITIVE are > 0; _NUMBERS, these among them, are >= 0.
 _POSITIVE = (*JUDGED, "dP_dD")
 _PROFILES = ("p", "lam")
 _NUMBERS = (*_POSITIVE, "A0", "residual", "error", "profile_error", *_PROFILES)
@@ -21,7 +21,8 @@ _SHARES, _ROUNDING = ("Ar_An", "lam"), 1e-10
 
 
 class Model(IntEnum):
-    """What a case was solved with. The smooth models solve a smooth punch first and then add the asperities."""
+    """What a case was solved with. A smooth model, one above the rough one, solves a smooth punch; with "auto" it then
+    adds the asperities."""
 
     NONE = 0
     HALF_SPACE = 1
@@ -53,7 +54,7 @@ class Solution:
     profile_error : >= error; estimated error of the profiles at any radius, over the largest p or λ. It may exceed rtol
     model_error : >= 0; estimated relative error, over the same six, of the model used against the exact layer with its
         asperities. 0 for the exact layer, and for a half-space that was asked for by name; with "auto" at most
-        `accuracy`. The error of a law that comes from a table is part of it
+        `accuracy`. The error of a law that comes from a table is part of it, and may alone be above `accuracy`
     status, model_used : int8; a :class:`~solver.status.Status` and a :class:`Model`
     iterations, nodes : int32; iterations in all, and nodes of the last mesh; 0 nodes: a closed form
     p : (B, m); nominal pressure at the radii (E2)

@@ -54,6 +54,7 @@ def _of_a_model(problem, x):
 
 
 def _solved(given, x, invalid):
+    """:func:`solve` of the problem `given`; `invalid` (B,) bool: cases that are not to be solved."""
     problem = with_a_stiff_base(with_rigid_punch(given))
     scaled = dimensionless(problem)
     no_springs = ~invalid & without_springs(scaled)
@@ -81,6 +82,7 @@ def _routes(problem, solvable):
     yield solvable & is_smooth & half_space, _smooth_half_space
     yield solvable & is_smooth & thin & ~is_judged, _smooth_layer
     iterated = solvable & ~is_judged & ~is_auto & ~(is_smooth & (half_space | thin))
+    # of each kind the words that occur, and the cases that have them
     kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
     present = ([(word, words == word) for word in known if np.any(words == word)] for known, words in kinds)
     for (_, of_law), (_, on_body), (scheme, by_scheme) in product(*present):
@@ -98,7 +100,8 @@ def _smooth_layer(part, x):
 
 
 def _with_models(problem, solution):
-    """The solution with `model_used` and `model_error` of the cases whose base was asked for by name."""
+    """The solution with `model_used` and `model_error` of the cases whose base was asked for by name. `model_error` of
+    all cases is at least the :func:`.range_of_law.edge_error`."""
     named, thin = problem.base != "auto", problem.base == "thin_layer"
     solved, error = np.isfinite(solution.p0), np.array(solution.model_error)
     error[solved & named & ~thin] = 0.0

@@ -1,12 +1,12 @@
 """Films, layers far thinner than the contact: the part of the operator that only the edge of the contact feels.
 
-Let η = h/a, k in 1/a, and cut the largest k of the quadrature that all films share (CUT of :mod:`.wave_rule`). From
-L(kη) the constant n' = L(cut η/2) is taken out: it is n' times a half-space. The rest, L(kη) - n', is split by a smooth
+k is in 1/a, and cut is the largest k of the quadrature that all films share (CUT of :mod:`.wave_rule`). From L(kh/a)
+the constant n' = L(cut h/2a) is taken out: it is n' times a half-space. The rest, L(kh/a) - n', is split by a smooth
 step χ, which falls from 1 to 0 below k = cut. χ (L - n') is integrated over k as for any layer. For (1 - χ)(L - n') the
 Bessel functions are plane waves, and the kernel is a convolution: with κ = k/cut and τ = cut |x - x'|,
 
-    ∫ (L(kη) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(τ)/sqrt(x x'),
-    c(τ) = (1/π) ∫ (L(κ cut η) - n')(1 - χ) cos(κτ) dκ/κ.
+    ∫ (L(kh/a) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(τ)/sqrt(x x'),
+    c(τ) = (1/π) ∫ (L(κ cut h/a) - n')(1 - χ) cos(κτ) dκ/κ.
 
 The relative error of that is of the order cut⁻². Inside the contact, where the pressure is smooth, the convolution is
 nothing. It is linear in c, so it is tabulated like the rest.
@@ -70,14 +70,14 @@ def waves():
     return kappa, tau, matrix / (np.pi * kappa)
 
 
-def transform(f, level, p):
-    """c (b, T) at the nodes τ, from f = (L - n')(1 - χ) (b, G) at the nodes κ. f tends to 1 - n' = -level (b, 1).
+def transform(f, end, p):
+    """c (b, T) at the nodes τ, from f = (L - n')(1 - χ) (b, G) at the nodes κ. f tends to 1 - n' = -`end` (b, 1).
 
-    p (b, 1) is the thickness in a/cut. The end of f is taken out as -level (1 - e^-pκ), whose transform
-    -level ln(1 + p²/τ²)/(2π) is added.
+    p (b, 1) is the thickness in a/cut. -end (1 - e^-pκ) is taken out of f, so that the rest vanishes, and
+    its transform, -end ln(1 + p²/τ²)/(2π), is added.
     """
     kappa, tau, matrix = waves()
-    return (f - level * np.expm1(-p * kappa)) @ matrix.T - level / (2 * np.pi) * np.log1p((p / tau) ** 2)
+    return (f - end * np.expm1(-p * kappa)) @ matrix.T - end / (2 * np.pi) * np.log1p((p / tau) ** 2)
 
 
 class Share(NamedTuple):

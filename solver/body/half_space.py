@@ -1,6 +1,6 @@
 """The half-space, Eq. (4), and the thin layer, Eq. (3): a half-space that carries springs.
 
-K is H of :mod:`..numerics.mesh`. What the methods return is said in :mod:`.operator`.
+K is that of a :class:`~solver.numerics.mesh.Mesh`. What the methods return is said in :mod:`.operator`.
 """
 
 from typing import NamedTuple

@@ -104,44 +104,44 @@ def _frictionless(u, n):
 
 
 class _Bond(NamedTuple):
-    """Constants of the bonded kernel, alpha = G1/G2, g = 3 - 4 nu: a = (alpha g2 - g1)/(1 + alpha g2) and b = (alpha -
-    1)/(alpha + g1), c1 and c2 of docs/model.md; and 1 - a, 1 - b, 1 + a, 1 - ab in product form."""
+    """Constants of the bonded kernel: c1 = (alpha g2 - g1)/(1 + alpha g2) and c2 = (alpha - 1)/(alpha + g1), alpha =
+    G1/G2, g = 3 - 4 nu; and 1 - c1, 1 - c2, 1 + c1, 1 - c1 c2 in product form."""
 
-    a: np.ndarray
-    b: np.ndarray
-    one_a: np.ndarray
-    one_b: np.ndarray
-    plus_a: np.ndarray
-    one_ab: np.ndarray
+    c1: np.ndarray
+    c2: np.ndarray
+    one_c1: np.ndarray
+    one_c2: np.ndarray
+    plus_c1: np.ndarray
+    one_c1c2: np.ndarray
 
 
 def _bond(n, nu1, nu2):
     alpha, g1, g2 = n * (1 - nu1) / (1 - nu2), 3 - 4 * nu1, 3 - 4 * nu2
-    da, db = 1 + alpha * g2, alpha + g1
+    below1, below2 = 1 + alpha * g2, alpha + g1
     excess = ((n - 1) * (1 - nu1) + (nu2 - nu1)) / (1 - nu2)  # alpha - 1
     return _Bond(
-        a=(excess * g2 + 4 * (nu1 - nu2)) / da,
-        b=excess / db,
-        one_a=(1 + g1) / da,
-        one_b=(1 + g1) / db,
-        plus_a=(2 * alpha * g2 - 2 * (1 - 2 * nu1)) / da,
-        one_ab=alpha * (1 + g1) * (1 + g2) / (da * db),
+        c1=(excess * g2 + 4 * (nu1 - nu2)) / below1,
+        c2=excess / below2,
+        one_c1=(1 + g1) / below1,
+        one_c2=(1 + g1) / below2,
+        plus_c1=(2 * alpha * g2 - 2 * (1 - 2 * nu1)) / below1,
+        one_c1c2=alpha * (1 + g1) * (1 + g2) / (below1 * below2),
     )
 
 
 def _bonded_below(u, e, rest, bond):
-    """Denominator 1 - (a + b + 4bu²)e + ab e² of L and its derivative."""
-    a, b, one_a, one_b, _, _ = bond
-    hard = b > 0  # 1 - b e may nearly vanish at small u: then the denominator is written in 1 - a, 1 - b and s² - u²
+    """Denominator 1 - (c1 + c2 + 4c2u²)e + c1c2e² of L and its derivative by u."""
+    c1, c2, one_c1, one_c2, _, _ = bond
+    hard = c2 > 0  # 1 - c2 e may nearly vanish at small u: the denominator is written in 1 - c1, 1 - c2 and s² - u²
     if not np.all(hard):
-        one_ae = np.where(a > 0, one_a + a * rest, 1 - a * e)  # 1 - a e, in which nothing cancels for a of either sign
-        soft = one_ae * (1 - b * e) - 4 * b * u * u * e
-        d_soft = e * (2 * (a + b + 4 * b * u * u) - 8 * b * u - 4 * a * b * e)
+        one_c1e = np.where(c1 > 0, one_c1 + c1 * rest, 1 - c1 * e)  # 1 - c1 e, where nothing cancels for either sign
+        soft = one_c1e * (1 - c2 * e) - 4 * c2 * u * u * e
+        d_soft = e * (2 * (c1 + c2 + 4 * c2 * u * u) - 8 * c2 * u - 4 * c1 * c2 * e)
         if not np.any(hard):
             return soft, d_soft
     gap, excess = _gap_and_excess(u, e, rest)
-    stiff = one_a * one_b + one_a * b * (rest - 4 * u * u * e) + a * one_b * rest + a * b * gap
-    d_stiff = 2 * e * (one_a * b * (1 - 4 * u + 4 * u * u) + a * one_b) + a * b * (4 * excess - 2 * gap)
+    stiff = one_c1 * one_c2 + one_c1 * c2 * (rest - 4 * u * u * e) + c1 * one_c2 * rest + c1 * c2 * gap
+    d_stiff = 2 * e * (one_c1 * c2 * (1 - 4 * u + 4 * u * u) + c1 * one_c2) + c1 * c2 * (4 * excess - 2 * gap)
     if np.all(hard):
         return stiff, d_stiff
     return np.where(hard, stiff, soft), np.where(hard, d_stiff, d_soft)
@@ -150,16 +150,16 @@ def _bonded_below(u, e, rest, bond):
 def _bonded_whole(u, n, nu1, nu2):
     bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
     _, excess = _gap_and_excess(u, e, rest)
-    above = bond.one_ab + 2 * bond.a * bond.b * excess + 4 * u * bond.b * bond.plus_a * e  # 1 + 4bue - ab e²
+    above = bond.one_c1c2 + 2 * bond.c1 * bond.c2 * excess + 4 * u * bond.c2 * bond.plus_c1 * e  # 1 + 4c2ue - c1c2e²
     return above / _bonded_below(u, e, rest, bond)[0]
 
 
 def _bonded(u, n, nu1, nu2):
     bond, e, rest = _bond(n, nu1, nu2), np.exp(-2 * u), -np.expm1(-2 * u)
-    a, b = bond.a, bond.b
+    c1, c2 = bond.c1, bond.c2
     below, d_below = _bonded_below(u, e, rest, bond)
-    above = e * (4 * b * u * (1 + u) + (n - 1) * bond.one_a * bond.one_b + 2 * a * b * rest)  # L - 1 = above/below
-    d_above = e * (4 * b * (1 + 2 * u) + 4 * a * b * e) - 2 * above
+    above = e * (4 * c2 * u * (1 + u) + (n - 1) * bond.one_c1 * bond.one_c2 + 2 * c1 * c2 * rest)  # L - 1 = above/below
+    d_above = e * (4 * c2 * (1 + 2 * u) + 4 * c1 * c2 * e) - 2 * above
     L1 = above / below
     return L1, u * (d_above - L1 * d_below) / below
 

@@ -1,11 +1,11 @@
 """The exact layer of E1* on an elastic half-space: the half-space of E1* plus a Hankel integral over L - 1.
 
     K q = H[q] + (π/2) Λ[q], both less their values at the edge,
-    Λ_ij(η) = ∫₀^∞ (L(kη) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
+    Λ_ij = ∫₀^∞ (L(kh/a) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
 
-with k in units of 1/a, η = h/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1
-decays like e^(-2u), so Λ is smooth for every η. What depends on k and the mesh alone is tabulated for each octave of η
-(:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
+with k in units of 1/a, and l_j the Lagrange polynomials of the mesh. H carries the whole singularity. L - 1
+decays like e^(-2u), so Λ is smooth for every h/a. What depends on k and the mesh alone is tabulated for each octave of
+h/a (:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
 dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first octave are films. They
 all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
 """
@@ -71,6 +71,10 @@ class Layered(NamedTuple):
     def material(self):
         return self[1:5]
 
+    @property
+    def L0(self):  # the kernel at u = 0
+        return (self.n + self.m) / (1 + self.m)
+
     def whole(self, u):
         """The kernel (L + m)/(1 + m) (B,) at u (B,)."""
         return (whole(u, *self.material) + self.m) / (1 + self.m)
@@ -106,31 +110,30 @@ class Layered(NamedTuple):
 
     def error(self, a, nodes):
         """Rounding, what a loose operator leaves out, and for films the error of the convolution."""
-        (octave, stiffness), below = place_of(self, a), (self.n + self.m) / (1 + self.m)
+        (octave, stiffness), L0 = place_of(self, a), self.L0
         L = self.whole(np.where(octave == FILM, *_ROUNDED) * self.h / a)
-        left_out = np.append(np.zeros(len(LOOSE)), LOOSE)[stiffness] * np.maximum(below, 1.0)
+        left_out = np.append(np.zeros(len(LOOSE)), LOOSE)[stiffness] * np.maximum(L0, 1.0)
         error, film = (1e-14 * nodes + _COUNTS * left_out) / np.minimum(L, 1.0), np.flatnonzero(octave == FILM)
         if len(film):
-            L, below = self.take(film).whole(10 * self.h[film] / a[film]), below[film]
-            error[film] += np.abs(L - below) / np.maximum(L, below) / CUT**2
+            L, L0 = self.take(film).whole(10 * self.h[film] / a[film]), L0[film]
+            error[film] += np.abs(L - L0) / np.maximum(L, L0) / CUT**2
         return error
 
     def rounding(self):
-        return _PLATE * np.maximum((self.n + self.m) / (1 + self.m), 1.0)
+        return _PLATE * np.maximum(self.L0, 1.0)
 
     def unseen(self, a, s1):
-        """(B,). Waves of k up to 1/s1² are in the solution. Those beyond, u > u1 = η/s1², move the edge by
-        (η a/π) ∫ ln[L(u)/L(u1)] du/u², as in :mod:`..models.thin_layer_error`. Here it is over a, and of the sizes of
-        the logarithm: where waves cancel at the edge, they may not in the pressure."""
-        eta, shift = self.h / a, np.zeros(len(a))
-        thin = np.flatnonzero(eta < _SHORT * s1**2)
+        """Waves of k up to 1/s1² are in the solution. Those beyond, u > u1 = h/(a s1²), move the edge by
+        (h/π) ∫ ln[L(u)/L(u1)] du/u², as in :mod:`..models.thin_layer_error`. Here the integral is over |ln|, because
+        waves that cancel at the edge may not do so in the pressure; beyond _SHORT the logarithm is constant."""
+        h_a, shift = self.h / a, np.zeros(len(a))
+        thin = np.flatnonzero(h_a < _SHORT * s1**2)
         if not len(thin):
             return shift
-        u = np.geomspace(eta[thin] / s1**2, _SHORT, _POINTS, axis=1)
-        n, nu1, nu2, bonded, m = (field[thin, None] for field in self[1:6])
-        level = np.log(whole(u, n, nu1, nu2, bonded) + m)
+        u = np.geomspace(h_a[thin] / s1**2, _SHORT, _POINTS, axis=1)
+        level = np.log(whole(u, *(field[thin, None] for field in self.material)) + self.m[thin, None])
         f = np.abs(level - level[:, :1]) / u
-        shift[thin] = (np.trapezoid(f, np.log(u), axis=1) + f[:, -1]) * eta[thin] / np.pi
+        shift[thin] = (np.trapezoid(f, np.log(u), axis=1) + f[:, -1]) * h_a[thin] / np.pi
         return shift
 
     def work(self, a, nodes):
@@ -217,7 +220,7 @@ class LayeredOperator(NamedTuple):
             if part.film is not None:
                 index, near = part.index, felt(self.mesh, x)
                 away = film_rows(self.mesh, s[near].tobytes(), len(part.film) >= MANY).of(part.film)
-                out[index] -= ((part.film @ tab.film[2]) * q[index]).sum(axis=1)[:, None]
+                out[index] -= ((part.film @ tab.film.edge) * q[index]).sum(axis=1)[:, None]
                 out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
             out[part.index] += part.share * half_space[part.index]
         return out
@@ -248,9 +251,8 @@ def _rows(parts, mesh):
 
 def _film(c, tab, n):
     """What a convolution c (b, T) adds to the matrix and to the row of the edge under it, (b, n + 1, n)."""
-    nodes, near, edge = tab.film
-    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ edge
+    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ tab.film.edge
     rows[:, :-1] -= at_edge[:, None]
-    rows[:, nodes] += near.of(c)
+    rows[:, tab.film.nodes] += tab.film.rows.of(c)
     rows[:, -1] = at_edge
     return rows

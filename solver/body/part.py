@@ -51,11 +51,11 @@ class Part(NamedTuple):
         return Part(self.stiffness, index, *(None if v is None else v[rows] for v in self[2:]))
 
 
-def runs(octave):
-    """Pairs of an octave and the slice of its equal neighbours."""
-    ends = (octave[1:] != octave[:-1]).nonzero()[0] + 1  # np.diff takes as long as what is done with a small slice
-    for low, high in pairwise([0, *ends.tolist(), len(octave)]):
-        yield int(octave[low]), slice(low, high)
+def runs(kinds):
+    """Pairs of a number and the slice of its equal neighbours, of `kinds` (b,) int, such as octaves; b > 0."""
+    ends = (kinds[1:] != kinds[:-1]).nonzero()[0] + 1  # np.diff takes as long as what is done with a small slice
+    for low, high in pairwise([0, *ends.tolist(), len(kinds)]):
+        yield int(kinds[low]), slice(low, high)
 
 
 def join(parts):
@@ -71,39 +71,39 @@ def parts_of(layer, a, index):
     octave, stiffness = place_of(layer.take(index), a[index])
     order, parts = np.lexsort((octave, stiffness, octave == FILM)), []
     index, octave, stiffness = index[order], octave[order], stiffness[order]
-    for _, rows in runs(2 * stiffness + (octave == FILM)) if len(index) else ():
-        own, of_film = index[rows], octave[rows][0] == FILM
-        make = _film_part if of_film else _plain_part
-        place = octave[rows], int(stiffness[rows][0])
-        parts.append(Part(place[1], own, place[0], a[own], *make(layer.take(own), layer.h[own] / a[own], *place)))
+    for kind, rows in runs(2 * stiffness + (octave == FILM)) if len(index) else ():
+        of_class, is_film = divmod(kind, 2)
+        own, make = index[rows], _film_part if is_film else _plain_part
+        kernel = make(layer.take(own), layer.h[own] / a[own], octave[rows], of_class)
+        parts.append(Part(of_class, own, octave[rows], a[own], *kernel))
     return parts
 
 
-def _plain_part(layer, eta, octave, stiffness):
+def _plain_part(layer, h_a, octave, stiffness):
     k = [few(one, stiffness).k for one, _ in runs(octave)]
-    return _kernel(layer, eta, np.repeat(k, [rows.stop - rows.start for _, rows in runs(octave)], axis=0))
+    return _kernel(layer, h_a, np.repeat(k, [rows.stop - rows.start for _, rows in runs(octave)], axis=0))
 
 
-def _film_part(layer, eta, octave, stiffness):
+def _film_part(layer, h_a, octave, stiffness):
     k, _ = quadrature(FILM, stiffness)
-    level = layer.whole(CUT * eta / 2)[:, None]
+    level = layer.whole(CUT * h_a / 2)[:, None]
     kappa, _, _ = film.waves()
-    below = _kernel(layer, eta, k, level, film.step(k / CUT))
-    beyond, d_beyond = _kernel(layer, eta, CUT * kappa, level, 1 - film.step(kappa))
-    p, end = CUT * eta[:, None], level - 1
+    below = _kernel(layer, h_a, k, level, film.step(k / CUT))
+    beyond, d_beyond = _kernel(layer, h_a, CUT * kappa, level, 1 - film.step(kappa))
+    p, end = CUT * h_a[:, None], level - 1
     return *below, np.pi / 2 * film.transform(beyond, end, p), np.pi / 2 * film.transform(d_beyond, 0 * end, p), level
 
 
-def _kernel(layer, eta, k, level=None, factor=1.0):
+def _kernel(layer, h_a, k, level=None, factor=1.0):
     """L less `level` (b, 1), or less 1 if that is None, and -u dL/du; both (b, M), at the nodes k, (b, M) or (M,), and
     times a `factor` (M,)."""
-    size, count = len(eta), k.shape[-1]
+    size, count = len(h_a), k.shape[-1]
     L1, uL = np.empty((2, size, count))
     many, yields = max(1, _BLOCK // count), layer.m.any()  # whether a punch yields; few do
     for of_interface in (np.flatnonzero(layer.bonded), np.flatnonzero(~layer.bonded)):
         for low in range(0, len(of_interface), many):
             rows = of_interface[low : low + many]
-            u = (k if k.ndim == 1 else k[rows]) * eta[rows, None]
+            u = (k if k.ndim == 1 else k[rows]) * h_a[rows, None]
             above, slope = decaying_part(u, *(field[rows, None] for field in layer.material))
             if yields:
                 above, slope = above / (1 + layer.m[rows, None]), slope / (1 + layer.m[rows, None])

@@ -27,9 +27,18 @@ _WHOLE = 64
 _PHASE = 120.0
 #: φ is formed, and its moments kept, in parts of so many nodes k.
 _ROWS = 250
-#: The moments of a panel are formed up to one of these degrees at once. J0 costs the most, and so meshes of all orders
-#: have its values in common.
-_DEGREES = (16, 48, 144)
+#: The moments of a panel are formed for one of these numbers of polynomials at once. J0 costs the most, and so meshes
+#: of all orders have its values in common.
+_COUNTS = (16, 48, 144)
+
+
+class FilmTable(NamedTuple):
+    """What makes the operator of a convolution c (b, T) on one mesh of n nodes: the `nodes` (m,) where it is felt,
+    :func:`film_rows` there, and `edge` (T, n): c @ edge is the row of the edge."""
+
+    nodes: np.ndarray
+    rows: film.Whole | film.Convolution
+    edge: np.ndarray
 
 
 class Table(NamedTuple):
@@ -38,17 +47,14 @@ class Table(NamedTuple):
     L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
     were too large. The rest is at all G nodes k of the quadrature: `J` (G, n + 1), J0(k x_i) - J0(k), and last J0(k);
     `phi` (G, n); and `spread` (M, G), which makes (π/2) w (L - 1) there, w the weights, from L - 1 at the few nodes;
-    (G,) for films, which have no few nodes.
-
-    `film`, of films: the m nodes where the convolution is felt, what :func:`film_rows` gives there, and at the edge (T,
-    n).
+    (G,) for films, which have no few nodes. `film` is for these.
     """
 
     J: np.ndarray
     phi: np.ndarray
     spread: np.ndarray
     product: np.ndarray | None
-    film: tuple | None
+    film: FilmTable | None
 
     @property
     def is_small(self):
@@ -104,8 +110,9 @@ def _spread(octave, stiffness):
 
 @_kept
 def _film_table(mesh, many):
-    near = felt(mesh, mesh.x)
-    return near, film_rows(mesh, mesh.s[near].tobytes(), many), film_rows(mesh, np.zeros(1).tobytes(), True).table
+    nodes, edge = felt(mesh, mesh.x), np.zeros(1)
+    rows = film_rows(mesh, mesh.s[nodes].tobytes(), many)
+    return FilmTable(nodes, rows, film_rows(mesh, edge.tobytes(), True).table)
 
 
 @_kept
@@ -127,7 +134,7 @@ def felt(mesh, x):
 def transform(mesh, k):
     """φ_j(k) = ∫₀¹ l_j(s) J0(k sqrt(1 - s²)) s ds, (G, n)."""
     phi, order = np.empty((len(k), mesh.n)), mesh.order
-    count = next((most for most in _DEGREES if order <= most), order)
+    count = next((most for most in _COUNTS if order <= most), order)
     of_legendre = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
     for stop in range(len(k), 0, -_ROWS):  # from the end: all classes of an octave have the last nodes in common
         part = slice(max(stop - _ROWS, 0), stop)

@@ -1,9 +1,9 @@
 """The quadrature in k of the layered operator, one for each octave of h/a, and the few of its nodes that determine L.
 
-k is in units of 1/a, and an octave is all η = h/a from a power of two to the next. The panels follow the oscillation of
-J0 J0, whose frequency is 2, and the scale of L: 1/η, and for stiff layers n^(-1/3)/η and 1/(nη). So the quadrature is
-as accurate for every η and n of an octave. L - 1 itself does not oscillate: for all layers of a class of stiffness and
-all η of an octave, its values at all nodes follow, to rounding, from those at 52 to 104 of them (_FEW).
+k is in units of 1/a, and an octave is all h/a from a power of two to the next. The panels follow the oscillation of
+J0 J0, whose frequency is 2, and the scale of L: a/h, and for stiff layers n^(-1/3) a/h and a/(nh). So the quadrature is
+as accurate for every h/a and n of an octave. L - 1 itself does not oscillate: for all layers of a class of stiffness
+and an octave, its values at all nodes follow, to rounding, from those at 52 to 104 of them (_FEW).
 """
 
 from functools import lru_cache
@@ -36,7 +36,7 @@ _FEW = (52, 90, 104, 104, 36, 61)
 #: of any of these functions is at most this part of the largest of them, which is rounding; or LOOSE.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
-#: u = 1/2, the second above, with u = k η at the lower end of the octave. For each digit by which L - 1 has decayed
+#: u = 1/2, the second above, with u = kh/a at the lower end of the octave. For each digit by which L - 1 has decayed
 #: where the panel begins it has _LESS points fewer. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
 #: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
@@ -58,11 +58,11 @@ CUT = _end(FILM) * 2.0**-FILM
 def place_of(layer, a):
     """Octave of h/a, or FILM, and class of stiffness, (B,) int each: its place in STIFFEST, plus len(STIFFEST) for a
     loose operator, which films never have."""
-    eta = layer.h / a
-    octave = np.floor(np.log2(eta))
+    h_a = layer.h / a
+    octave = np.floor(np.log2(h_a))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     # all films share one quadrature: a film is as stiff in it as a layer of the octave's h/a with the same n h/a
-    stiffness = np.where(octave == FILM, layer.n * eta * 2.0**-FILM, layer.n)
+    stiffness = np.where(octave == FILM, layer.n * h_a * 2.0**-FILM, layer.n)
     stiffness = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
     return octave, stiffness if layer.loose is None else stiffness + len(STIFFEST) * (layer.loose & (octave != FILM))
 
@@ -123,13 +123,13 @@ def _samples(octave, stiffness, k, scale):
     """L - 1 and u dL/du (2 _SAMPLES, G), times `scale` (G,), of random layers of a class with h/a in an octave. Where
     the sum of |L - 1| over the nodes, about the size of the operator, is above 1, both are divided by it."""
     random, size = np.random.default_rng(0), _SAMPLES
-    of_n, of_eta = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
+    of_n, of_h_a = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
     low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])
     n = np.exp(low + (high - low) * of_n)
     if stiffness == 0:
         n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)
-    eta, bonded = 2.0 ** (octave + of_eta), random.random(size) < 0.67
+    h_a, bonded = 2.0 ** (octave + of_h_a), random.random(size) < 0.67
     nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
-    L1, uL = (scale * v for v in decaying_part(k * eta[:, None], *(v[:, None] for v in (n, *nu, bonded))))
+    L1, uL = (scale * v for v in decaying_part(k * h_a[:, None], *(v[:, None] for v in (n, *nu, bonded))))
     whole = np.maximum(np.abs(L1).sum(axis=1), 1.0)
     return np.concatenate([L1, uL]) / np.tile(whole, 2)[:, None]

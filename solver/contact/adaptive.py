@@ -12,7 +12,7 @@ from ..numerics.ladder import LADDER, climb, finer_mesh, first_rung
 from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
-from .answer import Answer, answer, hopeless, stuck
+from .answer import Answer, answer, hopeless, stuck, tensile_centre
 from .driver import BUDGET, newton_steps, solve_on
 from .equation import evaluate
 from .panels import solve_on_panels
@@ -30,7 +30,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
     x : (m,), radii of the profiles.
     """
     size, free = len(rtol), nodes == 0
-    work, before = np.zeros(size), np.full(size, np.inf)
+    work, before, a = np.zeros(size), np.full(size, np.inf), guess_radius(cases)
+    cases = cases._replace(body=cases.body.within(np.where(free, rtol, 0.0), a))
 
     def on_mesh(index, n, start):
         part, mesh = cases.take(index), mesh_of(n)
@@ -45,17 +46,15 @@ def solve_newton(cases, rtol, nodes, limit, x):
         before[index] = error
         return np.where(useless, np.nan, error), found.finer, found._replace(finer=None)
 
-    a = guess_radius(cases)
-    cases = cases._replace(body=cases.body.within(np.where(free, rtol, 0.0), a))
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
     found = _together(rungs, size, len(x))
     undecided = ~free & found.unsure  # no finer mesh will judge the tension: its part of the load is an error
     np.maximum(found.solution.error, found.tension, out=found.solution.error, where=undecided)
     lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
     missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET
-    opened = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol)) & free & (limit == 0)
-    opened = np.flatnonzero(opened & ~spent)
-    ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in opened]
+    unfinished = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol))
+    rest = np.flatnonzero(unfinished & free & (limit == 0) & ~spent)
+    ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in rest]
     # where the budget is spent, no panels can confirm that the punch lifts off: the error counts as too large
     ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
@@ -120,5 +119,5 @@ def _on_panels(case, before, rtol, x, left):
             spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))
-    lifted |= before._replace(solution=best, tension=np.zeros(1)).lifted
+    lifted |= tensile_centre(best)
     return _ended(best, missed, lifted, spent)

@@ -50,8 +50,7 @@ class Answer(NamedTuple):
     @property
     def lifted(self):
         """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""
-        error = self.solution.error
-        return (self.tension > np.fmax(10 * error, _TENSION)) | ((self.solution.p0 < 0) & (error < _SURE))
+        return (self.tension > np.fmax(10 * self.solution.error, _TENSION)) | tensile_centre(self.solution)
 
     @property
     def unsure(self):
@@ -64,6 +63,11 @@ def _between(mesh):
     """The polynomials of a mesh (n, m) at _DENSER times as many points, and the weights (m,) of ∫ · s ds there."""
     s, w = gauss_rule(_DENSER * mesh.order, mesh.breaks)
     return mesh.basis(s).T, w * s
+
+
+def tensile_centre(solution):
+    """(B,) bool: p(0) < 0, and the error is too small to make it so."""
+    return (solution.p0 < 0) & (solution.error < _SURE)
 
 
 def stuck(error, slow, nodes, rtol):
@@ -94,8 +98,8 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
         at = ev.take(last)
         slope[last] = newton.stiffness(at, newton.tangent(at), own.P[last], own.D[last])
     slow = error > _FALLS * before
-    last = hopeless(error, slow, ev.floor, enough) | stuck(error, slow, ev.mesh.n, enough)
-    done = np.flatnonzero(finite & (last | (error <= enough)))
+    useless = hopeless(error, slow, ev.floor, enough) | stuck(error, slow, ev.mesh.n, enough)
+    done = np.flatnonzero(finite & (useless | (error <= enough)))
     own.Ar_An[done], error[done] = completed(ev, own.Ar_An, error, done)
     p, lam = np.full((2, len(error), len(x)), np.nan)
     p[done], lam[done] = profiles(ev, x, done)

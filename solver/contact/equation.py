@@ -94,8 +94,8 @@ class Evaluation:
 
     @cached_property
     def gap(self):
-        """Height (B, n), over a²/2, of asperities without pressure above the surface, which others press down; else
-        0."""
+        """(B, n): where others press the surface down and away from asperities, which then bear no pressure, their
+        height above it over a²/2; else 0."""
         q = self.curve.q
         if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # quick to see, and true of most batches
             return np.zeros(q.shape)

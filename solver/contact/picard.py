@@ -1,6 +1,6 @@
 """The paper's successive approximations, Eqs (8) and (10), and the load or depth by a search on the contact radius.
 
-They begin at p = 0, and end when |p̂ - p| is below rtol/10 of the largest pressure, or in a cycle (docs/model.md). On a
+They begin at p = 0, and end when |p̃ - p| is below rtol/10 of the largest pressure, or in a cycle (docs/model.md). On a
 finer mesh the node next to the edge is nearer to it, where A'(p) is larger, and a larger k is needed.
 """
 
@@ -28,7 +28,7 @@ _TINY = np.finfo(float).tiny
 class Approximation:
     """B cases at the radii exp(eta), after `done` approximations: the pressure q (B, n), and how much it still changes.
 
-    Changes, (B,) each: `change` is the last |p̂ - p| over the largest pressure, `earlier` what that was when half of all
+    Changes, (B,) each: `change` is the last |p̃ - p| over the largest pressure, `earlier` what that was when half of all
     approximations had been made, and `load_change` the last relative change of the load.
     """
 
@@ -138,7 +138,7 @@ def _next(now, half):
 
 
 def _pressure(law, groups, s2, q, Kq):
-    """p̂ (B, n) over p*, Eq. (8) where there are springs, else Eq. (10)."""
+    """p̃ (B, n) over p*, no less than 0: by Eq. (8) where there are springs, else by Eq. (10)."""
     X, Y, Z = groups
     left, springs, by_springs, by_spots = s2 - X * Kq, Y > 0, 0.0, 0.0
     if springs.any():

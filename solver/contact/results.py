@@ -96,6 +96,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         f = slope * curve.q + weight * curve.g - right[active]
         new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
         y[active] = new
+        # what a step leaves is about the square of its relative size
         active = active[np.any((new - old) ** 2 > tolerance * new**2, axis=1)]
         if not len(active):
             break

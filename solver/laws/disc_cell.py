@@ -3,9 +3,9 @@
 Both equations become explicit in the angle θ = arccos(b/B̄), b the radius of a spot and B̄ = 1/sqrt(pi Nbar) that of the
 cell. With p = p* q and A = A* g,
 
-    p* = 2 E1* B̄/(3 Ra),  A* = B̄²/Ra,  q = cos³θ/(θ + sinθ cosθ),  g = cos²θ - (4/3) q sinθ,  λ = cos²θ,
+    p* = 2 E B̄/(3 Ra),  A* = B̄²/Ra,  q = cos³θ/(θ + sinθ cosθ),  g = cos²θ - (4/3) q sinθ,  λ = cos²θ,
 
-so one curve g(q) serves every Nbar, Ra and E1*. The unknown is y = cot θ = b/sqrt(B̄² - b²), from which cos, sin and θ
+so one curve g(q) serves every Nbar, Ra and E. The unknown is y = cot θ = b/sqrt(B̄² - b²), from which cos, sin and θ
 all follow without cancellation, from isolated spots (y → 0: q ~ (2/π) y³, g ~ y²) to full contact (y → ∞: q ~ y/2,
 g → 1/3).
 """
@@ -25,7 +25,7 @@ PARAMETERS = {
 
 
 def scales(E, Nbar, Ra):
-    """p* = 2 E1* B̄/(3 Ra) (unit of E) and A* = B̄²/Ra (unit of Ra)."""
+    """p* = 2 E B̄/(3 Ra) (unit of E) and A* = B̄²/Ra (unit of Ra)."""
     radius = 1 / np.sqrt(np.pi * Nbar)  # B̄
     return 2 * E * radius / (3 * Ra), radius**2 / Ra
 
@@ -66,7 +66,7 @@ def spot_area(y):
 
 
 def spot_peak(y, q):
-    """p_max/p*, Eq. (13): 2 E1* b/(pi Ra) + (2 p/pi) arcsin(b/B̄), where arcsin(cosθ) = π/2 - θ = arctan y."""
+    """p_max/p*, Eq. (13): 2 E b/(pi Ra) + (2 p/pi) arcsin(b/B̄), where arcsin(cosθ) = π/2 - θ = arctan y."""
     return 3 / np.pi / np.sqrt(1 + y**-2.0) + 2 / np.pi * q * np.arctan(y)
 
 
@@ -132,7 +132,7 @@ def displacement(p, E, Nbar, Ra):
     Its relative accuracy is 1e-13 from isolated spots to full contact, where it tends to B̄²/(3 Ra).
 
     p : nominal pressure >= 0, in the unit of E
-    E, Nbar, Ra : E1* (E2* without a layer), asperities per unit area and their radius, all > 0
+    E, Nbar, Ra : modulus that the asperities feel (docs/model.md), their number on the unit area, their radius; all > 0
 
     >>> round(float(displacement(0.01, 0.5, 250000, 0.004)), 9)
     5.375e-05

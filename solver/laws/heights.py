@@ -47,11 +47,18 @@ class Symmetric(NamedTuple):
     """A density of heights from c σ below their mean to c σ above it. x is the depth below the highest summit over σ; c
     (B, 1).
 
-    shape : (x, c) -> density, of any shapes that broadcast; of : the name of the parameter that c is, or its value
+    shape : (x, c) -> density, of any shapes that broadcast
+    c : its value, if all cases have the same; None: it is the parameter `cut`
     """
 
     shape: Callable
-    of: str | float
+    c: float | None = None
+
+    fine = 1  # how many times as many knots its tables have
+
+    @property
+    def parameters(self):
+        return {"sigma": SIGMA} | ({"cut": CUT} if self.c is None else {})
 
     def at(self, x, cut):
         return self.shape(x, cut)
@@ -71,12 +78,13 @@ class Symmetric(NamedTuple):
 
 class Histogram(NamedTuple):
     """The same of a histogram: the density in each of its bins of the width `step`, from the highest summits down, and
-    the mean `depth`. x is in R and σ is 1; there is no c."""
+    the mean `depth`. x is in R and σ is 1; there is no c, which is 0 wherever it is asked for."""
 
     shares: tuple[float, ...]
     step: float
     depth: float
-    of = None
+
+    fine, c, parameters = _FINE, 0.0, {}
 
     def at(self, x, cut):
         return np.array(self.shares)[:, None] * np.ones_like(x)
@@ -105,10 +113,10 @@ _TABLES: dict[tuple, np.ndarray] = {}
 def _tables(density, field, sigma, cut):
     """Tables (G, 2, KNOTS) of ln q and ln λ for the G different pairs of sigma and cut (B, 1), and the table of each
     case (B,). A histogram has _FINE KNOTS."""
-    laws, group = np.unique(np.concatenate([sigma, cut], axis=1), axis=0, return_inverse=True)
-    keys = [(density, field, *row) for row in laws.tolist()]
+    pairs, group = np.unique(np.concatenate([sigma, cut], axis=1), axis=0, return_inverse=True)
+    keys = [(density, field, *pair) for pair in pairs.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}
-    missing, fine = [key for key, row in rows.items() if row is None], 1 if density.of else _FINE
+    missing, fine = [key for key, row in rows.items() if row is None], density.fine
     at_once = _AT_ONCE // fine**2  # the tables are larger, of more pieces
     for begin in range(0, len(missing), at_once):
         some = missing[begin : begin + at_once]
@@ -165,8 +173,8 @@ def _area(density, field, y, q, sigma, cut):
 def _peak(density, field, y, q, sigma, cut):
     """p_max/p* under the highest summit. Where its cell is filled, the middle of a flat punch adds its pressure."""
     delta, k = spread.depth(y, q, _relief(density, sigma, cut))[0], field * (2 / 3) * q
-    v = np.clip((1 - delta) / (k + np.sqrt(np.maximum(k * k + 1 - delta, 0.0))), 0.0, 1.0)
-    c = np.sqrt(np.clip((delta + 2 * k) * (1 + v) / (1 + v + 2 * k), 0.0, 1.0))
+    v, c2 = spread.spot(delta, k)
+    c = np.sqrt(c2)
     found = 3 / np.pi * c + field * (2 / np.pi) * q * np.arctan2(c, v) + 1.5 / np.pi * np.maximum(delta - 1, 0.0)
     return np.where(sigma > 0, found, disc_cell.spot_peak(y, q))
 
@@ -180,7 +188,7 @@ def _edge(density, field, sigma, cut):
 def _touching(density, A, sigma=1.0, cut=None, **_):
     """Share of the summits within A of the highest, of the shape of A and the parameters together, by quadrature over
     each piece of the density."""
-    A, sigma, cut = np.broadcast_arrays(A, sigma, (density.of or 0.0) if cut is None else cut)
+    A, sigma, cut = np.broadcast_arrays(A, sigma, density.c if cut is None else cut)
     with np.errstate(all="ignore"):
         depths, cuts = (A / sigma).reshape(-1, 1), cut.reshape(-1, 1)
     (t, weights), shares = gauss_legendre(_ENOUGH), []
@@ -195,16 +203,16 @@ def _touching(density, A, sigma=1.0, cut=None, **_):
 
 def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
     p_star, A_star = disc_cell.scales(E, Nbar, Ra)
-    return p_star, A_star, sigma / A_star, (density.of or 0.0) if cut is None else cut
+    return p_star, A_star, sigma / A_star, density.c if cut is None else cut
 
 
 def law(name, density, field=1.0, **known):
     """:class:`~solver.laws.law.Law` of these heights; `field` 0: the asperities do not feel each other."""
     parts = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge, "guess": _guess, "scales": _scales}
     parts = {key: partial(part, density, field) for key, part in parts.items()}
-    own = ({} if density.of is None else {"sigma": SIGMA}) | ({density.of: CUT} if isinstance(density.of, str) else {})
     known = {"error": ERROR, "touching": partial(_touching, density)} | known
-    return Law(name=name, parameters=disc_cell.PARAMETERS | own, rise=1.1, corners=True, **parts, **known)
+    parameters = disc_cell.PARAMETERS | density.parameters
+    return Law(name=name, parameters=parameters, rise=1.1, corners=True, **parts, **known)
 
 
 def histogram(name, z, share, version):
@@ -218,6 +226,6 @@ def histogram(name, z, share, version):
     return law(name, bins, version=version, error=STEPPED * sharp**_SHARPER)
 
 
-NORMAL, EVEN = Symmetric(_normal, "cut"), Symmetric(_uniform, UNIFORM)
+NORMAL, EVEN = Symmetric(_normal), Symmetric(_uniform, UNIFORM)
 LAW = law("normal_heights", NORMAL, version="2")
 UNIFORM_LAW = law("uniform_heights", EVEN)

@@ -50,7 +50,8 @@ class Law:
 
     name : what a user writes for ``micro``
     parameters : name -> Parameter, with bounds, default, unit and words; each is an argument of `scales`
-    scales : (E, **parameters) -> (p*, A*, *own); all (B,), in units R = E2* = 1. E is E1*, or E2* without a layer
+    scales : (E, **parameters) -> (p*, A*, *own); all (B,), in units R = E2* = 1. E is the modulus that the
+        asperities feel: E1*, or E2* without a layer; over 1 + m under an elastic punch
     curve : (y, *own) -> Curve
     area : (y, q, *own) -> λ, from 0 to 1 (11)
     peak : (y, q, *own) -> p_max/p* (13)
@@ -140,15 +141,15 @@ class Bound(NamedTuple):
         """:class:`Spots` at the nominal pressures p (B, m) >= 0."""
         q = p / self.p_star[:, None]
         y = self.from_pressure(q)
-        A = self.A_star[:, None] * np.where(y > 0, self.evaluate(y).g, y)
-        return Spots(A, self.area(y, q), self.peak(y, q))
+        g = np.where(y > 0, self.evaluate(y).g, y)  # at y = 0 a curve may be 0/0; NaN stays
+        return Spots(self.A_star[:, None] * g, self.area(y, q), self.peak(y, q))
 
     def guess(self, q):
         """y (B, m) with q(y) = q, roughly: where a Newton iteration begins."""
         return self.law.guess(q, *self.own) if self.law.guess else self.from_pressure(q)
 
     def from_pressure(self, q):
-        """y (B, m) with q(y) = q; 0 where q <= 0, NaN where it is NaN."""
+        """y (B, m) with q(y) = q >= 0; NaN where q is NaN."""
         if self.law.from_pressure:
             return self.law.from_pressure(q, *self.own)
         gamma, beta = self.law.edge(*self.own)

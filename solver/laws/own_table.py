@@ -162,7 +162,7 @@ def _curve(column, t, q, X, power):
     largest error at and between them. Raises ValueError where every degree is too far away, or falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
-    apart, tried = _apart([found for found, _ in tried], t), tried[1:]
+    apart, tried = _apart([found for found, _ in tried], t), tried[1:]  # degree 0 is there to compare degree 1 with
     far = np.array([error[1:-1].max() for _, error in tried])  # without the ends: no curve through the others says them
     if far.min() > _FAR:
         row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2

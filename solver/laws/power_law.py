@@ -1,4 +1,4 @@
-"""The fit of the paper, Section 4.1: A = B Ra (p/E1*)^β, so that p* = E1*, A* = B Ra and g = q^β.
+"""The fit of the paper, Section 4.1: A = B Ra (p/E)^β, so that p* = E, A* = B Ra and g = q^β.
 
 λ and p_max are those of the law that is fitted (:mod:`.disc_cell`) at the same pressure.
 """

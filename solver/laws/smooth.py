@@ -1,4 +1,4 @@
-"""No asperities: A = 0, and the equation is linear in y = q, with p* = E1*."""
+"""No asperities: A = 0, and the equation is linear in y = q, with p* = E."""
 
 import numpy as np
 

@@ -30,7 +30,7 @@ _STEPS, _LAST, _NEAR, _LONGEST = 60, 1e-9, 1e-6, 2.0
 #: Knots of a table in ln y: the first, their distance, their number. A quintic through six of them errs by less than
 #: 5e-6 in q and 2e-4 in λ, and at the last knot δ is as near to its limit (tests/laws/heights/test_heights.py).
 FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 992
-#: The largest y that a table knows; the last three knots are beyond it.
+#: The largest y that a table knows; the last two knots are beyond it.
 LAST = np.exp(FIRST + STEP * (KNOTS - 3))
 #: The relief <ζ> + 1/3 above which w is not 1, and the one above which u is not: the tables then begin where δ is 1e-16
 #: of the relief. tests/laws/heights/test_heights_far.py has heights below, between and above both.
@@ -54,6 +54,12 @@ def depth(y, q, relief):
     """δ at y and q; and w, with d ln δ/dq = -2/(w + q) at constant y."""
     w = np.maximum(1.0, relief / _FAR)
     return np.maximum(1.0, relief / _FARTHEST) * (y / (1 + q / w)) ** 2, w
+
+
+def spot(approach, k):
+    """v and c² of a spot with this approach δ - ζ, by the equation of the module."""
+    v = np.clip((1 - approach) / (k + np.sqrt(np.maximum(k * k + 1 - approach, 0.0))), 0.0, 1.0)
+    return v, np.clip((approach + 2 * k) * (1 + v) / (1 + v + 2 * k), 0.0, 1.0)
 
 
 def unknown(delta, q, relief):
@@ -88,9 +94,7 @@ def means(edges, density, field, q, delta, sigma):
     # sin² makes roots at both ends smooth: f begins as (touching - ζ)^(3/2), and v as sqrt(1 - δ + ζ)
     x = end - (end - begin) * np.sin(np.pi / 2 * tau) ** 2
     w = np.pi / 2 * weight * np.sin(np.pi * tau) * (end - begin) * density(x)
-    depth = delta - sigma * x
-    v = np.clip((1 - depth) / (k + np.sqrt(np.maximum(k * k + 1 - depth, 0.0))), 0.0, 1.0)
-    c2 = np.clip((depth + 2 * k) * (1 + v) / (1 + v + 2 * k), 0.0, 1.0)
+    v, c2 = spot(delta - sigma * x, k)
     c = np.sqrt(c2)
 
     tau, weight = gauss_legendre(_FILLED)

@@ -15,7 +15,8 @@ _ZERO, _NEAR, _TINY = 1e-6, 1e-3, 1e-290
 #: Half the step of ln y over which a derivative is compared, and the largest relative error of it: the laws of this
 #: package have less than 1e-5 (tests/laws/test_trial.py).
 _STEP, _WRONG = 1e-3, 1e-3
-#: A curve that changes by less over the step is flat, and its derivative is rounding; one that falls by less is.
+#: A curve that changes by less than _FLAT over the step is flat: its derivative is rounding. So is a fall by less than
+#: _ROUNDING from one y to the next.
 _FLAT, _ROUNDING = 1e-6, 1e-9
 #: The part of the points that must be wrong, since a curve may have a corner near some.
 _PART = 0.25
@@ -58,7 +59,7 @@ def tried(law, E, given):
     places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
     E, given = E[places], {name: given[name][places] for name in law.parameters}
     bound, curve, area = _shapes(law, E, given)
-    # beyond full contact, and where p is above E, no contact is, and a law may be what it likes
+    # no contact is beyond full contact, or where p is above E: there a law may be what it likes
     here = (area <= 1) & (bound.p_star[:, None] * curve.q <= E[:, None])
     small, above, below = (_curve(law, y, bound.own) for y in (_ZERO * _Y, _Y * np.exp(_STEP), _Y * np.exp(-_STEP)))
     for name, inverse in (("q", "from_pressure"), ("g", "from_displacement")):

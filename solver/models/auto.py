@@ -79,16 +79,16 @@ def bounds(part):
     the exact layer."""
     cases = as_cases(part.but(base="layered"))
     a = guess_radius(cases)
-    x, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")
+    h_a, material = part.h / a, (part.n, part.nu1, part.nu2, part.bonding == "bonded")
     alone, thin = np.full(len(part), np.inf), np.nan_to_num(_THIN * closed_form(part, a), nan=np.inf)
     of_law = cases.law.law.error
-    i = np.flatnonzero(x > _THICKEST)
+    i = np.flatnonzero(h_a > _THICKEST)
     L1, _ = decaying_part(_U * np.ones((len(i), 1)), *(v[i, None] for v in material))
-    alone[i] = _ALONE * (np.abs(L1) @ _WEIGHTS) / x[i]
+    alone[i] = _ALONE * (np.abs(L1) @ _WEIGHTS) / h_a[i]
     found = {Model.LAYER_ALONE: alone + of_law, Model.THIN_LAYER: thin + of_law}
     if not cases.law.rough:
         return {Model(model + 1): bound for model, bound in found.items()}
-    p0 = 2 / np.pi * a * layer_modulus(part.n) / whole(1.5 * x, *material)
+    p0 = 2 / np.pi * a * layer_modulus(part.n) / whole(1.5 * h_a, *material)
     _, beta = cases.law.edge()
     share = cases.law.at(p0[:, None]).A[:, 0] / a**2
     asperities = _ASPERITIES[part.control] * share ** np.minimum(0.75, 2 / (3 - beta))

@@ -22,7 +22,7 @@ NODES = 24
 
 
 def judged(problem, x, solve):
-    """:class:`Solution` of thin layers in units R = E2* = 1, with the model error of first order.
+    """:class:`Solution` of thin layers in units R = E2* = 1, with the `model_error` of `model_check` "first_order".
 
     problem : all of base "thin_layer"; x : (m,) radii; solve : ``solve(problem, x)``, without this estimate.
     """

@@ -32,7 +32,7 @@ class Mesh:
     breaks : ends of the panels in s, from 0 to 1
     s, x : (n,), nodes sqrt(1 - x²), ascending, the last one the centre s = 1; and the radii x = r/a
     w : (n,), weights of ∫₀¹ q x dx; exact for polynomials in s (on each panel)
-    K : (n, n), half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(k)/(x + x') x' dx' of Eq. (3), K(k)
+    K : (n, n), half-space operator H[q](x_i) - H[q](1), where H[q](x) = ∫₀¹ q(x') K(μ)/(x + x') x' dx' of Eq. (3), K(μ)
         the complete elliptic integral of the first kind. For q = s it is (π²/16) s²
     edge : (n,), H[q](1): the displacement at the edge of the contact, which gives D without an interpolation
     """
@@ -66,7 +66,7 @@ class Mesh:
 
 @lru_cache(maxsize=64)
 def mesh_of(n):
-    """The :class:`Mesh` of one panel with `n` nodes (n >= 2); cached."""
+    """The :class:`Mesh` of one panel with `n` nodes (n >= 2); cached apart from the many meshes of panels."""
     return panel_mesh.__wrapped__(n, WHOLE)
 
 
@@ -104,10 +104,10 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     """Rows (m, n) that give the half-space operator H[q](x), Eq. (3), at the points s_out (m,) in s from q at `nodes`
     (n,) in s, as many on each of the panels between `breaks`.
 
-    With x_< and x_> the smaller and the larger of x, x', K(k)/(x + x') is K(x_</x_>)/x_> (Landen): so the only
+    With x_< and x_> the smaller and the larger of x, x', K(μ)/(x + x') is K(x_</x_>)/x_> (Landen): so the only
     singularity of the integrand is log|s - s'| (a root at the centre). Panels farther from it than their length have a
-    plain Gauss rule. The others are split there, and each side has panels that shrink towards it (:mod:`.pieces`). The
-    complementary parameter 1 - k² is formed from the distance to the singularity, so that no digits are lost near it.
+    plain Gauss rule. The others have subpanels that shrink towards it, on each of its sides (:mod:`.pieces`). The
+    complementary parameter 1 - (x_</x_>)² is formed from the distance to the singularity: no digits are lost near it.
     Polynomial pressures are right to 1e-14 (tests/numerics/test_operator.py).
     """
     panels = len(breaks) - 1

@@ -56,12 +56,13 @@ def pieces(s, breaks, order, near=None, rough=None):
         start, there = np.maximum(ahead, 0.0), far_end > 0
         if near is not None:
             there &= near
-        is_far = ahead >= length
-        level = np.where(is_far, -1, panels_towards(start if rough is None else np.where(rough, 0.0, start), length))
-        kinds = 2 * level + (ahead < 0)
+        towards = panels_towards(start if rough is None else np.where(rough, 0.0, start), length)
+        kinds = 2 * np.where(ahead >= length, -1, towards) + (ahead < 0)
         for kind in np.unique(kinds[there]).tolist():
-            (one, inside), (rows, panels) = divmod(kind, 2), np.nonzero(there & (kinds == kind))
-            rule = gauss_legendre(12 + order // 2) if one < 0 else log_rule(14 + order // 2, rough is not None, one)
+            rows, panels = np.nonzero(there & (kinds == kind))
+            count, inside = divmod(kind, 2)  # of subpanels; -1 of a panel that is far
+            # 12 or 14 points are for the singularity, the others for a polynomial of degree order - 1
+            rule = gauss_legendre(12 + order // 2) if count < 0 else log_rule(14 + order // 2, rough is not None, count)
             (distance, weight), many = rule, max(1, _TOGETHER // (len(rule[0]) * order))
             for at in range(0, len(rows), many):
                 row, panel = rows[at : at + many], panels[at : at + many]

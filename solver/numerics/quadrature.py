@@ -9,8 +9,8 @@ from itertools import pairwise
 import numpy as np
 from scipy.special import roots_jacobi
 
-#: Number of subpanels towards a singularity, each a quarter as long as the one before; and the power m of the last one.
-#: The variable on it is x = t^m, and the integrand is smooth in t.
+#: Number of subpanels towards a singularity, each a quarter as long as the one before. Beyond them one is left, on
+#: which the variable is x = t^_POWER: in t the integrand is smooth.
 _PANELS, _POWER = 16, 8
 #: Numbers of subpanels towards a singularity outside. They are few different ones, so that many pairs share a rule.
 _FEWER = (0, 1, 2, 3, 4, 6, 8, 11, _PANELS)

@@ -37,7 +37,7 @@ def test_what_tables_have_in_common_is_kept_once(tables):
 
 def test_a_film_has_the_convolution_of_many_or_of_few(tables):
     tables(4e8)
-    many, few = (module.table(mesh_of(8), FILM, 0, kind).film[1] for kind in (True, False))
+    many, few = (module.table(mesh_of(8), FILM, 0, kind).film.rows for kind in (True, False))
     c = np.random.default_rng(0).random((2, many.table.shape[0]))
     np.testing.assert_allclose(many.of(c), few.of(c), rtol=0, atol=1e-12 * np.abs(few.of(c)).max())
 

@@ -215,7 +215,7 @@ class LayeredOperator(NamedTuple):
         for part in self.parts:
             for tab, rows in part.tables(self.mesh):
                 index = part.index[rows]
-                J = between(int(part.octave[rows][0]), part.stiffness, x)
+                J = between(int(part.octave[rows][0]), part.stiffness, s)
                 out[index] = (tab.weights(part.L1[rows]) * (q[index] @ tab.phi.T)) @ J
             if part.film is not None:
                 index, near = part.index, felt(self.mesh, x)

@@ -180,7 +180,8 @@ def less_edge(k, s):
         return j0(k[:, None] * np.sqrt((1 - s) * (1 + s))) - edge[:, None]
     found, far, s = np.empty((len(k), len(s))), s[~near], s[near]
     found[:, ~near] = j0(k[:, None] * np.sqrt((1 - far) * (1 + far))) - edge[:, None]
-    terms = [0 * k, edge, -j1(k)]  # coefficients of J0(k + t), before them that of 1/t
+    # coefficients of t^-1, t^0, t^1, ... in J0(k + t), from Bessel's equation (k + t) y'' + y' + (k + t) y = 0
+    terms = [0 * k, edge, -j1(k)]
     for m in range(_TERMS - 1):
         terms.append(-((m + 1) ** 2 * terms[-1] / k + terms[-2] + terms[-3] / k) / ((m + 1) * (m + 2)))
     t = -k[:, None] * (s * s / (1 + np.sqrt((1 - s) * (1 + s))))

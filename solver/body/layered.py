@@ -72,7 +72,8 @@ class Layered(NamedTuple):
         return self[1:5]
 
     @property
-    def L0(self):  # the kernel at u = 0
+    def L0(self):
+        """The kernel (B,) at u = 0."""
         return (self.n + self.m) / (1 + self.m)
 
     def whole(self, u):

@@ -103,17 +103,22 @@ def estimate(ev, found, refined):
     if not ev.cases.law.rough:  # asperities show that a mesh is too coarse for the edge, by how they yield there
         unseen = ev.cases.body.unseen(np.exp(ev.state.eta), ev.mesh.s[0])
         change = np.maximum(change, _OF_RADIUS[ev.cases.control] * unseen)
-        return np.maximum(margin(ev) * change, ev.floor)
-    s1, q1 = ev.mesh.s[0], ev.curve.q[:, 0]
+    error = np.maximum(margin(ev) * change, ev.floor)
+    return np.maximum(error, _missed_ring(ev)) if ev.cases.law.rough else error
+
+
+def _missed_ring(ev):
+    """Bound (B,) of the error by a ring at the edge, so narrow that neither mesh sees how asperities and springs yield
+    there; 0 where they see it."""
+    s1, q1, bound = ev.mesh.s[0], ev.curve.q[:, 0], np.zeros(len(ev.state.eta))
     body = ev.X[:, 0] * ev.cases.body.softness(np.exp(ev.state.eta) * s1**2)
     springs, asperities = ev.Y[:, 0] / body, ev.Z[:, 0] * ev.curve.g[:, 0] / (body * q1)
-    error = np.maximum(margin(ev) * change, ev.floor)
     blind = np.flatnonzero(springs + asperities < RING * s1**2)
     if len(blind):
         _, beta = ev.cases.law.take(blind).edge()
         ring = of_ring(springs[blind], s1) + of_ring(asperities[blind], s1, beta)
-        error[blind] = np.maximum(error[blind], ENCLOSING[ev.cases.control] * ring)
-    return error
+        bound[blind] = ENCLOSING[ev.cases.control] * ring
+    return bound
 
 
 def of_ring(t, s1, beta=1.0):
@@ -124,8 +129,9 @@ def of_ring(t, s1, beta=1.0):
     more than the body's. With β = 1, for springs, it is t ln(1 + s1²/2t).
     """
     end = 2 * (t / s1**2) ** (2 / (3 - beta))
-    wide, less = np.log1p(1 / end), np.maximum((1 - beta) / 2, 1e-9)
-    return np.where(t > 0, t * (wide if np.all(beta == 1) else end**-less * -np.expm1(-less * wide) / less), 0.0)
+    wide, less = np.log1p(1 / end), (1 - beta) / 2
+    integral = np.where(less > 0, end**-less * -np.expm1(-less * wide) / np.where(less > 0, less, 1.0), wide)
+    return np.where(t > 0, t * integral, 0.0)
 
 
 def margin(ev):

@@ -12,7 +12,8 @@ PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical unit
 
 
 def reduced_modulus(E, nu):
-    """E* = E/(1 - ν²), in the unit of E; in Pa of a text such as "210 GPa". ValueError where ν is no Poisson ratio."""
+    """E* = E/(1 - ν²), in the unit of E; in Pa of a text such as "210 GPa". E and nu broadcast. ValueError where nu is
+    outside (-1, 0.5]."""
     if np.any((nu <= -1) | (nu > 0.5)):
         raise ValueError("nu must be in (-1, 0.5], and comes after E")
     E = _si("E", E, "Pa") if isinstance(E, str) else E

@@ -1,12 +1,12 @@
 """Density and radius of the asperities of a scan, how they were found, and the doubts about them, in words."""
 
 import math
-import numbers
 from dataclasses import dataclass
 
 import numpy as np
 
 from . import summits
+from .heights.form import without_form
 from .quantities import readable
 from .scan import FEWEST, Scan, number
 
@@ -78,7 +78,8 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
     method : "moments", the summits that an isotropic Gaussian surface of the same m0, m2, m4 has (Nayak 1971,
         McCool 1987); "summits", the points higher than their eight neighbours, or two on a profile. On a random surface
         they agree; on a designed one only "summits" is right.
-    form : what is taken off: "mean", "plane", or the radius of a sphere, m (< 0: a cup), and then the plane
+    form : what is taken off: "mean", "plane", "quadratic", "sphere" (the one that fits), or the radius of a sphere, in m
+        or as text with its unit (< 0: a cup); after a sphere the plane
     cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: none
 
     Raises ValueError: an unknown method or form, a cutoff below three steps, a sphere smaller than the scan; after the
@@ -105,7 +106,7 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
         else f"{found.found} peaks found as points above their two neighbours, converted to summits of an isotropic "
         "Gaussian surface",
     }
-    iso_Ra = float(np.mean(np.abs(z - z.mean())))
+    iso_Ra = float(np.nanmean(np.abs(z - np.nanmean(z))))
     notes = scan.notes + tuple(_notes(z, scan.steps, along, m, found))
     texts = {"method": how[method], "filter": filtered, "resolution": _resolution(scan), "notes": notes}
     return Roughness(found.density, 1 / found.curvature, found.spread, iso_Ra, **texts)
@@ -113,15 +114,7 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
 
 def _filtered(scan: Scan, form: str | float, cutoff: float | None) -> tuple[np.ndarray, str]:
     """The heights without form and short waves, and what was done, in words."""
-    if form in ("mean", "plane"):
-        said = f"{form} taken off"
-    elif not isinstance(form, numbers.Real) or isinstance(form, bool):
-        raise ValueError(f'{scan.name}: form = {form!r}; allowed are "mean", "plane" and the radius of a sphere in m')
-    elif not abs(form) > math.hypot(*scan.sizes):
-        raise ValueError(f"{scan.name}: form = {form} m: a sphere must be larger than the scan, {scan.sizes} m")
-    else:
-        said = f"a sphere of radius {'-' * (form < 0)}{_length(abs(form))} and the plane taken off"
-    z = summits.without_form(scan.z, scan.steps, form)
+    z, said = without_form(scan.z, scan.steps, form, scan.name)
     if cutoff is None:
         said += "; no low-pass, so the shortest waves are those of the instrument and the step"
     elif not summits.SHORTEST * max(scan.steps) <= number(f"{scan.name}: cutoff", cutoff, "m") < math.inf:
@@ -135,7 +128,7 @@ def _filtered(scan: Scan, form: str | float, cutoff: float | None) -> tuple[np.n
                 f"{scan.name}: {' × '.join(map(str, z.shape))} points are left by a cutoff of {cutoff:g} m, which "
                 f"takes 0.75 cutoffs from each border; at least {FEWEST} in each direction are needed"
             )
-    if np.std(z) <= 1e-12 * np.abs(scan.z).max():  # only rounding errors of the subtraction are left
+    if np.nanstd(z) <= 1e-12 * np.nanmax(np.abs(scan.z)):  # only rounding errors of the subtraction are left
         raise ValueError(f"{scan.name}: nothing is left of the heights: {said}")
     return z, said
 
@@ -174,7 +167,7 @@ def _notes(z, steps, along, m, found):
     if max(slopes) > ISOTROPIC * min(slopes):
         ratio = math.sqrt(max(slopes) / min(slopes))
         yield f"slopes along one axis are {ratio:.2g} times those along the other: asperities are long, not round"
-    skewness, alpha = float(np.mean((z - z.mean()) ** 3) / np.std(z) ** 3), summits.bandwidth(m)
+    skewness, alpha = float(np.nanmean((z - np.nanmean(z)) ** 3) / np.nanstd(z) ** 3), summits.bandwidth(m)
     if found.found is None and (abs(skewness) > SKEWED or alpha < 1.5):
         yield (
             f"skewness {skewness:.2g}, α = {alpha:.3g}: a Gaussian surface has 0, and at least 1.5; "

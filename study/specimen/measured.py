@@ -78,8 +78,8 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
     method : "moments", the summits that an isotropic Gaussian surface of the same m0, m2, m4 has (Nayak 1971,
         McCool 1987); "summits", the points higher than their eight neighbours, or two on a profile. On a random surface
         they agree; on a designed one only "summits" is right.
-    form : what is taken off: "mean", "plane", "quadratic", "sphere" (the one that fits), or the radius of a sphere, in m
-        or as text with its unit (< 0: a cup); after a sphere the plane
+    form : what is taken off: "mean", "plane", "quadratic", "sphere" (the one that fits), or the radius of a sphere,
+        in m or as text with its unit (< 0: a cup); after a sphere the plane
     cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: none
 
     Raises ValueError: an unknown method or form, a cutoff below three steps, a sphere smaller than the scan; after the

@@ -17,7 +17,7 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "laws", "body", "problem", "solution"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "body", "problem", "solution"),
         *("contact", "scaling", "schemes", "models", "solve"),
     ),
     "study": (

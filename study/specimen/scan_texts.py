@@ -104,8 +104,9 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
             )
         rows.append(values)
         numbers.append(number)
+        cut = fields[-1] == "" and len(values) == 2
     table = _even(rows, numbers, name)
-    if table.shape[1] == 2 and len(table) > 1 and fields[-1] == "" and np.isnan(table[-1, 1]):
+    if cut and table.shape[1] == 2:
         raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
     _no_rows_in_heading(contents[:first], dialect, table, name)
     if table.shape[1] == 1 and table[0, 0] == len(table) - 1:  # of the points that follow
@@ -117,7 +118,9 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
             )
     for number, content in counts:
         _check_counts(number, content, table.shape, name)
-    notes = tuple(f"line {number}, {content.strip()!r}, is taken for the size of the table" for number, content in counts)
+    notes = tuple(
+        f"line {number}, {content.strip()!r}, is taken for the size of the table" for number, content in counts
+    )
     taken = set(numbers)
     heading = tuple((number, full.strip()) for number, full in lines if full.strip() and number not in taken)
     return Table(table, heading, dialect[0], said, notes)
@@ -130,8 +133,10 @@ def _of_channel(lines: list, name: str, channel: str | None) -> tuple[list, str]
     if channel is not None and names.count(channel) != 1:
         listed = ", ".join(map(repr, names)) or "none by name; choose columns of text with columns="
         raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
-    ends = [*(i for i, _ in starts[1:]), len(lines)]
-    filled = [any(_dialect(_content(full)) for _, full in lines[i:end]) for (i, _), end in zip(starts, ends, strict=True)]
+    ends = [*(i for i, _ in starts), len(lines)][1:]
+    filled = [
+        any(_dialect(_content(full)) for _, full in lines[i:end]) for (i, _), end in zip(starts, ends, strict=True)
+    ]
     if channel is None and sum(filled) > 1:
         raise ValueError(f"{name}: the file has the channels {', '.join(map(repr, names))}: choose one with channel=")
     if channel is None or len(names) == 1:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .scan import FEWEST, Scan, metres, number
-from .scan_grids import on_grid, scan_of
+from .scan_grids import columns_of, on_grid, scan_of
 from .scan_headings import check_units, height_metres, stated, without_no_data
 from .scan_texts import Table, table_of, text_of
 
@@ -18,6 +18,7 @@ from .scan_texts import Table, table_of, text_of
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", ".gz", "")
 #: Channels of a curve of force against distance, in small letters.
 _FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
+_NO_FORMAT = "none of the formats that it knows fits the content"
 
 
 def read(
@@ -64,17 +65,43 @@ def read(
     text = text_of(path) if ending in TEXT else None
     if ending != ".npy" and text is None:
         return _instrument(path, given, channel, crop, how)
-    if text is not None and (known := stated(text, path.name)):
+    if text is not None:
+        return _of_text(path.name, text, given, channel, crop, how)
+    if channel is not None:
+        raise ValueError(f"{path.name}: channel = {channel!r}: .npy has no channels; leave it out")
+    return _of_table(path.name, _npy(path), given, crop, how)
+
+
+def _of_text(name: str, text: str, given: dict, channel: str | None, crop, how: dict) -> Scan:
+    """The scan in a text, of a format that states its lengths or a table of numbers."""
+    known = stated(text, name)
+    table = None if known else table_of(text, name, channel)
+    pixel = None if known else _zygo_pixel(table, "dx" in given, name)
+    if known or pixel:
         if given or channel is not None:
             more = ", ".join([*given, *["channel"] * (channel is not None)])
-            raise ValueError(f"{path.name}: {known[2]} states its lengths itself; leave out {more}")
-        z, steps, _ = known
+            raise ValueError(f"{name}: the file states its lengths itself; leave out {more}")
+        if pixel:
+            return _of_table(name, table, {"unit": "m", "height_unit": "um", "dx": pixel}, crop, how)
+        z, steps = known
         positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
-        return scan_of(path.name, z, positions, steps=steps, crop=crop, how=how)
-    if text is None and channel is not None:
-        raise ValueError(f"{path.name}: channel = {channel!r}: .npy has no channels; leave it out")
-    table = _npy(path) if text is None else table_of(text, path.name, channel)
-    return _of_table(path.name, table, given, crop, how)
+        return scan_of(name, z, positions, steps=steps, crop=crop, how=how)
+    return _of_table(name, table, given, crop, how)
+
+
+def _zygo_pixel(table: Table, given: bool, name: str) -> float | None:
+    """Metres of a pixel in XYZ of Zygo, where x and y are numbers of pixels and z is in µm; None if it is no such file.
+
+    Raises ValueError: it is one that has no size of a pixel, and no dx is `given`.
+    """
+    lines = dict(table.heading)
+    if not lines.get(1, "").startswith("Zygo XYZ"):
+        return None
+    fields = lines.get(8, "").split()
+    pixel = float(fields[6]) if len(fields) > 6 and re.fullmatch(r"[\d.]+(?:[eE][-+]?\d+)?", fields[6]) else 0.0
+    if not pixel and not given:
+        raise ValueError(f"{name}: x and y are numbers of pixels, and the heading has no size of one: give dx and unit")
+    return pixel or None
 
 
 def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
@@ -87,7 +114,7 @@ def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
             f"text and .npy{said}"
         )
     unit, height_unit = given["unit"], given.get("height_unit", given["unit"])
-    columns, places = _columns(table, given, name)
+    columns, places = columns_of(table, given, name)
     dx = number(f"{name}: dx", given["dx"], unit) if "dx" in given else None
     dy = number(f"{name}: dy", given["dy"], unit) if "dy" in given else dx
     check_units(table, unit, height_unit, places, name)
@@ -103,51 +130,6 @@ def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
         positions = [columns[:, 0] if dx is None else dx * np.arange(len(z))]
     steps = None if dx is None else [dy, dx][-z.ndim :]
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
-
-
-def _columns(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
-    """The columns of positions and heights, or all of a map, and where they stand; None where dx is the position."""
-    numbers, dx, picked = table.numbers, given.get("dx"), given.get("columns")
-    places = [0, -1]
-    if picked is not None:
-        picked = list(picked) if isinstance(picked, (list, tuple)) else [picked]
-        places = all(type(i) is int and 0 <= i < numbers.shape[1] for i in picked)
-        if len(picked) not in (1, 2, 3) or not places or len(picked) > max(2, len(set(picked))):
-            raise ValueError(
-                f"{name}: columns = {given['columns']}, but the file has the columns 0 to {numbers.shape[1] - 1}; "
-                "allowed are two of them, for x and z, or one, for z, or three, for x, y and z"
-            )
-        numbers, places = numbers[:, picked], picked if len(picked) > 1 else picked * 2
-    elif len(numbers) == 1:
-        numbers = numbers.T
-    elif numbers.shape[1] == 3:
-        places = [0, 1, 2]
-    n = numbers.shape[1]
-    if n >= FEWEST and picked is None:
-        _no_positions(numbers, name)
-    if n >= FEWEST and dx is None:
-        raise ValueError(f"{name}: a map of {numbers.shape[0]} × {n} heights: give dx (and dy), their distance")
-    if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in given))):
-        said = "".join(f" with {key} = {given[key]}" for key in ("dx", "dy") if key in given)
-        raise ValueError(
-            f"{name}: {numbers.shape[0]} rows of {n} column(s){said}; allowed are "
-            f"two columns (x, z), one column (z) with dx, three (x, y, z of a grid), or {FEWEST} columns and more (a "
-            "map) with dx and dy. Choose among others with columns=(0, 2). A comma cannot separate columns and "
-            "decimals."
-        )
-    return numbers, places if dx is None else [None, places[-1]]
-
-
-def _no_positions(heights: np.ndarray, name: str) -> None:
-    """Raise ValueError for a map whose first row or column has positions or numbers of the points."""
-    for two, line in ((heights[:2], "row"), (heights[:, :2].T, "column")):
-        first, steps = two[0], [np.diff(each) for each in two]
-        equal = [bool(each[0] != 0 and np.ptp(each) <= 1e-6 * abs(each[0])) for each in steps]
-        if equal[0] and not equal[-1]:
-            raise ValueError(
-                f"{name}: the first {line} has equal steps, {first[0]:g}, {first[1]:g}, {first[2]:g} ...: "
-                "positions or numbers, not heights; take it out of the file"
-            )
 
 
 def _npy(path: Path) -> Table:
@@ -168,6 +150,8 @@ def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -
             warnings.simplefilter("ignore", ImportWarning)  # it warns that mpi4py is not installed
             import SurfaceTopography as library
     except ImportError as error:
+        if ending not in TEXT and path.is_file() and (text := text_of(path)) is not None:
+            return _of_text(name, text, given, channel, crop, how)
         if ending in TEXT:
             raise ValueError(
                 f"{name}: not a text file; text in UTF-8 or UTF-16, .npy and formats of instruments are read. If it is "
@@ -176,11 +160,13 @@ def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -
         raise ImportError(
             f"{name}: {path.suffix} is neither text ({', '.join(TEXT[:-1])}) nor .npy. The package "
             "SurfaceTopography reads formats of instruments: pip install 'roughcoat[topography]'. Otherwise export "
-            "the scan as text, CSV or .npy; if it is text, call it .txt."
+            "the scan as text, CSV or .npy."
         ) from error
     refused = f"{name}: " + "not a text file, and " * (ending in TEXT) + "SurfaceTopography cannot read it"
     with _as_value_error(refused, ending):
-        channels, default = _channels(library, path)
+        channels, default, kind = _channels(library, path)
+    if kind in ("asc", "xyz"):
+        return _of_text(name, text_of(path), given, channel, crop, how)
     chosen, notes = _chosen(channels, default, channel, name) if channels else (None, ())
     lacks = {"dx", "dy"} if chosen and chosen.physical_sizes is None else set()
     lacks |= {"height_unit"} if chosen and chosen.unit is None else set()
@@ -234,19 +220,20 @@ def _as_value_error(refused: str, ending: str):
     except Exception as error:
         tried = dict(re.findall(r"tried (\w+): *\n *(.*)", str(error)))
         own = [reason for reader, reason in tried.items() if ending and reader.lower().startswith(ending[1:])]
-        fits = "none of the formats that it knows fits the content" + "".join(f"; as {ending}: {one}" for one in own)
+        fits = _NO_FORMAT + "".join(f"; as {ending}: {one}" for one in own)
         reason = fits if tried else (str(error).strip().splitlines() or [type(error).__name__])[0]
         raise ValueError(f"{refused}: {reason}") from error
 
 
-def _channels(library, path: Path) -> tuple[list, object]:
-    """The channels of a file and the one that SurfaceTopography takes first; [] and None if there is no file."""
+def _channels(library, path: Path) -> tuple[list, object, str]:
+    """Channels of a file, the one that SurfaceTopography takes first, and the format; none if there is no file."""
     if not path.is_file():  # reading it says so
-        return [], None
-    reader = library.open_topography(_source(path))
-    channels, default = list(reader.channels), reader.default_channel
-    reader.close()
-    return channels, next((one for one in channels if one.index == default.index), default)
+        return [], None, ""
+    with library.open_topography(_source(path)) as reader:
+        channels, default, kind = list(reader.channels), reader.default_channel, reader.format()
+    if kind in ("hgt", "nms") and path.suffix.lower() != f".{kind}":  # which take any bytes
+        raise ValueError(_NO_FORMAT)
+    return channels, next((one for one in channels if one.index == default.index), default), kind
 
 
 def _chosen(channels: list, default, channel: str | None, name: str) -> tuple:

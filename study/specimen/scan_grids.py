@@ -8,11 +8,57 @@ import numpy as np
 
 from .quantities import has_unit, quantity
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
+from .scan_texts import Table
 
 #: A grid that is found in x y z has heights at this share of its points at least: a disk in its square has 0.79.
 FULL = 0.25
 #: A position may be off the grid by the last digit that is written of it, if that is at most this share of all.
 COARSE = 0.01
+
+
+def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
+    """The columns of positions and heights, or all of a map, and where they stand; None where dx is the position."""
+    numbers, dx, picked = table.numbers, given.get("dx"), given.get("columns")
+    places = [0, -1]
+    if picked is not None:
+        picked = list(picked) if isinstance(picked, (list, tuple)) else [picked]
+        places = all(type(i) is int and 0 <= i < numbers.shape[1] for i in picked)
+        if len(picked) not in (1, 2, 3) or not places or len(picked) > max(2, len(set(picked))):
+            raise ValueError(
+                f"{name}: columns = {given['columns']}, but the file has the columns 0 to {numbers.shape[1] - 1}; "
+                "allowed are two of them, for x and z, or one, for z, or three, for x, y and z"
+            )
+        numbers, places = numbers[:, picked], picked if len(picked) > 1 else picked * 2
+    elif len(numbers) == 1:
+        numbers = numbers.T
+    elif numbers.shape[1] == 3:
+        places = [0, 1, 2]
+    n = numbers.shape[1]
+    if n >= FEWEST and picked is None:
+        _no_positions(numbers, name)
+    if n >= FEWEST and dx is None:
+        raise ValueError(f"{name}: a map of {numbers.shape[0]} × {n} heights: give dx (and dy), their distance")
+    if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in given))):
+        said = "".join(f" with {key} = {given[key]}" for key in ("dx", "dy") if key in given)
+        raise ValueError(
+            f"{name}: {numbers.shape[0]} rows of {n} column(s){said}; allowed are "
+            f"two columns (x, z), one column (z) with dx, three (x, y, z of a grid), or {FEWEST} columns and more (a "
+            "map) with dx and dy. Choose among others with columns=(0, 2). A comma cannot separate columns and "
+            "decimals."
+        )
+    return numbers, places if dx is None else [None, places[-1]]
+
+
+def _no_positions(heights: np.ndarray, name: str) -> None:
+    """Raise ValueError for a map whose first row or column has positions or numbers of the points."""
+    for two, line in ((heights[:2], "row"), (heights[:, :2].T, "column")):
+        first, steps = two[0], [np.diff(each) for each in two]
+        equal = [bool(each[0] != 0 and np.ptp(each) <= 1e-6 * abs(each[0])) for each in steps]
+        if equal[0] and not equal[-1]:
+            raise ValueError(
+                f"{name}: the first {line} has equal steps, {first[0]:g}, {first[1]:g}, {first[2]:g} ...: "
+                "positions or numbers, not heights; take it out of the file"
+            )
 
 
 def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) -> tuple[np.ndarray, list]:
@@ -35,8 +81,8 @@ def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) 
         why = [f"{size[0]} × {size[1]} points of a grid have {len(z)} heights"]
     if why:
         raise ValueError(
-            f"{rows}; they are no x, y, z of a grid: {' and '.join(why)}. Choose others with columns=(0, 2) for x and z, or "
-            "interpolate to a grid"
+            f"{rows}; they are no x, y, z of a grid: {' and '.join(why)}. Choose others with columns=(0, 2) for x and "
+            "z, or interpolate to a grid"
         )
     (x, column), (y, row) = axes
     places = row * len(x) + column

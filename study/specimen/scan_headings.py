@@ -110,6 +110,8 @@ def _column_units(table: Table, width: int) -> tuple[list[str], str]:
 def _value_unit(table: Table) -> tuple[str, str]:
     """The unit of the heights where the heading names it so, and the line; ("", "") if it does not."""
     keyence = any("xy calibration" in line.lower() for _, line in table.heading)
+    if table.heading and table.heading[0][1].startswith("Zygo XYZ"):
+        return "um", table.heading[0][1]
     for _, line in table.heading:
         found = _VALUE_UNIT.match(line) or (keyence and _KEYENCE_UNIT.match(line))
         if found:
@@ -204,8 +206,8 @@ def without_no_data(table: Table, columns: np.ndarray, name: str) -> tuple[np.nd
     return columns, notes
 
 
-def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...], str] | None:
-    """Heights in m, steps in m and the name of a format whose heading states all lengths; None if it is none."""
+def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]] | None:
+    """Heights and steps in m of a format whose heading states all lengths, SDF, SMD or PRF; None if it is none."""
     if re.match(r"a[\w .-]+\n", text) and re.search(r"^\s*zscale\s*=", text, re.IGNORECASE | re.MULTILINE):
         return _sdf(text, name)
     if re.search(r"^CZ\s+[A-Z]\s", text, re.MULTILINE) and re.search(r"^\s*(?:EOR|\x03)\s*$", text, re.MULTILINE):
@@ -213,7 +215,7 @@ def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...], str] | 
     return None
 
 
-def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...], str]:
+def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
     """ISO 25178-71: a heading of "key = value", *, the heights in rows or one a line, *; heights times Zscale in m."""
     heading, _, rest = text.partition("\n*")
     pairs = (line.partition("=") for line in heading.splitlines())
@@ -228,10 +230,10 @@ def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...], str]:
     z = _heights(rest.partition("\n*")[0].split(), shape, name)
     marks = {"1": 2**16 - 1, "2": 2**32 - 1, "5": -(2**15), "6": -(2**31)}  # of whole numbers: no data
     z = np.where(z == marks.get(value.get("datatype")), np.nan, z) * scale
-    return (z[0], (dx,), "SDF") if shape[0] == 1 else (z, (dy, dx), "SDF")
+    return (z[0], (dx,)) if shape[0] == 1 else (z, (dy, dx))
 
 
-def _records(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...], str]:
+def _records(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
     """SMD and PRF: records of lines; the first has the axes, CX with its step and CZ with its unit and factor."""
     axis = r"^C{}\s+([A-Z])\s+({})\s+([a-zA-Zµ]+)\s+({})\s+[A-Z](?:\s+({}))?"
     x, z, y = (re.search(axis.format(of, *[_NUMBER] * 3), text, re.MULTILINE) for of in "XZY")
@@ -243,7 +245,7 @@ def _records(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...], str]:
     records = [record.split() for record in re.split(r"^\s*(?:EOR|\x03)\s*$", text, flags=re.MULTILINE)[1:]]
     numbers = (record for record in records if len(record) > 1 and re.fullmatch(rf"{_NUMBER}|(?i:bad)", record[0]))
     heights = _heights(next(numbers, []), (int(float(z[2])),), name)
-    return heights * float(z[4]) * sizes[1], (float(step) * float(x[4]) * sizes[0],), "ISO 5436-2"
+    return heights * float(z[4]) * sizes[1], (float(step) * float(x[4]) * sizes[0],)
 
 
 def _heights(fields: list[str], shape: tuple, name: str) -> np.ndarray:

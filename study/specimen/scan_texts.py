@@ -84,6 +84,8 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
     """
     lines, said = _of_channel(list(enumerate(text.split("\n"), 1)), name, channel)
     contents = [(number, _content(full)) for number, full in lines]
+    if text.startswith("Zygo XYZ") and (mark := next((i for i, (_, full) in enumerate(lines) if full == "#"), 0)):
+        contents[:mark] = [(number, "") for number, _ in contents[:mark]]  # numbers of the instrument
     first, dialect, counts = _first_row(contents, name)
     before = _missing_rows(contents[:first], dialect, len(_fields(contents[first][1], dialect[0])))
     first -= before

@@ -28,17 +28,20 @@ _FACTORS = [
 ]
 #: A name and a number, with a unit and "per bit" perhaps.
 _PAIR = re.compile(
-    rf'(?P<key>[\w\\@][\w ./()\[\]>|\\@"-]*?)"?\s*[=:;,\s]\s*"?\s*(?P<value>{_NUMBER})\s*(?P<unit>{_UNIT})?'
+    rf'(?P<key>[\w\\@][\w ./()\[\]>|\\@"×*-]*?)"?\s*(?:[=:;,\s]|(?<=[(\[×*]))\s*"?\s*(?P<value>{_NUMBER})'
+    rf"\s*(?P<unit>{_UNIT})?"
     r"(?P<per>\s*(?:/|per)\s*(?:bit|digit|count|lsb|step)s?\b)?"
 )
 #: Names of a scale of heights, and those that have one of these words and are none.
 _SCALE = re.compile(
-    r"scale\b|scaling|scale[\s_-]*(?:data|z|height)|factor|multipl|\bmult\b|bit2|\blsb\b|\b1\s*(?:bit|digit|count)\b|^units?$"
+    r"scale\b|scaling|scale[\s_-]*(?:data|z|height)|skalier|échelle|fa[ck]t(?:o|eu)r|multipl|\bmult\b|amplif|bit2|\blsb\b"
+    r"|\b1\s*(?:bit|digit|count)\b|quanti[sz]|^units?$|units? of$|[a-z]\s*[*×]$"
+    r"|\b(?:z|heights?|values?|data)\s*[\[(]\s*[x×*]?$"
     r"|\b(?:z|height|vertical|value|data)[\s_.-]*(?:axis[\s_.-]*)?(?:calib|conver|sens|gain|quant|units?$)",
     re.IGNORECASE,
 )
 _NO_SCALE = re.compile(
-    r"(?<![^\W_])(?:x|y|xy|q)(?![^\W_])|\b[xy]{1,2}[\s_-]*(?:scal|fac|cal)|lateral|horizontal|width|pixel|time|colou?r"
+    r"(?<![^\W_])(?<!\[)(?:x|y|xy|q)(?![^\W_])|\b[xy]{1,2}[\s_-]*(?:scal|fac|cal)|lateral|horizontal|width|pixel|time|colou?r"
     r"|gr[ae]y|full|\bbar\b|display|date|intensity|phase|auto|force|speed|feedback|form|quality|zoom|filter|sampling"
     r"|fill|overlap|crest|averag|noise",
     re.IGNORECASE,

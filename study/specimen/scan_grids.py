@@ -182,10 +182,11 @@ def _part(crop, positions: list, unit: str, name: str) -> tuple[slice, ...]:
         for end in crop
     ]
     part = [slice(None)] * len(positions)
-    for of, (low, high), axis in zip("xy", (ends[:2], ends[2:]), range(len(positions))[::-1], strict=False):
+    for i, (of, low, high) in enumerate(zip("xy", ends[::2], ends[1::2], strict=False)):
+        axis = len(positions) - 1 - i
         where = positions[axis]
         first, last, step = where.min(), where.max(), np.ptp(where) / max(len(where) - 1, 1)
-        inside = np.flatnonzero((where >= low - 1e-6 * step) & (where <= high + 1e-6 * step))
+        inside = np.flatnonzero((where >= low - 1e-3 * step) & (where <= high + 1e-3 * step))
         if not (low < high and first - 1.01 * step <= low and high <= last + 1.01 * step):
             raise ValueError(
                 f"{name}: crop from {low:g} to {high:g} {unit} in {of}: must rise and lie in the scan, which goes from "

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .missing import treated
+from .heights.missing import treated
 
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
@@ -159,7 +159,7 @@ def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, 
     if not all(np.isfinite(step) and step > 0 for step in steps):
         raise ValueError(f"{name}: the distances of its points are {steps}; they must be positive")
     lateral, vertical = metres(unit, name), metres(height_unit or unit, name)
-    z, notes = treated(z, steps, missing, name)
+    z, notes = treated(z, missing, name)
     if np.nanmax(z) == np.nanmin(z):
         raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
     scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))

@@ -1,16 +1,21 @@
 """Points that an instrument did not measure: filled in, left out of the statistics, or refused."""
 
+import itertools
+
 import numpy as np
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import spsolve
+from scipy.sparse import csr_matrix, diags, vstack
+from scipy.sparse.linalg import cg
 
 #: Largest share of missing points that is filled in unasked. Interpolated points are too smooth: of random surfaces of
-#: which 1 % were taken out, N̄ and Ra change by less than 2 % (tests/specimen/test_missing_points.py).
+#: which 1 % were taken out, N̄ and Ra change by less than 1 % (tests/specimen/test_missing_points.py).
 FILLED = 0.01
+#: Tension of the membrane over a gap against its stiffness, in steps. Of 0, 0.1 and 0.3 the largest has the least errors
+#: at borders and in white noise, and still the plate's 0.1 % in smooth surfaces.
+TENSION = 0.3
 CHOICES = ("fill", "skip", "refuse")
 
 
-def treated(z: np.ndarray, steps: tuple, missing: str, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
+def treated(z: np.ndarray, missing: str, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
     """The heights, in which NaN is a missing point, as `missing` says, and what was done with them in sentences.
 
     "fill": interpolated from their neighbours; "skip": NaN, which `measure` leaves out; "refuse": none may be missing.
@@ -42,34 +47,37 @@ def treated(z: np.ndarray, steps: tuple, missing: str, name: str) -> tuple[np.nd
         raise ValueError(f"{name}: {said}, and at most {FILLED:.0%} is interpolated; {out}")
     if missing == "fill":
         verb = "was" if count == 1 else "were"
-        return filled(z, steps), (f"{count} of {z.size} heights ({_percent(share)}) {verb} missing, and interpolated",)
+        return filled(z), (f"{count} of {z.size} heights ({_percent(share)}) {verb} missing, and interpolated",)
     return z, (
         f"{_percent(share)} of the heights are missing: the numbers are of the points that have all their neighbours",
     )
 
 
-def filled(z: np.ndarray, steps: tuple) -> np.ndarray:
-    """The heights with a membrane through the gaps: each missing point is the mean of its neighbours (Laplace).
+def filled(z: np.ndarray) -> np.ndarray:
+    """The heights, with a stiff membrane laid over the gaps: it is bent and stretched as little as possible.
 
-    In a profile that is the straight line over the gap. At a border, where there is no neighbour, none counts.
+    The missing heights have the least sum, along all axes, of squared second differences and of squared first
+    differences times `TENSION`². A plate, without tension, would run away from gaps at the border; a membrane alone
+    has kinks where it is held, which count as curvature.
     """
     absent = np.isnan(z)
-    place = np.full(z.shape, -1)
-    place[absent] = np.arange(absent.sum())
-    rows, columns, weights, known = [], [], [], np.zeros(int(absent.sum()))
-    for axis, step in enumerate(steps):
-        for here, there in ((slice(1, None), slice(None, -1)), (slice(None, -1), slice(1, None))):
-            here, there = ((slice(None),) * axis + (part,) for part in (here, there))
-            pairs = absent[here]
-            i, j, height = place[here][pairs], place[there][pairs], z[there][pairs]
-            weight = np.full(i.size, float(step) ** -2)
-            rows += [i, i[j >= 0]]
-            columns += [i, j[j >= 0]]
-            weights += [weight, -weight[j >= 0]]
-            np.add.at(known, i[j < 0], weight[j < 0] * height[j < 0])
-    entries = (np.concatenate(weights), (np.concatenate(rows), np.concatenate(columns)))
+    place = np.where(absent, np.cumsum(absent).reshape(z.shape) - 1, -1)
+    known = np.where(absent, 0.0, z - np.nanmean(z))
+    parts, sides = [], []
+    for axis, weights in itertools.product(range(z.ndim), (np.array([1, -2, 1]), TENSION * np.array([-1, 1]))):
+        length = z.shape[axis] - len(weights) + 1
+        windows = [(slice(None),) * axis + (slice(i, i + length),) for i in range(len(weights))]
+        touched = np.any([absent[window] for window in windows], axis=0)
+        unknowns = np.stack([place[window][touched] for window in windows])
+        sides.append(-sum(weight * known[window][touched] for weight, window in zip(weights, windows, strict=True)))
+        which, row = np.nonzero(unknowns >= 0)
+        shape = (unknowns.shape[1], int(absent.sum()))
+        parts.append(csr_matrix((weights[which], (row, unknowns[which, row])), shape=shape))
+    matrix, side = vstack(parts), np.concatenate(sides)
+    square = (matrix.T @ matrix).tocsr()
+    heights, _ = cg(square, matrix.T @ side, rtol=1e-8, maxiter=3000, M=diags(1 / square.diagonal()))
     whole = z.copy()
-    whole[absent] = spsolve(coo_matrix(entries, shape=(known.size,) * 2).tocsc(), known)
+    whole[absent] = heights + np.nanmean(z)
     return whole
 
 

@@ -111,9 +111,9 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
     if cut and table.shape[1] == 2:
         raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
     _no_rows_in_heading(contents[:first], dialect, table, name)
-    if table.shape[1] == 1 and table[0, 0] == len(table) - 1:  # of the points that follow
+    if table[0, 0] == len(table) - 1 and np.isnan(table[0, 1:]).all():  # the number of the points that follow
         counts, table, numbers = [contents[first]], table[1:], numbers[1:]
-        if _whole(table):
+        if table.shape[1] == 1 and _whole(table):
             raise ValueError(
                 f"{name}, line {counts[0][0]}: {counts[0][1].strip()} may be a height or the number of the others: "
                 "take it out if it is their number, or write it with a decimal point"
@@ -198,7 +198,7 @@ def _first_row(contents: list, name: str) -> tuple[int, tuple, list]:
 
 def _check_counts(number: int, content: str, shape: tuple, name: str) -> None:
     """Raise ValueError for a line before the table that does not say how many rows, columns or points it has."""
-    said = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()))
+    said = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()) if field)
     if said not in ([shape[0]], [shape[1]], [shape[0] * shape[1]], sorted(shape)):
         raise ValueError(
             f"{name}, line {number}: {content.strip()!r} before a table of {shape[0]} rows of {shape[1]} is not their "

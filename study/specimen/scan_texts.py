@@ -225,17 +225,18 @@ def _whole(rows: list) -> bool:
 
 def _even(rows: list, numbers: list, name: str) -> np.ndarray:
     """The rows as an array. Empty fields behind the last column that has a number are trailing separators."""
-    table = np.full((len(rows), max(map(len, rows))), np.nan)
-    for i, row in enumerate(rows):
-        table[i, : len(row)] = row
-    last = [int(places[-1]) + 1 if (places := np.flatnonzero(~np.isnan(row))).size else 0 for row in table]
-    width = max(last)
-    for row, number, own in zip(rows, numbers, last, strict=True):
-        if own > len(rows[0]) or len(row) < width <= len(rows[0]):
-            raise ValueError(
-                f"{name}, line {number}: {own} number(s) after lines of {min(width, len(rows[0]))}; "
-                "take out what is no row of the table"
-            )
+    lengths = np.array([len(row) for row in rows])
+    table = np.full((len(rows), lengths.max()), np.nan)
+    for length in np.unique(lengths):
+        table[lengths == length, :length] = [row for row in rows if len(row) == length]
+    last = np.max(~np.isnan(table) * np.arange(1, lengths.max() + 1), axis=1)  # column with a number, from 1
+    width, allowed = last.max(), min(last.max(), lengths[0])
+    wrong = np.flatnonzero((last > lengths[0]) | (lengths < allowed))
+    if wrong.size:
+        raise ValueError(
+            f"{name}, line {numbers[wrong[0]]}: {last[wrong[0]]} number(s) after lines of {allowed}; take out what is "
+            "no row of the table"
+        )
     return table[:, :width]
 
 

@@ -198,9 +198,7 @@ SMD = "ISO 5436-2:2012\0f\0\r\nPRF\0 1 ISO5436\0\r\n"
 SMD += "CX\0 I\0 200 mm\0 1.0e0 D\0 2.5e-4 \r\nCZ\0 A\0 200 nm\0 1.0e0 D\0\r\n\x03\r\n"
 SMD += "DATE: 1-May-2020\0\r\n\x03\r\n" + PROFILE + "\x03\r\n12345\r\n\x03\r\n\x1a"
 PRF = "1 2\r\nSG2004 0.0e+000 PRF\r\nCX M 2.0e+002 MM 1.0e+000 D\r\nCZ M 2.0e+002 MM 1.0e-006 L\r\nEOR\r\n"
-PRF += (
-    "STYLUS_RADIUS 0.0 MM\r\nSPACING CX 2.5e-004\r\nMAP 1.0e+000 CZ CZ 1.0 1.0\r\nEOR\r\n" + PROFILE + "EOR\r\nEOF\r\n"
-)
+PRF += "STYLUS_RADIUS 0.0 MM\r\nSPACING CX 2.5e-004\r\nEOR\r\n" + PROFILE + "EOR\r\nEOF\r\n"
 
 
 def test_formats_that_state_their_lengths(tmp_path):

@@ -111,7 +111,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
     if cut and table.shape[1] == 2:
         raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
     _no_rows_in_heading(contents[:first], dialect, table, name)
-    if table[0, 0] == len(table) - 1 and np.isnan(table[0, 1:]).all():  # the number of the points that follow
+    if table[0, 0] == len(table) - 1 > 0 and np.isnan(table[0, 1:]).all():  # the number of the points that follow
         counts, table, numbers = [contents[first]], table[1:], numbers[1:]
         if table.shape[1] == 1 and _whole(table):
             raise ValueError(
@@ -120,9 +120,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
             )
     for number, content in counts:
         _check_counts(number, content, table.shape, name)
-    notes = tuple(
-        f"line {number}, {content.strip()!r}, is taken for the size of the table" for number, content in counts
-    )
+    notes = tuple(f"line {one}, {content.strip()!r}, is taken for the size of the table" for one, content in counts)
     taken = set(numbers)
     heading = tuple((number, full.strip()) for number, full in lines if full.strip() and number not in taken)
     return Table(table, heading, dialect[0], said, notes)
@@ -148,8 +146,10 @@ def _of_channel(lines: list, name: str, channel: str | None) -> tuple[list, str]
 
 
 def _content(full: str) -> str:
-    """A line without comments and quotation marks around all of it."""
-    return _NO_DATA.sub(r"\1nan", _COMMENT.sub("", full)).rstrip("\n\x03\x1a ")
+    """A line without comments and end marks."""
+    content = _COMMENT.sub("", full) if "#" in full or "%" in full else full
+    content = _NO_DATA.sub(r"\1nan", content) if "ata" in content[-12:].lower() else content
+    return content.rstrip("\x03\x1a ")
 
 
 def _fields(content: str, separator: str | None) -> list[str]:

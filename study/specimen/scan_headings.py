@@ -95,16 +95,15 @@ def _column_units(table: Table, width: int) -> tuple[list[str], str]:
     """The units in the line that names the columns, or right below it, and that line; [] if there are none."""
     for i, (_, line) in enumerate(reversed(table.heading[-4:])):
         brackets = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", line)
-        known = [word for word in brackets if length(word)]
-        if len(brackets) == width or (known and i == 0):
-            return (brackets if len(brackets) == width else known), line
         text = line.strip("#% ")
         fields = [field.strip(' "') for field in text.split(table.separator) if field.strip(' "')]
-        if len(fields) == width and all(length(field) for field in fields):
-            return fields, line
-        ends = [re.search(rf"(?:\bin\s|/|_|\s)\s*({_UNIT})$", field) for field in fields]
+        ends = [re.search(rf"(?:\bin\s|[/_\s(\[])\s*({_UNIT})\s*[)\]]?$", field) for field in fields]
+        if len(brackets) == width or (len(fields) == width and all(length(field) for field in fields)):
+            return (brackets if len(brackets) == width else fields), line
         if table.separator and len(fields) == width and all(ends):
             return [end[1] for end in ends], line
+        if i == 0 and (known := [word for word in brackets if length(word)]):
+            return known, line
     return [], ""
 
 

@@ -1,6 +1,7 @@
 """Rows of text files: missing points, words in rows, separators, encodings; x y z of a grid; rounded positions."""
 
 import gzip
+import sys
 
 import numpy as np
 import pytest
@@ -74,6 +75,10 @@ def test_a_word_in_a_row_is_refused(tmp_path, word):
             rows[row][7] = word
             with pytest.raises(ValueError, match=f"^a.txt, line {row + 2}: .* {message} '{word}'"):
                 read(tmp_path, "a heading\n" + text(rows, separator), **MAP)
+    rows = triples(X40, Y40)
+    rows[0][2] = word
+    with pytest.raises(ValueError, match=f"^a.txt, line 2: .* is a row of the table but for '{word}'"):
+        read(tmp_path, "map 12 a\n" + text(rows), **IN)
     rows = table(np.c_[X, P])
     rows[0][1] = word
     with pytest.raises(ValueError, match=f"^a.txt, line 1: .* is a row of the table but for '{word}'"):
@@ -121,6 +126,14 @@ def test_encodings(tmp_path, encoding, packed):
 def test_a_damaged_packed_file(tmp_path):
     with pytest.raises(ValueError, match=r"^a.csv.gz: the packed file is damaged: "):
         read(tmp_path, gzip.compress(text(table(Z)).encode())[:300], "a.csv.gz", **MAP)
+
+
+def test_without_the_extra_text_is_read_all_the_same(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "SurfaceTopography", None)
+    assert_allclose(read(tmp_path, text(table(Z)), "a.foo", **MAP).z, Z * 1e-9, rtol=1e-12)
+    for name in ("a.dat", "a.asc", "a.xyz", "a.gz", "a.csv"):
+        with pytest.raises(ValueError, match=rf"^{name}: not a text file; .* pip install 'roughcoat\[topography\]'"):
+            read(tmp_path, bytes(range(256)), name, **MAP)
 
 
 def test_the_number_of_points_first(tmp_path):

@@ -52,8 +52,9 @@ def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
 def _no_positions(heights: np.ndarray, name: str) -> None:
     """Raise ValueError for a map whose first row or column has positions or numbers of the points."""
     for two, line in ((heights[:2], "row"), (heights[:, :2].T, "column")):
-        first, steps = two[0], [np.diff(each) for each in two]
-        equal = [bool(each[0] != 0 and np.ptp(each) <= 1e-6 * abs(each[0])) for each in steps]
+        there = [each[~np.isnan(each)] for each in two]  # pandas leaves the corner empty
+        first, steps = there[0], [np.diff(each) for each in there]
+        equal = [each.size > 1 and each[0] != 0 and np.ptp(each) <= 1e-6 * abs(each[0]) for each in steps]
         if equal[0] and not equal[-1]:
             raise ValueError(
                 f"{name}: the first {line} has equal steps, {first[0]:g}, {first[1]:g}, {first[2]:g} ...: "

@@ -13,8 +13,8 @@ from .scan_texts import Table
 
 #: Units as instruments write them; `unit` and `height_unit` have one spelling of each.
 WORDS = {"angstrom": 1e-10, "ångström": 1e-10, "micron": 1e-6}
-WORDS |= {prefix + word: size for word in ("meter", "metre") for prefix, size in (
-    ("", 1.0), ("milli", 1e-3), ("micro", 1e-6), ("nano", 1e-9), ("pico", 1e-12))}  # fmt: skip
+PREFIXES = {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "pico": 1e-12}
+WORDS |= {prefix + word: size for prefix, size in PREFIXES.items() for word in ("meter", "metre")}
 _UNIT = rf"(?:(?i:{'|'.join(WORDS)})s?|{'|'.join(sorted(UNITS, key=len, reverse=True))}|Å|A)(?![^\W_])"
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?(?![\w.,])"
 #: A factor whose meaning is stated: height × factor is in that unit. SurfaceTopography and Gwyddion know them too.
@@ -29,8 +29,7 @@ _FACTORS = [
 #: A name and a number, with a unit and "per bit" perhaps.
 _PAIR = re.compile(
     rf'(?P<key>[\w\\@][\w ./()\[\]>|\\@"×*-]*?)"?\s*(?:[=:;,\s]|(?<=[(\[×*]))\s*"?\s*(?P<value>{_NUMBER})'
-    rf"\s*(?P<unit>{_UNIT})?"
-    r"(?P<per>\s*(?:/|per)\s*(?:bit|digit|count|lsb|step)s?\b)?"
+    rf"\s*(?P<unit>{_UNIT})?(?P<per>\s*(?:/|per)\s*(?:bit|digit|count|lsb|step)s?\b)?"
 )
 #: Names of a scale of heights, and those that have one of these words and are none.
 _SCALE = re.compile(
@@ -42,8 +41,8 @@ _SCALE = re.compile(
 )
 _NO_SCALE = re.compile(
     r"(?<![^\W_])(?<!\[)(?:x|y|xy|q)(?![^\W_])|\b[xy]{1,2}[\s_-]*(?:scal|fac|cal)|lateral|horizontal|width|pixel|time|colou?r"
-    r"|gr[ae]y|full|\bbar\b|display|date|intensity|phase|auto|force|speed|feedback|form|quality|zoom|filter|sampling"
-    r"|fill|overlap|crest|averag|noise",
+    r"|gr[ae]y|full|\bbar\b|display|date|intensity|phase|auto|force|speed|feedback|form|quality|zoom|filter|sampl|fill"
+    r"|overlap|crest|averag|noise",
     re.IGNORECASE,
 )
 _VALUE_UNIT = re.compile(
@@ -96,17 +95,15 @@ def _column_units(table: Table, width: int) -> tuple[list[str], str]:
     """The units in the line that names the columns, or right below it, and that line; [] if there are none."""
     for i, (_, line) in enumerate(reversed(table.heading[-4:])):
         brackets = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", line)
-        known = [word for word in brackets if length(word)]
-        if len(brackets) == width or (known and i == 0):
-            return (brackets if len(brackets) == width else known), line
         text = line.strip("#% ")
-        fields = [field.strip(' "') for field in (text.split(table.separator))]
-        fields = [field for field in fields if field]
-        if len(fields) == width and all(length(field) for field in fields):
-            return fields, line
-        ends = [re.search(rf"(?:\bin\s|/|_|\s)\s*({_UNIT})$", field) for field in fields]
+        fields = [field.strip(' "') for field in text.split(table.separator) if field.strip(' "')]
+        ends = [re.search(rf"(?:\bin\s|[/_\s(\[])\s*({_UNIT})\s*[)\]]?$", field) for field in fields]
+        if len(brackets) == width or (len(fields) == width and all(length(field) for field in fields)):
+            return (brackets if len(brackets) == width else fields), line
         if table.separator and len(fields) == width and all(ends):
             return [end[1] for end in ends], line
+        if i == 0 and (known := [word for word in brackets if length(word)]):
+            return known, line
     return [], ""
 
 

@@ -111,18 +111,16 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
     if cut and table.shape[1] == 2:
         raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
     _no_rows_in_heading(contents[:first], dialect, table, name)
-    if table.shape[1] == 1 and table[0, 0] == len(table) - 1:  # of the points that follow
+    if table[0, 0] == len(table) - 1 > 0 and np.isnan(table[0, 1:]).all():  # the number of the points that follow
         counts, table, numbers = [contents[first]], table[1:], numbers[1:]
-        if _whole(table):
+        if table.shape[1] == 1 and _whole(table):
             raise ValueError(
                 f"{name}, line {counts[0][0]}: {counts[0][1].strip()} may be a height or the number of the others: "
                 "take it out if it is their number, or write it with a decimal point"
             )
     for number, content in counts:
         _check_counts(number, content, table.shape, name)
-    notes = tuple(
-        f"line {number}, {content.strip()!r}, is taken for the size of the table" for number, content in counts
-    )
+    notes = tuple(f"line {one}, {content.strip()!r}, is taken for the size of the table" for one, content in counts)
     taken = set(numbers)
     heading = tuple((number, full.strip()) for number, full in lines if full.strip() and number not in taken)
     return Table(table, heading, dialect[0], said, notes)
@@ -148,8 +146,10 @@ def _of_channel(lines: list, name: str, channel: str | None) -> tuple[list, str]
 
 
 def _content(full: str) -> str:
-    """A line without comments and quotation marks around all of it."""
-    return _NO_DATA.sub(r"\1nan", _COMMENT.sub("", full)).rstrip("\n\x03\x1a ")
+    """A line without comments and end marks."""
+    content = _COMMENT.sub("", full) if "#" in full or "%" in full else full
+    content = _NO_DATA.sub(r"\1nan", content) if "ata" in content[-12:].lower() else content
+    return content.rstrip("\x03\x1a ")
 
 
 def _fields(content: str, separator: str | None) -> list[str]:
@@ -198,7 +198,7 @@ def _first_row(contents: list, name: str) -> tuple[int, tuple, list]:
 
 def _check_counts(number: int, content: str, shape: tuple, name: str) -> None:
     """Raise ValueError for a line before the table that does not say how many rows, columns or points it has."""
-    said = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()))
+    said = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()) if field)
     if said not in ([shape[0]], [shape[1]], [shape[0] * shape[1]], sorted(shape)):
         raise ValueError(
             f"{name}, line {number}: {content.strip()!r} before a table of {shape[0]} rows of {shape[1]} is not their "
@@ -225,17 +225,18 @@ def _whole(rows: list) -> bool:
 
 def _even(rows: list, numbers: list, name: str) -> np.ndarray:
     """The rows as an array. Empty fields behind the last column that has a number are trailing separators."""
-    table = np.full((len(rows), max(map(len, rows))), np.nan)
-    for i, row in enumerate(rows):
-        table[i, : len(row)] = row
-    last = [int(places[-1]) + 1 if (places := np.flatnonzero(~np.isnan(row))).size else 0 for row in table]
-    width = max(last)
-    for row, number, own in zip(rows, numbers, last, strict=True):
-        if own > len(rows[0]) or len(row) < width <= len(rows[0]):
-            raise ValueError(
-                f"{name}, line {number}: {own} number(s) after lines of {min(width, len(rows[0]))}; "
-                "take out what is no row of the table"
-            )
+    lengths = np.array([len(row) for row in rows])
+    table = np.full((len(rows), lengths.max()), np.nan)
+    for length in np.unique(lengths):
+        table[lengths == length, :length] = [row for row in rows if len(row) == length]
+    last = np.max(~np.isnan(table) * np.arange(1, lengths.max() + 1), axis=1)  # column with a number, from 1
+    width, allowed = last.max(), min(last.max(), lengths[0])
+    wrong = np.flatnonzero((last > lengths[0]) | (lengths < allowed))
+    if wrong.size:
+        raise ValueError(
+            f"{name}, line {numbers[wrong[0]]}: {last[wrong[0]]} number(s) after lines of {allowed}; take out what is "
+            "no row of the table"
+        )
     return table[:, :width]
 
 

@@ -33,8 +33,6 @@ MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items(
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 BROKEN = derived.assumption_texts("sentence")
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
-WIDE = f"The contact is wide against the smaller body (a > {derived.STEEP:g} of its radius), as in a cup that fits \
-closely: the bodies are no half-spaces there."
 OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
 each R a table of its own, in cases."
 SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
@@ -190,8 +188,6 @@ def doubts(contact: xr.Dataset) -> list[str]:
             (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values, si="units" in v["Ra"].attrs
         )
         found += [sharp] if sharp else []
-    if all(name in v and v[name].attrs.get("units") == "m" for name in ("R1", "R2", "a")):
-        found += [WIDE] * bool((v["a"] > derived.STEEP * np.minimum(abs(v["R1"]), abs(v["R2"]))).any())
     tables = "R" in v and np.char.startswith(v["micro"].values.astype(str), "table:").any()
     if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
         found.append(OF_SEVERAL_RADII)

@@ -48,7 +48,8 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     found = labelled(definition, arrays, command)
     found.variables["status"].attrs |= status_attributes()
     found.variables["model_used"].attrs |= model_attributes()
-    found.variables["validity"] = validity_of(found.variables | found.coords)
+    radii = definition.scene.radii() if definition.scene else {}
+    found.variables["validity"] = validity_of(found.variables | found.coords | radii)
     return found
 
 

@@ -31,7 +31,8 @@ MERGING = 0.4
 asperities and by 11 % against a hexagonal one, λ and p_max err by 3 % (tests/laws/test_micro_lattice.py)."""
 STEEP = 0.2
 """Largest a/R: Tabor's representative strain 0.2 a/R (The Hardness of Metals, 1951) is then 4 %, and the sphere is at
-r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R."""
+r = a by (a/R)²/4 = 1 % deeper than the paraboloid r²/2R. Of two bodies of known radii R1 and R2 it is also the largest
+a over the smaller of them: in a close cup R is far larger than both."""
 COMPRESSED = 0.1
 """Largest compressive strain of the layer; linear elasticity errs by about as much. A layer that gives way itself has
 the strain D/h. If rather the body below gives way, the strain of the layer is at most p(0)/E1*."""
@@ -66,7 +67,10 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
 
 
 def validity_of(variables: Mapping) -> xr.Variable:
-    """`validity` of the variables of a dataset. It computes with arrays, since DataArrays take as long as a contact."""
+    """`validity` of the variables of a dataset. It computes with arrays, since DataArrays take as long as a contact.
+
+    variables : dimensionless; with R1 and R2, in R, where the radii of both bodies are known
+    """
     status, used = variables["status"], variables["model_used"].attrs
     v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
     layered, rough = v["base"] != "half_space", _have("rough", v["micro"])
@@ -87,6 +91,7 @@ def validity_of(variables: Mapping) -> xr.Variable:
         32: (v["a"] > STEEP) | layered & (compressed | stretched),
         64: rough & ((_spot_radius(v) > STEEP_SPOT * v.get("Ra", np.nan)) | (steep > STEEP_SPOT)),
         128: layered & rough & (v.get("Nbar", np.nan) * (PITCH_OVER_LAYER * h) ** 2 < 1),
+        256: v["a"] > STEEP * np.minimum(*(np.abs(v.get(name, np.nan)) for name in ("R1", "R2"))),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
     return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())

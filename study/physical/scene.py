@@ -59,6 +59,10 @@ class Scene:
                 found[dim] = len(self.parameters[dim])
         return found
 
+    def radii(self) -> dict[str, xr.Variable]:
+        """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} where R was given."""
+        return {name: _variable(self.given[name] / self.R) for name in ("R1", "R2") if name in self.given}
+
     def within(self, window: dict[str, slice]) -> "Scene":
         """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
 

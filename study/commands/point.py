@@ -16,6 +16,8 @@ from ..spec.definition import StudyError
 from ..terminal import answer
 from .arguments import assignment
 
+_SWITCH = {"true": True, "false": False}
+
 
 def items(options) -> list[list[str]]:
     """All that was given describes one contact."""
@@ -35,8 +37,8 @@ def point(options, given: list[str]) -> int:
     return answer(text) or (0 if int(found["status"]) == 0 else 1)
 
 
-def parameters_of(given: list[str]) -> dict[str, float | str]:
-    """Parameters of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
+def parameters_of(given: list[str]) -> dict[str, float | str | bool]:
+    """Arguments of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
     found, errors = {}, []
     for text in given:
         try:
@@ -45,7 +47,11 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
             errors.append(f'{error}, such as R="5 mm"')
             continue
         errors += [f"{name} is given twice"] * (name in found)
-        errors += [f"{name} says nothing of one contact: leave it out"] * (name in solve.__kwdefaults__)
+        if name == "same_piece":
+            errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in _SWITCH)
+            value = _SWITCH.get(str(value).lower())
+        elif name in solve.__kwdefaults__:
+            errors.append(f"{name} says nothing of one contact: leave it out")
         found[name] = value
     if errors:
         raise StudyError(errors)

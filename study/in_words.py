@@ -5,7 +5,7 @@ import xarray as xr
 
 from solver import Status
 
-from .data import derived
+from .data.assumptions import assumption_texts
 from .data.dataset import broken, decode
 from .physical.bodies import BODIES
 from .physical.bounds import INPUTS, absurd
@@ -31,7 +31,7 @@ _BASES = {
 }
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
-BROKEN = derived.assumption_texts("sentence")
+BROKEN = assumption_texts("sentence")
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
 OF_SEVERAL_RADII = "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give \
 each R a table of its own, in cases."

@@ -12,7 +12,7 @@ from ..spec.fitted import COMMENT
 from ..spec.grid import along, unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
-from .derived import validity_attributes, validity_of
+from .assumptions import validity_attributes, validity_of
 from .provenance import provenance
 
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)

@@ -4,11 +4,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data import derived
+from ..data.assumptions import assumption_texts
 from ..data.dataset import broken
 
 MOST = 0.75  # of the axis: more is not shaded, the curves and the legend would stand on grey
-ASSUMPTION_TEXT, OF_WHICH, GREYS = (derived.assumption_texts(key) for key in ("text", "of_which", "grey"))
+ASSUMPTION_TEXT, OF_WHICH, GREYS = (assumption_texts(key) for key in ("text", "of_which", "grey"))
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:

@@ -8,6 +8,7 @@ from argparse import ArgumentTypeError
 import xarray as xr
 
 from ..data.dataset import decode
+from ..data.derived import QUANTITIES
 from ..in_words import SHOWN, doubts, summary
 from ..physical.inputs import all_inputs
 from ..physical.names import INFINITE
@@ -16,6 +17,7 @@ from ..spec.definition import StudyError
 from ..terminal import answer
 from .arguments import assignment
 
+_DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
 _SWITCH = {"true": True, "false": False}
 
 
@@ -30,7 +32,7 @@ def point(options, given: list[str]) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it
         try:
-            found = solve(**parameters, x=2, profiles=False)
+            found = solve(**parameters)  # with the profile p, which may be largest in a ring
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     text = json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found)
@@ -60,7 +62,10 @@ def parameters_of(given: list[str]) -> dict[str, float | str | bool]:
 
 def as_numbers(found: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
-    shown = {name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN)) if name in found}
+    found = found.assign({name: QUANTITIES[name](found) for name in _DERIVED})
+    shown = {
+        name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *_DERIVED)) if name in found
+    }
     shown |= {name: number(found[name]) for name in ("error", "model_error")}
     shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(found["validity"]).item().split()

@@ -2,10 +2,10 @@
 
 import json
 import tomllib
+import warnings
 
 import numpy as np
 import pytest
-from test_physical import quiet
 
 import study
 from study.__main__ import main
@@ -15,6 +15,12 @@ pytest.importorskip("pint")
 BALL = {"R": "5 mm", "punch": "PMMA", "body": "PMMA", "base": "half_space", "micro": "smooth", "P": "10 N", "x": 3}
 PMMA = study.materials.get("PMMA")
 OF_E = PMMA.reduced_modulus_spread / PMMA.reduced_modulus
+
+
+def quiet(**given):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return study.solve(**given)
 
 
 @pytest.mark.parametrize("layer", [{}, {"base": "layered", "layer": "PMMA", "h": "0.2 mm", "bonding": "bonded"}])

@@ -59,6 +59,15 @@ def test_far_below_and_beyond_what_was_measured():
     assert all(sentence.endswith("at worst; a harder layer errs more.") for sentence in said(at(3.0, n=20.0)))
 
 
+def test_a_pitch_of_cases_that_keep_to_the_assumption_does_not_count():
+    """Sparse sharp asperities have spots that are small against the layer, whatever their pitch."""
+    rows = [{"Nbar": 1 / (0.5 * 0.002) ** 2, "Ra": 0.004}, {"Nbar": 1 / (4 * 0.002) ** 2, "Ra": 1e-7}]
+    found = study.solve(cases=rows, P=1e-5, h=0.002, n=2.0, x=2)
+    assert (found.validity & 4).values.tolist() == [4, 0]
+    (doubt,) = (text for text in study.in_words.doubts(found) if BROKEN[MASKS[0]] in text)
+    assert doubt.startswith("1 of 2 cases: ") and "Here the pitch 1/sqrt(Nbar) is 0.5 h" in doubt
+
+
 @pytest.mark.filterwarnings("ignore:this contact is beyond")
 def test_of_several_cases_it_is_the_worst_and_units_do_not_matter():
     grid = study.solve(**SPARSE | {"Nbar": [1 / (pitch * 0.002) ** 2 for pitch in (0.5, 2.5, 4.0)]})

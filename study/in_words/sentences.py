@@ -20,8 +20,11 @@ _BASES = {
 MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
-ASPERITIES = "Asperities: those of the punch. A rough surface under a polished punch is the same contact; of two rough \
-surfaces the sum counts (docs/model.md, Elastic punch)."
+#: Behind a model with asperities.
+WHOSE = (
+    " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough surfaces the \
+sum counts (docs/model.md, Elastic punch)."
+)
 SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
 does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
 
@@ -46,13 +49,11 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         exact = used in ("half_space", "layered")  # then `model_error` is that of the micro law
         against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
         errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
-        found.append(f"Model: {model}{errs}.")
-    rough = "p_max" in judged
-    found += [ASPERITIES] * (rough and word == "converged")
+        found.append(f"Model: {model}{errs}.{WHOSE * (not used.startswith('smooth'))}")
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
     found += [NOT_VIOLATED] * (not beyond and word == "converged")
-    found += [f"Not checked (docs/model.md, Limits): {not_checked(case, rough)}."] * (word == "converged")
+    found += [f"Not checked (docs/model.md, Limits): {not_checked(case, 'p_max' in judged)}."] * (word == "converged")
     return found + [f"Assumed: {sentence}" for sentence in _assumed(case.variables)]
 
 

@@ -21,10 +21,8 @@ MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items(
 MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
 NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
 #: Behind a model with asperities.
-WHOSE = (
-    " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough surfaces the \
-sum counts (docs/model.md, Elastic punch)."
-)
+WHOSE = " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough \
+surfaces the sum counts (docs/model.md, Elastic punch)."
 SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
 does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
 

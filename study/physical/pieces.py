@@ -9,9 +9,6 @@ from ..spec.grid import MOVED
 from .bodies import BODIES
 from .scene import STEP, Scene
 
-NEEDS_NAMES = (
-    "no two of punch, layer and body are of one material by name, such as punch and body of PMMA; leave it out"
-)
 _RIGID = "rigid"  # the name of what has no modulus
 
 

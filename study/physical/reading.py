@@ -19,8 +19,8 @@ from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import equal_cases, impossible, missing, moving_tables
-from .names import CaseValues, QuantityList, dim_of, si
-from .pieces import NEEDS_NAMES, move, none_alike
+from .names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
+from .pieces import move, none_alike
 from .scales import make_dimensionless
 from .scene import STEP, Scene
 

@@ -22,8 +22,7 @@ from ..spec.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, Parameter, si_u
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
 from .bodies import BODIES, with_materials
-from .names import CaseValues, QuantityList, dim_of, si
-from .pieces import NEEDS_NAMES
+from .names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""

@@ -83,6 +83,7 @@ def solve(
     profiles: bool | Sequence[str] = True,
     title: str = "",
     workers: int | None = None,
+    same_piece: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -122,6 +123,8 @@ def solve(
     profiles : whether the dataset holds p and lam, or a list of those that it shall hold
     title : of the dataset
     workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
+    same_piece : whether bodies of one material (`punch`, `layer`, `body` of one name) are one piece, whose E and ν are
+        off together; otherwise each is a piece of its own, and their spreads are independent
     parameters : of registered laws
 
     Returns
@@ -153,9 +156,11 @@ def solve(
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
+    if not isinstance(same_piece, (bool, np.bool_)):
+        raise StudyError([f"same_piece = {shown(same_piece)}: must be true or false"])
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
-    scene = read_scene(parameters, cases)
+    scene = read_scene(parameters, cases, same_piece=bool(same_piece))
     about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
         definition = complete_scene(draft, scene, [], about, most=LARGE)

@@ -12,7 +12,7 @@ from ..spec.fitted import COMMENT
 from ..spec.grid import along, unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
-from .derived import validity_attributes, validity_of
+from .assumptions import validity_attributes, validity_of
 from .provenance import provenance
 
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
@@ -48,7 +48,8 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     found = labelled(definition, arrays, command)
     found.variables["status"].attrs |= status_attributes()
     found.variables["model_used"].attrs |= model_attributes()
-    found.variables["validity"] = validity_of(found.variables | found.coords)
+    radii = definition.scene.radii() if definition.scene else {}
+    found.variables["validity"] = validity_of(found.variables | found.coords | radii)
     return found
 
 

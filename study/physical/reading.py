@@ -19,7 +19,8 @@ from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import equal_cases, impossible, missing, moving_tables
-from .names import CaseValues, QuantityList, dim_of, si
+from .names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
+from .pieces import move, none_alike
 from .scales import make_dimensionless
 from .scene import STEP, Scene
 
@@ -48,12 +49,15 @@ def _plain(given: Any) -> Any:
     return given.tolist() if known else given
 
 
-def read(parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True) -> Scene | None:
+def read(
+    parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True, same_piece: bool = False
+) -> Scene | None:
     """The physical scene that the parameters of `study.solve` describe; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
     spreads : whether the results shall have spreads, for which inputs with spreads are moved
     bounds : whether numbers beyond the bounds of the solver are refused
+    same_piece : whether bodies of one material are one piece, so that their inputs with spreads are moved together
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
@@ -63,8 +67,10 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     pairs = [pair for table in (parameters, *rows) for pair in table.items()]
     signs = [(name, one) for name, one in pairs if name in SCENE or name in BODIES or _has_unit(one)]
     if not signs:
+        if same_piece:
+            raise StudyError([f"same_piece: {NEEDS_NAMES}"])
         return None
-    scene, errors = Scene(), []
+    scene, errors = Scene(same_piece=same_piece), []
     parameters = _with_rows(parameters, rows, scene, errors)
     parameters, scene.names = with_materials(parameters, errors)
     parameters = _alike(parameters, scene.names, errors)
@@ -72,6 +78,8 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
         if name == "label" and isinstance(given, CaseValues):
             scene.labels = given
             errors += label_slips(given)
+        elif name == "same_piece":
+            errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
         elif name not in SCENE and not is_parameter(name):
             known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * bool(rows)]
             errors.append(f"{shown(name)} is not a parameter{instead(name, known)}")
@@ -82,6 +90,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
                 errors.append(f"{error}{_material(name, given)}")
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, CaseValues) else given
+    errors += [f"same_piece: {NEEDS_NAMES}"] * (same_piece and not errors and none_alike(scene.names))
     errors += missing(parameters, {name for name, _ in pairs}, errors)
     errors += [] if errors else impossible(scene) + (equal_cases(scene) if rows else [])
     if errors:
@@ -91,7 +100,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
         raise StudyError([f"{message}{hint * ('has no unit' in message)}" for message in errors])
     scene.assumed = assumed(parameters, scene.given)
     scene.spreads = scene.spreads if spreads else {}
-    _move(scene)
+    move(scene)
     make_dimensionless(scene)
     errors = moving_tables(scene) + (beyond_bounds(scene, parameters) if bounds else [])
     if errors:
@@ -227,12 +236,3 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
-
-
-def _move(scene: Scene) -> None:
-    """Give inputs with spreads the dimension MOVED: all as given, then each in turn moved up and moved down by STEP."""
-    count = len(scene.spreads)
-    for i, (name, spread) in enumerate(scene.spreads.items()):
-        steps = np.zeros(1 + 2 * count)
-        steps[1 + 2 * i : 3 + 2 * i] = STEP, -STEP
-        scene.given[name] = scene.given[name] + spread * xr.DataArray(steps, dims=MOVED)

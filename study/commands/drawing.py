@@ -1,6 +1,7 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
 import logging
+import sys
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -15,7 +16,7 @@ from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.grid import twins
-from ..terminal import answer, on_one_line
+from ..terminal import answer, on_one_line, say
 from .arguments import known_studies, study_file
 from .computing import completed
 
@@ -99,10 +100,17 @@ def _write(options, name: str, known: dict, make) -> int:
 
 
 def _ready(options, study: str) -> int:
-    """Compute what is missing of a study, if this command has not done so yet. Older results may be replaced."""
+    """Compute what is missing of a study, if this command has not done so yet.
+
+    Results that the same study file made are replaced; others are refused as by `run`, once.
+    """
     codes = vars(options).setdefault("codes", {})  # study -> exit code, of this command
-    if study not in codes and study == "tradeoff":
-        codes[study] = tradeoff(options, study)
-    elif study not in codes:
-        codes[study] = completed(load(study_file(study), options.results), force=True)
+    try:
+        if study not in codes and study == "tradeoff":
+            codes[study] = tradeoff(options, study)
+        elif study not in codes:
+            codes[study] = completed(load(study_file(study), options.results), renew=True)
+    except StudyError as error:
+        say(str(error), sys.stderr)
+        codes[study] = error.code
     return codes[study]

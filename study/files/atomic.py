@@ -2,18 +2,19 @@
 
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from glob import escape
 from pathlib import Path
 
 
 @contextmanager
-def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
+def replacing(path: Path, folder: Path | None = None, place: Callable | None = None) -> Iterator[Path]:
     """A temporary path to write to. When the `with` block ends well, the file is flushed to disk and becomes `path`.
 
     folder : where the temporary file is; by default, or if it is a link, which may lead to another file system,
         beside `path`. Its name is random, since the process id may be the same on two machines that share a folder
+    place : is called with the temporary path and `path`, and gives the file its name; by default `os.replace`
     """
     folder = None if folder and folder.is_symlink() else folder
     if path.is_symlink():
@@ -23,7 +24,7 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
         yield temporary
         with open(temporary, "rb+") as file:
             os.fsync(file.fileno())  # a rename may reach the disk before the data do
-        os.replace(temporary, path)
+        (place or os.replace)(temporary, path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise

@@ -59,7 +59,8 @@ def law(**functions) -> laws.Law:
 @pytest.mark.parametrize("name", ["scales", "curve", "area", "peak", "edge"])
 def test_a_function_that_calls_exit_is_told_before_anything_is_computed(name):
     leaves = law(**{name: lambda *_, **__: sys.exit(0)})
-    with pytest.raises(study.StudyError, match=rf"micro law leaving: {name} raises RuntimeError: it calls sys.exit\(0\)"):
+    said = rf"micro law leaving: {name} raises RuntimeError: it calls sys.exit\(0\)"
+    with pytest.raises(study.StudyError, match=said):
         study.solve(P=[1e-6, 1e-5], base="half_space", Nbar=250_000.0, alpha=1.3, micro=leaves)
 
 

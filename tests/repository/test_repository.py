@@ -73,7 +73,7 @@ def calls(folder: Path) -> list[str]:
         ("figures/fig04.pdf", ["plot --run fig04"]),
         ("tables/validity.txt", ["table --run validity"]),
         ("picard_domain", ["plot --run picard_domain"]),
-        ("map", ["run --force studies/parameter_map.toml"]),
+        ("map", ["run studies/parameter_map.toml"]),
         ("results/mine.nc", ["run studies/mine.toml"]),
     ],
 )

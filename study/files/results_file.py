@@ -144,7 +144,7 @@ def set_aside(path: Path) -> Path:
 
 
 def _named(file: Path, path: Path, word: str) -> Path:
-    """Give a file another name, that of `path` and a word, such as NAME.nc.damaged-2; returns it. It replaces nothing."""
+    """Give a file the name of `path` and a word, such as NAME.nc.damaged-2; returns it. It replaces nothing."""
     names = (f"{path.name}.{word}{f'-{number}' * (number > 1)}" for number in count(1))
     while True:
         kept = path.with_name(next(names))

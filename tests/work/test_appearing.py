@@ -11,6 +11,7 @@ import study
 from study.evidence import tradeoff
 from study.files import results_file
 from study.files.examine import examine
+from study.files.seal import seal
 from study.work import cases
 
 STAYS = "line.nc: has appeared or changed while its results were computed, and stays; they are in "
@@ -26,6 +27,11 @@ def during(monkeypatch, action) -> None:
         return real(wanted)
 
     monkeypatch.setattr(cases, "compute", compute)
+
+
+def at_the_end(monkeypatch, action) -> None:
+    """Do something when the file is complete, just before it gets its place."""
+    monkeypatch.setattr("study.store.writer.seal", lambda path: (seal(path), action()))
 
 
 def refused(opened: study.Study, **options) -> Path:
@@ -81,7 +87,7 @@ def test_what_appears_during_a_run_stays(file, monkeypatch, what):
 @pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("links", ["links", "no links"])
 def test_a_file_that_changes_during_a_run_stays(file, monkeypatch, links):
-    """One that the run would replace: its cases are in the study, or --force was said. An earlier such file stays too."""
+    """One that the run would replace, since its cases are in the study. An earlier such file stays too."""
     load(file, **{"num = 23": "num = 2"}).run()
     opened = load(file)
     path = opened.results / "line.nc"
@@ -89,13 +95,13 @@ def test_a_file_that_changes_during_a_run_stays(file, monkeypatch, links):
     if links == "no links":
         monkeypatch.setattr(os, "link", lambda *_: (_ for _ in ()).throw(PermissionError(1, "not permitted")))
     with monkeypatch.context() as patched:
-        during(patched, lambda: os.utime(path))
+        at_the_end(patched, lambda: os.utime(path))
         kept = refused(opened)
     assert study.open_results(path).sizes["P"] == 2 and kept.name == "line.nc.computed-2"
     assert path.with_name("line.nc.computed").read_text(encoding="utf-8") == "precious"
     assert study.open_results(kept).sizes["P"] == 23
     with monkeypatch.context() as patched:
-        during(patched, lambda: os.chmod(path, 0o600))
+        at_the_end(patched, lambda: os.chmod(path, 0o600))
         assert opened.run().complete, "what is in it is the same"
     assert opened.open().sizes["P"] == 23
 
@@ -104,8 +110,8 @@ def test_results_that_are_removed_during_a_run_are_written(file, monkeypatch):
     load(file, **{"num = 23": "num = 3"}).run()
     opened = load(file)
     with monkeypatch.context() as patched:
-        during(patched, (opened.results / "line.nc").unlink)
-        assert opened.run(force=True).complete
+        at_the_end(patched, (opened.results / "line.nc").unlink)
+        assert opened.run().complete and opened.status()["state"] == "done"
 
 
 def test_the_same_results_by_another_run_are_no_harm(file, monkeypatch):
@@ -137,7 +143,7 @@ def test_the_last_part_looks_again_too(file, monkeypatch):
     opened = load(file)
     path = opened.results / "line.nc"
     opened.run(part=(1, 2))
-    monkeypatch.setattr("study.store.writer.seal", lambda _: path.write_text("precious"))
+    at_the_end(monkeypatch, lambda: path.write_text("precious"))
     refused(opened, part=(2, 2))
     assert path.read_text(encoding="utf-8") == "precious"
 

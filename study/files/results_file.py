@@ -106,7 +106,7 @@ def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
     """
     now = stamp(path)
     if now and not (there.seen and now[:3] == there.seen[:3]) and not _is_of(path, digest):
-        raise _kept(temporary, path)
+        raise _kept(temporary, path, there.path)
     if now and there.kind == "damaged":
         set_aside(path)
     if not now:
@@ -114,7 +114,7 @@ def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
             os.link(temporary, path)  # unlike a rename it replaces nothing that appears just now
         except FileExistsError:
             if not _is_of(path, digest):
-                raise _kept(temporary, path) from None
+                raise _kept(temporary, path, there.path) from None
         except OSError:
             pass  # no hard links on this file system
         else:
@@ -128,10 +128,10 @@ def _is_of(path: Path, digest: str) -> bool:
     return found.good and found.digest == digest
 
 
-def _kept(temporary: Path, path: Path) -> StudyError:
-    """The error to raise when the file at `path` must stay, after the complete file has got another name."""
+def _kept(temporary: Path, path: Path, called: Path) -> StudyError:
+    """The error to raise when the file at `path` must stay, after the complete file has got another name beside it."""
     kept = _named(temporary, path, "computed")
-    what = f"{path}: has appeared or changed while its results were computed"
+    what = f"{called}: has appeared or changed while its results were computed"
     return StudyError([f"{what}, and stays; they are in {kept}: move one of the two away"], code=1)
 
 

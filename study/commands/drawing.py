@@ -2,6 +2,7 @@
 
 import logging
 import sys
+from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -34,7 +35,7 @@ def plot(options, name: str) -> int:
     if options.x or options.y or options.hue or options.where:
         return _curves(options, name)
     try:
-        return _write(options, name, catalogue.FIGURES, catalogue.draw)
+        return _write(options, name, catalogue.FIGURES)
     except StudyError:
         what = "file" if Path(name).suffix == ".nc" else "study"
         if name in catalogue.FIGURES or not (what == "file" or name in known_studies()):
@@ -71,7 +72,7 @@ def _curves(options, name: str) -> int:
 
 def table(options, name: str) -> int:
     """Write a table, and say which files it is in."""
-    return _write(options, name, catalogue.TABLES, catalogue.tabulate)
+    return _write(options, name, catalogue.TABLES)
 
 
 def tradeoff(options, _) -> int:
@@ -82,8 +83,10 @@ def tradeoff(options, _) -> int:
     return 0
 
 
-def _write(options, name: str, known: dict, make) -> int:
+def _write(options, name: str, known: dict) -> int:
+    make = catalogue.tabulate if known is catalogue.TABLES else catalogue.draw
     if options.run:
+        make = partial(catalogue.renewed, known)
         code = max((_ready(options, study) for study in catalogue.needed(name, known)), default=0)
         if code or not catalogue.outdated(name, known, options.results, options.folder):
             return code

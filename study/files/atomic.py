@@ -2,6 +2,7 @@
 
 import os
 import secrets
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from glob import escape
@@ -36,11 +37,13 @@ def target(path: Path) -> Path:
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
-def remove_temporary(path: Path) -> None:
-    """Remove the temporary files beside `path` of writers that were killed."""
+def remove_temporary(path: Path, age: float = 0.0) -> None:
+    """Remove the temporary files beside `path` of writers that were killed, those that are `age` seconds old."""
     path = target(path)
     for found in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
-        found.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):  # its writer has just ended
+            if time.time() - found.stat().st_mtime >= age:
+                found.unlink()
 
 
 def make_folder(path: Path) -> None:

@@ -1,5 +1,6 @@
 """Results files as datasets: made, written and opened."""
 
+import hashlib
 import os
 from functools import partial
 from itertools import count
@@ -10,13 +11,15 @@ import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
 from ..data.dataset import without_fill_values
+from ..data.provenance import OF_THE_RUN
 from ..physical.index import searchable
 from ..spec.definition import StudyError
 from ..spec.laws import recall
+from .access import Unusable
 from .atomic import replacing, target
-from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head
+from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head, parsed
 from .examine import Condition, examine, stamp
-from .netcdf import File, read, read_lazily
+from .netcdf import File, check_regular, read, read_lazily
 from .seal import seal
 
 
@@ -157,6 +160,21 @@ def _named(file: Path, path: Path, word: str) -> Path:
         except OSError:  # no hard links on this file system
             os.rename(file, kept)
         return kept
+
+
+def numbers_digest(path: Path) -> str:
+    """sha256 of what a results file holds, but for OF_THE_RUN: of its checksums, of all its bytes if it has none."""
+    check_regular(path)
+    try:
+        with File(path) as file:
+            text = str(file.attribute(ATTRIBUTE)) if ATTRIBUTE in file.attributes() else ""
+    except Unusable:
+        text = ""
+    if not text:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    left_out = ("=checksums", *(f"@{name}" for name in OF_THE_RUN))
+    lines = [f"{name} {digits}\n" for name, digits in parsed(text).items() if name not in left_out]
+    return hashlib.sha256("".join(sorted(lines)).encode()).hexdigest()
 
 
 def open_results(path) -> xr.Dataset:

@@ -34,7 +34,7 @@ table1 paper_numbers validity extremes:
 	@cat tables/$@.txt
 
 map: $(READY) ## 25,000 cases for exploration: results/parameter_map.nc
-	$(RUN) run --force studies/parameter_map.toml
+	$(RUN) run studies/parameter_map.toml
 
 tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs/tradeoff_measured.txt, tradeoff.png
 	$(RUN) table --run tradeoff tradeoff_cheapest tradeoff_factors paper_error

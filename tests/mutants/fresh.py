@@ -171,9 +171,8 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     """Run a list and print what stands above it; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("list", nargs="?", help=f"its name in tests/mutants/{FRESH} (default: the latest)")
-    parser.add_argument(
-        "--only", metavar="I/N", default="1/1", help="the I-th of N parts of the list: each N-th mutant"
-    )
+    parser.add_argument("--only", nargs="+", metavar="ID", default=["*"], help="these alone, say solver.kernel.*")
+    parser.add_argument("--part", metavar="I/N", default="1/1", help="the I-th of N parts: each N-th mutant")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="how many at a time (default: 2)")
     parser.add_argument("--map", type=Path, metavar="FILE", help="keep here which functions each test runs")
     options = parser.parse_args(arguments)

@@ -75,6 +75,9 @@ lowest: ## all tests with the lowest versions that pyproject.toml allows, instal
 mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutants/mutate.py --table docs/mutants.md
 
+fresh_mutants: $(READY) ## which mistakes of the latest list in tests/mutants/fresh all the tests notice: hours
+	$(VENV)/bin/python tests/mutants/fresh.py
+
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
 	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800
 	$(VENV)/bin/python tests/fuzz/fuzz_studies.py 2000

@@ -146,6 +146,9 @@ def judged(mutants: list[Mutant], folders: list[Path], kept: Path | None) -> Ite
     for mutant in mutants:
         text = (folders[0] / mutant.file).read_text(encoding="utf-8")
         seconds = order(mutant, text, known)
+        if not seconds:
+            yield Verdict(mutant, False, "for no test runs its file")
+            continue
         files = list(dict.fromkeys(node.partition("::")[0] for node in seconds))
         there = None if mutant.id.rpartition(".")[0] in computing else results
 
@@ -193,7 +196,7 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
             print(f"{len(verdicts)} of {len(mutants)}: {verdict.mutant.id} {verdict}", flush=True)
     minutes = (time.monotonic() - begun) / 60
     print(f"{minutes:.0f} min with {options.jobs} processes, {len(mutants)} of {len(batch.mutants)}:")
-    print("\n".join(f"{name}/: {killed} of {size}" for name, (killed, size) in totals(verdicts).items()))
+    print("\n".join(f"{name}/: {killed} of {size}" for name, (killed, size) in sorted(totals(verdicts).items())))
     print("survived = " + json.dumps(sorted(v.mutant.id for v in verdicts if not v.killed), indent=4))
     return 0
 

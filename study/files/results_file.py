@@ -16,7 +16,7 @@ from ..physical.index import searchable
 from ..spec.definition import StudyError
 from ..spec.laws import recall
 from .access import Unusable
-from .atomic import replacing, target
+from .atomic import replacing
 from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head, parsed
 from .examine import Condition, examine, stamp
 from .netcdf import File, check_regular, read, read_lazily
@@ -139,11 +139,8 @@ def _kept(temporary: Path, path: Path, called: Path) -> StudyError:
 
 
 def set_aside(path: Path) -> Path:
-    """Keep a damaged file, which is about to be replaced, under the name NAME.nc.damaged; returns its path.
-
-    Behind a symbolic link it is the file to which the link leads, since that will be replaced.
-    """
-    return _named(target(path), target(path), "damaged")
+    """Keep a damaged file, which is about to be replaced, under the name NAME.nc.damaged; returns its path."""
+    return _named(path, path, "damaged")
 
 
 def _named(file: Path, path: Path, word: str) -> Path:

@@ -20,6 +20,7 @@ from .physical.study_file import complete as complete_scene
 from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
 from .spec.vocabulary import NUMERICS, VOCABULARY
+from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
 from .work.share import solved
@@ -143,6 +144,7 @@ def solve(
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
+    workers = plain(workers)
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]

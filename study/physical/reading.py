@@ -13,7 +13,8 @@ from ..spec.definition import StudyError
 from ..spec.given import label_slips
 from ..spec.grid import MOVED, equal_values
 from ..spec.laws import is_parameter
-from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, instead
+from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
+from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
@@ -42,12 +43,6 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
-def _plain(given: Any) -> Any:
-    """What is of numpy or pandas as a list, or as a single value; all else as it is."""
-    known = hasattr(given, "tolist") and not hasattr(given, "magnitude") and not isinstance(given, xr.DataArray)
-    return given.tolist() if known else given
-
-
 def read(parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True) -> Scene | None:
     """The physical scene that the parameters of `study.solve` describe; None if they are dimensionless.
 
@@ -59,7 +54,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    parameters, *rows = ({name: _plain(value) for name, value in table.items()} for table in (parameters, *rows))
+    parameters, *rows = ({name: plain(value) for name, value in table.items()} for table in (parameters, *rows))
     pairs = [pair for table in (parameters, *rows) for pair in table.items()]
     signs = [(name, one) for name, one in pairs if name in SCENE or name in BODIES or _has_unit(one)]
     if not signs:
@@ -74,7 +69,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
             errors += label_slips(given)
         elif name not in SCENE and not is_parameter(name):
             known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * bool(rows)]
-            errors.append(f"{shown(name)} is not a parameter{instead(name, known)}")
+            errors.append(no_parameter(name, known))
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)
@@ -208,7 +203,6 @@ def _add(scene: Scene, name: str, given: Any) -> None:
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:
     """The quantities in a list, an array or a single value."""
-    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
     if not isinstance(given, (list, tuple, range)):
         return si(name, given)
     if not len(given):

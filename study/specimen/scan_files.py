@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .foreign import plain
 from .scan import FEWEST, UNITS, Scan, height_map, metres, profile
 
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
@@ -103,6 +104,7 @@ def _in_equal_steps(line: np.ndarray) -> bool:
 
 
 def _picked(table: np.ndarray, columns: tuple, name: str) -> np.ndarray:
+    columns = plain(columns)
     columns = tuple(columns) if isinstance(columns, (list, tuple)) else (columns,)
     if len(columns) not in (1, 2) or not all(type(i) is int and 0 <= i < table.shape[1] for i in columns):
         raise ValueError(

@@ -23,7 +23,7 @@ def plain(given: Any) -> Any:
     if hasattr(given, "dims"):  # of xarray
         return _plain_array(given)
     if hasattr(given, "magnitude") and hasattr(given, "units"):  # of pint
-        return _quantities(given)
+        return list(given) if np.ndim(given.magnitude) == 1 else given
     if getattr(getattr(given, "dtype", None), "kind", "") in ("m", "M"):  # times, whose `tolist` may be numbers
         return np.asarray(given).astype(str).tolist()
     unit = getattr(given, "unit", getattr(given, "units", None))
@@ -55,13 +55,6 @@ def _plain_array(array: Any) -> Any:
     if not isinstance(array.attrs.get("units", ""), str):
         array = array.assign_attrs(units=_name_of(array.attrs["units"]))
     return array.astype(str) if array.dtype.kind in "mM" else array
-
-
-def _quantities(given: Any) -> Any:
-    """A quantity of pint, or those in a list of them; a DataArray of one of a DataArray."""
-    if hasattr(given.magnitude, "dims"):
-        return given.magnitude.assign_attrs(units=_name_of(given.units))
-    return list(given) if np.ndim(given.magnitude) == 1 else given
 
 
 def _name_of(units: Any) -> str:

@@ -14,6 +14,7 @@ from solver.laws import Law
 
 from .data.dataset import Parts, parts
 from .in_words import doubts
+from .physical.carried import with_coordinates
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
@@ -130,8 +131,10 @@ def solve(
     xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
     is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
     spreads: one standard deviation, to first order. Numerical settings of one value are attributes. `study.summary`
-    says it in words. A warning tells of physical cases that violate an assumption of the model, or
-    that have inputs of which the unit must be wrong.
+    says it in words. The results also have what a DataArray brings as further coordinates, such as who measured its
+    loads; the levels of a MultiIndex are coordinates without an index, which netCDF can hold. A warning tells of those
+    that are left out, of physical cases that violate an assumption of the model, or that have inputs of which the unit
+    must be wrong.
 
     Raises
     ------
@@ -169,9 +172,10 @@ def solve(
         definition = complete(draft, *about, LARGE)
     arrays = solved(definition, workers)
     found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
-    if not scene:
-        return found
-    beyond = doubts(found)
+    found, left_out = with_coordinates(found, parameters)
+    for text in left_out:
+        warnings.warn(text, stacklevel=2)
+    beyond = doubts(found) if scene else []
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found

@@ -11,7 +11,7 @@ import xarray as xr
 
 from ..spec.definition import StudyError
 from ..spec.given import label_slips
-from ..spec.grid import MOVED, equal_values
+from ..spec.grid import MOVED, equal_values, same_labels
 from ..spec.laws import is_parameter
 from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
 from ..specimen.foreign import plain
@@ -135,7 +135,7 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
     """
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
-    materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
+    materials = {body: (body, np.array(texts)) for body, (dim, texts) in bodies.items() if dim == body}
     with_units = {name for name in parameters if name in VOCABULARY and ROWS[name].unit != "1"}
     taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)  # no dimension may have these names
     # Dimension -> the parameter that gave it first, and its coordinate there; then the same with its length.
@@ -157,13 +157,20 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
                 errors.append(f"{name} has {length} values along {dim}, {other} has {expected}")
             elif dim in given.coords:
                 other, known = labels.setdefault(dim, (name, given[dim].values))
-                if not np.array_equal(known, given[dim].values):
+                if not same_labels(known, given[dim].values):
                     errors.append(f"{name} has other values of {dim}, or in another order, than {other}")
     own = {dim: dim_of(dim) for dim in along_itself}
     return parameters | {
-        name: given.drop_vars(own, errors="ignore").rename({dim: own[dim] for dim in given.dims if dim in own})
+        name: _bare(given, own).rename({dim: own[dim] for dim in given.dims if dim in own})
         for name, given in arrays.items()
     }
+
+
+def _bare(given: xr.DataArray, own: dict) -> xr.DataArray:
+    """The array without coordinates but those of its dimensions, and without these along the dimensions in `own`, and
+    where they are a MultiIndex: arithmetic of xarray need not carry them (see `carried`)."""
+    stacked = {dim for dim in given.dims if hasattr(given.indexes.get(dim), "levels")}
+    return given.drop_vars({*given.coords} - ({*given.dims} - {*own} - stacked))
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:

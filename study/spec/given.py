@@ -8,7 +8,7 @@ import numpy as np
 from ..specimen.foreign import plain
 from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing, slips_of_laws
 from .fitted import fitted, wants_a_fit
-from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, twins
+from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, same_labels, twins
 from .laws import is_parameter, law_names, update_vocabulary
 from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, no_parameter
@@ -220,5 +220,5 @@ class Draft:
                 self.errors.append(f"{name} is empty: must have at least one value")
             elif size != self.sizes[dim]:
                 self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
-            elif coordinate is not None and owner is not None and not np.array_equal(owner[1], coordinate):
+            elif coordinate is not None and owner is not None and not same_labels(owner[1], coordinate):
                 self.errors.append(f"{name} has other values of {dim} than another parameter")

@@ -107,7 +107,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     """The names of `status`, `model_used` or `validity`, in an array of texts over the same dimensions.
 
     Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
-    a name stays a number.
+    a name stays a number. Where `where`, `reindex` or `concat` of xarray have left no case, NaN, status and
+    validity are "not_run", and the model is "none".
 
     Raises ValueError: it is no array, or one that has none of these names, and no attribute `flag_meanings`; its
     numbers are of no case, such as the mean of several.
@@ -133,6 +134,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
         names = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), words, strict=True))
     texts = [names.get(value, str(value)) for value in values.ravel().tolist()]
     named = np.array(texts, dtype=str).reshape(flags.shape)
+    if "flag_masks" in attributes and flags.dtype.kind == "f":  # the mask 0 would say that the case is a good one
+        named = np.where(np.isfinite(flags.values), named, status_words()[NOT_RUN])
     return xr.DataArray(named, flags.coords, flags.dims, flags.name)
 
 

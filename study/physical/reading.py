@@ -11,9 +11,10 @@ import xarray as xr
 
 from ..spec.definition import StudyError
 from ..spec.given import label_slips
-from ..spec.grid import MOVED, equal_values
+from ..spec.grid import MOVED, equal_values, same_labels
 from ..spec.laws import is_parameter
-from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, instead
+from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
+from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
@@ -43,12 +44,6 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
-def _plain(given: Any) -> Any:
-    """What is of numpy or pandas as a list, or as a single value; all else as it is."""
-    known = hasattr(given, "tolist") and not hasattr(given, "magnitude") and not isinstance(given, xr.DataArray)
-    return given.tolist() if known else given
-
-
 def read(
     parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True, same_piece: bool = False
 ) -> Scene | None:
@@ -63,7 +58,7 @@ def read(
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    parameters, *rows = ({name: _plain(value) for name, value in table.items()} for table in (parameters, *rows))
+    parameters, *rows = ({name: plain(value) for name, value in table.items()} for table in (parameters, *rows))
     pairs = [pair for table in (parameters, *rows) for pair in table.items()]
     signs = [(name, one) for name, one in pairs if name in SCENE or name in BODIES or _has_unit(one)]
     if not signs:
@@ -82,7 +77,7 @@ def read(
             errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
         elif name not in SCENE and not is_parameter(name):
             known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * bool(rows)]
-            errors.append(f"{shown(name)} is not a parameter{instead(name, known)}")
+            errors.append(no_parameter(name, known))
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)
@@ -149,7 +144,7 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
     """
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
-    materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
+    materials = {body: (body, np.array(texts)) for body, (dim, texts) in bodies.items() if dim == body}
     with_units = {name for name in parameters if name in VOCABULARY and ROWS[name].unit != "1"}
     taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)  # no dimension may have these names
     # Dimension -> the parameter that gave it first, and its coordinate there; then the same with its length.
@@ -171,13 +166,20 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
                 errors.append(f"{name} has {length} values along {dim}, {other} has {expected}")
             elif dim in given.coords:
                 other, known = labels.setdefault(dim, (name, given[dim].values))
-                if not np.array_equal(known, given[dim].values):
+                if not same_labels(known, given[dim].values):
                     errors.append(f"{name} has other values of {dim}, or in another order, than {other}")
     own = {dim: dim_of(dim) for dim in along_itself}
     return parameters | {
-        name: given.drop_vars(own, errors="ignore").rename({dim: own[dim] for dim in given.dims if dim in own})
+        name: _bare(given, own).rename({dim: own[dim] for dim in given.dims if dim in own})
         for name, given in arrays.items()
     }
+
+
+def _bare(given: xr.DataArray, own: dict) -> xr.DataArray:
+    """The array without coordinates but those of its dimensions, and without these along the dimensions in `own`, and
+    where they are a MultiIndex: arithmetic of xarray need not carry them (see `carried`)."""
+    stacked = {dim for dim in given.dims if hasattr(given.indexes.get(dim), "levels")}
+    return given.drop_vars({*given.coords} - ({*given.dims} - {*own} - stacked))
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:
@@ -217,7 +219,6 @@ def _add(scene: Scene, name: str, given: Any) -> None:
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:
     """The quantities in a list, an array or a single value."""
-    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
     if not isinstance(given, (list, tuple, range)):
         return si(name, given)
     if not len(given):

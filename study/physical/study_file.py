@@ -18,7 +18,7 @@ from ..spec.grid import axis_values
 from ..spec.identity import digest_of_array
 from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
-from ..spec.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, Parameter, si_unit
+from ..spec.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
 from .bodies import BODIES, with_materials
@@ -163,7 +163,7 @@ def _sampled(table: Any, draft: Draft) -> dict[str, CaseValues | QuantityList]:
             if isinstance(raw, dict):
                 in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
         elif name not in LIMITS:
-            errors.append(f"[sample] {shown(name)} is not a parameter")
+            errors.append(no_parameter(name, [*PARAMETERS, *SCENE, *BODIES], "[sample] "))
     if len(errors) > before:
         return {}
     return {

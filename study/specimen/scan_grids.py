@@ -7,6 +7,7 @@ from decimal import Decimal
 import numpy as np
 
 from .quantities import has_unit, quantity
+from .foreign import plain
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
 from .scan_texts import Table
 
@@ -18,7 +19,7 @@ COARSE = 0.01
 
 def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
     """The columns of positions and heights, or all of a map, and where they stand; None where dx is the position."""
-    numbers, dx, picked = table.numbers, given.get("dx"), given.get("columns")
+    numbers, dx, picked = table.numbers, given.get("dx"), plain(given.get("columns"))
     places = [0, -1]
     if picked is not None:
         picked = list(picked) if isinstance(picked, (list, tuple)) else [picked]

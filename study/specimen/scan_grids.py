@@ -6,8 +6,8 @@ from decimal import Decimal
 
 import numpy as np
 
-from .quantities import has_unit, quantity
 from .foreign import plain
+from .quantities import has_unit, quantity
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
 from .scan_texts import Table
 

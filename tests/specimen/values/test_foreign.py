@@ -63,6 +63,9 @@ class Column:
     def __array__(self, dtype=None, copy=None):
         return np.array(self.values, dtype=dtype)
 
+    def __repr__(self):
+        return f"Column{self.values}"  # names of tests must not depend on an address
+
 
 class Astropy(np.ndarray):
     """As a quantity of astropy: an array with a unit, which `tolist` leaves out."""

@@ -12,9 +12,9 @@ import xarray as xr
 
 from solver.laws import Law
 
+from .carried import with_coordinates
 from .data.dataset import Parts, parts
 from .in_words import doubts
-from .physical.carried import with_coordinates
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene

@@ -22,7 +22,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
-        *("solving", "figures", "api", "paper", "literature", "evidence"),
+        *("carried", "solving", "figures", "api", "paper", "literature", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }

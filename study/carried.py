@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from ..spec.vocabulary import ROWS
-from ..specimen.foreign import plain
-from .bodies import BODIES
+from .physical.bodies import BODIES
+from .spec.vocabulary import ROWS
+from .specimen.foreign import plain
 
 
 def with_coordinates(dataset: xr.Dataset, parameters: dict) -> tuple[xr.Dataset, list[str]]:

@@ -88,7 +88,7 @@ def test_positions_written_with_few_digits_are_uniform():
         ("a.csv", "", {}, "no line of numbers in it"),
         ("a.csv", "# x z\nnothing\n", {}, "no line of numbers in it"),
         ("a.csv", b"\x00\x01", {}, "not a text file"),
-        ("a.csv", lines(X, Z) + "1.0 bad\n", {}, "line 21: '1.0 bad' has something else than numbers"),
+        ("a.csv", lines(X, Z) + "1.0 word\n", {}, "line 21: '1.0 word' has something else than numbers: 'word'"),
         ("a.csv", "0\t0\n1\t1,024\n", {}, "line 2: '1.t1,024' has something else than numbers"),
         ("a.csv", lines(X, Z) + "1.0\n", {}, r"line 21: 1 number\(s\) after lines of 2"),
         ("a.csv", lines(X, Z, separator=";") + "10.0;\n", {}, r"line 21: 1 number\(s\) after lines of 2"),

@@ -22,7 +22,7 @@ ALPHA = math.sqrt(math.log(2) / math.pi)
 REACH = 4 * ALPHA / math.sqrt(2 * math.pi)
 #: Least part of the window that has measured points; elsewhere the filter has no answer. Missing points are filled in
 #: first: N̄ and Ra are then off by less than 3 %, also where a fifth of the points is missing, and by 5 to 40 % if the
-#: mean were of the points that are there (tests/specimen/test_missing_points.py).
+#: mean were of the points that are there (tests/specimen/heights/test_missing_points.py).
 MEASURED = 0.5
 #: Steps of filling gaps before a low-pass: what is deeper in a gap has no answer anyway.
 _FILLING = 200

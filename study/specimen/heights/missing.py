@@ -7,7 +7,7 @@ from scipy.sparse import csr_matrix, diags, vstack
 from scipy.sparse.linalg import cg
 
 #: Largest share of missing points that is filled in unasked. Interpolated points are too smooth: of random surfaces of
-#: which 1 % were taken out, N̄ and Ra change by less than 1 % (tests/specimen/test_missing_points.py).
+#: which 1 % were taken out, N̄ and Ra change by less than 1 % (tests/specimen/heights/test_missing_points.py).
 FILLED = 0.01
 #: Tension of the membrane over a gap against its stiffness, in steps. Of 0, 0.1 and 0.3 the largest has the least
 #: errors at borders and in white noise, and still the plate's 0.1 % in smooth surfaces.

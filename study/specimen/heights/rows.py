@@ -15,7 +15,7 @@ _MATTERS = 0.05
 #: Largest correlation of the second differences of neighbouring rows' offsets. That of independent offsets is -2/3, of
 #: a random walk or of single steps -1/2, of grooves that the step resolves above 0. The second number allows for the
 #: scatter over n rows, times 1/√n. Chosen on 4000 random surfaces, isotropic and ground
-#: (tests/specimen/test_row_jumps.py has some of them).
+#: (tests/specimen/heights/test_row_jumps.py has some of them).
 _UNLIKE, _SCATTER = -0.3, 1.5
 
 

@@ -2,21 +2,15 @@
 
 import numpy as np
 import pytest
+from surfaces import rough
 
 from study import roughness
 
 STEP = 1e-7
 
 
-def surface(seed):
-    """Heights (256, 256) of a random surface with waves of 12 points and longer, rms 50 nm."""
-    random, k = np.random.default_rng(seed), np.fft.fftfreq(256)
-    z = np.fft.ifft2(np.fft.fft2(random.standard_normal((256, 256))) * (np.hypot(*np.meshgrid(k, k)) < 1 / 12)).real
-    return 50e-9 * z / z.std()
-
-
 def holed(seed, share):
-    z = surface(seed)
+    z = rough(seed=seed)
     holes = np.random.default_rng(seed + 1).random(z.shape) < share
     return z, np.where(holes, np.nan, z)
 

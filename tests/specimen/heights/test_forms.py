@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from test_roughness import random_surface
+from surfaces import random_surface
 
 from study import roughness
 

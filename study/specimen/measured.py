@@ -7,12 +7,13 @@ import numpy as np
 
 from . import summits
 from .heights.asperities import Roughness, length, over
-from .heights.doubts import doubts, mean, number_of
+from .heights.doubts import doubts, of_form, of_jumps
 from .heights.form import without_form
-from .scan import FEWEST, Scan, number
+from .heights.rows import aligned
+from .scan import BLUNTEST, FEWEST, FLATTEST, Scan, number
 
 
-def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Roughness:
+def measure(scan: Scan, *, method="moments", form="plane", rows=None, cutoff=None) -> Roughness:
     """Asperities of a scan: density, radius, spread of their heights.
 
     scan : of `read`, `profile` or `height_map`
@@ -21,19 +22,23 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
         they agree; on a designed one only "summits" is right.
     form : what is taken off: "mean", "plane", "quadratic", "sphere" (the one that fits), or the radius of a sphere,
         in m or as text with its unit (< 0: a cup); after a sphere the plane
+    rows : "median" takes off the median of the differences of neighbouring rows of a map, before the form: offsets of
+        the rows of a scanning probe
     cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: none; a list: the numbers of the answer
         are arrays over it
 
-    Raises ValueError: an unknown method or form, a cutoff below three steps or an empty list, a sphere smaller than the
-    scan; after the filter fewer than 16 points in a direction, no heights, or no summits.
+    Raises ValueError: an unknown method, form or rows, a cutoff below three steps or an empty list, a sphere smaller
+    than the scan; fewer than 16 points in a direction, over the larger of two steps; too few points that have all their
+    neighbours; no heights, or no summits; without `huge` of the scan, heights of an rms below 1 pm after the form, and
+    asperities of a radius above 1 km.
     """
     if not isinstance(scan, Scan):
         raise ValueError("give a scan: that of study.roughness.read, or of height_map or profile, which take arrays")
     if method not in ("moments", "summits"):
         raise ValueError(f'{scan.name}: method = {method!r}; allowed are "moments" and "summits"')
     cutoffs = _cutoffs(scan, cutoff)
-    flat, said = without_form(scan.z, scan.steps, form, scan.name)
-    answers = [_asperities(scan, *_filtered(scan, flat, said, one), method) for one in cutoffs]
+    flat, said, notes = _flat(scan, form, rows)
+    answers = [_asperities(scan, *_filtered(scan, flat, said, one), method, notes) for one in cutoffs]
     if np.ndim(cutoff) == 0:
         return answers[0]
     return over(cutoffs, answers, f"{said}; Gaussian low-pass (ISO 16610) with each cutoff, {_BORDERS}")
@@ -58,6 +63,34 @@ def _cutoffs(scan: Scan, cutoff) -> list[float | None]:
     return values
 
 
+def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
+    """The heights without offsets of rows and form, what was taken off, and notes on what may still be in them."""
+    if rows not in (None, "median") or (rows and scan.z.ndim == 1):
+        rule = "a profile has no rows; leave it out" if scan.z.ndim == 1 else 'allowed are "median" and None'
+        raise ValueError(f"{scan.name}: rows = {rows!r}; {rule}")
+    z = aligned(scan.z) if rows else scan.z
+    notes = () if rows else tuple(of_jumps(scan.z))
+    z, said = without_form(z, scan.steps, form, scan.name)
+    said = f"the median of the differences of neighbouring rows taken off; {said}" if rows else said
+    _not_nothing(scan, z, said)
+    rms = float(np.nanstd(z))
+    if rms < FLATTEST and not scan.huge:
+        raise ValueError(
+            f"{scan.name}: the heights spread by {rms:.3g} m (rms, {said}); no surface is smoother than "
+            f"{FLATTEST:g} m, 1 pm. {_WAY_OUT}."
+        )
+    return z, said, (*notes, *of_form(z, scan.steps, form))
+
+
+_WAY_OUT = "Give unit and height_unit as the scan has them, or huge=True beside them if it is so"
+
+
+def _not_nothing(scan: Scan, z: np.ndarray, said: str) -> None:
+    """Raise ValueError where only rounding errors of a subtraction are left."""
+    if np.nanstd(z) <= 1e-12 * np.nanmax(np.abs(scan.z)):
+        raise ValueError(f"{scan.name}: nothing is left of the heights: {said}")
+
+
 def _filtered(scan: Scan, z: np.ndarray, said: str, cutoff: float | None) -> tuple[np.ndarray, str]:
     """The heights without short waves, and what was done to them, in words."""
     if cutoff is None:
@@ -70,20 +103,44 @@ def _filtered(scan: Scan, z: np.ndarray, said: str, cutoff: float | None) -> tup
                 f"{scan.name}: {' × '.join(map(str, z.shape))} points are left by a cutoff of {cutoff:g} m, which "
                 f"takes 0.75 cutoffs from each border; at least {FEWEST} in each direction are needed"
             )
-    if np.nanstd(z) <= 1e-12 * np.nanmax(np.abs(scan.z)):  # only rounding errors of the subtraction are left
-        raise ValueError(f"{scan.name}: nothing is left of the heights: {said}")
+    _enough(scan, z)
+    _not_nothing(scan, z, said)
     return z, said
 
 
-def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str) -> Roughness:
+def _enough(scan: Scan, z: np.ndarray) -> None:
+    """Raise ValueError for too few points over the larger step, or too few that have all their neighbours."""
+    apart = max(scan.steps)
+    shape = [1 + math.floor((n - 1) * step / apart + 1e-6) for n, step in zip(z.shape, scan.steps, strict=True)]
+    if min(shape) < FEWEST:
+        axis = "xy"[z.ndim - 1 - shape.index(min(shape))]
+        raise ValueError(
+            f"{scan.name}: slopes and curvatures along x and y are those over the larger of the two steps, "
+            f"{length(apart)}, and {min(shape)} points so far apart are on the {length(min(scan.sizes))} along {axis}; "
+            f"at least {FEWEST} are needed"
+        )
+    whole, least = summits.whole(z, scan.steps), (FEWEST // 2) ** z.ndim
+    if whole < least:
+        raise ValueError(
+            f"{scan.name}: {whole} of {z.size} points have all their neighbours; at least {least} are needed. Give a "
+            "scan with fewer missing points, or crop it to a part without gaps"
+        )
+
+
+def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tuple) -> Roughness:
     """The answer of heights without form and short waves."""
     along = summits.moments(z, scan.steps)
-    m = mean(along)
+    m = summits.mean_moments(along)
     found = summits.of_moments(m) if method == "moments" else summits.of_summits(z, scan.steps)
     if found is None or not (found.density > 0 and found.curvature > 0):
         raise ValueError(
             f"{scan.name}: no summits: none of {' × '.join(map(str, z.shape))} points is higher than all around it. "
             "Take off the form, or measure a larger area."
+        )
+    if not (scan.huge or 1 / found.curvature <= BLUNTEST):
+        raise ValueError(
+            f"{scan.name}: Ra = {1 / found.curvature:.3g} m, the radius of an asperity; at most {BLUNTEST:g} m is "
+            f"taken. The heights have an rms of {np.nanstd(z):.3g} m on {max(scan.sizes):.3g} m. {_WAY_OUT}."
         )
     how = {
         "moments": f"spectral moments (McCool 1987) of profiles, m0 = {m.m0:.4g} m², m2 = {m.m2:.4g}, "
@@ -94,15 +151,15 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str) -> Roughn
         "Gaussian surface",
     }
     iso_Ra = float(np.nanmean(np.abs(z - np.nanmean(z))))
-    count = number_of(z, scan.steps, found.density)
+    count = summits.number_of(z, scan.steps, found.density)
     answer = Roughness(
         *map(float, (found.density, 1 / found.curvature, found.spread, iso_Ra, count)),
         method=how[method],
         filter=filtered,
         resolution=_resolution(scan),
     )
-    notes = (*scan.notes, *doubts(z, scan.steps, along, found, count), answer.about_cut())
-    return replace(answer, notes=notes)
+    doubted = doubts(z, scan.steps, along, found, count, notes)
+    return replace(answer, notes=(*scan.notes, *notes, *doubted, answer.about_cut()))
 
 
 def _resolution(scan: Scan) -> str:

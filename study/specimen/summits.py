@@ -121,6 +121,17 @@ def _present(values: np.ndarray) -> np.ndarray:
     return values if values.size else np.zeros(1)
 
 
+def mean_moments(along: list[Moments]) -> Moments:
+    """The moments of a profile in any direction: the means over the axes."""
+    return Moments(along[0].m0, *np.mean([one[1:] for one in along], axis=0).tolist())
+
+
+def number_of(z: np.ndarray, steps: tuple, density: float) -> float:
+    """How many asperities the measured points have: on their area, or on a profile along their length."""
+    share = np.isfinite(z).mean()
+    return float(share * math.prod(n * step * math.sqrt(density) for n, step in zip(z.shape, steps, strict=True)))
+
+
 def bandwidth(m: Moments) -> float:
     """α = m0 m4/m2² of Nayak: at least 1.5 on an isotropic Gaussian surface, large when waves of many lengths add."""
     return m.m0 * m.m4 / m.m2**2
@@ -176,6 +187,15 @@ def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
         curvature, usual = (CURVATURE / PEAK_CURVATURE * one for one in (curvature, usual))
         variance = max(0.0, variance - (HEIGHTS - PEAK_HEIGHTS) * m.m2**2 / m.m4)
     return Asperities(density, curvature, math.sqrt(variance), found, usual)
+
+
+def whole(z: np.ndarray, steps: tuple) -> int:
+    """Number of points all of whose neighbours are there, the larger step away along each axis."""
+    present = np.isfinite(z)
+    for axis, step in enumerate(steps):
+        lag, present = max(1, round(max(steps) / step)), np.moveaxis(present, axis, 0)
+        present = np.moveaxis(present[lag:-lag] & present[2 * lag :] & present[: -2 * lag], 0, axis)
+    return int(present.sum())
 
 
 def usual_curvature(z: np.ndarray, steps: tuple) -> float:

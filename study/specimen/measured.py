@@ -134,7 +134,7 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tu
     found = summits.of_moments(m) if method == "moments" else summits.of_summits(z, scan.steps)
     if found is None or not (found.density > 0 and found.curvature > 0):
         raise ValueError(
-            f"{scan.name}: no summits: none of {' × '.join(map(str, z.shape))} points is higher than all around it. "
+            f"{scan.name}: no summits: none of {_points(z)} is higher than all around it. "
             "Take off the form, or measure a larger area."
         )
     if not (scan.huge or 1 / found.curvature <= BLUNTEST):
@@ -160,6 +160,12 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tu
     )
     doubted = doubts(z, scan.steps, along, found, count, notes)
     return replace(answer, notes=(*scan.notes, *notes, *doubted, answer.about_cut()))
+
+
+def _points(z: np.ndarray) -> str:
+    """The points that may be summits, in words."""
+    gaps = " with all their neighbours" if np.isnan(z).any() else ""
+    return f"{' × '.join(map(str, z.shape))} points{gaps}"
 
 
 def _resolution(scan: Scan) -> str:

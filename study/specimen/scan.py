@@ -16,9 +16,9 @@ FEWEST = 16
 #: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
 #: atomic force microscope up to 2.7. A steeper scan has other units than the caller says, or is full of spikes.
 STEEPEST = 3.0
-#: What no scan of a rough surface has, unless its unit is another: a size above 1 m (stitched white-light maps and
-#: profilometers reach 0.3 m), heights that spread by less than 1 pm (cleaved mica has 50 pm, the noise of the best
-#: instruments 10 pm), and asperities of a radius above 1 km (a float glass has some metres at its longest waves).
+#: What no scan of a rough surface has, unless its unit is another: a size above 1 m, which no instrument reaches; an
+#: rms of the heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms
+#: of 1 nm have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_sizes.py).
 LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.

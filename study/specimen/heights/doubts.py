@@ -73,9 +73,10 @@ def doubts(
     if z.ndim == 1:
         yield "a profile: the surface is taken to be isotropic and Gaussian, and N̄ is not counted on an area"
     yield from _of_the_step(found, steps)
-    if number < MANY:
-        percent = (3 - z.ndim) * 100 / math.sqrt(number)
-        yield f"about {number:.0f} asperities: N̄ is uncertain by some {percent:.0f} %"
+    counted = number if found.found is None else found.found  # which gaps may make far fewer
+    if counted < MANY:
+        percent = (3 - z.ndim) * 100 / math.sqrt(counted)
+        yield f"about {counted:.0f} asperities: N̄ is uncertain by some {percent:.0f} %"
     yield from _of_spikes(z, steps, found)
     slopes = [one.m2 for one in along]
     if max(slopes) > ISOTROPIC * min(slopes) and not any(JUMP in note for note in before):

@@ -113,10 +113,11 @@ def _enough(scan: Scan, z: np.ndarray) -> None:
     apart = max(scan.steps)
     shape = [1 + math.floor((n - 1) * step / apart + 1e-6) for n, step in zip(z.shape, scan.steps, strict=True)]
     if min(shape) < FEWEST:
-        axis = "xy"[z.ndim - 1 - shape.index(min(shape))]
+        i = shape.index(min(shape))
+        size = (z.shape[i] - 1) * scan.steps[i]
         raise ValueError(
             f"{scan.name}: slopes and curvatures along x and y are those over the larger of the two steps, "
-            f"{length(apart)}, and {min(shape)} points so far apart are on the {length(min(scan.sizes))} along {axis}; "
+            f"{length(apart)}, and {min(shape)} points so far apart are on the {length(size)} along {'yx'[i]}; "
             f"at least {FEWEST} are needed"
         )
     whole, least = summits.whole(z, scan.steps), (FEWEST // 2) ** z.ndim

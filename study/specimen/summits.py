@@ -150,11 +150,24 @@ def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
     """Summits of a map, or peaks of a profile, found point by point; None if there are none.
 
     Of equal neighbours the last counts, so that a flat top is one summit. Neighbours are the larger step away, along
-    both axes; near a border the last point stands for one beyond it. Points with a missing neighbour are not counted,
-    nor is their area. Peaks of a profile are lower, and blunter, than the summits beside which they pass: they are
-    converted by the ratios of an isotropic Gaussian surface.
+    both axes; between two whole numbers of points all is a power of the distance. Near a border the last point stands
+    for one beyond it. Points with a missing neighbour are not counted, nor is their area. Peaks of a profile are lower,
+    and blunter, than the summits beside which they pass: they are converted by the ratios of an isotropic Gaussian
+    surface.
     """
-    lags = [max(1, round(max(steps) / step)) for step in steps]
+    lags = [max(steps) / step for step in steps]
+    low, high = ([max(1, math.floor(lag + add)) for lag in lags] for add in (1e-6, 1 - 1e-6))
+    near = _summits(z, steps, low)
+    far = near if low == high else _summits(z, steps, high)
+    if near is None or far is None or near is far:
+        return near and far
+    share = max(math.log(lag / i) / math.log1p(1 / i) for lag, i in zip(lags, low, strict=True))
+    between = [one ** (1 - share) * other**share for one, other in zip(near, far, strict=True)]
+    return Asperities(*between[:3], round(between[3]), between[4])
+
+
+def _summits(z: np.ndarray, steps: tuple, lags: list[int]) -> Asperities | None:
+    """Those whose neighbours are so many points away along each axis."""
     padded = np.pad(z, [(lag - 1, lag - 1) for lag in lags], mode="edge")
     here = (0,) * z.ndim
     around = {

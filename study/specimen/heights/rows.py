@@ -20,9 +20,9 @@ _STANDS_OUT = 4.0
 _MATTERS = 0.05
 #: Largest correlation of the fourth differences of neighbouring rows' offsets. That of independent offsets is -0.8, of
 #: a random walk or of single steps -0.75, of grooves that the step resolves above -0.5. The second number allows for
-#: the scatter over n rows, times 1/√n. With these no jumps are seen on 1000 isotropic, ground and white surfaces of 20
-#: to 256 rows, where the grooves are correlated over two rows or more (tests/specimen/heights/test_row_jumps.py has 200
-#: of them); of grooves that end at the step, one surface in a hundred.
+#: the scatter over n rows, times 1/√n. With these no jumps are seen on 200 isotropic, ground and white surfaces
+#: (tests/specimen/heights/test_row_jumps.py); of ground ones whose grooves are as narrow as the step, on one in a
+#: hundred.
 _UNLIKE, _SCATTER = -0.6, 1.1
 
 

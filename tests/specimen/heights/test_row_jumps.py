@@ -9,7 +9,7 @@ from study import roughness
 from study.specimen.heights.rows import jumps
 
 #: Correlation lengths along y and x, in points, of surfaces that are ground along one axis.
-GROUND = [(2, 8), (2, 40), (3, 100), (8, 40), (8, 2), (40, 2), (100, 3), (40, 8)]
+GROUND = [(1, 40), (1.4, 8), (2, 40), (8, 100), (40, 1), (8, 1.4), (40, 2), (100, 8)]
 
 
 def correlated(shape, lengths, seed) -> np.ndarray:
@@ -21,9 +21,10 @@ def correlated(shape, lengths, seed) -> np.ndarray:
     return 50 * z / z.std()
 
 
-def self_affine(points, hurst, seed) -> np.ndarray:
-    """Isotropic heights with waves of 4 to 60 points."""
-    k = np.hypot(*np.meshgrid(*[np.fft.fftfreq(points)] * 2))
+def self_affine(points, hurst, seed, ground=1) -> np.ndarray:
+    """Heights with waves of 4 to 60 points along y, and `ground` times as long along x."""
+    along_x, along_y = np.meshgrid(*[np.fft.fftfreq(points)] * 2)
+    k = np.hypot(ground * along_x, along_y)
     power = np.where((k > 0) & (k < 1 / 4), np.maximum(k, 1 / 60) ** (-2 * hurst - 2), 0)
     z = np.fft.ifft2(np.fft.fft2(np.random.default_rng(seed).normal(size=k.shape)) * np.sqrt(power)).real
     return 50 * z / z.std()
@@ -40,7 +41,7 @@ def surfaces():
             yield from (correlated(shape, lengths, seed) for lengths in GROUND)
     for seed in range(12):
         yield from (rough(96, shortest, seed, 50.0) for shortest in (3, 6, 24))
-        yield from (self_affine(96, hurst, seed) for hurst in (0.3, 0.8))
+        yield from (self_affine(96, hurst, seed, ground) for hurst, ground in ((0.3, 1), (0.5, 20)))
     for seed in range(12):
         yield np.random.default_rng(seed).normal(size=(80, 80))
 

@@ -22,6 +22,7 @@ from .spec.given import Draft
 from .spec.vocabulary import NUMERICS, VOCABULARY
 from .specimen.materials import Material
 from .terminal import shown
+from .work.alive import alive
 from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
@@ -83,6 +84,7 @@ def solve(
     profiles: bool | Sequence[str] = True,
     title: str = "",
     workers: int | None = None,
+    progress: bool | None = None,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -122,6 +124,8 @@ def solve(
     profiles : whether the dataset holds p and lam, or a list of those that it shall hold
     title : of the dataset
     workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
+    progress : whether a call of more than two seconds says so, on stderr or in a notebook; None: on a terminal and in
+        a notebook
     parameters : of registered laws
 
     Returns

@@ -42,7 +42,7 @@ class Progress:
         """Write text(whether it is for a terminal that can erase a line), if there is a stream. When that fails, go on
         without it: a run must not end because of it."""
         try:
-            if self.stream is not None and (shown := text(self.stream.isatty() and os.environ.get("TERM") != "dumb")):
+            if self.stream is not None and (shown := text(erases(self.stream))):
                 self.stream.write(shown)
                 self.stream.flush()
         except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
@@ -58,6 +58,11 @@ class Progress:
         if terminal:  # a line that fills the last column may wrap
             return f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}"
         return f"{describe(*counts)}\n"
+
+
+def erases(stream: TextIO) -> bool:
+    """Whether a stream is a terminal that can erase a line."""
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
 def columns(terminal: TextIO) -> int:

@@ -22,7 +22,8 @@ import numpy as np
 
 from ..spec.definition import Definition
 from ..spec.grid import USUAL, usual_block
-from .cases import Failure, can_travel, compute, guarded, parcel
+from .alive import Alive
+from .cases import Failure, can_travel, compute, failed_in, guarded, parcel
 from .processes import Processes
 from .workers import available_workers
 
@@ -68,19 +69,21 @@ _pool, _in_use = _Pool(), threading.Lock()
 atexit.register(_pool.end)
 
 
-def solved(definition: Definition, workers: int | None = None) -> dict[str, np.ndarray]:
+def solved(definition: Definition, workers: int | None = None, shown: Alive | None = None) -> dict[str, np.ndarray]:
     """The columns of all cases of a grid: name -> (B, ...).
 
+    shown : is told what is computed
     workers : most processors to be used; 1: the calling thread alone; None: all, or one, see `_processes_allowed`
     """
-    blocks = blocks_of_grid(definition)
+    blocks, shown = blocks_of_grid(definition), shown or Alive("solving")
+    shown.expect(definition)
     if len(blocks) == 1:
         return compute(parcel(definition, blocks[0]))
     most = min(_processes_allowed(definition, workers), len(blocks) - 1)
     if not most or not _in_use.acquire(blocking=False):  # another thread is using the processes
-        return _solve(definition, blocks, 0)
+        return _solve(definition, blocks, 0, shown)
     try:
-        return _solve(definition, blocks, most)
+        return _solve(definition, blocks, most, shown)
     except BaseException:
         _pool.end()
         raise
@@ -111,7 +114,7 @@ def _processes_allowed(definition: Definition, workers: int | None) -> int:
     return 0 if divided else available_workers() - 1
 
 
-def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[str, np.ndarray]:
+def _solve(definition: Definition, blocks: list[np.ndarray], most: int, shown: Alive) -> dict[str, np.ndarray]:
     """Solve all blocks, in this thread and in at most `most` processes. More are started only if much work is left."""
     waiting, failed, columns = deque(blocks), [], {}
 
@@ -120,6 +123,7 @@ def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[
         for name, array in found.items():
             whole = columns.setdefault(name, np.empty((definition.grid.size, *array.shape[1:]), array.dtype))
             whole[index[0] : index[-1] + 1] = array
+        shown.count(len(index), failed_in(found["status"]))
 
     def feeder(call: Callable) -> None:
         for index in _taken(waiting):

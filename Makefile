@@ -34,7 +34,7 @@ table1 paper_numbers validity extremes:
 	@cat tables/$@.txt
 
 map: $(READY) ## 25,000 cases for exploration: results/parameter_map.nc
-	$(RUN) run --force studies/parameter_map.toml
+	$(RUN) run studies/parameter_map.toml
 
 tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs/tradeoff_measured.txt, tradeoff.png
 	$(RUN) table --run tradeoff tradeoff_cheapest tradeoff_factors paper_error
@@ -74,6 +74,9 @@ lowest: ## all tests with the lowest versions that pyproject.toml allows, instal
 
 mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutants/mutate.py --table docs/mutants.md
+
+fresh_mutants: $(READY) ## which mistakes of the latest list in tests/mutants/fresh all the tests notice: hours
+	$(VENV)/bin/python tests/mutants/fresh.py
 
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
 	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800

@@ -24,7 +24,7 @@ from .spec.vocabulary import NUMERICS, VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
-from .work.alive import alive
+from .work.screen import screen_of
 from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
@@ -129,8 +129,8 @@ def solve(
     workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
     same_piece : whether bodies of one material (`punch`, `layer`, `body` of one name) are one piece, whose E and ν are
         off together; otherwise each is a piece of its own, and their spreads are independent
-    progress : whether a call of more than two seconds says so, on stderr or in a notebook; None: on a terminal and in
-        a notebook
+    progress : whether a call of more than two seconds says how far it is, in a notebook or on stderr; None: in a
+        notebook or on a terminal
     parameters : of registered laws
 
     Returns
@@ -157,6 +157,7 @@ def solve(
     workers = plain(workers)
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
+    stream = screen_of(plain(progress))
     ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
     if ranges:
         hint = "a range stands in study files; here give its values, as of numpy.geomspace"
@@ -179,7 +180,7 @@ def solve(
         for name, given in parameters.items():
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
-    arrays = solved(definition, workers)
+    arrays = solved(definition, workers, stream)
     found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:

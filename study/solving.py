@@ -14,7 +14,7 @@ from solver.laws import Law
 
 from .carried import with_coordinates
 from .data.dataset import Parts, parts
-from .in_words import doubts
+from .in_words import FarOutside, doubts, far_outside
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
@@ -141,7 +141,7 @@ def solve(
     says it in words. The results also have what a DataArray brings as further coordinates, such as who measured its
     loads; the levels of a MultiIndex are coordinates without an index, which netCDF can hold. A warning tells of those
     that are left out, of physical cases that violate an assumption of the model, or that have inputs of which the unit
-    must be wrong.
+    must be wrong. Rough contacts on exact layers that are far outside the model are warned of before they are solved.
 
     Raises
     ------
@@ -180,6 +180,8 @@ def solve(
         for name, given in parameters.items():
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
+    if far := far_outside(definition):
+        warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     arrays = solved(definition, workers, stream)
     found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
     found, left_out = with_coordinates(found, parameters)

@@ -91,7 +91,7 @@ def test_accuracy_is_kept_for_any_roughness_and_hard_coatings(control):
 
 @cache
 def where_waves_cancel(n, nu1, nu2):
-    """Rough contacts at a = 0.01 on a bonded layer, and their solutions: x and the share of the area that is covered."""
+    """Rough contacts on a bonded layer, without their control, and the solutions at a = 0.01."""
     x, share = (v.ravel() for v in np.meshgrid([1e-3, 1e-2, 0.1], 10.0 ** np.arange(-5, 1)))
     given = {"h": 0.01 * x, "n": n, "nu1": nu1, "nu2": nu2, "bonding": "bonded", "Ra": 1e-3}
     given["Nbar"] = 1 / (np.pi * 1e-7 * share * x)

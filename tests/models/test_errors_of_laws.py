@@ -1,0 +1,45 @@
+"""The error that a micro law states is a part of `model_error`, whatever the base is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from solver import Model, Problem, laws, solve
+from solver.models.auto import bounds
+
+ERROR = 0.03
+GIVEN = {"Nbar": 250_000.0, "Ra": 0.004, "n": 0.9}
+
+
+@pytest.fixture
+def micro() -> dict[float, str]:
+    """Error -> the name of a law of discs that states it."""
+    disc, found = laws.LAWS["disc_cell"], {0.0: "exact_discs", ERROR: "rough_discs"}
+    for error, name in found.items():
+        laws.register(replace(disc, name=name, version="1", error=error))
+    return found
+
+
+def test_every_bound_has_it(micro):
+    """On layers so thin, and so thick, that each of the two cheap models is allowed."""
+    given = GIVEN | {"P": 1e-5, "h": [1e-4, 1e-3, 10.0, 1e3], "base": "auto"}
+    exact, rough = (bounds(Problem.of(**given, micro=name)) for name in micro.values())
+    assert set(exact) == set(rough) > {Model.LAYER_ALONE, Model.THIN_LAYER}
+    for model in exact:
+        known = np.isfinite(exact[model])
+        assert known.any() and (known == np.isfinite(rough[model])).all()
+        np.testing.assert_allclose(rough[model][known] - exact[model][known], ERROR, rtol=1e-9)
+
+
+@pytest.mark.parametrize("base", ["half_space", "thin_layer", "layered", "auto"])
+@pytest.mark.parametrize("h", [1e-4, 0.02, 1e3])
+def test_the_answer_has_it(micro, base, h):
+    """`accuracy` is larger than it: so "auto" has the same choice."""
+    if base == "thin_layer" and h > 0.1:
+        return
+    exact, rough = (
+        solve(Problem.of(**GIVEN, P=1e-5, h=h, base=base, accuracy=0.2, micro=name)) for name in micro.values()
+    )
+    assert exact.status == rough.status == 0 and exact.model_used == rough.model_used
+    np.testing.assert_allclose(rough.model_error - exact.model_error, ERROR, rtol=1e-6)

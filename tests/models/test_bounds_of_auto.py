@@ -1,4 +1,4 @@
-"""The error that a micro law states is a part of `model_error`, whatever the base is."""
+"""The bounds of "auto": with the error that a micro law states, and none where a model does not apply."""
 
 from dataclasses import replace
 
@@ -43,3 +43,15 @@ def test_the_answer_has_it(micro, base, h):
     )
     assert exact.status == rough.status == 0 and exact.model_used == rough.model_used
     np.testing.assert_allclose(rough.model_error - exact.model_error, ERROR, rtol=1e-6)
+
+
+@pytest.mark.parametrize("micro", ["disc_cell", "smooth"])
+def test_no_bound_where_the_thin_layer_does_not_apply(micro):
+    """A bonded layer of nu1 = 1/2 has no springs: the exact layer is solved."""
+    given = {"P": 1e-5, "h": 1e-3, "n": 0.5, "bonding": "bonded", "nu1": [0.5, 0.3], "base": "auto"}
+    asperities = {} if micro == "smooth" else {"Nbar": 250_000.0, "Ra": 0.004}
+    problem = Problem.of(**given, **asperities, micro=micro)
+    thin = [bound for model, bound in bounds(problem).items() if model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)]
+    assert thin and all(bound[0] == np.inf and bound[1] < np.inf for bound in thin)
+    found = solve(problem.but(accuracy=0.3))
+    assert found.model_used[0] in (Model.LAYERED, Model.SMOOTH_LAYERED) and found.status[0] == 0

@@ -1,11 +1,13 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
 import logging
+import os
 import sys
 from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from xarray import Dataset
 
 from .. import catalogue
 from ..api import load
@@ -51,23 +53,39 @@ def _curves(options, name: str) -> int:
     for i, _ in twins([axis for axis, _ in options.where]):
         raise StudyError([f"--where {options.where[i][0]} is given twice"])
     if Path(name).suffix == ".nc":
-        if not Path(name).exists():
-            raise StudyError([f"{name}: does not exist"])
-        try:
-            found = open_results(name)
-        except Unusable as error:
-            raise StudyError(error.messages) if error.kind == "foreign" else error from None
+        found = _of_file(name)
     else:
         study = load(study_file(name), options.results)
         if options.run and (code := completed(study)):
             return code
         found = study.open()
-    with style():
-        figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
-    stem = f"{Path(name).stem}_{options.y}"
-    title = f"{Path(name).stem}: {options.y} against {options.x}"
-    answer(*catalogue.save(Path(options.folder) / stem, figure, columns, title))
+    stem, title = f"{Path(name).stem}_{options.y}", f"{Path(name).stem}: {options.y} against {options.x}"
+    try:
+        with style():
+            figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
+        written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
+    except (StudyError, OSError):
+        raise
+    except Exception as error:  # of a file of another program, in which there may be anything
+        log.info("%s", name, exc_info=True)
+        raise StudyError([f"{name}: cannot be drawn: {_said(error)}"], code=1) from error
+    answer(*written)
     return 0
+
+
+def _of_file(name: str) -> Dataset:
+    """The dataset of a results file, or of a netCDF file of another program."""
+    if not Path(os.path.expanduser(name)).exists():
+        raise StudyError([f"{name}: does not exist"])
+    try:
+        return open_results(name)
+    except Unusable as error:
+        raise StudyError(error.messages) if error.kind == "foreign" else error from None
+
+
+def _said(error: Exception) -> str:
+    """What an exception says, and where to look."""
+    return f"{type(error).__name__}: {on_one_line(str(error), 300)}; -v before the command shows where"
 
 
 def table(options, name: str) -> int:
@@ -96,9 +114,7 @@ def _write(options, name: str, known: dict) -> int:
         raise
     except Exception as error:  # of the function of the figure or table; the others are made
         log.info("%s", name, exc_info=True)
-        reason = f"{type(error).__name__}: {on_one_line(str(error), 300)}"
-        wrong = f"{name}: its function fails: {reason}; -v before the command shows where"
-        raise StudyError([wrong], code=1) from error
+        raise StudyError([f"{name}: its function fails: {_said(error)}"], code=1) from error
     return 0
 
 

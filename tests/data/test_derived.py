@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 import xarray as xr
+from study.studies.evidence import validity_maps
 
 import study
 from solver import Model
 from study.data import dataset, derived
-from study.evidence import validity_maps
 from study.spec.vocabulary import attributes
 
 

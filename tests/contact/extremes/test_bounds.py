@@ -5,13 +5,13 @@ from itertools import product
 import numpy as np
 import pytest
 from solver_cases import ALL_KINDS, KINDS, LOAD, MAIN
+from study.studies.paper.uniform import solve_uniform
 
 import study
 from solver import Problem, Status, solve
 from solver.parameters import CONTROL, PARAMETERS, ends
 from solver.scaling import dimensionless, refused
 from study.__main__ import main
-from study.paper.uniform import solve_uniform
 from study.spec.vocabulary import VOCABULARY
 
 #: What tests, `make extremes` and the issue use, and units as far as floating point goes.

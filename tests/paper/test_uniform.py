@@ -1,5 +1,7 @@
 """The paper's own way: its mesh, its halving, its successive approximations; second order towards Newton's answer."""
 
+import doctest
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -14,6 +16,11 @@ from solver import Problem, Status
 def paper(intervals=40, k=2.0, tolerance=1e-5, **case):
     problem = Problem.of(**(MAIN | {"base": "thin_layer", "micro": "power_law"} | case))
     return solve_uniform(problem, intervals, k, tolerance)
+
+
+def test_its_example():
+    """pytest looks for examples in packages, and studies are none."""
+    assert doctest.testmod(uniform) == (0, 4)
 
 
 def test_the_operator_on_hertz_converges_as_piecewise_linear_must():

@@ -7,7 +7,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from ..places import STUDIES, files_in, known_studies
+from ..spec.places import STUDIES, files_in, known_studies
 from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 

@@ -3,9 +3,9 @@
 import numpy as np
 
 from ..physical.study_file import read
-from ..places import study_file
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
+from ..spec.places import study_file
 from ..spec.vocabulary import VOCABULARY
 from ..terminal import answer
 

@@ -15,8 +15,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from ..places import BOOK, STUDIES, chapters, packaged, root_of
 from ..spec.definition import StudyError
+from ..spec.places import BOOK, STUDIES, chapters, packaged, root_of
 from ..spec.vocabulary import suggest
 from ..terminal import on_one_line
 
@@ -157,9 +157,9 @@ def package_of(file: Path) -> str:
         root, top = book, BOOK
     else:
         top = f"{BOOK}_{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
-        if top not in sys.modules:
-            sys.modules[top] = ModuleType(top)
-            sys.modules[top].__path__ = [str(root)]
+    if top not in sys.modules:
+        sys.modules[top] = ModuleType(top)
+        sys.modules[top].__path__ = [str(root)]
     return ".".join((top, *folder.relative_to(root).parts))
 
 

@@ -24,7 +24,7 @@ ROOMS = {
         *("solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
     ),
     "study": (
-        *("terminal", "specimen", "spec", "places", "data", "physical", "in_words", "files", "store", "work"),
+        *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
         *("carried", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
@@ -113,7 +113,7 @@ def test_nothing_imports_the_book(path):
     """It is found as the studies of a user are, and run when it is asked for."""
     assert not {full for full in imported(path) if full.startswith(("studies", "study.studies"))}
     text = path.read_text(encoding="utf-8")
-    assert "study.studies" not in text or name(path) in ("study/places.py", "study/__init__.py")
+    assert "study.studies" not in text or name(path) in ("study/spec/places.py", "study/__init__.py")
 
 
 @pytest.mark.parametrize("package", ["solver", "study", "studies"])

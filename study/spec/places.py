@@ -4,17 +4,38 @@ Both have the same form: study files, and folders of them, its chapters. Beside 
 """
 
 import os
+from functools import cache
+from importlib.resources import files
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 STUDIES = Path("studies")
+PACKAGE = Path(__file__).resolve().parents[1]
 BOOK = "study.studies"  # the package of the code in the book, in a clone and from a wheel
 
 
 def packaged() -> Path:
     """Folder of the book: in the installed package, or beside it in a clone."""
-    package = Path(__file__).resolve().parent
-    inside = package / "studies"
-    return inside if inside.is_dir() else package.parent / "studies"
+    for folder in (PACKAGE / "studies", PACKAGE.parent / "studies"):
+        if folder.is_dir():
+            return folder
+    return Path(_unpacked().name)
+
+
+@cache
+def _unpacked() -> TemporaryDirectory:
+    """A folder, until the program ends, with the book of a package that is in a zip file."""
+    folder, package = TemporaryDirectory(prefix="roughcoat-"), files("study")
+    waiting = [(place, Path(folder.name)) for place in (package.parent / "studies", package / "studies")]
+    while waiting:
+        place, copy = waiting.pop()
+        copy.mkdir(exist_ok=True)
+        for file in place.iterdir() if place.is_dir() else ():
+            if file.is_dir():
+                waiting.append((file, copy / file.name))
+            else:
+                (copy / file.name).write_bytes(file.read_bytes())
+    return folder
 
 
 def chapters(root: Path) -> list[Path]:
@@ -39,7 +60,7 @@ def known_studies() -> list[str]:
     return list(dict.fromkeys(path.stem for root in (STUDIES, packaged()) for path in files_in(root)))
 
 
-def study_file(text: str, beside: Path | None = None) -> Path:
+def study_file(path, beside: Path | None = None) -> Path:
     """The study file at a path, or of the study of a name, in `studies` or in the book.
 
     beside : a folder where a name is looked for first, then in the studies of which it is a chapter
@@ -47,6 +68,7 @@ def study_file(text: str, beside: Path | None = None) -> Path:
     A name may have its chapter, "paper/main_case", and a path may lack it: `studies/main_case.toml` is
     `studies/paper/main_case.toml`. Raises StudyError when there is no such file, or there are two.
     """
+    text = os.fspath(path)
     given = Path(os.path.expanduser(text))
     if given.exists():
         return given
@@ -65,7 +87,7 @@ def _in(root: Path, name: str) -> Path | None:
     here, *inside = (folder / f"{name}.toml" for folder in chapters(root))
     found = [here] if here.exists() else [path for path in inside if path.exists()]
     if len(found) > 1:
-        from .spec.definition import StudyError
+        from .definition import StudyError
 
         paths = " and ".join(path.as_posix() for path in found)
         raise StudyError([f"{name}: is in {paths}: give the path of one"])
@@ -74,8 +96,8 @@ def _in(root: Path, name: str) -> Path | None:
 
 def _not_found(text: str, given: Path) -> Exception:
     """The error of a study file that is not there. It tells which are meant perhaps."""
-    from .spec.definition import StudyError
-    from .spec.vocabulary import suggest
+    from .definition import StudyError
+    from .vocabulary import suggest
 
     by_path, beside = given.suffix == ".toml", Path(f"{text}.toml")
     there = (*sorted(given.parent.glob("*.toml")), *files_in(STUDIES))

@@ -88,12 +88,11 @@ def results(tmp_path_factory) -> Path:
 
 def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
-    from study.studies.evidence.tradeoff import WAYS, measure
-
     from study.figures.measured import described
     from study.figures.registry import entry
     from study.files.results_file import write
     from study.physical.study_file import from_tables
+    from study.studies.evidence.tradeoff import WAYS, measure
     from study.work.run import run
 
     for toml in STUDIES:

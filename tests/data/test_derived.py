@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
-from study.studies.evidence import validity_maps
 
 import study
 from solver import Model
 from study.data import dataset, derived
 from study.spec.vocabulary import attributes
+from study.studies.evidence import validity_maps
 
 
 def made(**variables) -> xr.Dataset:

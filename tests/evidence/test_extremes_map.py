@@ -5,9 +5,9 @@ import pytest
 from conftest import opened
 from drawn import frame, legend, lines, mesh
 from matplotlib.figure import Figure
-from study.studies.evidence.extremes_map import BINS, ROWS, binned, maps, shares
 
 from solver import Status
+from study.studies.evidence.extremes_map import BINS, ROWS, binned, maps, shares
 
 
 @pytest.fixture(scope="module")

@@ -9,13 +9,13 @@ from drawn import mesh as drawn_mesh
 from matplotlib.colors import to_hex
 from numpy.testing import assert_allclose
 from solver_cases import MAIN
-from study.studies.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
-from study.studies.paper.uniform import uniform_mesh
 
 from solver import Problem, Status, solve
 from solver.contact import picard
 from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
+from study.studies.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
+from study.studies.paper.uniform import uniform_mesh
 
 CASE = (
     {"a": 0.04} | {name: MAIN[name] for name in ("n", "Nbar", "Ra", "B")} | {"base": "thin_layer", "micro": "power_law"}

@@ -8,17 +8,17 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import ROOT
-from study.studies.evidence import tradeoff
-from study.studies.evidence.problem_sets import SETS
-from study.studies.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
-from study.studies.evidence.tradeoff_view import DRAWN, MODELS, columns, factors, rows, time_to
-from study.studies.paper import paper_error
 
 from solver import Problem, solve
 from solver.contact.results import JUDGED
 from study import open_results
 from study.figures import registry
 from study.figures.measured import digest, results
+from study.studies.evidence import tradeoff
+from study.studies.evidence.problem_sets import SETS
+from study.studies.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
+from study.studies.evidence.tradeoff_view import DRAWN, MODELS, columns, factors, rows, time_to
+from study.studies.paper import paper_error
 
 
 @pytest.fixture(scope="module")

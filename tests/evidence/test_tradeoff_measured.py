@@ -5,13 +5,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import xarray as xr
+
+from solver import Problem, Status, solve
+from study import open_results
 from study.studies.evidence import tradeoff
 from study.studies.evidence.problem_sets import SETS
 from study.studies.evidence.tradeoff import WAYS, Way, changed, measure, measured, paper_way, swapped
 from study.studies.paper import paper_error
-
-from solver import Problem, Status, solve
-from study import open_results
 
 
 @pytest.mark.parametrize(("name", "base"), [("paper, layer", "thin_layer"), ("paper, half-space", "half_space")])

@@ -6,6 +6,7 @@ import xarray as xr
 from drawn import frame, legend, lines, texts, ticks
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
+
 from study.studies.evidence import tradeoff_view
 from study.studies.evidence.tradeoff_view import work_precision
 

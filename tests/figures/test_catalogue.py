@@ -10,13 +10,13 @@ import numpy as np
 import pytest
 from conftest import STUDIES, opened
 from scipy.integrate import simpson
-from study.studies.evidence.validity_maps import from_layered
-from study.studies.paper.curves import CURVES, EXACT_LAYER
 
 from study import StudyError
 from study.catalogue import draw, entry, names, save
 from study.data.derived import effective_modulus, peak_pressure
 from study.figures.registry import pick
+from study.studies.evidence.validity_maps import from_layered
+from study.studies.paper.curves import CURVES, EXACT_LAYER
 
 
 @pytest.fixture(scope="module")

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 from conftest import opened
 from drawn import frame, legend, lines, ticks
+
 from study.studies.systems.figures import COLOURS, PALE, power
 
 # Row -> label, scale of the ordinate, column of the CSV.

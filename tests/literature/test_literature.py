@@ -10,13 +10,13 @@ from conftest import opened
 from literature_page import page
 from numpy.testing import assert_allclose
 from scipy.integrate import quad
-from study.studies.literature import compared, formulas
-from study.studies.literature.figures import SHOWN_AT
 
 import study
 from solver import Problem, solve
 from solver.body.kernel import layered_kernel
 from study.figures.registry import entry
+from study.studies.literature import compared, formulas
+from study.studies.literature.figures import SHOWN_AT
 
 A = 0.01
 NU = (0.0, 0.3, 0.45, 0.5)

@@ -5,11 +5,11 @@ import numpy as np
 import pytest
 from conftest import opened
 from drawn import frame, legend, lines, texts
-from study.studies.paper import lattice_laws
 
 from solver import laws
 from solver.laws.disc_cell import displacement
 from study.catalogue import entry
+from study.studies.paper import lattice_laws
 
 P = 1e-4 * np.arange(1, 251)
 PRINTED = {4.0: (0.1, 0.50), 1.0: (0.3, 0.53), 0.25: (1.0, 0.57)}  # in Ra

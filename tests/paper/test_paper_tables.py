@@ -6,15 +6,15 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import opened
-from study.studies.evidence.validity_maps import largest_thickness
-from study.studies.paper import law_fits, numbers
-from study.studies.paper.paper_error import paper_numbers
 
 from study import StudyError
 from study.catalogue import entry, names, tabulate
 from study.figures import registry
 from study.figures.formats import as_latex, as_text, latex
 from study.figures.registry import Table, column
+from study.studies.evidence.validity_maps import largest_thickness
+from study.studies.paper import law_fits, numbers
+from study.studies.paper.paper_error import paper_numbers
 
 CONVERGED = {  # of the thin-layer equation with the power law; every digit stable under refinement
     "P": 2.70408e-5,

@@ -7,10 +7,10 @@ import pytest
 from numpy.testing import assert_allclose
 from scipy.special import ellipk
 from solver_cases import LOAD, MAIN, difference, one
-from study.studies.paper import uniform
-from study.studies.paper.uniform import halved, rows, solve_uniform, uniform_mesh
 
 from solver import Problem, Status
+from study.studies.paper import uniform
+from study.studies.paper.uniform import halved, rows, solve_uniform, uniform_mesh
 
 
 def paper(intervals=40, k=2.0, tolerance=1e-5, **case):

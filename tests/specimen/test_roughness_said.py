@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from pages import check_examples
-from study.studies.paper.numbers import TABLE1
 from surfaces import random_surface
 
 from study import roughness
+from study.studies.paper.numbers import TABLE1
 
 
 def test_the_answer_in_sentences():

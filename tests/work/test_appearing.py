@@ -6,7 +6,6 @@ from pathlib import Path
 import pytest
 from line_study import load, present
 from same import assert_same_numbers
-from study.studies.evidence import tradeoff
 
 import study
 from study.figures import registry
@@ -14,6 +13,7 @@ from study.figures.measured import results
 from study.files import results_file
 from study.files.examine import examine
 from study.files.seal import seal
+from study.studies.evidence import tradeoff
 from study.work import cases
 
 STAYS = "line.nc: has appeared or changed while its results were computed, and stays; they are in "

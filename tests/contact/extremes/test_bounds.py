@@ -5,7 +5,6 @@ from itertools import product
 import numpy as np
 import pytest
 from solver_cases import ALL_KINDS, KINDS, LOAD, MAIN
-from study.studies.paper.uniform import solve_uniform
 
 import study
 from solver import Problem, Status, solve
@@ -13,6 +12,7 @@ from solver.parameters import CONTROL, PARAMETERS, ends
 from solver.scaling import dimensionless, refused
 from study.__main__ import main
 from study.spec.vocabulary import VOCABULARY
+from study.studies.paper.uniform import solve_uniform
 
 #: What tests, `make extremes` and the issue use, and units as far as floating point goes.
 USED = {

@@ -9,13 +9,13 @@ import dask
 import numpy as np
 import pytest
 from solver_cases import random_cases
-from study.studies.paper.uniform import solve_uniform
 from threadpoolctl import ThreadpoolController, threadpool_limits
 
 import solver.threads
 from solver import Problem, fit_power_law, solve
 from solver.models.thin_layer_error import edge_shift
 from solver.threads import _OfTheProcess, one_blas_thread
+from study.studies.paper.uniform import solve_uniform
 
 OWN = 3  # the user's number of threads: neither the 1 of the solver nor the default of a small machine
 #: Where the solver multiplies or solves, a function for each way.

@@ -8,11 +8,11 @@ from numpy.testing import assert_allclose
 from scipy.integrate import quad
 from scipy.optimize import brentq
 from solver_cases import difference
-from study.studies.literature.formulas import GREENWOOD_TRIPP
 
 import study
 from solver import Problem, laws, solve
 from solver.laws import disc_cell, heights, spread
+from study.studies.literature.formulas import GREENWOOD_TRIPP
 
 LAW = heights.LAW
 CASE = {"Nbar": 250_000.0, "Ra": 0.004, "h": 0.02, "n": 0.5}

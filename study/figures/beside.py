@@ -109,8 +109,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
 def place_of(kind: str, name: str) -> tuple[Path, str] | None:
     """The `figures.py` of a figure or table and its name there; None if there is none. FOLDER/NAME names the folder.
 
-    The user's go before those of the book. Raises StudyError for two of the user that have one name, and for a file
-    that is no Python.
+    The user's go before those of the book. Raises StudyError for two of the user, or of the book, that have one name.
     """
     folder, _, last = name.rpartition("/")
     if folder:
@@ -118,7 +117,7 @@ def place_of(kind: str, name: str) -> tuple[Path, str] | None:
         found = [file] if file.is_file() and (kind, last) in names_in(file) else []
     else:
         found = [file for file in own() if (kind, name) in _readable(file)]
-        found = found or [file for file in of_the_book() if (kind, name) in names_in(file)]
+        found = found or [file for file in of_the_book() if (kind, name) in _readable(file)]
     if len(found) > 1:
         paths = " and ".join(file.as_posix() for file in found)
         raise StudyError([f"{name}: is in {paths}: say which, such as {found[0].parent.as_posix()}/{name}"])
@@ -138,7 +137,7 @@ def unknown(kind: str, name: str, others: list[str]) -> StudyError:
     A file that cannot be read is told too: the name may stand there.
     """
     lines = [f'"{name}" is not known{suggest(name, [*others, *names(kind)])}']
-    for file in own():
+    for file in (*own(), *of_the_book()):
         try:
             names_in(file)
         except StudyError as error:

@@ -115,6 +115,8 @@ def test_the_largest_thickness_is_where_the_error_first_exceeds_the_level(errors
     case = xr.Dataset({"p0": (("h", "base", "n"), np.array([thin, exact]).transpose(2, 0, 1)), "a": a}, coordinates)
     # interpolation between two numbers
     assert largest_thickness(case, "p0", 0.1) == pytest.approx(thickness, rel=1e-12)
+    below = case.assign(p0=(("h", "base", "n"), np.array([2 * exact - thin, exact]).transpose(2, 0, 1)))
+    assert largest_thickness(below, "p0", 0.1) == pytest.approx(thickness, rel=1e-12), "too small is as wrong"
 
 
 @pytest.mark.parametrize("name", names("table"))

@@ -102,6 +102,9 @@ def test_what_is_not_given_and_what_did_not_converge(good):
     s = copied(good)
     s.p0[1], s.status[1] = -1.0, Status.TOLERANCE_NOT_MET  # lift-off is told from such numbers
     assert not (s.not_finite() | s.out_of_range()).any()
+    for number in (np.nan, np.inf):  # but what has a solution has numbers, also where their error is too large
+        s.p0[1] = number
+        assert s.not_finite().tolist() == [False, True]
     s.p0[1], s.status[1] = np.nan, Status.ITERATION_LIMIT
     assert not (s.not_finite() | s.out_of_range()).any()
 

@@ -23,7 +23,7 @@ NU = (0.0, 0.3, 0.45, 0.5)
 
 
 def rigid(x) -> xr.Dataset:
-    """As the dataset of studies/literature.toml, at the a/h of x."""
+    """As the dataset of the study literature, at the a/h of x."""
     h, materials = A / np.asarray(x), [("frictionless", 0.3), *(("bonded", nu) for nu in NU)]
     given = {"a": A, "h": h, "n": 0, "base": "layered", "micro": "smooth", "rtol": 1e-9}
     found = [solve(Problem.of(**given, bonding=bonding, nu1=nu)) for bonding, nu in materials]

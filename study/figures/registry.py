@@ -19,6 +19,7 @@ from ..terminal import program
 from . import beside
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
+COMMANDS = ("tradeoff",)  # what is measured that has a command of its own
 Columns = dict[str, np.ndarray]
 """The numbers that a figure shows: heading of the CSV -> column."""
 
@@ -212,7 +213,9 @@ def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Datase
 
 def _way_out(study: str) -> str:
     """How to get the results of a study that has none."""
-    return "--run measures it" if is_measured(study) else f"make it with: {program()} run {study}"
+    if is_measured(study):
+        return f"make it with: {program()} {study}" if study in COMMANDS else "--run measures it"
+    return f"make it with: {program()} run {study}"
 
 
 def is_measured(study: str) -> bool:

@@ -13,6 +13,7 @@ from .files.examine import Condition
 from .files.results_file import LAZY, open_lazily, open_results
 from .physical.study_file import read
 from .spec.definition import Definition, StudyError
+from .spec.places import study_file
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, of_what, statuses
@@ -121,5 +122,8 @@ class Study:
 
 
 def load(path, results="results") -> Study:
-    """Read and check a study file. Raises StudyError with all that is wrong with it."""
-    return Study(read(os.path.expanduser(path)), Path(os.path.expanduser(results)))
+    """Read and check a study file. Raises StudyError with all that is wrong with it.
+
+    path : of the file, or the name of a study in studies/ or of one that comes with roughcoat, such as "dlc_on_steel"
+    """
+    return Study(read(study_file(path)), Path(os.path.expanduser(results)))

@@ -22,7 +22,7 @@ CONTACT = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
 @cache
 def grid(name):
     """A thinned validity study (dict of columns) and its true solution: on the exact layer."""
-    whole = read(ROOT / f"studies/{name}.toml").grid
+    whole = read(ROOT / f"studies/evidence/{name}.toml").grid
     given = columns(whole, np.arange(whole.size))
     exact = np.flatnonzero(given["base"] == "layered")[::EVERY]
     given = {key: column[exact] for key, column in given.items()}

@@ -8,7 +8,7 @@ from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
 from solver.contact import smooth
-from study.paper.uniform import solve_uniform
+from study.studies.paper.uniform import solve_uniform
 
 X = np.linspace(0.0, 1.0, 5)
 #: So small an exponent makes A almost a step of p: p leaves the range of floating point near the edge, and with

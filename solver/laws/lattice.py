@@ -12,14 +12,14 @@ z = 4), and as exp(-4π p^/J) on the hexagonal one.
 """
 
 import csv
-from pathlib import Path
+from importlib.resources import files
 
 import numpy as np
 
 from . import disc_cell
 from .tabulated import Table, fitted, law_of, t_of
 
-FILE = Path(__file__).with_name("lattices.csv")
+FILE = files(__package__) / "lattices.csv"  # which may be in a zip file
 #: p* and A* in units E = Ra = l = 1; and the radius of an isolated spot over y, for y -> 0.
 P_STAR, A_STAR = 2 / (3 * np.sqrt(np.pi)), 1 / np.pi
 _SPOT = np.cbrt(0.75 * P_STAR)

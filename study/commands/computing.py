@@ -8,11 +8,11 @@ from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition, examine
 from ..in_words import doubts
 from ..spec.definition import Definition, StudyError
+from ..spec.places import STUDIES, packaged, study_file
 from ..spec.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
 from ..work.plan import Report, status_values
-from .arguments import STUDIES, packaged, study_file
 from .checking import doubtful_lines
 
 

@@ -19,8 +19,8 @@ from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.grid import twins
+from ..spec.places import known_studies, study_file
 from ..terminal import answer, on_one_line, say
-from .arguments import known_studies, study_file
 from .computing import completed
 
 log = logging.getLogger(__name__)

@@ -146,5 +146,6 @@ STIFFNESSES = {
 GREENWOOD_TRIPP: dict[int, dict[float, tuple[float, float]]] = {}
 """μ -> α -> p(0) and effective radius over those of Hertz, of the equations of Greenwood and Tripp (1967):
 tests/references/make_greenwood_tripp.py solves them."""
-for _mu, _alpha, *_ratios in np.loadtxt(files(__package__) / "greenwood_tripp.csv", delimiter=",", skiprows=1).tolist():
+_ROWS = (files(__package__) / "greenwood_tripp.csv").read_text(encoding="utf-8").splitlines()
+for _mu, _alpha, *_ratios in np.loadtxt(_ROWS, delimiter=",", skiprows=1).tolist():
     GREENWOOD_TRIPP.setdefault(int(_mu), {})[_alpha] = tuple(_ratios)

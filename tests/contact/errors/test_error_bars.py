@@ -39,7 +39,7 @@ CASES = {
          "h": 3.7334e-8, "n": 2.30066e-6},
         6, 300,
     ),
-    # asperities saturate inside the contact, between the nodes of both meshes: above _SATURATED by another rule
+    # asperities saturate inside the contact, between the nodes of both meshes: by another rule
     "saturated": (
         {"base": "thin_layer", "micro": "power_law", "P": 2.929241e-3, "Ra": 0.02036508, "Nbar": 1.4454193,
          "h": 7.54902e-8, "n": 1.249559e-5, "B": 0.229085, "beta": 0.565},
@@ -49,6 +49,19 @@ CASES = {
         {"base": "thin_layer", "micro": "power_law", "P": 0.085309074, "Ra": 0.015685585, "Nbar": 66.589338,
          "h": 3.5544e-7, "n": 1.269864e-5, "B": 0.280858, "beta": 0.555622},
         22, 10,
+    ),
+    # λ rises from the edge as a power that no rule knows, and the rules of both meshes are wrong alike: by another rule
+    "quadratures": (
+        {"base": "thin_layer", "micro": "power_law", "P": 2.33083e-10, "Ra": 0.0253309, "Nbar": 1.29753,
+         "h": 48.9388, "n": 3.14883e-06, "B": 0.123363, "beta": 0.282944},
+        6, 4,
+    ),
+    # both meshes place the edge alike by chance, but not the pressures near it: _moved_edge
+    "edge": (
+        {"base": "layered", "micro": "power_law", "P": 4.463731003198048e-8, "Ra": 5.413276025e-07, "Nbar": 31906294.39,
+         "h": 1.294971572301717, "n": 1.0962182851905691e-4, "nu1": -0.2857, "nu2": 0.4490, "B": 0.86513335,
+         "beta": 0.443113054},
+        12, 6,
     ),
     # the displacement is nearly the same wherever there is pressure, and λ rises sharply where that begins: _STEEP
     "steep": (

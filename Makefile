@@ -34,7 +34,7 @@ table1 paper_numbers validity extremes:
 	@cat tables/$@.txt
 
 map: $(READY) ## 25,000 cases for exploration: results/parameter_map.nc
-	$(RUN) run --force studies/parameter_map.toml
+	$(RUN) run studies/parameter_map.toml
 
 tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs/tradeoff_measured.txt, tradeoff.png
 	$(RUN) table --run tradeoff tradeoff_cheapest tradeoff_factors paper_error
@@ -75,6 +75,9 @@ lowest: ## all tests with the lowest versions that pyproject.toml allows, instal
 mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
 	$(VENV)/bin/python tests/mutants/mutate.py --table docs/mutants.md
 
+fresh_mutants: $(READY) ## which mistakes of the latest list in tests/mutants/fresh all the tests notice: hours
+	$(VENV)/bin/python tests/mutants/fresh.py
+
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
 	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800
 	$(VENV)/bin/python tests/fuzz/fuzz_studies.py 2000
@@ -94,7 +97,7 @@ clean: ## remove figures and tables that the program draws, and caches; results 
 
 # Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
 # the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.
-$(READY): requirements.lock pyproject.toml
+$(READY): requirements.lock pyproject.toml $(wildcard setup.py)
 	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' || \
 	  { echo "roughcoat needs Python 3.11 or newer; name one: make setup PYTHON=python3.12"; exit 1; }
 	$(PYTHON) -m venv $(VENV)

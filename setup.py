@@ -2,11 +2,16 @@
 
 The studies of the paper stand at the top of the repository, where they are read and edited, and are installed as data
 of the package `study`, so that `roughcoat plot --run fig03` works in any folder.
+
+An editable install goes without them: `study` finds them in the repository. So all packages lie where their names say,
+and setuptools installs the path of the repository. Otherwise it would install a finder, which Python asks last: a
+user's folder `study` with nothing but data in it would be imported in place of the package.
 """
+
+import sys
 
 from setuptools import find_packages, setup
 
-setup(
-    packages=[*find_packages(include=["solver*", "study*"]), "study.studies"],
-    package_dir={"study.studies": "studies"},
-)
+STUDIES = {} if "editable_wheel" in sys.argv else {"study.studies": "studies"}
+
+setup(packages=[*find_packages(include=["solver*", "study*"]), *STUDIES], package_dir={"": ".", **STUDIES})

@@ -4,9 +4,14 @@
 `roughcoat`, is the same from a shell. `study.derived`, `study.materials`, `study.roughness`, `study.units` and
 `study.vocabulary` are there without an import of their own. Names are imported when they are first used, so that
 `python -m study --help` and complaints about a study file answer at once.
+
+After `import study` the name `solver` is that of roughcoat's package, whatever a user has in the working folder.
 """
 
+import os
+import sys
 from importlib import import_module
+from importlib.machinery import ModuleSpec, PathFinder
 
 _HOME = {
     "solve": "solving",
@@ -30,6 +35,31 @@ _MODULES = {
     "vocabulary": "spec.vocabulary",
 }
 __all__ = list(_HOME)
+_BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of both packages
+
+
+class _OwnSolver:
+    """A finder of modules that takes `solver` from beside this package. Python asks it first: otherwise a solver.py, or
+    a folder solver, in the working folder would be imported, and run, in its place."""
+
+    @staticmethod
+    def find_spec(name: str, path=None, target=None) -> ModuleSpec | None:
+        return PathFinder.find_spec(name, [_BESIDE]) if name == "solver" else None
+
+
+def _take_own_solver() -> None:
+    """Let `import solver` mean roughcoat's. Raises ImportError if the program has imported another one before."""
+    own, other = _OwnSolver.find_spec("solver"), sys.modules.get("solver")
+    if own and other:
+        folders = list(getattr(other, "__path__", ()))  # none of a module that is a file
+        if [os.path.realpath(folder) for folder in folders] != [os.path.realpath(os.path.dirname(own.origin))]:
+            file = getattr(other, "__file__", None) or folders[0]
+            wrong = "has been imported as solver, which is a package of roughcoat as well: give it another name"
+            raise ImportError(f"{file}: {wrong}", name="solver", path=file)
+    sys.meta_path.insert(0, _OwnSolver)
+
+
+_take_own_solver()
 
 
 def __getattr__(name: str):

@@ -135,6 +135,8 @@ def _attempt(act, options, item, kept: str) -> int:
         text, code = str(error), error.code
     except OSError as error:  # the disk is full, say, or the scheduler is gone
         text, code = f"{item}: {error}{kept}", 1
+    except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
+        text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
     if ending.state.interrupted:  # a library has turned the interrupt into this error
         raise KeyboardInterrupt
     say(text, sys.stderr)
@@ -142,7 +144,7 @@ def _attempt(act, options, item, kept: str) -> int:
 
 
 def own_modules_first() -> None:
-    """Look for modules in the working folder last, where `python -m` looks first: a user may have a solver.py there."""
+    """Look for modules in the working folder last, where `python -m` looks first: a user may have a dask.py there."""
     first = Path(sys.path[0]).resolve()
     if not sys.flags.safe_path and first == Path.cwd() != Path(__file__).resolve().parents[1]:
         sys.path.append(sys.path.pop(0))

@@ -1,5 +1,6 @@
 """All figures and tables by name: what each needs, whether it is up to date, and the files that it is written to."""
 
+import io
 from importlib import import_module
 from importlib.resources import files
 from pathlib import Path
@@ -8,9 +9,8 @@ from pkgutil import iter_modules
 import numpy as np
 from matplotlib.figure import Figure
 
-import solver
-
 from . import evidence, figures, literature, paper
+from .figures import record
 from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, entry, open_studies
@@ -46,17 +46,38 @@ def needed(name: str, known: dict) -> tuple[str, ...]:
     return () if name in (*SCHEMES, CAPTIONS) and known is FIGURES else entry(name, known).studies
 
 
+def what(name: str, known: dict) -> str:
+    """How the record of a folder calls it: "figure fig03", "table validity"."""
+    return f"{'table' if known is TABLES else 'figure'} {name}"
+
+
+def endings(name: str, known: dict) -> tuple[str, ...]:
+    """Endings of the files of a figure or table."""
+    if name == CAPTIONS and known is FIGURES:
+        return ("md",)
+    return TABLE if known is TABLES else SCHEME if name in SCHEMES else FIGURE
+
+
+def digest(name: str, known: dict, results) -> str:
+    """The digest of all that the files of a figure or table follow from: results, code, libraries."""
+    paths = [Path(results) / f"{study}.nc" for study in needed(name, known)]
+    return record.digest_of(what(name, known), endings(name, known), [path for path in paths if path.exists()])
+
+
 def outdated(name: str, known: dict, results, folder) -> bool:
-    """Whether a file of a figure or table is missing, or older than its results or than a file of the program."""
+    """Whether a file of a figure or table is missing, has changed, or was not made by `renewed` of the same digest."""
     if name == CAPTIONS and known is FIGURES:
         return True  # it depends on all results, so it is written each time
-    kinds = TABLE if known is TABLES else SCHEME if name in SCHEMES else FIGURE
-    written = [Path(folder) / f"{name}.{kind}" for kind in kinds]
-    inputs = [Path(results) / f"{study}.nc" for study in needed(name, known)]
-    for package in (Path(solver.__file__).parent, Path(__file__).parent):
-        inputs += [file for file in package.rglob("*.*") if file.parent.name != "__pycache__"]
-    newest = max(file.stat().st_mtime for file in inputs)
-    return not all(file.exists() and file.stat().st_mtime >= newest for file in written)
+    names = [f"{name}.{ending}" for ending in endings(name, known)]
+    return not record.is_up_to_date(Path(folder), what(name, known), digest(name, known, results), names)
+
+
+def renewed(known: dict, name: str, results="results", folder="figures") -> list[Path]:
+    """Write a figure or table, as `draw` and `tabulate` do, and put it into the record of the folder."""
+    of = digest(name, known, results)  # before: results that change meanwhile make it outdated
+    paths = (tabulate if known is TABLES else draw)(name, results, folder)
+    record.note(Path(folder), what(name, known), of, paths)
+    return paths
 
 
 def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
@@ -107,13 +128,14 @@ def captions(results="results") -> str:
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
     """Write what `compose` gives as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-    stem.parent.mkdir(parents=True, exist_ok=True)
-    for suffix, dated in ((".png", {}), (".pdf", {"CreationDate": None})):
+    contents = {"csv": csv_text(columns, rows)}
+    for ending, dated in (("png", {}), ("pdf", {"CreationDate": None})):
+        page = io.BytesIO()
         with style():
-            figure.savefig(stem.with_suffix(suffix), metadata={"Title": title} | dated)
+            figure.savefig(page, format=ending, metadata={"Title": title} | dated)
             figure.set_layout_engine(None)  # the second keeps the layout, which takes long to find for many axes
-    write(stem.with_suffix(".csv"), csv_text(columns, rows))  # last: a text in the figure may be wrong
-    return [stem.with_suffix(f".{kind}") for kind in FIGURE]
+        contents[ending] = page.getvalue()
+    return [write(stem.with_suffix(f".{ending}"), contents[ending]) for ending in FIGURE]
 
 
 def tabulate(name: str, results="results", folder="tables") -> list[Path]:

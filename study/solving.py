@@ -12,6 +12,7 @@ import xarray as xr
 
 from solver.laws import Law
 
+from .carried import with_coordinates
 from .data.dataset import Parts, parts
 from .in_words import doubts
 from .physical.reading import read as read_scene
@@ -20,6 +21,7 @@ from .physical.study_file import complete as complete_scene
 from .spec.definition import LARGE, POINTS, StudyError, complete
 from .spec.given import Draft
 from .spec.vocabulary import NUMERICS, VOCABULARY
+from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
 from .work.share import solved
@@ -83,6 +85,7 @@ def solve(
     profiles: bool | Sequence[str] = True,
     title: str = "",
     workers: int | None = None,
+    same_piece: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -122,6 +125,8 @@ def solve(
     profiles : whether the dataset holds p and lam, or a list of those that it shall hold
     title : of the dataset
     workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
+    same_piece : whether bodies of one material (`punch`, `layer`, `body` of one name) are one piece, whose E and ν are
+        off together; otherwise each is a piece of its own, and their spreads are independent
     parameters : of registered laws
 
     Returns
@@ -129,8 +134,10 @@ def solve(
     xarray.Dataset over the dimensions of the grid and `x`. A failed case has NaN and its reason in `status`; nothing
     is raised for it. Physical parameters make physical results, in SI units, and `NAME_spread` where inputs have
     spreads: one standard deviation, to first order. Numerical settings of one value are attributes. `study.summary`
-    says it in words. A warning tells of physical cases that violate an assumption of the model, or
-    that have inputs of which the unit must be wrong.
+    says it in words. The results also have what a DataArray brings as further coordinates, such as who measured its
+    loads; the levels of a MultiIndex are coordinates without an index, which netCDF can hold. A warning tells of those
+    that are left out, of physical cases that violate an assumption of the model, or that have inputs of which the unit
+    must be wrong.
 
     Raises
     ------
@@ -143,6 +150,7 @@ def solve(
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
+    workers = plain(workers)
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
@@ -153,9 +161,11 @@ def solve(
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
+    if not isinstance(same_piece, (bool, np.bool_)):
+        raise StudyError([f"same_piece = {shown(same_piece)}: must be true or false"])
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
-    scene = read_scene(parameters, cases)
+    scene = read_scene(parameters, cases, same_piece=bool(same_piece))
     about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
     if scene:
         definition = complete_scene(draft, scene, [], about, most=LARGE)
@@ -167,9 +177,10 @@ def solve(
         definition = complete(draft, *about, LARGE)
     arrays = solved(definition, workers)
     found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
-    if not scene:
-        return found
-    beyond = doubts(found)
+    found, left_out = with_coordinates(found, parameters)
+    for text in left_out:
+        warnings.warn(text, stacklevel=2)
+    beyond = doubts(found) if scene else []
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found

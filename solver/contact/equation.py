@@ -4,8 +4,9 @@ With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by
 
     X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh. The control (load, radius or depth) is one more equation. The unknowns are y at the nodes and
-η = ln a. The body has E, the springs C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
+at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`..punches.punch`). The control
+(load, radius or depth) is one more equation. The unknowns are y at the nodes and η = ln a. The body has E, the springs
+C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
 """
 
 from dataclasses import dataclass
@@ -16,6 +17,8 @@ import numpy as np
 
 from ..body.operator import Body, Operator
 from ..laws import Bound, Curve
+from ..punches import PARABOLOID
+from ..punches.punch import Punch, largest
 
 #: A pressure below this part of the largest counts as none.
 _NOTHING = 1e-16
@@ -35,16 +38,18 @@ _TINY = np.finfo(float).tiny
 
 
 class Cases(NamedTuple):
-    """A batch of B cases of one body and micro law in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the whole
-    batch, the law and the body with their numbers, and the controlled `value` (B,)."""
+    """A batch of B cases of one body, micro law and punch in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
+    whole batch, the law, the body and the punch with their numbers, and the controlled `value` (B,)."""
 
     control: str
     law: Bound
     body: Body
     value: np.ndarray
+    punch: Punch = PARABOLOID
 
     def take(self, index):
-        return Cases(self.control, self.law.take(index), self.body.take(index), self.value[index])
+        own = (part.take(index) for part in (self.law, self.body))
+        return Cases(self.control, *own, self.value[index], self.punch.take(index))
 
 
 class State(NamedTuple):
@@ -88,6 +93,11 @@ class Evaluation:
         return control_residual(self.cases, self.state.eta, self.X, self.curve.q, self.edge_q, self.mesh)
 
     @cached_property
+    def drop(self):
+        """Right-hand side of the equation at the nodes, (B or 1, n)."""
+        return self.cases.punch.drop(np.exp(self.state.eta), self.mesh.s)
+
+    @cached_property
     def slopes(self):
         """Derivatives of K q (B, n) and edge @ q (B,) by η at fixed q."""
         return self.operator.slopes(self.curve.q)
@@ -104,11 +114,11 @@ class Evaluation:
 
     @cached_property
     def residual(self):
-        """Largest residual of a case (B,): of the equation, over the largest right-hand side s² = 1, and of the
-        control. The equation need not hold where asperities without pressure hang over the surface."""
+        """Largest residual of a case (B,): of the equation, over the largest right-hand side, and of the control. The
+        equation need not hold where asperities without pressure hang over the surface."""
         F = np.abs(self.F)
         F[self.gap > 0] = 0.0
-        return np.maximum(F.max(axis=1), np.abs(self.G))
+        return np.maximum(F.max(axis=1) / largest(self.cases.punch, np.exp(self.state.eta)), np.abs(self.G))
 
     @cached_property
     def floor(self):
@@ -173,10 +183,10 @@ def evaluate(cases, state, mesh, near=None):
     """:class:`Evaluation` of `cases` at `state`. `near`: their operator at another state or on another mesh, of which
     what still holds is used again."""
     X, Y, Z = groups(cases, state.eta)
-    curve = cases.law.evaluate(state.y)
-    operator = cases.body.at(np.exp(state.eta), mesh, near)
+    curve, a = cases.law.evaluate(state.y), np.exp(state.eta)
+    operator = cases.body.at(a, mesh, near)
     Kq, edge_q = operator.products(curve.q)
-    F = X * Kq + Y * curve.q + Z * curve.g - mesh.s**2
+    F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, mesh.s)
     return Evaluation(cases, state, operator, curve, X, Y, Z, Kq, edge_q, F)
 
 
@@ -187,7 +197,8 @@ def control_residual(cases, eta, X, q, edge_q, mesh):
     if cases.control == "P":
         load = np.einsum("bj,j->b", q, mesh.w)  # not BLAS, whose rounding would depend on the number of cases
         return np.log(2 * np.pi * cases.law.p_star * load / cases.value) + 2 * eta
-    return np.log((1 + X[:, 0] * edge_q) / (2 * cases.value)) + 2 * eta
+    depth = cases.punch.depth(np.exp(eta)) + X[:, 0] * edge_q
+    return np.log(depth / (2 * cases.value)) + 2 * eta
 
 
 def control_gradient(control, ev):
@@ -197,13 +208,15 @@ def control_gradient(control, ev):
         return w / (q @ w)[:, None], np.full(len(q), 2.0)
     if control == "a":
         return np.zeros_like(q), np.ones(len(q))
-    edge = X * ev.edge_q
-    return ev.X * ev.operator.edge / (1 + edge)[:, None], 2 + (X * ev.slopes[1] - edge) / (1 + edge)
+    edge, punch, a = X * ev.edge_q, ev.cases.punch, np.exp(ev.state.eta)
+    depth, slope = punch.depth(a) + edge, punch.depth_slope(a) + X * ev.slopes[1] - edge
+    return ev.X * ev.operator.edge / depth[:, None], 2 + slope / depth
 
 
 def jacobian(ev):
     """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. By q and not by y, because
     the operator is linear in q."""
     own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
-    dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X
+    drop_slope = ev.cases.punch.drop_slope(np.exp(ev.state.eta), ev.mesh.s)
+    dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X - drop_slope / ev.X
     return own / ev.X, dF_deta

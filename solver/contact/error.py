@@ -151,7 +151,7 @@ def of_ring(t, s1, beta=1.0):
 
 def margin(ev):
     """The factor (B,) by which an error may be larger than the change on the finer mesh."""
-    share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.mesh.s[0] ** 2
+    share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.drop[:, 0]
     # if the share of the asperities is small at the first node already, the mesh misses the ring where it is large
     return np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
 

@@ -130,17 +130,18 @@ def _next(now, half):
     q, k, cases = now.q, now.k, now.cases
     K, w = now.operator.K, now.operator.mesh.w
     Kq = np.matmul(K, q[..., None])[..., 0]
-    new = (_pressure(cases.law, now.groups, now.operator.mesh.s**2, q, Kq) + k[:, None] * q) / (1 + k[:, None])
+    drop = cases.punch.drop(np.exp(now.eta), now.operator.mesh.s)
+    new = (_pressure(cases.law, now.groups, drop, q, Kq) + k[:, None] * q) / (1 + k[:, None])
     change = (1 + k) * np.abs(new - q).max(axis=1) / np.maximum(new.max(axis=1), _TINY)
     load_change = np.abs((q @ w) / (new @ w) - 1)
     earlier = now.change if now.done == half else now.earlier
     return replace(now, q=new, change=change, load_change=load_change, earlier=earlier, done=now.done + 1)
 
 
-def _pressure(law, groups, s2, q, Kq):
+def _pressure(law, groups, drop, q, Kq):
     """p̃ (B, n) over p*, no less than 0: by Eq. (8) where there are springs, else by Eq. (10)."""
     X, Y, Z = groups
-    left, springs, by_springs, by_spots = s2 - X * Kq, Y > 0, 0.0, 0.0
+    left, springs, by_springs, by_spots = drop - X * Kq, Y > 0, 0.0, 0.0
     if springs.any():
         by_springs = np.maximum((left - Z * law.evaluate(law.from_pressure(q)).g) / Y, 0.0)
     if not springs.all():

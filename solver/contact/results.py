@@ -28,7 +28,7 @@ def quantities(ev):
     return Quantities(
         a=a,
         P=2 * np.pi * a**2 * law.p_star * (q @ w),  # (5)
-        D=a**2 / 2 * (1 + ev.X[:, 0] * ev.edge_q),  # (14)
+        D=a**2 / 2 * (ev.cases.punch.depth(a) + ev.X[:, 0] * ev.edge_q),  # (14)
         p0=law.p_star * q[:, -1],
         p_max=law.peak(y[:, -1:], q[:, -1:])[:, 0],  # (13)
         Ar_An=2 * (law.area(y, q) @ w),  # (12)
@@ -66,7 +66,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     Let q_L be the polynomial through the pressures at the nodes. The difference q - q_L oscillates from node to node,
     and its displacement of the half-space is about κ (q - q_L). So the equation at a point between the nodes is
 
-        (X κ + Y) q + Z g(q) = s² - X (K[q_L] - κ q_L).
+        (X κ + Y) q + Z g(q) = drop - X (K[q_L] - κ q_L).
 
     Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
     nothing it is q_L. Newton's method solves it to the relative `tolerance`, from a closed form for two terms, times
@@ -77,10 +77,11 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     Kq = ev.operator.between(ev.curve.q, s, ev.curve.q @ H.T)[rows]
     X, Y, Z, law = ev.X[rows], ev.Y[rows], ev.Z[rows], ev.cases.law.take(rows)
     q, g = ev.curve.q[rows], ev.curve.g[rows]
+    drop = ev.cases.punch.take(rows).drop(np.exp(ev.state.eta[rows]), s)
     stiff, q_L = X * kappa, q @ L.T
     # The right-hand side is kept positive, but far below κ q_L, which is small under a stiff film.
-    least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * s**2, 1e-9 * s**2)
-    right = np.maximum(s**2 - X * Kq + stiff * q_L, least)
+    least = np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * drop, 1e-9 * drop)
+    right = np.maximum(drop - X * Kq + stiff * q_L, least)
     linear, node_linear = stiff + Y, X * node_kappa + Y
 
     def guess(linear, right):

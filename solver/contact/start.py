@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..numerics.linalg import solve_stack
-from ..numerics.mesh import HERTZ
+from ..punches.punch import largest
 from .equation import State, evaluate, groups
 
 #: The first guess of the pressure is nowhere below this part of the largest.
@@ -15,19 +15,18 @@ def guess_radius(cases):
     springs and asperities would each have alone."""
     if cases.control == "a":
         return cases.value
-    if cases.control == "D":  # a² is D for a half-space and 2 D where the displacement is local
-        return np.sqrt(1.5 * cases.value)
-    hertz = np.cbrt(0.75 * cases.value / cases.body.E)
-    springs = (4 * cases.body.C * cases.value / np.pi) ** 0.25
-    gamma, beta = cases.law.edge()  # asperities of A ~ p^β
-    e = 1 / beta
-    alone = cases.value / (2 * np.pi * cases.law.p_star) * (2 * cases.law.A_star * gamma) ** e * (2 * e + 2)
-    spots = alone ** (1 / (2 + 2 * e))
-    a = (hertz**4 + springs**4 + spots**4) ** 0.25
-    for _ in range(6):  # the modulus that the contact feels depends on its radius
-        before, a = a, ((hertz * np.cbrt(cases.body.softness(a))) ** 4 + springs**4 + spots**4) ** 0.25
+    punch, body, law, value = cases.punch, cases.body, cases.law, cases.value
+    if cases.control == "D":
+        return punch.radius_at_depth(value)
+    springs = punch.on_springs(value, body.C)
+    gamma, beta = law.edge()  # asperities of A ~ p^β
+    spots = punch.on_asperities(value, law.p_star, law.A_star * gamma, 1 / beta)
+    a, softness = np.inf, np.ones(len(value))
+    for _ in range(7):  # the modulus that the contact feels depends on its radius
+        before, a = a, (punch.on_half_space(value, body.E, softness) ** 4 + springs**4 + spots**4) ** 0.25
         if np.array_equal(a, before):
             break
+        softness = body.softness(a)
     return a
 
 
@@ -35,8 +34,8 @@ def guess_pressure(cases, a, s):
     """q (B, m) at s (m,) > 0 under contacts of radius a (B,). 1/q is the sum of those that half-space, springs and
     asperities have alone: so it is exact where one of them yields far more than the others."""
     X, Y, Z = groups(cases, np.log(a))
-    base = (X * cases.body.softness(a)[:, None] * HERTZ * s + Y) / s**2
-    return 1 / (base + 1 / cases.law.sparse(s**2 / Z))
+    base = cases.punch.stiffness(a, s, X * cases.body.softness(a)[:, None], Y)
+    return 1 / (base + 1 / cases.law.sparse(cases.punch.drop(a, s) / Z))
 
 
 def first_guess(cases, mesh, a=None):
@@ -48,12 +47,12 @@ def first_guess(cases, mesh, a=None):
 def smooth_start(cases, mesh):
     """The equation at given radii (control "a"), at a first guess: its 1/q is the sum of those of the smooth contact
     and of the asperities alone."""
-    eta, s2 = np.log(cases.value), mesh.s**2
+    eta, drop = np.log(cases.value), cases.punch.drop(cases.value, mesh.s)
     X, Y, Z = groups(cases, eta)
     operator = cases.body.at(np.exp(eta), mesh)
-    smooth = solve_stack(operator.K, Y / X * np.ones(mesh.n), (s2 / X)[..., None])[..., 0]
+    smooth = solve_stack(operator.K, Y / X * np.ones(mesh.n), (drop / X)[..., None])[..., 0]
     smooth = np.maximum(smooth, _LEAST * smooth.max(axis=1, keepdims=True))
-    y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(s2 / Z)))
+    y = cases.law.guess(1 / (1 / smooth + 1 / cases.law.sparse(drop / Z)))
     return evaluate(cases, State(y, eta), mesh, operator)
 
 
@@ -64,5 +63,6 @@ def nodes_wanted(cases, rtol, a):
     if not cases.law.rough:
         return cases.body.first_nodes(rtol, a, None)
     q = guess_pressure(cases, a, np.ones(1))
-    share = groups(cases, np.log(a))[2] * cases.law.evaluate(cases.law.guess(q)).g  # of the asperities in s² = 1
-    return cases.body.first_nodes(rtol, a, cases.law.law.rise * np.clip(np.nan_to_num(share[:, 0]), 0.0, 1.0))
+    yielding = groups(cases, np.log(a))[2] * cases.law.evaluate(cases.law.guess(q)).g
+    share = yielding[:, 0] / largest(cases.punch, a)
+    return cases.body.first_nodes(rtol, a, cases.law.law.rise * np.clip(np.nan_to_num(share), 0.0, 1.0))

@@ -107,7 +107,8 @@ def _load_installed():
     for entry in entry_points(group=GROUP):
         where = f"entry point {entry.name} = {entry.value} of {GROUP}"
         try:
-            laws = entry.load()
+            with trial.going_on():
+                laws = entry.load()
             for law in laws if isinstance(laws, (list, tuple)) else [laws]:
                 found.setdefault(law.name, {}).setdefault(law, where)
         except Exception as error:

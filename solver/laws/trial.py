@@ -1,6 +1,7 @@
 """What is wrong with a law of somebody else's: with its declaration, and with its functions at a few of its cases."""
 
 import traceback
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -22,6 +23,18 @@ _FLAT, _ROUNDING = 1e-6, 1e-9
 _PART = 0.25
 #: Largest relative error of q or g of an inverse.
 _INVERSE = 1e-6
+
+
+@contextmanager
+def going_on():
+    """Functions of somebody else, which must not end Python: RuntimeError in place of SystemExit and its like."""
+    try:
+        yield
+    except (Exception, KeyboardInterrupt):
+        raise
+    except BaseException as error:
+        what = f"calls sys.exit({error})" if isinstance(error, SystemExit) else f"raises {type(error).__name__}"
+        raise RuntimeError(f"it {what}, which would end the program") from error
 
 
 def declaration(law):
@@ -129,7 +142,8 @@ def _broadcasts(law, name, found, y):
 
 def _called(law, name, *given, **named):
     try:
-        return getattr(law, name)(*given, **named)
+        with going_on():
+            return getattr(law, name)(*given, **named)
     except Exception as error:
         at = traceback.extract_tb(error.__traceback__)[-1]
         where = f" ({Path(at.filename).name}, line {at.lineno})" * (at.filename != __file__)

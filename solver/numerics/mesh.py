@@ -15,9 +15,6 @@ from scipy.special import ellipkm1
 from .pieces import against, pieces
 from .quadrature import gauss_legendre, lagrange, radau_nodes
 
-#: For Hertz's pressure the operator is (H[s])(x) - (H[s])(1) = HERTZ s², which makes the first guess exact there.
-HERTZ = np.pi**2 / 16
-
 WHOLE = (0.0, 1.0)
 
 

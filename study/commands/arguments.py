@@ -100,7 +100,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
         from ..physical.bodies import BODIES
         from ..spec.vocabulary import CONTROLS, SCENE, names
 
-        known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"))]
+        known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
     elif command in ("plot", "table"):
         from .. import catalogue
 

@@ -1,6 +1,8 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
 import logging
+import sys
+from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
@@ -15,7 +17,7 @@ from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.grid import twins
-from ..terminal import answer, on_one_line
+from ..terminal import answer, on_one_line, say
 from .arguments import known_studies, study_file
 from .computing import completed
 
@@ -33,7 +35,7 @@ def plot(options, name: str) -> int:
     if options.x or options.y or options.hue or options.where:
         return _curves(options, name)
     try:
-        return _write(options, name, catalogue.FIGURES, catalogue.draw)
+        return _write(options, name, catalogue.FIGURES)
     except StudyError:
         what = "file" if Path(name).suffix == ".nc" else "study"
         if name in catalogue.FIGURES or not (what == "file" or name in known_studies()):
@@ -70,7 +72,7 @@ def _curves(options, name: str) -> int:
 
 def table(options, name: str) -> int:
     """Write a table, and say which files it is in."""
-    return _write(options, name, catalogue.TABLES, catalogue.tabulate)
+    return _write(options, name, catalogue.TABLES)
 
 
 def tradeoff(options, _) -> int:
@@ -81,8 +83,10 @@ def tradeoff(options, _) -> int:
     return 0
 
 
-def _write(options, name: str, known: dict, make) -> int:
+def _write(options, name: str, known: dict) -> int:
+    make = catalogue.tabulate if known is catalogue.TABLES else catalogue.draw
     if options.run:
+        make = partial(catalogue.renewed, known)
         code = max((_ready(options, study) for study in catalogue.needed(name, known)), default=0)
         if code or not catalogue.outdated(name, known, options.results, options.folder):
             return code
@@ -99,10 +103,17 @@ def _write(options, name: str, known: dict, make) -> int:
 
 
 def _ready(options, study: str) -> int:
-    """Compute what is missing of a study, if this command has not done so yet. Older results may be replaced."""
+    """Compute what is missing of a study, if this command has not done so yet.
+
+    Results that the same study file made are replaced; others are refused as by `run`, once.
+    """
     codes = vars(options).setdefault("codes", {})  # study -> exit code, of this command
-    if study not in codes and study == "tradeoff":
-        codes[study] = tradeoff(options, study)
-    elif study not in codes:
-        codes[study] = completed(load(study_file(study), options.results), force=True)
+    try:
+        if study not in codes and study == "tradeoff":
+            codes[study] = tradeoff(options, study)
+        elif study not in codes:
+            codes[study] = completed(load(study_file(study), options.results), renew=True)
+    except StudyError as error:
+        say(str(error), sys.stderr)
+        codes[study] = error.code
     return codes[study]

@@ -8,6 +8,7 @@ from argparse import ArgumentTypeError
 import xarray as xr
 
 from ..data.dataset import decode
+from ..data.derived import QUANTITIES
 from ..in_words import SHOWN, doubts, summary
 from ..physical.inputs import all_inputs
 from ..physical.names import INFINITE
@@ -15,6 +16,9 @@ from ..solving import solve
 from ..spec.definition import StudyError
 from ..terminal import answer
 from .arguments import assignment
+
+_DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
+_SWITCH = {"true": True, "false": False}
 
 
 def items(options) -> list[list[str]]:
@@ -28,15 +32,15 @@ def point(options, given: list[str]) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it
         try:
-            found = solve(**parameters, x=2, profiles=False)
+            found = solve(**parameters)  # with the profile p, which may be largest in a ring
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     text = json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found)
     return answer(text) or (0 if int(found["status"]) == 0 else 1)
 
 
-def parameters_of(given: list[str]) -> dict[str, float | str]:
-    """Parameters of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
+def parameters_of(given: list[str]) -> dict[str, float | str | bool]:
+    """Arguments of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
     found, errors = {}, []
     for text in given:
         try:
@@ -45,7 +49,11 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
             errors.append(f'{error}, such as R="5 mm"')
             continue
         errors += [f"{name} is given twice"] * (name in found)
-        errors += [f"{name} says nothing of one contact: leave it out"] * (name in solve.__kwdefaults__)
+        if name == "same_piece":
+            errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in _SWITCH)
+            value = _SWITCH.get(str(value).lower())
+        elif name in solve.__kwdefaults__:
+            errors.append(f"{name} says nothing of one contact: leave it out")
         found[name] = value
     if errors:
         raise StudyError(errors)
@@ -54,7 +62,10 @@ def parameters_of(given: list[str]) -> dict[str, float | str]:
 
 def as_numbers(found: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
-    shown = {name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN)) if name in found}
+    found = found.assign({name: QUANTITIES[name](found) for name in _DERIVED})
+    shown = {
+        name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *_DERIVED)) if name in found
+    }
     shown |= {name: number(found[name]) for name in ("error", "model_error")}
     shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(found["validity"]).item().split()

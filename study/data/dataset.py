@@ -12,7 +12,7 @@ from ..spec.fitted import COMMENT
 from ..spec.grid import along, unflatten
 from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
-from .derived import validity_attributes, validity_of
+from .assumptions import validity_attributes, validity_of
 from .provenance import provenance
 
 NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
@@ -48,7 +48,8 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     found = labelled(definition, arrays, command)
     found.variables["status"].attrs |= status_attributes()
     found.variables["model_used"].attrs |= model_attributes()
-    found.variables["validity"] = validity_of(found.variables | found.coords)
+    radii = definition.scene.radii() if definition.scene else {}
+    found.variables["validity"] = validity_of(found.variables | found.coords | radii)
     return found
 
 
@@ -106,7 +107,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     """The names of `status`, `model_used` or `validity`, in an array of texts over the same dimensions.
 
     Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
-    a name stays a number.
+    a name stays a number. Where `where`, `reindex` or `concat` of xarray have left no case, NaN, status and
+    validity are "not_run", and the model is "none".
 
     Raises ValueError: it is no array, or one that has none of these names, and no attribute `flag_meanings`; its
     numbers are of no case, such as the mean of several.
@@ -132,6 +134,8 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
         names = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), words, strict=True))
     texts = [names.get(value, str(value)) for value in values.ravel().tolist()]
     named = np.array(texts, dtype=str).reshape(flags.shape)
+    if "flag_masks" in attributes and flags.dtype.kind == "f":  # the mask 0 would say that the case is a good one
+        named = np.where(np.isfinite(flags.values), named, status_words()[NOT_RUN])
     return xr.DataArray(named, flags.coords, flags.dims, flags.name)
 
 

@@ -20,6 +20,10 @@ from ..spec.definition import Definition
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
 
+OF_THE_RUN = ("history", "command", "created", "source", "git_commit", "versions", "cpu", "blas")
+"""Attributes that say who computed the numbers, when and where, and nothing of what they are."""
+
+
 def provenance(definition: Definition, command: str) -> dict:
     """Global attributes: what was computed, by which code, on what machine."""
     created = datetime.now(UTC).isoformat(timespec="seconds")

@@ -5,7 +5,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..spec.vocabulary import PARAMETERS, VOCABULARY, suggest
+from ..spec.vocabulary import PARAMETERS, VOCABULARY, no_parameter
+from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, has_unit, multiple, quantity
 
 PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical units
@@ -33,12 +34,11 @@ def _si(name: str, given: Any, unit: str) -> Any:
 
     Raises ValueError for a text without a unit, or of something else, and for a spread: the results would not have it.
     """
+    is_numbers = type(given) is np.ndarray and given.dtype.kind in "iuf"
+    given = given if is_numbers else plain(given)
     if isinstance(given, xr.DataArray):
         size = quantity(name, f"1 {given.attrs['units']}", unit).value if "units" in given.attrs else 1.0
         return given.drop_attrs(deep=False) * size
-    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given  # of pint
-    if hasattr(given, "tolist") and np.ndim(given) and np.asarray(given).dtype.kind in "OUT":  # texts
-        given = given.tolist()
     if isinstance(given, (list, tuple)):
         return [_si(name, one, unit) for one in given]
     if not (isinstance(given, str) or has_unit(given)):
@@ -139,7 +139,7 @@ def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:
     found, scales = {}, _scales(R, E2_star)
     for name, given in parameters.items():
         if name not in PARAMETERS:
-            raise ValueError(f'"{name}" is not a parameter{suggest(name, PARAMETERS)}')
+            raise ValueError(no_parameter(name, PARAMETERS))
         if VOCABULARY[name].powers == (0, 0):
             found[name] = given
         else:

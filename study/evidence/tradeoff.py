@@ -19,9 +19,10 @@ from solver.contact.results import difference
 
 from ..data.provenance import provenance
 from ..files.examine import examine
-from ..files.results_file import open_results, set_aside, write
+from ..files.results_file import open_results, write
 from ..paper import paper_error
 from ..paper.uniform import solve_uniform, uniform_mesh
+from ..spec.definition import StudyError
 from .problem_sets import SETS
 
 REFERENCE = 1e-11  # rtol of the solutions with which all others are compared
@@ -221,16 +222,16 @@ def results(folder, size: int = SIZE, force: bool = False, command: str = "") ->
 
     force : make them anew in any case
 
-    A damaged file is kept aside. Raises Unusable for a file that roughcoat has not written.
+    A damaged file is kept aside. Raises Unusable for a file that roughcoat has not written, StudyError for the cases of
+    a study.
     """
     path = Path(folder) / "tradeoff.nc"
     found = examine(path)
     if found.kind in ("foreign", "unreadable"):
         found.raise_if_bad()
+    if found.sizes:
+        raise StudyError([f"{path}: holds the cases of a study: move it away, or use --results DIR"])
     if force or not found.good or found.digest != digest(plan(WAYS, size)):
         path.parent.mkdir(parents=True, exist_ok=True)
-        dataset = measure(size, command=command)
-        if found.kind == "damaged":
-            set_aside(path)
-        write(dataset, path)
+        write(measure(size, command=command), path, found)
     return open_results(path)

@@ -4,11 +4,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data import derived
+from ..data.assumptions import assumption_texts
 from ..data.dataset import broken
 
 MOST = 0.75  # of the axis: more is not shaded, the curves and the legend would stand on grey
-ASSUMPTION_TEXT, OF_WHICH, GREYS = (derived.assumption_texts(key) for key in ("text", "of_which", "grey"))
+ASSUMPTION_TEXT, OF_WHICH, GREYS = (assumption_texts(key) for key in ("text", "of_which", "grey"))
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
@@ -58,11 +58,14 @@ def note_violations(axes, validity: dict[str, xr.DataArray]) -> None:
 
 
 def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndarray]]:
-    """Assumption -> curve -> where it is broken, of the curves that break it; in the order of the masks."""
+    """Assumption -> curve -> where it is broken, of the curves that break it; in the order of the masks.
+
+    A results file of an earlier version has fewer masks.
+    """
     found = {name: broken(flags) for name, flags in validity.items()}
     of_curves = {
-        meaning: {name: where[meaning] for name, where in found.items() if where[meaning].any()}
-        for meaning in next(iter(found.values()))
+        meaning: {name: where[meaning] for name, where in found.items() if meaning in where and where[meaning].any()}
+        for meaning in dict.fromkeys(meaning for where in found.values() for meaning in where)
     }
     return {meaning: curves for meaning, curves in of_curves.items() if curves}
 

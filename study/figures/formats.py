@@ -5,8 +5,11 @@ import io
 import re
 from pathlib import Path
 
-from ..files.atomic import replacing
+from ..files.atomic import remove_temporary, replacing
 from .registry import Table
+
+STALE = 3600  # seconds after which nobody is writing a temporary file any more: a figure takes some
+"""A younger one may be that of another program that draws the same figure."""
 
 
 def as_text(table: Table, rows: list[tuple]) -> str:
@@ -51,8 +54,9 @@ def csv_text(headings, rows) -> str:
 
 
 def write(path: Path, content: str | bytes) -> Path:
-    """Write a file whole or not at all, since `outdated` takes it for whole, and its folder; returns the path."""
+    """Write a file whole or not at all, and its folder; returns the path."""
     path.parent.mkdir(parents=True, exist_ok=True)
+    remove_temporary(path, STALE)
     with replacing(path) as temporary:
         temporary.write_bytes(content.encode() if isinstance(content, str) else content)
     return path

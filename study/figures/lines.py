@@ -19,7 +19,7 @@ from ..specimen.quantities import quantity
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
 from .marks import as_points, shades, spaced_by_factors, tick_decades
 from .registry import Columns, joined
-from .style import style
+from .style import StyledFigure, style
 
 MOST_PANELS, MOST_NAMES = 12, 12  # of a figure, of its legend
 BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
@@ -33,15 +33,16 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
     hue : name of a dimension, or "label" of the cases; **where : values to be drawn alone, such as bonding="bonded"
 
-    It is one of pyplot. Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps.
-    Where the dataset has the spread of `y`, a band shows ± one standard deviation.
+    A notebook shows it where it is the last value of a cell; `savefig` writes it. It is none of pyplot, and looks the
+    same whatever the settings of matplotlib are.
+
+    Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps. Where the dataset has
+    the spread of `y`, a band shows ± one standard deviation.
 
     Raises StudyError: no dataset, or a stacked one, a name is not there, a value neither, or more than 12 panels.
     """
-    from matplotlib import pyplot
-
     with style():
-        return drawn(dataset, x, y, hue, where, pyplot.figure)[0]
+        return drawn(dataset, x, y, hue, where, StyledFigure)[0]
 
 
 def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Callable[..., Figure]) -> tuple:

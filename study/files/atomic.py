@@ -2,18 +2,20 @@
 
 import os
 import secrets
-from collections.abc import Iterator
+import time
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from glob import escape
 from pathlib import Path
 
 
 @contextmanager
-def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
+def replacing(path: Path, folder: Path | None = None, place: Callable | None = None) -> Iterator[Path]:
     """A temporary path to write to. When the `with` block ends well, the file is flushed to disk and becomes `path`.
 
     folder : where the temporary file is; by default, or if it is a link, which may lead to another file system,
         beside `path`. Its name is random, since the process id may be the same on two machines that share a folder
+    place : is called with the temporary path and `path`, and gives the file its name; by default `os.replace`
     """
     folder = None if folder and folder.is_symlink() else folder
     if path.is_symlink():
@@ -23,7 +25,7 @@ def replacing(path: Path, folder: Path | None = None) -> Iterator[Path]:
         yield temporary
         with open(temporary, "rb+") as file:
             os.fsync(file.fileno())  # a rename may reach the disk before the data do
-        os.replace(temporary, path)
+        (place or os.replace)(temporary, path)
     except BaseException:
         temporary.unlink(missing_ok=True)
         raise
@@ -35,11 +37,13 @@ def target(path: Path) -> Path:
     return Path(os.path.realpath(path)) if path.is_symlink() else path
 
 
-def remove_temporary(path: Path) -> None:
-    """Remove the temporary files beside `path` of writers that were killed."""
+def remove_temporary(path: Path, age: float = 0.0) -> None:
+    """Remove the temporary files beside `path` of writers that were killed, those that are `age` seconds old."""
     path = target(path)
     for found in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
-        found.unlink(missing_ok=True)
+        with suppress(FileNotFoundError):  # its writer has just ended
+            if time.time() - found.stat().st_mtime >= age:
+                found.unlink()
 
 
 def make_folder(path: Path) -> None:

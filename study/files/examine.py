@@ -5,7 +5,7 @@ import os
 import pickle
 import subprocess
 from collections.abc import Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from pathlib import Path
 
@@ -40,6 +40,7 @@ class Condition:
     sizes : of the dimensions of the cases, in order
     damage : names of the checksums that do not fit, see `checksums`
     intact : (N,) whether the numbers of each case can be trusted; None if not all variables were examined
+    seen : its `stamp` before it was examined, None where there was no file
     """
 
     path: Path
@@ -51,6 +52,7 @@ class Condition:
     sizes: dict[str, int] = field(default_factory=dict)
     damage: tuple[str, ...] = ()
     intact: np.ndarray | None = None
+    seen: tuple | None = None
 
     @property
     def good(self) -> bool:
@@ -73,15 +75,16 @@ def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
     A file whose seal is broken or missing (see `seal`) is examined in a child process, which takes a second more.
     """
     path = Path(path)
+    seen = stamp(path)
     try:
         check_regular(path)
         if not is_whole(path, LARGE if columns is not None else float("inf")):
-            return examined_in_child(path, columns, stamp(path))
+            return replace(examined_in_child(path, columns, seen), seen=seen)
     except (FileNotFoundError, Unusable):
         pass  # `examined` finds the same, and says it
     except OSError as error:
-        return Condition(path, "unreadable", f"cannot be read: {error.strerror}")
-    return examined(path, columns)
+        return Condition(path, "unreadable", f"cannot be read: {error.strerror}", seen=seen)
+    return replace(examined(path, columns), seen=seen)
 
 
 def stamp(path: Path) -> tuple | None:

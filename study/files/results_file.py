@@ -1,6 +1,8 @@
 """Results files as datasets: made, written and opened."""
 
+import hashlib
 import os
+from functools import partial
 from itertools import count
 from pathlib import Path
 
@@ -9,12 +11,15 @@ import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
 from ..data.dataset import without_fill_values
+from ..data.provenance import OF_THE_RUN
 from ..physical.index import searchable
+from ..spec.definition import StudyError
 from ..spec.laws import recall
-from .atomic import replacing, target
-from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head
-from .examine import examine
-from .netcdf import File, read, read_lazily
+from .access import Unusable
+from .atomic import replacing
+from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head, parsed
+from .examine import Condition, examine, stamp
+from .netcdf import File, check_regular, read, read_lazily
 from .seal import seal
 
 
@@ -81,9 +86,13 @@ def add_checksums(file: File, rows: CaseDigests, cases: dict[str, str]) -> None:
     file.define({}, {ATTRIBUTE: as_text(found)})
 
 
-def write(dataset: xr.Dataset, path: Path) -> None:
-    """Write a small dataset. The file is complete or does not exist."""
-    with replacing(path) as temporary:
+def write(dataset: xr.Dataset, path: Path, there: Condition | None = None) -> None:
+    """Write a small dataset. The file is complete or does not exist.
+
+    there : the file at `path` as it was when the dataset was begun, see `put`; None: whatever is there is replaced
+    """
+    place = partial(put, there, dataset.attrs["study_digest"]) if there else None
+    with replacing(path, place=place) as temporary:
         with File(temporary, "w", path) as file:
             create(file, dataset, dataset, {})
             for name, array in dataset.data_vars.items():
@@ -92,19 +101,77 @@ def write(dataset: xr.Dataset, path: Path) -> None:
         seal(temporary)
 
 
-def set_aside(path: Path) -> Path:
-    """Keep a damaged file, which is about to be replaced, under the name NAME.nc.damaged; returns its path.
+def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
+    """Give a complete file its place, where `there` was found when its numbers were begun. A damaged file is set aside.
 
-    Behind a symbolic link it is the file to which the link leads, since that will be replaced.
+    A file that has appeared or changed meanwhile stays, unless it has the results of the same study, of this `digest`.
+    Then StudyError says under which other name the complete file is.
     """
-    path = target(path)
-    names = (f"{path.name}.damaged{f'-{number}' * (number > 1)}" for number in count(1))
-    kept = next(path.with_name(name) for name in names if not path.with_name(name).exists())
+    now = stamp(path)
+    if now and not (there.seen and now[:3] == there.seen[:3]) and not _is_of(path, digest):
+        raise _kept(temporary, path, there.path)
+    if now and there.kind == "damaged":
+        set_aside(path)
+    if not now:
+        try:
+            os.link(temporary, path)  # unlike a rename it replaces nothing that appears just now
+        except FileExistsError:
+            if not _is_of(path, digest):
+                raise _kept(temporary, path, there.path) from None
+        except OSError:
+            pass  # no hard links on this file system
+        else:
+            temporary.unlink()
+            return
+    os.replace(temporary, path)
+
+
+def _is_of(path: Path, digest: str) -> bool:
+    found = examine(path, ())
+    return found.good and found.digest == digest
+
+
+def _kept(temporary: Path, path: Path, called: Path) -> StudyError:
+    """The error to raise when the file at `path` must stay, after the complete file has got another name beside it."""
+    kept = _named(temporary, path, "computed")
+    what = f"{called}: has appeared or changed while its results were computed"
+    return StudyError([f"{what}, and stays; they are in {kept}: move one of the two away"], code=1)
+
+
+def set_aside(path: Path) -> Path:
+    """Keep a damaged file, which is about to be replaced, under the name NAME.nc.damaged; returns its path."""
+    return _named(path, path, "damaged")
+
+
+def _named(file: Path, path: Path, word: str) -> Path:
+    """Give a file the name of `path` and a word, such as NAME.nc.damaged-2; returns it. It replaces nothing."""
+    names = (f"{path.name}.{word}{f'-{number}' * (number > 1)}" for number in count(1))
+    while True:
+        kept = path.with_name(next(names))
+        if os.path.lexists(kept):
+            continue
+        try:
+            os.link(file, kept)
+        except FileExistsError:  # just now
+            continue
+        except OSError:  # no hard links on this file system
+            os.rename(file, kept)
+        return kept
+
+
+def numbers_digest(path: Path) -> str:
+    """sha256 of what a results file holds, but for OF_THE_RUN: of its checksums, of all its bytes if it has none."""
+    check_regular(path)
     try:
-        os.link(path, kept)
-    except OSError:  # no hard links on this file system
-        os.rename(path, kept)
-    return kept
+        with File(path) as file:
+            text = str(file.attribute(ATTRIBUTE)) if ATTRIBUTE in file.attributes() else ""
+    except Unusable:
+        text = ""
+    if not text:
+        return hashlib.sha256(path.read_bytes()).hexdigest()
+    left_out = ("=checksums", *(f"@{name}" for name in OF_THE_RUN))
+    lines = [f"{name} {digits}\n" for name, digits in parsed(text).items() if name not in left_out]
+    return hashlib.sha256("".join(sorted(lines)).encode()).hexdigest()
 
 
 def open_results(path) -> xr.Dataset:

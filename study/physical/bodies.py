@@ -32,7 +32,7 @@ def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
         if getattr(given, "dims", None) in ((), (body,)):  # of earlier results
             given = given.values.tolist()
         errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
-        several = isinstance(given, (list, tuple))
+        several = isinstance(given, list) or (isinstance(given, tuple) and body != "layer")
         try:
             values = given if several else [given]
             if not len(values):
@@ -73,6 +73,8 @@ def _checked(name: Any) -> str | materials.Material:
         return "inf"
     if hasattr(name, "dims"):
         raise LookupError("a DataArray of names is over the dimension of its own name; give a list, or cases")
+    if isinstance(name, tuple):
+        raise LookupError(f"{shown(name)} is a tuple: a list is an axis, a stack of layers is not yet there")
     if not isinstance(name, (str, materials.Material)):
         raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
     return name

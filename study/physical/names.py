@@ -11,6 +11,11 @@ RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infini
 #: What may be infinite, and the texts that say so.
 INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS}
 
+#: The end of a message about `same_piece`.
+NEEDS_NAMES = (
+    "no two of punch, layer and body are of one material by name, such as punch and body of PMMA; leave it out"
+)
+
 
 class CaseValues(list):
     """The values of a parameter, as they were given, over the dimension `case`."""

@@ -11,15 +11,17 @@ import xarray as xr
 
 from ..spec.definition import StudyError
 from ..spec.given import label_slips
-from ..spec.grid import MOVED, equal_values
+from ..spec.grid import MOVED, equal_values, same_labels
 from ..spec.laws import is_parameter
-from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, instead
+from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
+from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown
 from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import equal_cases, impossible, missing, moving_tables
-from .names import CaseValues, QuantityList, dim_of, si
+from .names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
+from .pieces import move, none_alike
 from .scales import make_dimensionless
 from .scene import STEP, Scene
 
@@ -42,29 +44,28 @@ def _has_unit(given: Any) -> bool:
     return any(map(has_unit, given)) if isinstance(given, (list, tuple)) else has_unit(given)
 
 
-def _plain(given: Any) -> Any:
-    """What is of numpy or pandas as a list, or as a single value; all else as it is."""
-    known = hasattr(given, "tolist") and not hasattr(given, "magnitude") and not isinstance(given, xr.DataArray)
-    return given.tolist() if known else given
-
-
-def read(parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True) -> Scene | None:
+def read(
+    parameters: dict, cases: list | None = None, spreads: bool = True, bounds: bool = True, same_piece: bool = False
+) -> Scene | None:
     """The physical scene that the parameters of `study.solve` describe; None if they are dimensionless.
 
     cases : rows of parameters, which become values over the dimension `case`
     spreads : whether the results shall have spreads, for which inputs with spreads are moved
     bounds : whether numbers beyond the bounds of the solver are refused
+    same_piece : whether bodies of one material are one piece, so that their inputs with spreads are moved together
 
     Raises StudyError with a message for each number that cannot be used: no unit, a unit of something else, an unknown
     name, a missing R or modulus.
     """
     rows = cases if isinstance(cases, list) and all(isinstance(row, dict) for row in cases) else []
-    parameters, *rows = ({name: _plain(value) for name, value in table.items()} for table in (parameters, *rows))
+    parameters, *rows = ({name: plain(value) for name, value in table.items()} for table in (parameters, *rows))
     pairs = [pair for table in (parameters, *rows) for pair in table.items()]
     signs = [(name, one) for name, one in pairs if name in SCENE or name in BODIES or _has_unit(one)]
     if not signs:
+        if same_piece:
+            raise StudyError([f"same_piece: {NEEDS_NAMES}"])
         return None
-    scene, errors = Scene(), []
+    scene, errors = Scene(same_piece=same_piece), []
     parameters = _with_rows(parameters, rows, scene, errors)
     parameters, scene.names = with_materials(parameters, errors)
     parameters = _alike(parameters, scene.names, errors)
@@ -72,9 +73,11 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
         if name == "label" and isinstance(given, CaseValues):
             scene.labels = given
             errors += label_slips(given)
+        elif name == "same_piece":
+            errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
         elif name not in SCENE and not is_parameter(name):
             known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * bool(rows)]
-            errors.append(f"{shown(name)} is not a parameter{instead(name, known)}")
+            errors.append(no_parameter(name, known))
         elif name in SCENE or name in _LIMITS or VOCABULARY[name].powers != (0, 0) or _has_unit(given):
             try:
                 _add(scene, name, given)
@@ -82,6 +85,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
                 errors.append(f"{error}{_material(name, given)}")
         else:
             scene.parameters[name] = xr.DataArray(list(given), dims="case") if isinstance(given, CaseValues) else given
+    errors += [f"same_piece: {NEEDS_NAMES}"] * (same_piece and not errors and none_alike(scene.names))
     errors += missing(parameters, {name for name, _ in pairs}, errors)
     errors += [] if errors else impossible(scene) + (equal_cases(scene) if rows else [])
     if errors:
@@ -91,7 +95,7 @@ def read(parameters: dict, cases: list | None = None, spreads: bool = True, boun
         raise StudyError([f"{message}{hint * ('has no unit' in message)}" for message in errors])
     scene.assumed = assumed(parameters, scene.given)
     scene.spreads = scene.spreads if spreads else {}
-    _move(scene)
+    move(scene)
     make_dimensionless(scene)
     errors = moving_tables(scene) + (beyond_bounds(scene, parameters) if bounds else [])
     if errors:
@@ -140,7 +144,7 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
     """
     arrays = {name: given for name, given in parameters.items() if isinstance(given, xr.DataArray)}
     along_itself = {name for name, given in arrays.items() if given.dims == (name,)}
-    materials = {body: (body, texts) for body, (dim, texts) in bodies.items() if dim == body}
+    materials = {body: (body, np.array(texts)) for body, (dim, texts) in bodies.items() if dim == body}
     with_units = {name for name in parameters if name in VOCABULARY and ROWS[name].unit != "1"}
     taken = {MOVED, *SCENE, *BODIES, *with_units} - along_itself - set(materials)  # no dimension may have these names
     # Dimension -> the parameter that gave it first, and its coordinate there; then the same with its length.
@@ -162,13 +166,20 @@ def _alike(parameters: dict, bodies: dict, errors: list[str]) -> dict:
                 errors.append(f"{name} has {length} values along {dim}, {other} has {expected}")
             elif dim in given.coords:
                 other, known = labels.setdefault(dim, (name, given[dim].values))
-                if not np.array_equal(known, given[dim].values):
+                if not same_labels(known, given[dim].values):
                     errors.append(f"{name} has other values of {dim}, or in another order, than {other}")
     own = {dim: dim_of(dim) for dim in along_itself}
     return parameters | {
-        name: given.drop_vars(own, errors="ignore").rename({dim: own[dim] for dim in given.dims if dim in own})
+        name: _bare(given, own).rename({dim: own[dim] for dim in given.dims if dim in own})
         for name, given in arrays.items()
     }
+
+
+def _bare(given: xr.DataArray, own: dict) -> xr.DataArray:
+    """The array without coordinates but those of its dimensions, and without these along the dimensions in `own`, and
+    where they are a MultiIndex: arithmetic of xarray need not carry them (see `carried`)."""
+    stacked = {dim for dim in given.dims if hasattr(given.indexes.get(dim), "levels")}
+    return given.drop_vars({*given.coords} - ({*given.dims} - {*own} - stacked))
 
 
 def _add(scene: Scene, name: str, given: Any) -> None:
@@ -208,7 +219,6 @@ def _add(scene: Scene, name: str, given: Any) -> None:
 
 def _quantities(name: str, given: Any) -> QuantityList | Quantity:
     """The quantities in a list, an array or a single value."""
-    given = list(given) if hasattr(given, "magnitude") and np.ndim(given.magnitude) == 1 else given
     if not isinstance(given, (list, tuple, range)):
         return si(name, given)
     if not len(given):
@@ -227,12 +237,3 @@ def _of_array(name: str, given: xr.DataArray, unit: str) -> xr.DataArray:
     if "units" not in given.attrs:
         raise ValueError(f'{name}: the DataArray has no attribute "units"; {READABLE[unit][0]} needs one')
     return given.drop_attrs() * quantity(name, f"1 {given.attrs['units']}", unit).value
-
-
-def _move(scene: Scene) -> None:
-    """Give inputs with spreads the dimension MOVED: all as given, then each in turn moved up and moved down by STEP."""
-    count = len(scene.spreads)
-    for i, (name, spread) in enumerate(scene.spreads.items()):
-        steps = np.zeros(1 + 2 * count)
-        steps[1 + 2 * i : 3 + 2 * i] = STEP, -STEP
-        scene.given[name] = scene.given[name] + spread * xr.DataArray(steps, dims=MOVED)

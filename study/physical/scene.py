@@ -17,6 +17,7 @@ from .index import searchable
 #: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
 STEP = 0.1
 ASSUMED = "not given: the default"
+SAME_PIECE = "same_piece: bodies of one material are one piece of it"
 #: Results that get no spread.
 _WITHOUT_SPREAD = ("error", "profile_error", "model_error", "residual")
 
@@ -34,6 +35,7 @@ class Scene:
     names : punch, layer, body -> (dimension or "", names of materials along it)
     given_in : coordinate -> the cases that have it, a DataArray; without a layer a case may have none
     assumed : interface and Poisson ratios that count and are not given, so that they have their defaults
+    same_piece : whether bodies of one material are one piece of it
     """
 
     given: dict = field(default_factory=dict)
@@ -43,6 +45,7 @@ class Scene:
     names: dict = field(default_factory=dict)
     given_in: dict = field(default_factory=dict)
     assumed: tuple = ()
+    same_piece: bool = False
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
     unit: Any = 1.0
@@ -58,6 +61,10 @@ class Scene:
             elif isinstance(self.parameters.get(dim), list):
                 found[dim] = len(self.parameters[dim])
         return found
+
+    def radii(self) -> dict[str, xr.Variable]:
+        """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} where R was given."""
+        return {name: _variable(self.given[name] / self.R) for name in ("R1", "R2") if name in self.given}
 
     def within(self, window: dict[str, slice]) -> "Scene":
         """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
@@ -86,12 +93,13 @@ class Scene:
                 results |= _spread(name, found, parts.variables.get("model_used"))
                 found = found.isel({MOVED: 0})
             (coords if name in parts.coords else results)[name] = found
-        coords |= {name: _coordinate(name, value) for name, value in self.given.items()}
+        coords |= {name: _coordinate(name, self._as_given(name, value)) for name, value in self.given.items()}
         for name, value in self.spreads.items():
             coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
         for body, (dim, texts) in self.names.items():
             values = texts if dim else texts[0]
-            coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"})
+            about = {"comment": SAME_PIECE} if self.same_piece and self.spreads else {}
+            coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"} | about)
         for name, there in self.given_in.items():
             if name in coords:
                 coords[name] = coords[name].where(there.variable, "" if name == "layer" else np.nan)
@@ -101,6 +109,13 @@ class Scene:
             coords[name].attrs["comment"] = ASSUMED
         attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
         return searchable(Parts(self._renamed(results), self._renamed(coords), attributes).dataset())
+
+    def _as_given(self, name: str, value: Any) -> Any:
+        """An input over the dimensions in which it was given. Where it was moved with another body it has more."""
+        if MOVED not in getattr(value, "dims", ()):
+            return value
+        own = getattr(self.spreads.get(name, value), "dims", ())
+        return value.isel({dim: 0 for dim in value.dims if dim not in own or dim == MOVED})
 
     def _renamed(self, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
         """The variables over the dimensions that the results have."""
@@ -116,9 +131,8 @@ def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
 
 
 def _coordinate(name: str, value: Any, long_name: str = "") -> xr.Variable:
-    """SI values of the input `name`, or their spreads, as given: with the unit, without the dimension MOVED."""
-    found = _variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
-    return found.isel({MOVED: 0}) if MOVED in found.dims else found
+    """SI values of the input `name`, or their spreads, as given, with the unit."""
+    return _variable(value, {"long_name": long_name or ROWS[name].long_name} | _units(ROWS[name].unit))
 
 
 def _variable(value: Any, attributes: dict | None = None) -> xr.Variable:
@@ -146,7 +160,8 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
 def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[str, xr.Variable]:
     """{"NAME_spread": standard deviation of a result}, {} for a result that gets none.
 
-    It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs.
+    It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs. Inputs of one
+    piece are moved at once, so that they count as one.
 
     used : `model_used`, None of coordinates alone. On the base auto the cases moved up and down may be solved by two
         models, and a step from one model to another is no derivative. Then the case as given is compared with the moved

@@ -18,11 +18,11 @@ from ..spec.grid import axis_values
 from ..spec.identity import digest_of_array
 from ..spec.laws import is_parameter
 from ..spec.sample import LIMITS, divisor, draw
-from ..spec.vocabulary import NUMERICS, ROWS, SCENE, VOCABULARY, Parameter, si_unit
+from ..spec.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
 from .bodies import BODIES, with_materials
-from .names import CaseValues, QuantityList, dim_of, si
+from .names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
@@ -38,7 +38,12 @@ def read(path) -> Definition:
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
+    model = tables.get("model")
+    model = model if isinstance(model, dict) else {}
+    same_piece = model.get("same_piece", False)
     if not _has_units(tables):
+        if "same_piece" in model:
+            raise definition.refusal(where, [f"[model] same_piece: {NEEDS_NAMES}"])
         return definition.from_tables(tables, name, text, where)
     from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
 
@@ -49,9 +54,12 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
         raise definition.refusal(where, draft.errors)
     spreads, errors, scene = given["output"].get("spreads", True), draft.errors, None
     try:
-        scene = read_scene(parameters, tables.get("cases"), spreads is True, bounds=len(errors) == before)
+        right = len(errors) == before
+        scene = read_scene(parameters, tables.get("cases"), spreads is True, right, same_piece is True)
     except StudyError as error:
         errors += error.messages
+    if not isinstance(same_piece, bool):
+        errors.append(f"[model] same_piece = {shown(same_piece)}: must be true or false")
     if not isinstance(spreads, bool):
         errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
     if scene and scene.spreads and given["output"].get("dtype") == "float32":
@@ -94,7 +102,8 @@ def _has_units(tables: dict) -> bool:
 
 def _parameters(draft: Draft, given: dict) -> dict:
     """The parameters of [model], [axes] and [sample], ranges as lists of their values; messages go to the draft."""
-    errors, model, axes = draft.errors, given["model"], given["axes"]
+    errors, axes = draft.errors, given["axes"]
+    model = {name: value for name, value in given["model"].items() if name != "same_piece"}  # which is no parameter
     sample = _sampled(given["sample"], draft) if "sample" in given else {}
     if sample and "cases" in given:
         errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
@@ -154,7 +163,7 @@ def _sampled(table: Any, draft: Draft) -> dict[str, CaseValues | QuantityList]:
             if isinstance(raw, dict):
                 in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
         elif name not in LIMITS:
-            errors.append(f"[sample] {shown(name)} is not a parameter")
+            errors.append(no_parameter(name, [*PARAMETERS, *SCENE, *BODIES], "[sample] "))
     if len(errors) > before:
         return {}
     return {

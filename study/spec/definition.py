@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from ..specimen.foreign import plain
 from ..terminal import counted, on_one_line, shown
 from .given import MOST_MESSAGES, Draft
 from .grid import MOVED, Grid, usual_block
 from .identity import digest_of, law_versions
 from .toml_text import hint, text_in
-from .vocabulary import NUMERICS, finite, names, suggest
+from .vocabulary import NUMERICS, absent, finite, names, suggest
 
 POINTS = 33  # of a profile, when a study does not say it
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
@@ -150,7 +151,8 @@ def new_draft(tables: dict, where: str) -> tuple[Draft, dict]:
 
 def _no_section(key: str, value: Any) -> str:
     """A message about a key at the top of the file: a parameter, say, since the line [model] is missing."""
-    near = suggest(key, SECTIONS)
+    lacking = absent(key)
+    near = f"; {lacking}" if lacking else suggest(key, SECTIONS)
     below = near.startswith("; known") and not isinstance(value, (dict, list))
     return f"{shown(key)} is not a section{near}{'; parameters stand below [model] or [axes]' * below}"
 
@@ -198,7 +200,7 @@ def refusal(where: str, errors: list[str]) -> StudyError:
 
 def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
     """Names of the profiles to store, from true, false or their list; in the order of the vocabulary."""
-    known = names("profile")
+    known, profiles = names("profile"), plain(profiles)
     if isinstance(profiles, bool):
         return known if profiles else ()
     if not isinstance(profiles, (list, tuple)) or not set(map(str, profiles)) <= set(known):
@@ -210,10 +212,11 @@ def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
 
 def profile_points(x, errors: list[str]) -> np.ndarray:
     """Points r/a from their number or their list: increasing from 0 to 1."""
-    points = np.asarray(x).tolist() if hasattr(x, "dtype") else x
+    points = plain(x)
+    points = points.values.tolist() if hasattr(points, "dims") else points
     if type(points) is int and 2 <= points <= 10_000:
         return np.linspace(0.0, 1.0, points)
-    if not isinstance(points, (list, tuple)) or not all(map(finite, points)):
+    if not isinstance(points, (list, tuple, range)) or not all(map(finite, points)):
         errors.append(f"x = {shown(x)}: must be a whole number in [2, 10000] or a list of numbers from 0 to 1")
         return np.array([])
     found = np.array(points, dtype=float)

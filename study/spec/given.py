@@ -5,13 +5,13 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from ..terminal import shown
+from ..specimen.foreign import plain
 from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing, slips_of_laws
 from .fitted import fitted, wants_a_fit
-from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, twins
+from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, same_labels, twins
 from .laws import is_parameter, law_names, update_vocabulary
 from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, instead
+from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
 MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
@@ -76,12 +76,10 @@ class Draft:
 
     def of_any_form(self, name: str, given) -> None:
         """A parameter given in Python: a DataArray, a 1-D sequence or a scalar."""
+        given = plain(given)
         if hasattr(given, "dims") and hasattr(given, "shape"):  # a Dataset has no shape
             self.array(name, given)
-            return
-        if hasattr(given, "tolist"):  # numpy and pandas
-            given = given.tolist()
-        if isinstance(given, (list, tuple, range)):
+        elif isinstance(given, (list, tuple, range)):
             self.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless
         else:
             self.scalar(name, given, "")
@@ -171,8 +169,8 @@ class Draft:
         place = f"{section} " if section else ""
         if not is_parameter(name):
             known = [*PARAMETERS, *["label"] * (section == "[[cases]]")]
-            near = instead(name, known) if len(self.errors) < MOST_MESSAGES else ""  # later ones are not shown
-            self.errors.append(f"{place}{shown(str(name))} is not a parameter{near}")
+            later = len(self.errors) >= MOST_MESSAGES  # and not shown
+            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, known, place))
         elif section == "[model]" and name in NUMERICS:
             self.errors.append(f"{place}{name} belongs in [numerics]")
         elif name in self.sections:
@@ -222,5 +220,5 @@ class Draft:
                 self.errors.append(f"{name} is empty: must have at least one value")
             elif size != self.sizes[dim]:
                 self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
-            elif coordinate is not None and owner is not None and not np.array_equal(owner[1], coordinate):
+            elif coordinate is not None and owner is not None and not same_labels(owner[1], coordinate):
                 self.errors.append(f"{name} has other values of {dim} than another parameter")

@@ -214,6 +214,23 @@ def equal_values(name: str, values: list, written: Callable = shown) -> list[str
     ]
 
 
+def same_labels(one: np.ndarray, other: np.ndarray) -> bool:
+    """Whether two coordinates have the same values in the same order. Missing ones, such as NaN, are the same."""
+    if one.shape != other.shape:
+        return False
+    kinds = {one.dtype.kind, other.dtype.kind}
+    if "O" not in kinds:
+        return np.array_equal(one, other, equal_nan=kinds <= {*"fcmM"})
+    return all(map(_same, one.tolist(), other.tolist()))
+
+
+def _same(one: object, other: object) -> bool:
+    try:
+        return one is other or bool(one == other) or bool(one != one and other != other)
+    except (TypeError, ValueError):  # of pandas.NA, which is neither equal nor unequal
+        return False
+
+
 def quoted(name: str, table: dict) -> str:
     """An entry of a table as a message quotes it: "num = 3", or "num is missing"."""
     return f"{name} = {shown(table[name])}" if name in table else f"{name} is missing"

@@ -3,6 +3,7 @@
 from contextlib import suppress
 
 from solver import laws
+from solver.laws.own_table import PREFIX
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 
 from .vocabulary import PARAMETERS, VOCABULARY, Entry, names
@@ -38,9 +39,12 @@ def law_names(given: list) -> list:
 
 
 def recall(versions: str) -> None:
-    """Register laws of results, a line "NAME VERSION" for each, that are not known but installed, or a table."""
+    """Register laws of results, a line "NAME VERSION" for each, that are not known but installed.
+
+    A table of one's own is not read: whoever sends a results file must not choose which files are opened.
+    """
     for line in versions.splitlines():
-        if (name := laws.name_in(line)) not in laws.LAWS:
+        if (name := laws.name_in(line)) not in laws.LAWS and not name.startswith(PREFIX):
             with suppress(ValueError):  # then it stays unknown
                 law_names([name])
 

@@ -2,6 +2,7 @@
 
 import errno
 import re
+import tomllib
 from pathlib import Path
 
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
@@ -22,10 +23,25 @@ def text_in(path: Path) -> str:
     if len(raw) > LARGEST_FILE:
         raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
     text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    _check_keys(text)
+    return text
+
+
+def _check_keys(text: str) -> None:
+    """Raise ValueError for a key of too many parts."""
     long = LONG_KEY.search(text)
     if long:
         raise ValueError(f"a key has more than {MOST_PARTS} parts (at line {text.count(chr(10), 0, long.start()) + 1})")
-    return text
+
+
+def same_tables(one: str, other: str) -> bool:
+    """Whether the texts of two study files say the same, but for the title, comments and the order of lines."""
+    try:
+        _check_keys(one)
+        _check_keys(other)
+        return one == other or tomllib.loads(one) | {"title": ""} == tomllib.loads(other) | {"title": ""}
+    except (ValueError, RecursionError):
+        return False
 
 
 def hint(text: str, reason: str) -> str:

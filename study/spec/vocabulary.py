@@ -16,6 +16,8 @@ from solver.parameters import CONTROL, Parameter, among
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed as are_within
 
+from ..terminal import shown
+
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
 NOT_RUN = 127
@@ -80,6 +82,7 @@ def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = (
 
 
 LISTED = 40  # most names that a message lists
+LONGEST = 100  # most letters of a wrong name that are compared with others
 
 
 def entries(tables: dict) -> dict[str, Entry]:
@@ -94,6 +97,10 @@ SCENE = entries({"scene": _TABLES.pop("scene")})
 VOCABULARY = entries(_TABLES)
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Both, and with them the parameters of registered laws."""
+
+
+_NOT_THERE = tomllib.loads((files(__package__) / "not_there.toml").read_text(encoding="utf-8"))
+_RESULT = _NOT_THERE["results"]["says"]
 
 
 def names(*roles: str) -> tuple[str, ...]:
@@ -155,7 +162,7 @@ def check(own: Parameter, value) -> str:
         return f"must be a finite number, {allowed(own).removeprefix('must be ')}"
     if own.whole and value != int(value):
         return "must be a whole number"
-    return "" if are_within(own, value).all() else allowed(own)
+    return "" if are_within(own, float(value)).all() else allowed(own)  # float: a Decimal may trap a comparison
 
 
 def finite(value) -> bool:
@@ -167,15 +174,38 @@ def finite(value) -> bool:
         return False
 
 
-def instead(name: str, known) -> str:
-    """The end of a message about a name that is no parameter."""
-    return "; of the results P, a or D may be given" if name in names("result") else suggest(name, known)
+def no_parameter(name: str, known, place: str = "") -> str:
+    """The message about a name that is no parameter: what is called so here, what the model lacks, or a name like it.
+
+    place : what stands before the name, such as "[model] "; known : the names to propose
+    """
+    lacking = absent(name)
+    if lacking == _RESULT:
+        search = "solve for several P, which become an axis, and interpolate in it, or find P by scipy.optimize.brentq"
+        lacking += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
+    return f"{place}{shown(str(name))} is not a parameter{f'; {lacking}' if lacking else suggest(name, known)}"
+
+
+def absent(name: str) -> str:
+    """What not_there.toml says of a name that is no parameter, "" if nothing; results are in it too."""
+    if name in names("result"):
+        return _RESULT
+    word = _as_word(str(name)[:LONGEST])
+    return next((_ABSENT[one] for one in (name, word, word.rstrip("0123456789")) if one in _ABSENT), "")
+
+
+def _as_word(name: str) -> str:
+    """A name of three letters or more in small letters, without blanks and underscores; a shorter one as it is."""
+    return name.replace("_", "").replace(" ", "").lower() if len(name) > 2 else name
+
+
+_ABSENT = {_as_word(word): entry["says"] for entry in _NOT_THERE.values() for word in entry["words"]}
 
 
 def suggest(word: str, known) -> str:
     """The end of a message: '; did you mean "Nbar"?' when a known word is near, otherwise what is known."""
     lower = {name.lower(): name for name in known}
-    near = difflib.get_close_matches(str(word).lower()[:100], lower, n=1, cutoff=0.6)
+    near = difflib.get_close_matches(str(word).lower()[:LONGEST], lower, n=1, cutoff=0.6)
     if near:
         return f'; did you mean "{lower[near[0]]}"?'
     listed = list(known)

@@ -106,7 +106,7 @@ def measure(scan: Scan, *, method="moments", form="plane", cutoff=None) -> Rough
         "Gaussian surface",
     }
     iso_Ra = float(np.mean(np.abs(z - z.mean())))
-    notes = tuple(_notes(z, scan.steps, along, m, found))
+    notes = scan.notes + tuple(_notes(z, scan.steps, along, m, found))
     texts = {"method": how[method], "filter": filtered, "resolution": _resolution(scan), "notes": notes}
     return Roughness(found.density, 1 / found.curvature, found.spread, iso_Ra, **texts)
 

@@ -7,7 +7,7 @@ import math
 import numbers
 import re
 from dataclasses import dataclass
-from decimal import Decimal
+from decimal import ROUND_HALF_EVEN, Context, Decimal, DivisionByZero, InvalidOperation, Overflow, localcontext
 from functools import cache, lru_cache
 from typing import Any
 
@@ -24,6 +24,9 @@ READABLE = {
     "1": ("a pure number", (("", 1.0),)),
 }
 LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there
+#: The digits that texts are read with, whatever the caller has set for its own `decimal`: 28, Python's default, is far
+#: more than a float holds. Every field is said, since what is left out is taken from `decimal.DefaultContext`.
+_EXACT = Context(28, ROUND_HALF_EVEN, -999999, 999999, 1, 0, [], [DivisionByZero, InvalidOperation, Overflow])
 _SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
 _UNIT_OR_SPREAD = re.compile(rf"(?![eE][-+]?\d)[^\W\d_]|[%°]|{_SPREAD.pattern}")  # the e of "1,2e-5" is no unit
@@ -59,11 +62,16 @@ class Quantity:
 
 
 def has_unit(given: Any) -> bool:
-    """Whether something is a quantity of pint, or a text of a number and, behind it, a unit or a spread."""
+    """Whether something is a quantity of pint, a `ufloat`, or a text of a number and, behind it, a unit or a spread."""
     if isinstance(given, str):
         number = _NUMBER.match(given.strip())
         return bool(number) and bool(_UNIT_OR_SPREAD.search(given.strip(), number.end()))
-    return hasattr(given, "magnitude") and hasattr(given, "to")
+    return (hasattr(given, "magnitude") and hasattr(given, "to")) or _is_unsure(given)
+
+
+def _is_unsure(number: Any) -> bool:
+    """Whether something is a number with a standard deviation: a `ufloat` of the package uncertainties."""
+    return hasattr(number, "nominal_value") and hasattr(number, "std_dev") and not hasattr(number, "magnitude")
 
 
 def unit_in(given: Any) -> str:
@@ -75,32 +83,48 @@ def unit_in(given: Any) -> str:
 
 
 def quantity(name: str, given: Any, unit: str) -> Quantity:
-    """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number.
+    """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number or a `ufloat`.
 
     name : what the number is called, for messages
-    given : text, pint quantity or number
+    given : text, number, `ufloat`, or quantity of pint; one that is measured (a `ufloat` with a unit) has a spread
     unit : one of READABLE: the SI unit of the result
 
     Raises ValueError: there is no number or no unit, or the unit is of something else, which the message names.
     """
+    with localcontext(_EXACT):
+        return _quantity(name, given, unit)
+
+
+def _quantity(name: str, given: Any, unit: str) -> Quantity:
     what, multiples = READABLE.get(unit, (f"a number of {unit}", ((unit, 1.0),)))
     example = f"2 {multiples[min(1, len(multiples) - 1)][0]}"
     wanted = f'must be {what}, such as "{example}"' if unit != "1" else "must be a number without a unit"
-    if isinstance(given, (numbers.Real, Decimal)) and not isinstance(given, bool):
-        if unit != "1":
-            raise ValueError(f"{name} = {shown(given)} has no unit: {wanted}")
-        try:
-            return Quantity(float(given))
-        except OverflowError as error:
-            raise ValueError(f"{name} = {shown(given)}: must be finite") from error
     if isinstance(given, str):
         return _from_text(name, _MINUS.sub("-", given.strip()), unit, wanted)
-    if not has_unit(given):
+    is_number = isinstance(given, (numbers.Real, Decimal)) and not isinstance(given, bool)
+    if unit != "1" and (is_number or _is_unsure(given)):
+        raise ValueError(f"{name} = {shown(given)} has no unit: {wanted}")
+    if not is_number and not has_unit(given):
         raise ValueError(f"{name} = {shown(given)}: {wanted}")
     try:
-        return Quantity(float(given.to(unit).magnitude))
+        found = given if is_number or _is_unsure(given) else _of_pint(given, unit)
+        value, spread = (found.nominal_value, found.std_dev) if _is_unsure(found) else (found, 0.0)
+        value, spread = float(value), float(spread)
+    except OverflowError as error:
+        raise ValueError(f"{name} = {shown(given)}: must be finite") from error
     except Exception as error:  # its class depends on the registry of the quantity
-        raise ValueError(f"{name} = {given}: {wanted}") from error
+        raise ValueError(f"{name} = {shown(given)}: {wanted}") from error
+    if not 0 <= spread < math.inf:
+        raise ValueError(f"the spread of {name} = {shown(given)}: must be finite and not below 0")
+    return Quantity(value, spread)
+
+
+def _of_pint(given: Any, unit: str) -> Any:
+    """The magnitude, a number or a `ufloat`, of a quantity of pint in `unit`."""
+    number = given.magnitude
+    if hasattr(number, "dtype") and not _is_unsure(number):  # of numpy: 210 GPa of float16 would be infinite in Pa
+        given = type(given)(float(number), given.units)
+    return given.to(unit).magnitude
 
 
 def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
@@ -110,6 +134,8 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if len(text) > LONGEST or len(spread) > 1 or not _NUMBER.match(head):
         bare = '; without brackets, as in "3 ± 0.2 mm"' * (bool(spread) and text.startswith("("))
         raise ValueError(f"{said}: {wanted}{bare}")
+    if spread and (problem := _no_spread(spread[0])):
+        raise ValueError(f"{said}: {problem}")
     if _AMBIGUOUS.search(text):
         raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
     if thousands := _THOUSANDS.match(text):
@@ -118,8 +144,6 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
-    if not number:
-        raise ValueError(f"{said}: behind ± must be a number")
     common = spread[0][number.end() :]
     if common.lstrip().startswith("%"):  # "200 GPa ± 5 %", or "200 ± 5 % GPa", in which pint would read GPa/100
         common = common.replace("%", "", 1).rstrip()
@@ -133,7 +157,14 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
             raise ValueError(f"the spread of {name} = {number[0]} %: must be finite")
         return Quantity(value, spread)
     head = head if has_unit(head) else head + common
-    return Quantity(_si(name, head, unit, wanted), abs(_si(f"the spread of {name}", spread[0], unit, wanted)))
+    return Quantity(_si(name, head, unit, wanted), _si(f"the spread of {name}", spread[0], unit, wanted))
+
+
+def _no_spread(text: str) -> str:
+    """What is wrong with the text behind ±: "" if it begins with a number that may be a standard deviation."""
+    if text.startswith(("-", "−")):
+        return "behind ± must be a number not below 0: leave out its minus sign"
+    return "" if _NUMBER.match(text) else "behind ± must be a number, finite and not below 0"
 
 
 @lru_cache(maxsize=4096)  # reading a text takes half a millisecond
@@ -148,17 +179,25 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
     try:
         found = registry.Quantity(text)
     except Exception as error:  # pint raises many kinds of errors
-        raise ValueError(f'{name} = "{said}": no unit is called like this; {wanted}') from error
+        raise ValueError(f'{name} = "{said}": no unit is called like this{_near(text, unit)}; {wanted}') from error
     if unit != "1" and found.unitless:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
     if unit != "1" and "%" in text:  # "9 um %" were 0.09 um
         raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
     if not found.is_compatible_with(unit):
-        raise ValueError(f'{name} = "{said}" is {_understood(found)}: {wanted}')
+        raise ValueError(f'{name} = "{said}" is {_understood(found)}{_near(text, unit)}: {wanted}')
     value = float(found.to(unit).magnitude)
     if not math.isfinite(value):
         raise ValueError(f'{name} = "{said}": must be finite')
     return value
+
+
+def _near(text: str, unit: str) -> str:
+    """A hint at a unit that is the same but for capitals: "GPa" for "Gpa", "meter" for "Meter"; "" if there is none."""
+    word = text[_NUMBER.match(text).end() :].strip()
+    near = [name for name, _ in READABLE.get(unit, ("", ()))[1] if name.lower() == word.lower() != ""]
+    near += [word.lower()] * (_size(word.lower(), unit) is not None)
+    return f' (did you mean "{near[0]}"?)' if near else ""
 
 
 @lru_cache(maxsize=256)

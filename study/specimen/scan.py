@@ -1,9 +1,12 @@
 """A measured surface: heights on a uniform grid, in metres. What cannot be a measured surface is refused."""
 
+import math
 import numbers
 from dataclasses import dataclass
 
 import numpy as np
+
+from .heights.missing import treated
 
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
@@ -13,6 +16,10 @@ FEWEST = 16
 #: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
 #: atomic force microscope up to 2.7. A steeper scan has other units than the caller says, or is full of spikes.
 STEEPEST = 3.0
+#: What no scan of a rough surface has, unless its unit is another: a size above 1 m (stitched white-light maps and
+#: profilometers reach 0.3 m), heights that spread by less than 1 pm (cleaved mica has 50 pm, the noise of the best
+#: instruments 10 pm), and asperities of a radius above 1 km (a float glass has some metres at its longest waves).
+LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.
 UNEVEN = 0.1
@@ -22,14 +29,18 @@ UNEVEN = 0.1
 class Scan:
     """Heights of a surface. Made by `profile`, `height_map` and `read`, which check them.
 
-    z : heights in m, shape (x) of a profile or (y, x) of a map
+    z : heights in m, shape (x) of a profile or (y, x) of a map; NaN where a point is missing
     steps : distance of the points along each axis of z, m
     name : the file, or what the caller calls it
+    notes : sentences about how it was read, which `measure` passes on
+    huge : whether the limits of size are off, in `measure` too
     """
 
     z: np.ndarray
     steps: tuple[float, ...]
     name: str
+    notes: tuple[str, ...] = ()
+    huge: bool = False
 
     @property
     def sizes(self) -> tuple[float, ...]:
@@ -37,29 +48,57 @@ class Scan:
         return tuple((n - 1) * step for n, step in zip(self.z.shape, self.steps, strict=True))
 
 
-def profile(z, *, x=None, dx=None, unit="m", height_unit=None, name="the profile") -> Scan:
+def profile(
+    z,
+    *,
+    x=None,
+    dx=None,
+    unit="m",
+    height_unit=None,
+    name="the profile",
+    missing: str = "fill",
+    steep: bool = False,
+    huge: bool = False,
+) -> Scan:
     """A profile, from its heights and either their positions or their distance.
 
     z : heights, in height_unit (None: as `unit`)
     x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
     unit, height_unit : one of m, mm, um, nm, pm, angstrom
+    missing, steep, huge : as of `height_map`
 
     Raises ValueError: neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them.
     """
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
     step = dx if x is None else _step(np.asarray(_in_unit(f"{name}: x", x, unit), dtype=float), np.shape(z), name)
-    return _checked(z, (number(f"{name}: dx", step, unit),), unit, height_unit, name)
+    steps = (number(f"{name}: dx", step, unit),)
+    return _checked(z, steps, unit, height_unit, name, missing=missing, steep=steep, huge=huge)
 
 
-def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") -> Scan:
+def height_map(
+    z,
+    *,
+    dx,
+    dy=None,
+    unit="m",
+    height_unit=None,
+    name="the map",
+    missing: str = "fill",
+    steep: bool = False,
+    huge: bool = False,
+) -> Scan:
     """A map of heights z, shape (y, x), in height_unit (None: as `unit`).
 
     dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
     unit, height_unit : one of m, mm, um, nm, pm, angstrom
+    missing : what is done with heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
+        "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
+    steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
+    huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km
 
     Raises ValueError: fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is
-    not positive, an unknown unit, or heights so large that their unit must be another.
+    not positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another.
     """
     dx = number(f"{name}: dx", dx, unit)
     known = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
@@ -67,7 +106,7 @@ def height_map(z, *, dx, dy=None, unit="m", height_unit=None, name="the map") ->
     if dy is None and len(own) == 2 and not np.isclose(*own, rtol=UNEVEN, atol=0):
         raise ValueError(f"{name}: the coordinates of z have steps of {own[0]:g} along x, {own[1]:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
-    return _checked(z, (rows, dx), unit, height_unit, name)
+    return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)
 
 
 def metres(unit: str, name: str) -> float:
@@ -114,44 +153,64 @@ def _step(x: np.ndarray, shape: tuple, name: str) -> float:
     return abs(step)
 
 
-def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str) -> Scan:
+def _checked(z, steps: tuple, unit: str, height_unit: str | None, name: str, *, missing, steep, huge) -> Scan:
     """The scan in metres. Raises ValueError for heights or distances that no scan has."""
-    z = _in_unit(f"{name}: z", z, height_unit or unit)
+    z = _heights(z, len(steps), height_unit or unit, name)
+    if not all(np.isfinite(step) and step > 0 for step in steps):
+        raise ValueError(f"{name}: the distances of its points are {steps}; they must be positive")
+    lateral, vertical = metres(unit, name), metres(height_unit or unit, name)
+    z, notes = treated(z, missing, name)
+    if np.nanmax(z) == np.nanmin(z):
+        raise ValueError(f"{name}: all {z.size} heights equal {np.nanmax(z):g}: there is no roughness to measure")
+    scan = Scan(z * vertical, tuple(float(step) * lateral for step in steps), name, notes, bool(huge))
+    taken = f"Lengths were taken to be in {unit}, heights in {height_unit or unit}"
+    if not huge:
+        _of_a_size(scan, taken)
+    if not steep:
+        _plausible(scan, taken)
+    return scan
+
+
+def _heights(z, dimensions: int, unit: str, name: str) -> np.ndarray:
+    """The heights as numbers in `unit`, NaN where one is missing, of (y, x) or (x)."""
+    z = _in_unit(f"{name}: z", z, unit)
     z = z.transpose("y", "x") if set(getattr(z, "dims", ())) == {"x", "y"} else z  # of xarray
     try:
         # asarray alone would take the heights under a mask for heights
         z = np.ma.filled(z.astype(float), np.nan) if np.ma.isMaskedArray(z) else np.asarray(z, dtype=float)
     except (TypeError, ValueError) as error:
         raise ValueError(f"{name}: the heights are not an array of numbers: {error}") from error
-    if z.ndim != len(steps):
-        raise ValueError(f"{name}: the heights have shape {z.shape}; {len(steps)} dimension(s) are needed")
+    if z.ndim != dimensions:
+        raise ValueError(f"{name}: the heights have shape {z.shape}; {dimensions} dimension(s) are needed")
     if min(z.shape) < FEWEST:
         read = " × ".join(map(str, z.shape))
         raise ValueError(f"{name}: {read} heights; at least {FEWEST} in each direction are needed")
-    bad = np.argwhere(~np.isfinite(z))
-    if bad.size:
-        where = ", ".join(f"{axis} {i + 1}" for axis, i in zip(("row", "column"), bad[0], strict=False))
+    return z
+
+
+def _of_a_size(scan: Scan, taken: str) -> None:
+    """Raise ValueError for lengths that no scan of a rough surface has: their unit must be another."""
+    way_out = f"{taken}: give unit and height_unit as the file has them, or huge=True if it is so"
+    if max(scan.sizes) > LONGEST:
         raise ValueError(
-            f"{name}: {len(bad)} of {z.size} heights are not numbers (NaN), the first in {where}; "
-            "fill them in or cut them away"
+            f"{scan.name}: the scan is {max(scan.sizes):.3g} m long; at most {LONGEST:g} m is taken. {way_out}."
         )
-    if not all(np.isfinite(step) and step > 0 for step in steps):
-        raise ValueError(f"{name}: the distances of its points are {steps}; they must be positive")
-    if np.ptp(z) == 0:
-        raise ValueError(f"{name}: all {z.size} heights equal {z.flat[0]:g}: there is no roughness to measure")
-    lateral = metres(unit, name)
-    scan = Scan(z * metres(height_unit or unit, name), tuple(float(step) * lateral for step in steps), name)
-    _plausible(scan, unit, height_unit or unit)
-    return scan
+    rms = float(np.nanstd(scan.z))
+    if rms < FLATTEST:
+        raise ValueError(
+            f"{scan.name}: the heights spread by {rms:.3g} m (rms); no surface is smoother than {FLATTEST:g} m, 1 pm. "
+            f"{way_out}."
+        )
 
 
-def _plausible(scan: Scan, unit: str, height_unit: str) -> None:
+def _plausible(scan: Scan, taken: str) -> None:
     """Raise ValueError for slopes that no instrument measures: the unit of heights or lengths must be wrong."""
-    span = np.ptp(scan.z)
-    slope = max(np.sqrt(np.mean(np.diff(scan.z, axis=i) ** 2)) / step for i, step in enumerate(scan.steps))
+    span = np.nanmax(scan.z) - np.nanmin(scan.z)
+    differences = [np.diff(scan.z, axis=axis) / step for axis, step in enumerate(scan.steps)]
+    slope = max((math.sqrt(np.nanmean(one**2)) for one in differences if np.isfinite(one).any()), default=0.0)
     if span > max(scan.sizes) or slope > STEEPEST:
         raise ValueError(
             f"{scan.name}: heights span {span:.3g} m on a scan {max(scan.sizes):.3g} m long, with an rms slope of "
-            f"{slope:.3g}; no instrument measures slopes above {STEEPEST:g}. Lengths were taken to be in {unit}, "
-            f"heights in {height_unit}: give unit and height_unit as the file has them, or cut away its spikes."
+            f"{slope:.3g}; no instrument measures slopes above {STEEPEST:g}. {taken}: give unit and height_unit as "
+            "the file has them, cut away its spikes, or take it as it is with steep=True."
         )

@@ -1,201 +1,254 @@
 """Scans from files: text and CSV, .npy, and the formats of instruments by the package SurfaceTopography."""
 
+import contextlib
+import gzip
+import io
 import re
+import warnings
 from pathlib import Path
 
 import numpy as np
 
-from .scan import FEWEST, UNITS, Scan, height_map, metres, profile
+from .scan import FEWEST, Scan, metres, number
+from .scan_grids import columns_of, on_grid, scan_of
+from .scan_headings import check_units, height_metres, stated, without_no_data
+from .scan_texts import Table, table_of, text_of
 
-TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", "")
-#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken; if only whole
-#: numbers stand there, the first line with a decimal mark shows it.
-DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","))
-#: "1,024": this comma may be no decimal mark.
-_THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
+#: Endings of files that are read as text if they are text, and by SurfaceTopography if they are none.
+TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", ".gz", "")
+#: Channels of a curve of force against distance, in small letters.
+_FORCE = ("defl", "zsnsr", "lvdt", "raw", "force")
+_NO_FORMAT = "none of the formats that it knows fits the content"
 
 
-def read(path, *, unit=None, height_unit=None, dx=None, dy=None, columns=None) -> Scan:
+def read(
+    path,
+    *,
+    unit=None,
+    height_unit=None,
+    dx=None,
+    dy=None,
+    columns=None,
+    channel=None,
+    crop=None,
+    missing="fill",
+    steep=False,
+    huge=False,
+) -> Scan:
     """A profile or a map of heights from a file.
 
-    Text and .npy: two columns are a profile, x and z; one column (or one row) is a profile of the distance dx; 16
-    columns or more are a map, a line for each y, of the distances dx and dy. Columns are separated by commas,
-    semicolons, tabs or spaces; the decimal mark is a point or, where commas do not separate, a comma. What stands
-    before the first line of numbers, or behind # and %, is a comment.
+    Text and .npy: two columns are a profile, x and z; one column (or one row) is a profile of the distance dx; three
+    are a map, x, y and z of the points of a grid in any order; 16 columns or more are a map, a line for each y, of the
+    distances dx and dy. Columns are separated by commas, semicolons, tabs or spaces; the decimal mark is a point or,
+    where commas do not separate, a comma. What stands before the first line of numbers, or behind # and %, is a
+    comment. An empty field, nan, Bad, ***, -- and - are missing points. Text may be UTF-8, UTF-16 or packed (.gz).
 
-    Every other ending (.sur, .opd, .x3p, .gwy, …) is the format of an instrument; the package SurfaceTopography reads
-    it, with the lengths and units that the file states: pip install 'roughcoat[topography]'.
+    SDF, SMD and PRF in text, and every other ending (.sur, .opd, .x3p, .gwy, …), have their lengths in the file. The
+    package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'.
 
-    unit : unit of x, dx, dy: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
+    unit : unit of x, y, dx, dy and crop: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
     dx, dy : distance of the points, in unit; dy is dx if it is not given
-    columns : which columns to take, counted from 0: (x, z), or (z,) with dx
+    columns : which columns to take, counted from 0: (x, z), (x, y, z), or (z,) with dx
+    channel : name of the channel to read; None: the first of heights. The notes of the scan name it
+    crop : (x0, x1) or (x0, x1, y0, y1), the part to keep, in unit (m where it is None) or texts with units. x and y are
+        those of the file, or begin with 0 at the first point
+    missing, steep, huge : as of `height_map`
 
     Raises ValueError: the file cannot be read as a scan; the message names the file, what was read, and what is
     allowed; ImportError: the format of an instrument, and SurfaceTopography is not installed.
     """
     path = Path(path)
-    if path.suffix.lower() not in (*TEXT, ".npy"):
-        given = {"height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
-        return _instrument(path, unit, [name for name, value in given.items() if value is not None])
-    table, heading = _npy(path) if path.suffix.lower() == ".npy" else _text(path)
-    if unit is None:
+    ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge}
+    given = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
+    given = {name: value for name, value in given.items() if value is not None}
+    text = text_of(path) if ending in TEXT else None
+    if ending != ".npy" and text is None:
+        return _instrument(path, given, channel, crop, how)
+    if text is not None:
+        return _of_text(path.name, text, given, channel, crop, how)
+    if channel is not None:
+        raise ValueError(f"{path.name}: channel = {channel!r}: .npy has no channels; leave it out")
+    return _of_table(path.name, _npy(path), given, crop, how)
+
+
+def _of_text(name: str, text: str, given: dict, channel: str | None, crop, how: dict) -> Scan:
+    """The scan in a text, of a format that states its lengths or a table of numbers."""
+    known = stated(text, name)
+    table = None if known else table_of(text, name, channel)
+    pixel = None if known else _zygo_pixel(table, "dx" in given, name)
+    if known or pixel:
+        if given or channel is not None:
+            more = ", ".join([*given, *["channel"] * (channel is not None)])
+            raise ValueError(f"{name}: the file states its lengths itself; leave out {more}")
+        if pixel:
+            return _of_table(name, table, {"unit": "m", "height_unit": "um", "dx": pixel}, crop, how)
+        z, steps = known
+        positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
+        return scan_of(name, z, positions, steps=steps, crop=crop, how=how)
+    return _of_table(name, table, given, crop, how)
+
+
+def _zygo_pixel(table: Table, given: bool, name: str) -> float | None:
+    """Metres of a pixel in XYZ of Zygo, where x and y are numbers of pixels and z is in µm; None if it is no such file.
+
+    Raises ValueError: it is one that has no size of a pixel, and no dx is `given`.
+    """
+    lines = dict(table.heading)
+    if not lines.get(1, "").startswith("Zygo XYZ"):
+        return None
+    fields = lines.get(8, "").split()
+    pixel = float(fields[6]) if len(fields) > 6 and re.fullmatch(r"[\d.]+(?:[eE][-+]?\d+)?", fields[6]) else 0.0
+    if not pixel and not given:
+        raise ValueError(f"{name}: x and y are numbers of pixels, and the heading has no size of one: give dx and unit")
+    return pixel or None
+
+
+def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
+    """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
+    if "unit" not in given:
+        heading = table.heading[-1][1] if table.heading else ""
         said = f'. Its heading is "{heading[:80]}".' if heading else ""
         raise ValueError(
-            f"{path.name}: give unit, such as unit='um', and height_unit if heights have another: units are not read "
-            f"from text and .npy{said}"
+            f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
+            f"text and .npy{said}"
         )
-    units = {"unit": unit, "height_unit": height_unit, "name": path.name}
-    width, places = table.shape[1], (0, -1)
-    if columns is not None:
-        table = _picked(table, columns, path.name)
-        places = np.atleast_1d(columns)[[0, -1]]
-    places = places if dx is None else (None, places[1])
-    _as_headed(heading, {"unit": unit, "height_unit": height_unit or unit}, path.name, width, places)
-    if columns is None and table.shape[0] == 1:
-        table = table.T
-    n = table.shape[1]
-    if n >= FEWEST:
-        if dx is None:
-            raise ValueError(f"{path.name}: a map of {table.shape[0]} × {n} heights: give dx (and dy), their distance")
-        for two, line in ((table[:2], "row"), (table[:, :2].T, "column")):
-            first = two[0]
-            if _in_equal_steps(first) and not _in_equal_steps(two[-1]):
-                raise ValueError(
-                    f"{path.name}: the first {line} has equal steps, {first[0]:g}, {first[1]:g}, {first[2]:g} ...: "
-                    "positions or numbers, not heights; take it out of the file"
-                )
-        return height_map(table, dx=dx, dy=dy, **units)
-    if n > 2 or (n == 2) == (dx is not None) or dy is not None:
-        given = "".join(f" with {name} = {value}" for name, value in (("dx", dx), ("dy", dy)) if value is not None)
-        raise ValueError(
-            f"{path.name}: {table.shape[0]} rows of {n} column(s){given}; allowed are "
-            f"two columns (x, z), one column (z) with dx, or {FEWEST} columns and more (a map) with dx and dy. "
-            "Choose among others with columns=(0, 2). A comma cannot separate columns and decimals."
-        )
-    return profile(table[:, -1], x=table[:, 0] if n == 2 else None, dx=dx, **units)
+    unit, height_unit = given["unit"], given.get("height_unit", given["unit"])
+    columns, places = columns_of(table, given, name)
+    dx = number(f"{name}: dx", given["dx"], unit) if "dx" in given else None
+    dy = number(f"{name}: dy", given["dy"], unit) if "dy" in given else dx
+    check_units(table, unit, height_unit, places, name)
+    size, notes = height_metres(table, height_unit, name)
+    z, more = without_no_data(table, columns if columns.shape[1] >= FEWEST else columns[:, -1], name)
+    notes += table.notes + more + (f"channel {table.channel!r}",) * bool(table.channel)
+    z = z * (size / metres(height_unit, name))
+    if z.ndim == 2:
+        positions = [step * np.arange(points) for step, points in zip((dy, dx), z.shape, strict=True)]
+    elif columns.shape[1] == 3:
+        z, positions = on_grid(columns, z, None if dx is None else (dy, dx), name)
+    else:
+        positions = [columns[:, 0] if dx is None else dx * np.arange(len(z))]
+    steps = None if dx is None else [dy, dx][-z.ndim :]
+    return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
 
 
-def _as_headed(heading: str, given: dict[str, str], name: str, width: int, places: tuple) -> None:
-    """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some.
-
-    Where it has one for each of `width` columns, x and z have those at their `places`, None if dx stands for x. A
-    single one is then that of z.
-    """
-    said = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", heading)
-    said = said if len(said) == width else [word for word in said if word in UNITS]
-    of_heights = re.findall(r"Value units: *(\S+)", heading)  # as Gwyddion writes it; of lengths it says nothing
-    for (argument, unit), place in zip(given.items(), places, strict=True):
-        own = of_heights if of_heights and argument == "height_unit" else said
-        if place is None and len(own) in (1, width):
-            continue
-        own = [own[place]] if len(own) == width else own
-        if own and metres(unit, name) not in [UNITS.get(word) for word in own]:
-            raise ValueError(
-                f'{name}: {argument} is {unit}, but the heading has {" and ".join(own)}: "{heading[:80]}". Give unit '
-                "and height_unit as the heading has them, or take its units out of it."
-            )
-
-
-def _in_equal_steps(line: np.ndarray) -> bool:
-    steps = np.diff(line)
-    return bool(steps[0] != 0 and np.ptp(steps) <= 1e-6 * abs(steps[0]))
-
-
-def _picked(table: np.ndarray, columns: tuple, name: str) -> np.ndarray:
-    columns = tuple(columns) if isinstance(columns, (list, tuple)) else (columns,)
-    if len(columns) not in (1, 2) or not all(type(i) is int and 0 <= i < table.shape[1] for i in columns):
-        raise ValueError(
-            f"{name}: columns = {columns}, but the file has the columns 0 to {table.shape[1] - 1}; allowed are two of "
-            "them, for x and z, or one, for z"
-        )
-    return table[:, list(columns)]
-
-
-def _npy(path: Path) -> tuple[np.ndarray, str]:
+def _npy(path: Path) -> Table:
     try:
-        table = np.load(path, allow_pickle=False).astype(float, casting="same_kind")
+        numbers = np.load(path, allow_pickle=False).astype(float, casting="same_kind")
     except (ValueError, TypeError, EOFError) as error:
         raise ValueError(f"{path.name}: not a .npy file of real numbers: {error}") from error
-    if table.ndim not in (1, 2) or not table.size:
-        raise ValueError(f"{path.name}: an array of shape {table.shape}; allowed are one or two dimensions")
-    return table.reshape(len(table), -1), ""
+    if numbers.ndim not in (1, 2) or not numbers.size:
+        raise ValueError(f"{path.name}: an array of shape {numbers.shape}; allowed are one or two dimensions")
+    return Table(numbers.reshape(len(numbers), -1))
 
 
-def _text(path: Path) -> tuple[np.ndarray, str]:
-    """The numbers of a text file, shape (rows, columns), and the last line before them."""
-    raw = path.read_bytes()
-    if b"\0" in raw:
-        raise ValueError(f"{path.name}: not a text file; text in UTF-8, .npy and the formats of instruments are read")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError:
-        text = raw.decode("latin-1")  # older instruments write a µ of Latin-1 in the heading
-    heading, dialect, rows = "", None, []
-    for number, full in enumerate(text.splitlines(), 1):
-        line = full.split("#")[0].split("%")[0].strip()
-        if not line:
-            heading = heading if dialect else full.strip() or heading
-            continue
-        if dialect is None:
-            dialect = next((one for one in DIALECTS if _numbers(line, one) is not None), None)
-            if dialect is None:
-                heading = line
-                continue
-        row = _numbers(line, dialect)
-        if row is None and not np.mod(rows, 1).any() and not _THOUSAND.search(line):  # "0;0" has not shown it
-            dialect = dialect[0], ","
-            row = _numbers(line, dialect)
-        if row is None:
-            raise ValueError(f"{path.name}, line {number}: {line[:60]!r} has something else than numbers")
-        if rows and len(row) != len(rows[0]):
-            raise ValueError(f"{path.name}, line {number}: {len(row)} number(s) after lines of {len(rows[0])}")
-        rows.append(row)
-    if not rows:
-        raise ValueError(f"{path.name}: no line of numbers in it; columns of numbers are read")
-    return np.array(rows), heading
-
-
-def _numbers(line: str, dialect: tuple) -> list[float] | None:
-    """The numbers of a line, NaN where a field is empty; None if it has something else or another separator."""
-    separator, mark = dialect
-    if separator and separator not in line:
-        return None
-    fields = line.rstrip(separator).split(separator)
-    try:
-        return [float(field.strip().replace(mark, ".") or "nan") for field in fields]
-    except ValueError:
-        return None
-
-
-def _instrument(path: Path, unit: str | None, more: list[str]) -> Scan:
+def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -> Scan:
     """A scan in the format of an instrument, by SurfaceTopography. Its maps have x first, ours y."""
+    name, ending = path.name, path.suffix.lower()
     try:
-        from SurfaceTopography import read_topography
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ImportWarning)  # it warns that mpi4py is not installed
+            import SurfaceTopography as library
     except ImportError as error:
+        if ending not in TEXT and path.is_file() and (text := text_of(path)) is not None:
+            return _of_text(name, text, given, channel, crop, how)
+        if ending in TEXT:
+            raise ValueError(
+                f"{name}: not a text file; text in UTF-8 or UTF-16, .npy and formats of instruments are read. If it is "
+                "one of these, pip install 'roughcoat[topography]'; otherwise export the scan as text"
+            ) from error
         raise ImportError(
-            f"{path.name}: {path.suffix} is neither text ({', '.join(TEXT[:-1])}) nor .npy. The package "
+            f"{name}: {path.suffix} is neither text ({', '.join(TEXT[:-1])}) nor .npy. The package "
             "SurfaceTopography reads formats of instruments: pip install 'roughcoat[topography]'. Otherwise export "
             "the scan as text, CSV or .npy."
         ) from error
-    if more:
-        raise ValueError(f"{path.name}: the format states its lengths itself; leave out {', '.join(more)}")
-    try:
-        found = read_topography(str(path))
-    except OSError:
-        raise
-    except Exception as error:  # SurfaceTopography raises many kinds of errors
-        reason = str(error).strip().splitlines() or [type(error).__name__]
-        raise ValueError(f"{path.name}: SurfaceTopography cannot read it: {reason[0]}") from error
+    refused = f"{name}: " + "not a text file, and " * (ending in TEXT) + "SurfaceTopography cannot read it"
+    with _as_value_error(refused, ending):
+        channels, default, kind = _channels(library, path)
+    if kind in ("asc", "xyz"):
+        return _of_text(name, text_of(path), given, channel, crop, how)
+    chosen, notes = _chosen(channels, default, channel, name) if channels else (None, ())
+    lacks = {"dx", "dy"} if chosen and chosen.physical_sizes is None else set()
+    lacks |= {"height_unit"} if chosen and chosen.unit is None else set()
+    if more := [key for key in given if key not in {"unit"} | lacks]:
+        raise ValueError(f"{name}: the format states its lengths itself; leave out {', '.join(more)}")
+    if "dx" in lacks and not {"dx", "unit"} <= given.keys():
+        raise ValueError(f"{name}: the file states no distance of its points: give dx (and dy) and unit")
+    how_read = {"channel_index": chosen.index} if chosen and chosen is not default else {}
+    if "dx" in lacks:
+        steps = (
+            number(f"{name}: dx", given["dx"], given["unit"]),
+            number(f"{name}: dy", given.get("dy", given["dx"]), ""),
+        )
+        how_read["physical_sizes"] = tuple(n * step for n, step in zip(chosen.nb_grid_pts, steps, strict=False))
+    with _as_value_error(refused, ending):
+        found = library.read_topography(_source(path), **how_read)
+    return _of_instrument(found, name, given, crop, notes, how, refused)
+
+
+def _of_instrument(found, name: str, given: dict, crop, notes: tuple, how: dict, refused: str) -> Scan:
+    """The scan of a topography of SurfaceTopography, in metres or, where the file has no unit, in those given."""
+    unit = given.get("unit")
     if (found.unit is None) == (unit is None):
         said = "no unit of length; give unit" if unit is None else f"the unit {found.unit!r}; leave out unit"
-        raise ValueError(f"{path.name}: the file states {said}")
-    scale = metres(unit, path.name) if unit else 1.0
-    found = found if unit else found.to_unit("m")
-    z = np.ma.filled(np.ma.asarray(found.heights()).astype(float), np.nan).T * scale
-    if not found.is_uniform:
-        return profile(z, x=np.asarray(found.positions()) * scale, name=path.name)
-    steps = [float(step) * scale for step in np.atleast_1d(found.pixel_size)]
-    if found.dim == 1:
-        return profile(z, dx=steps[0], name=path.name)
-    return height_map(z, dx=steps[0], dy=steps[1], name=path.name)
+        raise ValueError(f"{name}: the file states {said}")
+    with _as_value_error(refused, ""):
+        found = found if unit else found.to_unit("m")
+        z = np.ma.filled(np.ma.asarray(found.heights()).astype(float), np.nan).T
+        steps = [float(step) for step in np.atleast_1d(found.pixel_size)][::-1] if found.is_uniform else None
+        positions = None if steps else [np.asarray(found.positions(), dtype=float)]
+    units = (unit, given.get("height_unit", unit)) if unit else ("m", "m")
+    positions = positions or [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
+    return scan_of(name, z, positions, steps=steps, units=units, crop=crop, notes=notes, how=how)
+
+
+def _source(path: Path):
+    """The path, or the unpacked content of a .gz file."""
+    return str(path) if path.suffix.lower() != ".gz" else io.BytesIO(gzip.decompress(path.read_bytes()))
+
+
+@contextlib.contextmanager
+def _as_value_error(refused: str, ending: str):
+    """Errors of SurfaceTopography, which are of many kinds, as one ValueError with their first line.
+
+    Where no format fits it lists what each reader says; that of the ending is taken, if it has one.
+    """
+    try:
+        yield
+    except (FileNotFoundError, PermissionError, IsADirectoryError):
+        raise
+    except Exception as error:
+        tried = dict(re.findall(r"tried (\w+): *\n *(.*)", str(error)))
+        own = [reason for reader, reason in tried.items() if ending and reader.lower().startswith(ending[1:])]
+        fits = _NO_FORMAT + "".join(f"; as {ending}: {one}" for one in own)
+        reason = fits if tried else (str(error).strip().splitlines() or [type(error).__name__])[0]
+        raise ValueError(f"{refused}: {reason}") from error
+
+
+def _channels(library, path: Path) -> tuple[list, object, str]:
+    """Channels of a file, the one that SurfaceTopography takes first, and the format; none if there is no file."""
+    if not path.is_file():  # reading it says so
+        return [], None, ""
+    with library.open_topography(_source(path)) as reader:
+        channels, default, kind = list(reader.channels), reader.default_channel, reader.format()
+    if kind in ("hgt", "nms") and path.suffix.lower() != f".{kind}":  # which take any bytes
+        raise ValueError(_NO_FORMAT)
+    return channels, next((one for one in channels if one.index == default.index), default), kind
+
+
+def _chosen(channels: list, default, channel: str | None, name: str) -> tuple:
+    """The channel of that name, or the first of heights, and a note that names it. Raises ValueError for none."""
+    named = {one.channel_id: one for one in channels}
+    listed = ", ".join(map(repr, named))
+    if channel is not None and channel not in named:
+        raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
+    curve = name.lower().endswith(".ibw") and default.dim == 1
+    if curve and any(word in one.name.lower() for one in channels for word in _FORCE):
+        raise ValueError(f"{name}: a force curve ({listed}), not a map of heights; give the file of the image")
+    heights = [one for one in channels if one.is_height_channel]
+    chosen = named[channel] if channel is not None else default if default in heights else (*heights, None)[0]
+    if chosen is None or not chosen.is_height_channel:
+        those = ", ".join(repr(one.channel_id) for one in heights) or "none"
+        what = f"channel {channel!r} has no heights" if chosen else f"the channels {listed} have no heights"
+        raise ValueError(f"{name}: {what}; channels of heights: {those}")
+    return chosen, (f"channel {chosen.channel_id!r}" + f" of {listed}" * (len(named) > 1),)

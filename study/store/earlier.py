@@ -19,7 +19,9 @@ from ..physical.scales import grid_of_results, parameters_from_si, result_from_s
 from ..spec.definition import Definition, StudyError
 from ..spec.grid import Grid, columns
 from ..spec.identity import case_keys, find
+from ..spec.toml_text import same_tables
 from ..spec.vocabulary import NOT_RUN, PARAMETERS, SCENE
+from ..terminal import on_one_line, program
 from .block_file import Damaged
 from .blocks import Store, facts, usable
 
@@ -73,6 +75,7 @@ class Earlier:
 
     cases : how many it holds; identified : whether it is known which cases these are; numerics : their version
     source : the cases that this study can use, or None
+    text, command : of the study file and of the command that made it, "" where they are lost
     """
 
     condition: Condition
@@ -80,6 +83,8 @@ class Earlier:
     identified: bool = False
     numerics: str = ""
     source: ResultsSource | None = None
+    text: str = ""
+    command: str = ""
 
 
 def earlier(definition: Definition, found: Condition) -> Earlier:
@@ -88,7 +93,9 @@ def earlier(definition: Definition, found: Condition) -> Earlier:
         return Earlier(found)
     try:
         with File(found.path) as file:
-            return _described(definition, found, file)
+            known = [name for name in file.attributes() if f"@{name}" not in found.damage]
+            text, command = (str(file.attribute(name)) if name in known else "" for name in ("study", "command"))
+            return replace(_described(definition, found, file), text=text, command=command)
     except Unusable:
         return Earlier(found)
     except BROKEN as error:
@@ -160,10 +167,11 @@ def statuses(path: Path) -> np.ndarray:
         return file.read("status")
 
 
-def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: bool = False) -> None:
+def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: bool = False, renew: bool = False) -> None:
     """Raise StudyError when a results file holds cases that are not among those of `keys` (B, 2), which replace it.
 
-    force : they may be lost. A file that roughcoat has not written is never replaced.
+    force : they may be lost; renew : if the same study file made them. A file that roughcoat has not written is never
+        replaced
     """
     digest, file = store.definition.digest, found.condition
     damaged = file.kind == "damaged"
@@ -171,19 +179,21 @@ def check_replaceable(store: Store, found: Earlier, keys: np.ndarray, force: boo
         raise Unusable(file.path, file.kind, f"{file.reason}; move it away, or use --results DIR")
     # a file that is cut off: nothing in it can be read
     nothing = file.kind == "missing" or damaged and not (file.digest or found.cases)
-    if force or nothing or file.digest == digest:
+    if force or nothing or file.digest == digest or (renew and same_tables(found.text, store.definition.text)):
         return
+    way = f"{program()} run --force {store.definition.name}" if renew else "--force"
+    made = f'; it was made by "{on_one_line(found.command, 80)}"' if found.command else ""
     if damaged and not found.identified:
         raise StudyError([f"{file.path}: {file.reason}; which cases it holds cannot be told: {MEND}"])
     if found.numerics != NUMERICS_VERSION:
         owner = f"version {found.numerics} of the numerics, this is {NUMERICS_VERSION}"
-        choice = "--force computes them again, --results DIR elsewhere"
-        raise StudyError([f"{file.path}: holds results of {owner}: {choice}"])
+        choice = f"{way} computes them again, --results DIR elsewhere"
+        raise StudyError([f"{file.path}: holds results of {owner}: {choice}{made}"])
     kept = np.count_nonzero(find(found.source.keys, keys, np.zeros(len(keys))) >= 0) if found.source else 0
     if not found.cases or kept < found.cases:
         lost = f"{found.cases - kept} of its {found.cases} cases are not in this one"
         if damaged:
             raise StudyError([f"{file.path}: {file.reason}; {lost}: {MEND}"])
         owner = f"another definition (digest {file.digest[:8]}, here {digest[:8]})"
-        choice = "--force replaces them, --results DIR writes elsewhere"
-        raise StudyError([f"{file.path}: holds results of {owner}, {lost}: {choice}"])
+        choice = f"{way} replaces them, --results DIR writes elsewhere"
+        raise StudyError([f"{file.path}: holds results of {owner}, {lost}: {choice}{made}"])

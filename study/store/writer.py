@@ -2,15 +2,16 @@
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import partial
 
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import labelled, parts
 from ..files.atomic import replacing
 from ..files.checksums import CaseDigests, digest_of_cases
-from ..files.examine import CHUNK
+from ..files.examine import CHUNK, Condition
 from ..files.netcdf import File
-from ..files.results_file import add_checksums, create, set_aside
+from ..files.results_file import add_checksums, create, put
 from ..files.seal import seal
 from ..physical.scene import dataset_of
 from ..spec.grid import MOVED, Grid, box, cut_out, windows
@@ -19,20 +20,20 @@ from .blocks import Inventory, Store, gather
 AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often
 
 
-def writing(store: Store, known: Inventory, command: str, aside: bool = False) -> Iterator[None]:
+def writing(store: Store, known: Inventory, command: str, there: Condition) -> Iterator[None]:
     """Write the results file from the blocks, in steps, while other threads compute. Each `next` is one step.
 
     A step does nothing while the next cases are missing. When the iterator ends, the file is in its place.
-    aside : keep the file that is there, as `set_aside` does
+    there : the results file that it replaces, see `put`
 
-    Raises Damaged when a block has been spoiled since the inventory was made, OSError when the file cannot be written.
+    Raises Damaged when a block has been spoiled since the inventory was made, OSError when the file cannot be written,
+    StudyError when another file has come to its place.
     """
-    with replacing(store.path, store.folder) as temporary:
+    place = partial(put, there, store.definition.digest)
+    with replacing(store.path, store.folder, place) as temporary:
         with File(temporary, "w", store.path) as file:
             yield from _steps(file, store, known, command)
         seal(temporary)
-        if aside:
-            set_aside(store.path)
 
 
 def _steps(file: File, store: Store, known: Inventory, command: str) -> Iterator[None]:

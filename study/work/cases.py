@@ -12,6 +12,7 @@ import numpy as np
 
 from solver import NUMERICS_VERSION, Problem, Solution, laws, solve
 from solver.laws import Law
+from solver.laws.trial import going_on
 
 from ..spec.definition import Definition
 from ..spec.grid import columns
@@ -76,7 +77,8 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
     """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
     for law in wanted.laws:
         laws.register(law)
-    return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
+    with going_on():  # the functions of a law of one's own
+        return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
 
 
 def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:

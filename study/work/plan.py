@@ -50,6 +50,7 @@ class Order:
     retry : compute cases of these statuses again
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
     force : replace the results file even if cases in it are lost
+    renew : replace it even so if the same study file made it, by another version of the numerics
     yes : go on however large the study is
     command : for the history of the results; stream : where progress is written
     """
@@ -63,6 +64,7 @@ class Order:
     retry: tuple[int, ...] = ()
     fail_fast: bool = False
     force: bool = False
+    renew: bool = False
     yes: bool = False
     command: str = ""
     stream: TextIO | None = None

@@ -37,7 +37,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     is lost; blocks written so far stay and are used by the next run.
     """
     order = Order(definition, Path(results), **options)
-    found, seen = look(order.store), stamp(order.store.path)
+    found = look(order.store)
     if order.done(found):
         if order.store.folder.exists():  # a run was killed before it removed its blocks, or other blocks are there
             return _finish_if_last(order, order.report())
@@ -47,7 +47,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     check_writable(order.store.path)
     try:
         with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-            if stamp(order.store.path) != seen:  # the run for which this one has waited has written it
+            if stamp(order.store.path) != found.seen:  # the run for which this one has waited has written it
                 found = look(order.store)
             report = _compute(order, found)
         return _finish_if_last(order, report) if order.shared else report
@@ -70,8 +70,7 @@ def _compute(order: Order, found: Condition) -> Report:
         log.warning("%s: %s; %s", order.store.path, found.reason, kept)
     known = prepared(order, found)
     missing = len(known.missing)
-    aside = found.kind == "damaged"
-    writer = nullcontext(iter(())) if order.shared else closing(writing(order.store, known, order.command, aside))
+    writer = nullcontext(iter(())) if order.shared else closing(writing(order.store, known, order.command, found))
     with writer as steps:
         failures = compute_blocks(order, known, steps)
         kept = "" if order.shared else _finish(order, known, steps)
@@ -87,7 +86,7 @@ def _finish_if_last(order: Order, report: Report) -> Report:
         if order.done(found):
             return replace(report, complete=True, kept=tidy(order.store))
         known = prepared(replace(order, retry=()), found)
-        with closing(writing(order.store, known, order.command, found.kind == "damaged")) as steps:
+        with closing(writing(order.store, known, order.command, found)) as steps:
             kept = _finish(order, known, steps)
         return order.report(known, computed=report.computed, failures=report.failures, kept=kept)
 
@@ -110,8 +109,8 @@ def prepared(order: Order, file: Condition) -> Inventory:
     if not order.shared:
         remove_litter(order.store)
     found = earlier(order.definition, file)
-    known = inventory(order.store, found.source, order.retry, order.force)
-    check_replaceable(order.store, found, known.keys, order.force)
+    known = inventory(order.store, found.source, order.retry, order.force or order.renew)
+    check_replaceable(order.store, found, known.keys, order.force, order.renew)
     return known
 
 

@@ -99,3 +99,14 @@ def test_auto_and_the_judged_thin_layer():
         error = np.max([np.abs(getattr(found, name) / getattr(exact, name) - 1) for name in NAMES[:6]], axis=0)
         assert (found.status == 0).all() and (error <= 1.2 * found.model_error + 1e-5).all()
     assert found.model_error[1] < 3 * error[1], "the estimate knows of the punch"
+
+
+@pytest.mark.parametrize(("h", "rtol"), [(0.02, 1e-10), (1e-5, 1e-7)], ids=["layer", "film"])
+@pytest.mark.parametrize("micro", [{"micro": "smooth"}, ROUGH], ids=["smooth", "rough"])
+def test_rigid_and_elastic_punches_in_one_batch(h, rtol, micro):
+    """Each has the numbers that it has alone; to the two solutions' rtol."""
+    m, given = np.array([0.0, 1.0, 0.0, 3.0]), LAYER | micro | {"h": h, "a": 0.03, "base": "layered", "rtol": rtol}
+    together = solve(Problem.of(**given, m=m))
+    for i, one in enumerate(m.tolist()):
+        same(together.take([i]), solve(Problem.of(**given, m=one)), 10 * rtol)
+    assert len(set(np.round(together.P, 12))) == 3, "what a punch yields counts"

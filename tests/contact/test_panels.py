@@ -7,7 +7,8 @@ from solver_cases import JUDGED, difference
 
 from solver import Problem, Status, solve
 from solver.body.tables import between, table
-from solver.numerics.mesh import HERTZ, mesh_of, panel_mesh
+from solver.numerics.mesh import mesh_of, panel_mesh
+from solver.punches.paraboloid import HERTZ
 
 BREAKS = (0.0, 0.01, 0.05, 0.3, 0.31, 0.32, 0.6, 1.0)
 #: Near full contact under a thin layer: the asperities saturate at s² = Z/3, inside the contact.

@@ -42,7 +42,18 @@ def test_flags_of_no_case_have_no_names():
             study.decode(flags.rename("validity"))
     with pytest.raises(ValueError, match="flags are of no case"):
         study.summary(found.interp(P=5e-5))
-    assert study.decode(found.validity.where(found.P > 5e-5)).values.tolist() == ["", "", "spots_merging"]
+
+
+def test_where_no_case_is_left_it_was_not_run():
+    """The validity of such a case had the name of a good one, ""."""
+    found = study.solve(P=[1e-6, 1e-5, 1e-4], h=0.01, n=0.5, Nbar=250000, Ra=0.004, x=2)
+    for change in (lambda flags: flags.where(found.P > 5e-5), lambda flags: flags.reindex(P=[2.0, 3.0, 1e-4])):
+        for name, word in (("status", "converged"), ("validity", "spots_merging")):
+            assert study.decode(change(found[name])).values.tolist() == ["not_run", "not_run", word]
+            assert study.decode(change(found[name]).drop_attrs()).values.tolist() == ["not_run", "not_run", word]
+        assert study.decode(change(found.model_used)).values.tolist() == ["none", "none", "layered"]
+    assert study.decode(found.validity.where(False).isel(P=0)).item() == "not_run"
+    assert study.decode(xr.concat([found.validity, found.P.rename("validity") * np.nan], "q")).values[1, 0] == "not_run"
 
 
 def test_objects_show_themselves_in_one_line(tmp_path):

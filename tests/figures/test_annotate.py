@@ -62,7 +62,7 @@ def test_a_name_stands_above_or_below_and_to_the_side_that_is_asked():
 def test_each_assumption_has_its_words_and_its_grey(mask):
     axes = Figure().subplots()
     words = "layer_not_thin few_spots spot_not_small_against_h n_not_below_one spots_merging strain_not_small"
-    words += " asperity_strain_not_small pitch_not_small_against_h"
+    words += " asperity_strain_not_small pitch_not_small_against_h wide_in_cup"
     attributes = {"flag_masks": np.array(list(WORDS)), "flag_meanings": words}
     flags = xr.DataArray([0, mask, 0], dims="P", attrs=attributes)
     shade_violations(axes, np.array([1e-5, 2e-5, 4e-5]), {"7": flags})
@@ -84,3 +84,16 @@ def test_one_entry_of_the_legend_stands_for_all_bands_of_the_curves_that_have_so
     )
     assert [band[:2] for band in bands(axes)] == [pytest.approx(band) for band in ((0, 1.5), (2.5, 3.5), (4.5, 5))]
     assert axes.get_legend_handles_labels()[1] == ["not valid: fewer than 100 spots (1, 2)"]
+
+
+def test_a_file_of_an_earlier_version_has_fewer_masks():
+    """Curves of two files, one computed before the last mask was there: KeyError, or the mask was not shown."""
+    axes, masks = Figure().subplots(), list(ASSUMPTIONS)
+    words = list(ASSUMPTIONS.values())
+    old, new = (
+        xr.DataArray(flags, attrs={"flag_masks": np.array(masks[:count]), "flag_meanings": " ".join(words[:count])})
+        for flags, count in ((2, len(masks) - 1), (2 + masks[-1], len(masks)))
+    )
+    for curves in ({"old": old, "new": new}, {"new": new, "old": old}):
+        note_violations(axes, curves)
+        assert axes.get_title("left") == f"{', '.join(curves)}: {NOTED[2]}\nnew: {NOTED[masks[-1]]}"

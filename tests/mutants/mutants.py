@@ -1,4 +1,7 @@
-"""The mutants of mutants.toml, and the table of what became of them. `make mutants` runs them (mutate.py)."""
+"""The mutants of mutants.toml and of the fresh lists, and the tables of what became of them.
+
+`make mutants` runs the former (mutate.py), `make fresh_mutants` the latest of the latter (fresh.py).
+"""
 
 import os
 import re
@@ -6,13 +9,30 @@ import tomllib
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 ROOT = Path(__file__).resolve().parents[2]
+FRESH = "fresh"  # folder of the fresh lists, beside this file
 WANTED = 0.95  # share of the mutants of each package that must be killed
 HEAD = """# Mutants
 
-Written by `make mutants`. It breaks the code in one place at a time, as tests/mutants/mutants.toml says, and runs the
-tests that ought to notice: a mutant is killed when one of them fails, or takes far longer than without it.
+Each mutant breaks the code in one place. It is killed when a test fails, or takes far longer than without it. There are
+lists of two kinds.
+
+## Fresh lists: how much the tests notice
+
+The lists in tests/mutants/fresh were written before their authors looked at the tests. All tests that run the file of a
+mutant were tried, once, at the commit at which the list was written. A list is never mended, and no test is written for
+one of its mutants alone: so these are the figures that say what the tests notice. `make fresh_mutants` tries the latest
+list again, without those whose line has changed.
+
+{fresh}
+
+## Kept list: what the tests must go on noticing
+
+The mutants of tests/mutants/mutants.toml name the tests that ought to notice. New code brings new ones, and those that
+survive are answered by a test: so nearly all are killed, which says no more than that no test has gone blind. `make
+mutants` runs them and writes this page.
 
 {totals}
 
@@ -56,6 +76,15 @@ class Verdict:
         return f"killed by {self.by}" if self.killed else f"SURVIVED {self.by}".strip()
 
 
+class Batch(NamedTuple):
+    """A fresh list. about : `written`, the date; `commit`, of the code and of the tests that were tried; `survived`,
+    the mutants that these did not kill; `remark`, what else is to be said of it"""
+
+    name: str
+    about: dict
+    mutants: list[Mutant]
+
+
 def read(root: Path = ROOT) -> list[Mutant]:
     """The mutants of a tree: [PACKAGE.ROOM.MODULE.NAME] with `old`, `new`, and `tests` relative to tests/.
 
@@ -64,11 +93,21 @@ def read(root: Path = ROOT) -> list[Mutant]:
     return list(_within(tomllib.loads((root / "tests/mutants/mutants.toml").read_text(encoding="utf-8")), ()))
 
 
+def batches(root: Path = ROOT) -> list[Batch]:
+    """The fresh lists of a tree, the latest last. Their mutants name no tests."""
+    found = []
+    for path in sorted((root / "tests/mutants" / FRESH).glob("*.toml")):
+        tables = tomllib.loads(path.read_text(encoding="utf-8"))
+        about = tables.pop("about")
+        found.append(Batch(path.stem, about, list(_within(tables, ()))))
+    return found
+
+
 def _within(tables: dict, path: tuple[str, ...]) -> Iterator[Mutant]:
     """The mutants of nested tables, `path` the names of the tables around."""
     for name, entry in tables.items():
         if "old" in entry:
-            yield Mutant(".".join((*path, name)), **{"file": f"{'/'.join(path)}.py"} | entry)
+            yield Mutant(".".join((*path, name)), **{"file": f"{'/'.join(path)}.py", "tests": []} | entry)
         else:
             yield from _within(entry, (*path, name))
 
@@ -92,7 +131,19 @@ def table(verdicts: list[Verdict], root: Path, remark: str) -> str:
     lines = [f"{remark}\n"]
     for name, (killed, size) in totals(verdicts).items():
         lines.append(f"- {name}/: {killed} of {size} killed ({killed / size:.1%})")
-    return HEAD.format(totals="\n".join(lines), rows="\n".join(rows))
+    return HEAD.format(fresh=_figures(batches(root)), totals="\n".join(lines), rows="\n".join(rows))
+
+
+def _figures(lists: list[Batch]) -> str:
+    """The figures of the fresh lists that have been tried, in Markdown."""
+    rows = []
+    for batch in (one for one in lists if "survived" in one.about):
+        found = totals([Verdict(mutant, mutant.id not in batch.about["survived"]) for mutant in batch.mutants])
+        cells = [f"{killed} of {size} ({killed / size:.0%})" for killed, size in map(found.get, ("solver", "study"))]
+        rows.append(f"| {batch.about['written']} | {batch.about['commit']} | {' | '.join(cells)} |")
+        rows[-1] += f" {batch.about.get('remark', '')} |"
+    head = ["| written | commit | solver/ killed | study/ killed | |", "| --- | --- | --- | --- | --- |"]
+    return "\n".join([*head, *rows])
 
 
 def _code(text: str) -> str:

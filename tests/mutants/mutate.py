@@ -68,7 +68,7 @@ def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, obje
                     del running[child]
                     yield task, "takes too long" if late else _answer(folder)
                     if task.change:
-                        os.replace(folder / f"{task.change[0]}.kept", folder / task.change[0])
+                        os.replace(folder.with_suffix(".kept"), folder / task.change[0])
                     free.append(folder)
     finally:
         for child in running:
@@ -81,9 +81,9 @@ def _begun(task: Task, folder: Path) -> int:
     answer.unlink(missing_ok=True)
     if task.change:
         path, text = folder / task.change[0], task.change[1]
-        shutil.copy2(path, f"{path}.kept")
+        shutil.copy2(path, folder.with_suffix(".kept"))  # beside the tree: tests ask which files a package has
         path.write_text(text, encoding="utf-8")
-        os.utime(path, (1, 1))  # else its compiled form of the same second may count
+        os.utime(path, (315_619_200,) * 2)  # 1980, the first year of zip; else a compiled form of this second may count
     child = os.fork()
     if child:
         return child
@@ -136,7 +136,7 @@ class Watch:
         self.failed += [report.nodeid] if report.failed else []
 
 
-def tested(folder: Path, tests: list[str], results: Path | None, *options: str) -> dict:
+def tested(folder: Path, tests: list[str], results: Path | None, *options: str, plugins=()) -> dict:
     """Run tests: exit code, those that failed, seconds of each. results: of the studies, if they are as always."""
     import hypothesis
     import pytest
@@ -147,7 +147,7 @@ def tested(folder: Path, tests: list[str], results: Path | None, *options: str) 
     watch, chosen = Watch(), [f"tests/{test}" for test in tests]
     always = ["-q", "-p", "no:cacheprovider", f"--rootdir={folder}", f"--basetemp={folder.with_suffix('.tmp')}"]
     always += ["-W", "ignore::pytest.PytestAssertRewriteWarning"]  # hypothesis is imported already
-    code = pytest.main([*always, *options, *chosen], plugins=[watch])
+    code = pytest.main([*always, *options, *chosen], plugins=[watch, *plugins])
     return {"code": int(code), "failed": watch.failed, "seconds": watch.seconds}
 
 

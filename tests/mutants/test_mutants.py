@@ -11,6 +11,7 @@ from conftest import ROOT
 from mutants import Verdict, read, totals
 
 TREE = {
+    "solver/__init__.py": "",  # without it the package that is installed is taken
     "solver/one.py": "def square(x):\n    return x * x\n\n\ndef unused(x):\n    return x + 1\n",
     "tests/conftest.py": "def compute_results(folder):\n    import solver.one\n\n    folder.mkdir()\n",
     "tests/test_one.py": "from solver.one import square\n\n\ndef test_square():\n    assert square(3) == 9\n\n\n"

@@ -6,9 +6,10 @@ from numpy.testing import assert_allclose
 from scipy.special import beta, ellipe, factorial, hyp2f1
 
 from solver import Problem
-from solver.numerics.mesh import HERTZ, half_space_rows, mesh_of
+from solver.numerics.mesh import half_space_rows, mesh_of
 from solver.numerics.pieces import pieces
 from solver.numerics.quadrature import gauss_legendre, lagrange, log_rule, radau_nodes
+from solver.punches.paraboloid import HERTZ
 from solver.scaling import as_cases, dimensionless
 
 #: Points in s = sqrt(1 - x²), from the edge to the centre.

@@ -8,7 +8,7 @@ from test_physical import COATED, quiet
 
 import study
 from study.data.derived import ASSUMPTIONS
-from study.in_words import BROKEN, MODELS, MOST_CASES
+from study.in_words import BROKEN, MODELS, MOST_CASES, NOT_VIOLATED
 
 
 def test_a_physical_contact():
@@ -84,6 +84,44 @@ def test_the_model_error_is_in_the_plus_minus():
     assert f"contact it errs by about {100 * found.model_error.item():.2g} %" in text
 
 
+def test_plus_minus_is_the_root_of_the_squares_of_all_three():
+    """Each of `error`, `model_error` and the spread alone would be seen to miss by far more than two digits round."""
+    found = quiet(**COATED | {"h": "2 um ± 0.1 um"}, P="10 N", x=2)
+    value, part = found.p0.item(), 0.01
+    for sizes in ((1, 1, 1), (3, 4, 0), (0, 3, 4), (3, 0, 4), (2, 0, 0)):
+        error, model_error, spread = (part * size for size in sizes)
+        known = {"error": error, "model_error": model_error, "p0_spread": spread * value}
+        changed = found.assign({name: found[name].copy(data=number) for name, number in known.items()})
+        number, unit = re.search(r"p\(0\) += [\d.]+ ± ([\d.]+) (\w+)", study.summary(changed)).groups()
+        total = value * np.sqrt(error**2 + model_error**2 + spread**2)
+        assert float(number) * {"GPa": 1e9, "MPa": 1e6}[unit] == pytest.approx(total, rel=0.05), sizes
+
+
+def test_only_of_a_solved_case_nothing_is_said_to_be_violated():
+    """Of a failed one it is not known, though `validity` is 0; of one that is not there `validity` is not either."""
+    failed = study.solve(P=1e-5, h=0.02, n=0.5, nu1=0.5, bonding="bonded", base="thin_layer", micro="smooth", x=2)
+    limited = study.solve(P=1e-5, h=0.02, n=0.5, Nbar=1e6, Ra=0.004, scheme="picard", max_iterations=2, x=2)
+    gone = study.solve(P=[1e-5], base="half_space", micro="smooth", x=2).reindex(P=[2e-5]).isel(P=0)
+    for found, validity in ((failed, ""), (limited, ""), (gone, "not_run")):
+        assert study.decode(found.status) != "converged" and study.decode(found.validity) == validity
+        assert NOT_VIOLATED not in study.summary(found) and "Not checked" not in study.summary(found)
+    solved = study.solve(P=1e-5, base="half_space", micro="smooth", x=2)
+    assert NOT_VIOLATED in study.summary(solved)
+
+
+def test_against_what_the_model_errs():
+    """On a half-space there is no layer to err against: what is left is the law's own error."""
+    rough = {"P": 1e-5, "Nbar": 250_000, "Ra": 0.004, "x": 2}
+    for base in ("half_space", "layered"):
+        text = study.summary(study.solve(**rough, h=0.02, n=0.5, base=base, micro="square_lattice"))
+        assert "; the micro law itself errs by about 0.02 %." in text and "against the exact layer" not in text
+    for micro in ("disc_cell", "smooth"):
+        text = study.summary(study.solve(**rough, h=0.01, n=0.5, base="thin_layer", micro=micro))
+        assert "; against the exact layered contact it errs by about " in text and "itself errs" not in text
+        bare = study.summary(study.solve(**rough, base="half_space", micro=micro))
+        assert "errs" not in bare
+
+
 def test_solved_names_what_error_judges():
     """The six of docs/model.md, of a smooth contact those that are shown, and never dP/dD."""
     smooth = study.summary(study.solve(P=1e-5, base="half_space", micro="smooth", x=2))
@@ -132,7 +170,7 @@ def test_cases_that_xarray_took_out_are_not_there():
     for gone in (kept.isel(P=1), found.reindex(P=[3.0]).isel(P=0)):
         text = study.summary(gone)
         assert "NOT SOLVED (not_run): the case has not been computed." in text and "a      = unknown" in text
-        assert "Model" not in text and study.decode(gone.validity).item() == ""
+        assert "Model" not in text and study.decode(gone.validity).item() == "not_run"
     between = found.isel(P=[0, 0]).assign_coords(P=[1.0, 2.0]).interp(P=1.5)
     assert "Model: the exact layered half-space, without" in study.summary(between)
 

@@ -87,7 +87,7 @@ def test_a_flat_body_has_an_infinite_radius(flat, tmp_path):
 
 
 def test_a_cup_that_fits_closely_is_beyond_the_model():
-    """a = 4.1 mm of a ball of 10 mm, though only 0.004 of the effective radius: validity does not see it."""
+    """a = 4.1 mm of a ball of 10 mm, though only 0.004 of the effective radius: mask 32 does not see it."""
     given = {"R1": "10 mm", "E2": "1 GPa", "base": "half_space", "micro": "smooth", "P": "100 N"}
     with pytest.warns(UserWarning, match=r"wide against the smaller body \(a > 0.2 of its radius\), as in a cup"):
         found = study.solve(**given, R2=["-20 mm", "-10.1 mm"], x=2)
@@ -96,6 +96,50 @@ def test_a_cup_that_fits_closely_is_beyond_the_model():
         warnings.simplefilter("error")
         study.solve(**given | {"P": "1 N"}, R2="-20 mm", x=2)
     assert "wide against" in study.summary(found.isel(R2=1)) and "wide" not in study.summary(found.isel(R2=0))
+
+
+@pytest.mark.parametrize(
+    ("radii", "a", "mask"),
+    [
+        ({"R1": "10 mm", "R2": "-10.1 mm"}, "2.01 mm", 256),
+        ({"R1": "10 mm", "R2": "-10.1 mm"}, "1.99 mm", 0),
+        ({"R1": "-10.1 mm", "R2": "10 mm"}, "2.01 mm", 256),
+        ({"R1": "10 mm", "R2": "-10.0 ± 0.01 mm"}, "1.99 mm", None),  # no cup
+        ({"R1": "10 mm", "R2": "-10.1 ± 0.01 mm"}, "2.01 mm", 256),
+        ({"R1": "flat", "R2": "10 mm"}, "2.01 mm", 32 | 256),
+        ({"R1": "10 mm", "R2": "10 mm"}, "1.99 mm", 32),
+        ({"R1": "10 mm", "R2": "10 mm"}, "2.01 mm", 32 | 256),
+        ({"R": "1 m"}, "86 mm", 0),
+    ],
+)
+def test_validity_knows_a_close_cup(radii, a, mask):
+    given = {"E2": "1 GPa", "base": "half_space", "micro": "smooth", "a": a}
+    if mask is None:
+        with pytest.raises(study.StudyError, match="a cup"):
+            study.solve(**given, **radii)
+        return
+    assert quiet(**given, **radii).validity == mask
+
+
+def test_the_mask_of_a_cup_over_axes_and_cases_and_in_a_file(tmp_path):
+    """The mask of each case is that of its own two radii; it is in results files and in what a user writes."""
+    rows = [{"R2": "-10.1 mm", "a": "86.6 mm"}, {"R2": "-20 mm", "a": "0.1 mm"}]
+    given = {"R1": "10 mm", "E2": "1 GPa", "base": "half_space", "micro": "smooth"}
+    found = quiet(cases=rows, **given)
+    assert found.validity.values.tolist() == [256, 0] and found.validity.dtype == np.int32
+    assert study.decode(found.validity).values.tolist() == ["wide_in_cup", ""]
+    found.to_netcdf(tmp_path / "user.nc")
+    with xr.open_dataset(tmp_path / "user.nc") as back:
+        assert study.decode(back.validity).values.tolist() == ["wide_in_cup", ""]
+        assert back.validity.dtype == back.validity.flag_masks.dtype == np.int32
+    grid = quiet(**given | {"R1": ["10 mm", "12 ± 0.01 mm"]}, R2=["-12.2 mm", "-1 m"], a="2.2 mm")
+    assert grid.validity.values.tolist() == [[256, 256 | 32], [0, 0]]
+    text = '[model]\nE2 = "1 GPa"\nbase = "half_space"\nmicro = "smooth"\na = "86.6 mm"\n'
+    text += '[axes]\nR1 = ["10 mm", "100 m"]\nR2 = ["-1 km", "-101 m"]\n'
+    (tmp_path / "cup.toml").write_text(text)
+    loaded = study.load(tmp_path / "cup.toml", tmp_path)
+    assert loaded.run(workers=1).complete
+    assert loaded.open().validity.values.tolist() == [[32 | 256, 32 | 256], [0, 0]]
 
 
 @pytest.mark.parametrize(

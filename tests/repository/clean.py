@@ -7,6 +7,7 @@ import shutil
 from pathlib import Path
 
 from study.catalogue import CAPTIONS, FIGURE, FIGURES, SCHEME, SCHEMES, TABLE, TABLES
+from study.figures.record import RECORD
 
 CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
 
@@ -15,7 +16,8 @@ def written() -> list[Path]:
     """The files of all figures and tables, whether they are there or not."""
     figures = [Path("figures", f"{name}.{kind}") for name in (*FIGURES, *SCHEMES) for kind in {*FIGURE, *SCHEME}]
     tables = [Path("tables", f"{name}.{kind}") for name in TABLES for kind in TABLE]
-    return [*figures, *tables, Path("figures", f"{CAPTIONS}.md"), Path("bench.json")]
+    records = [Path(folder, RECORD) for folder in ("figures", "tables")]
+    return [*figures, *tables, *records, Path("figures", f"{CAPTIONS}.md"), Path("bench.json")]
 
 
 if __name__ == "__main__":

@@ -17,12 +17,12 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "laws", "body", "problem", "solution"),
-        *("contact", "scaling", "schemes", "models", "solve"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "body", "problem"),
+        *("solution", "contact", "scaling", "schemes", "models", "solve"),
     ),
     "study": (
         *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
-        *("solving", "figures", "api", "paper", "literature", "evidence"),
+        *("carried", "solving", "figures", "api", "paper", "literature", "evidence"),
         *("catalogue", "commands", "__main__"),
     ),
 }
@@ -125,7 +125,8 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    assert users["laws"] == {"solver.parameters", "solver.laws"}, "those that others have registered"
+    own = {"solver.parameters", "solver.laws", "solver.laws.own_table"}
+    assert users["laws"] == own, "those that others have registered, and tables in files"
     assert not any(users[name] for name in ("grid", "given", "run", "api", "units", "progress"))
 
 
@@ -172,7 +173,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     from study.spec.vocabulary import PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "workers", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

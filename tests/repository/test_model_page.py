@@ -73,6 +73,7 @@ def test_the_masks_and_thresholds_are_those_of_the_code():
         "STRETCHED",
         "STEEP_SPOT",
         "PITCH_OVER_LAYER",
+        "STEEP",
     )
     assert [float(value) for value in thresholds] == [getattr(derived, name) for name in constants]
 

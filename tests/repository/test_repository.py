@@ -15,8 +15,8 @@ from lowest import lowest
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
-           "picard_domain", "literature", "validate", "test", "check", "kernels", "lowest", "mutants", "fuzz", "bench",
-           "speed", "lint", "clean")  # fmt: skip
+           "picard_domain", "literature", "validate", "test", "check", "kernels", "lowest", "mutants", "fresh_mutants",
+           "fuzz", "bench", "speed", "lint", "clean")  # fmt: skip
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
@@ -73,7 +73,7 @@ def calls(folder: Path) -> list[str]:
         ("figures/fig04.pdf", ["plot --run fig04"]),
         ("tables/validity.txt", ["table --run validity"]),
         ("picard_domain", ["plot --run picard_domain"]),
-        ("map", ["run --force studies/parameter_map.toml"]),
+        ("map", ["run studies/parameter_map.toml"]),
         ("results/mine.nc", ["run studies/mine.toml"]),
     ],
 )
@@ -95,6 +95,7 @@ def test_make_prints_a_table_that_it_has_written(sandbox):
 def test_clean_removes_what_the_program_draws_alone(tmp_path):
     kept = ("figures/mine.pdf", "figures/parameter_map_p_max.pdf", "tables/mine.txt", "results/main_case.nc")
     ours = ("figures/fig01.svg", "figures/fig04.pdf", "figures/fig10_layered.csv", "figures/captions.md",
+            "figures/.roughcoat.json", "tables/.roughcoat.json",
             "tables/table1.tex", "bench.json", "study/spec/__pycache__/x.pyc", ".ruff_cache/x")  # fmt: skip
     for name in (*kept, *ours):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

@@ -90,6 +90,8 @@ def test_what_is_missing_is_said_with_the_first_case_that_needs_it():
         'h is missing in case 1: base = "thin_layer" or "layered" needs it'
     ]
     assert messages(cases=[rows[0], {"base": "half_space"}], model={"micro": "smooth"}) == ["P is missing in case 1"]
+    several = [rows[2] | {"P": 4}, *({"P": P, "n": 0.5} for P in (5, 6, 7))]
+    assert messages(cases=several, model={"micro": "smooth"}) == ['h is missing in case 1: base = "layered" needs it']
     grid = defined(cases=[rows[0], {"P": 2}], model={"micro": "smooth", "h": 1.0, "n": 0.5}).grid
     assert grid.values["base"][1].tolist() == ["half_space", "layered"]
 

@@ -26,7 +26,10 @@ DIMENSIONS = {
     "An": (AREA, "m^2"),
     "p_mean": (PRESSURE, "Pa"),
     "b0": (LENGTH, "m"),
+    "p_ring": (PRESSURE, "Pa"),
+    "r_ring": (LENGTH, "m"),
     "p_peak": (PRESSURE, "Pa"),
+    "D_body": (LENGTH, "m"),
     "E_eff": (PRESSURE, "Pa"),
 }
 UNITS = {

@@ -53,7 +53,7 @@ def test_spreads(sign):
     assert quantity("E1", f"200 GPa {sign} 10 GPa", "Pa") == Quantity(2e11, 1e10)
     assert quantity("E1", f"200 GPa {sign} 5 %", "Pa") == Quantity(2e11, 1e10)
     assert quantity("E1", f"200 {sign} 5 % GPa", "Pa") == Quantity(2e11, 1e10)
-    assert quantity("E1", f"200 GPa {sign} -5 %", "Pa") == Quantity(2e11, 1e10)
+    assert quantity("E1", f"-200 GPa {sign} 5 %", "Pa") == Quantity(-2e11, 1e10)
     assert quantity("h", f"2 um {sign} 100 nm", "m") == Quantity(2e-6, 1e-7)
     assert quantity("nu1", f"0.3 {sign} 0.02", "1") == Quantity(0.3, 0.02)
     assert quantity("Nbar", f"2{sign}0.1/um^2", "1/m^2") == Quantity(2e12, 1e11)

@@ -39,10 +39,10 @@ def test_heights_with_a_unit_are_in_it():
 
 def test_a_labelled_map_is_turned_by_its_dimensions():
     z = np.outer(Z, Z[:32])
-    turned = roughness.height_map(xr.DataArray(z.T, dims=("x", "y")), dx=2.0, dy=1.0)
+    turned = roughness.height_map(xr.DataArray(z.T, dims=("x", "y")), dx=2.0, dy=1.0, huge=True)
     assert turned.z.tolist() == z.tolist() and turned.steps == (1.0, 2.0)
 
 
 def test_true_is_no_radius():
     with pytest.raises(ValueError, match="form = True; allowed are"):
-        roughness.measure(roughness.profile(Z, dx=1.0), form=True)
+        roughness.measure(roughness.profile(Z, dx=1.0, unit="mm"), form=True)

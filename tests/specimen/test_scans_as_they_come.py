@@ -59,6 +59,10 @@ def test_a_row_of_positions_is_none_of_heights(tmp_path):
         read(np.vstack([np.arange(80), EGGS]))
     with pytest.raises(ValueError, match="the first column has equal steps, 6.3, 6.2, 6.1"):
         read(np.column_stack([(63 - np.arange(64)) / 10, EGGS]))
+    rows = "".join(f"{i}," + ",".join(map(str, row)) + "\n" for i, row in enumerate(EGGS))
+    file.write_text("," + ",".join(map(str, range(80))) + "\n" + rows)  # with its index: the corner is empty
+    with pytest.raises(ValueError, match="afm.csv: the first row has equal steps, 0, 1, 2 ...: positions or numbers"):
+        roughness.read(file, dx=1.0, **IN)
     np.testing.assert_allclose(read(EGGS), EGGS * 1e-9, atol=1e-15)
     tilted = EGGS * (ROWS > 3) * (COLUMNS > 3) + COLUMNS  # equal steps, not in the first row alone
     np.testing.assert_allclose(read(tilted), tilted * 1e-9, atol=1e-15)

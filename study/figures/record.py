@@ -1,0 +1,74 @@
+"""The record of a folder of figures or tables: of what data each was made, and what its files held then.
+
+It says what is up to date by what is in the files, not by their times: these change when a folder is copied, and a file
+that is cut off is as young as a whole one.
+"""
+
+import hashlib
+import json
+from functools import cache
+from pathlib import Path
+
+import solver
+
+from ..data.provenance import NUMERICS_VERSION, package_version
+from ..files.results_file import numbers_digest
+from .formats import write
+
+RECORD = ".roughcoat.json"  # its name in the folder
+PACKAGES = (Path(solver.__file__).parent, Path(__file__).parents[1])
+LIBRARIES = ("roughcoat", "numpy", "scipy", "xarray", "matplotlib")
+"""Packages whose version may change a figure."""
+LARGEST = 10_000_000  # bytes of a record: an entry has some 400
+
+
+def digest_of(what: str, endings: tuple[str, ...], results: list[Path]) -> str:
+    """sha256 of all that the files of a figure or table follow from.
+
+    what : "figure fig03"; endings : of its files; results : the files of the studies that it needs
+    """
+    content = [what, endings, program(), [numbers_digest(path) for path in results]]
+    return hashlib.sha256(json.dumps(content).encode()).hexdigest()
+
+
+@cache  # 300 files are read in 30 ms
+def program() -> str:
+    """sha256 of all files of the program, and of the versions of what it draws with."""
+    found = hashlib.sha256(json.dumps([NUMERICS_VERSION, *map(package_version, LIBRARIES)]).encode())
+    for package in PACKAGES:
+        for file in sorted(package.rglob("*.*")):
+            if file.is_file() and file.parent.name != "__pycache__":
+                found.update(f"{file.relative_to(package).as_posix()} {_digest(file)}\n".encode())
+    return found.hexdigest()
+
+
+def is_up_to_date(folder: Path, what: str, digest: str, names: list[str]) -> bool:
+    """Whether the files `names` are those that were made of this digest, every byte of them."""
+    entry = _read(folder).get(what)
+    if not isinstance(entry, dict) or entry.get("of") != digest:
+        return False
+    there = {name: _digest(folder / name) for name in names if (folder / name).is_file()}
+    return entry.get("files") == there and len(there) == len(names)
+
+
+def note(folder: Path, what: str, digest: str, paths: list[Path]) -> None:
+    """Put the files of a figure or table, just written, into the record.
+
+    Of two programs that do so at once one entry may be lost: what it is about is then made again.
+    """
+    entry = {"of": digest, "files": {path.name: _digest(path) for path in paths}}
+    write(folder / RECORD, json.dumps(_read(folder) | {what: entry}, indent=1, sort_keys=True) + "\n")
+
+
+def _read(folder: Path) -> dict:
+    """The record of a folder; {} if there is none, or none that can be read."""
+    try:
+        path = folder / RECORD
+        found = json.loads(path.read_bytes()) if path.is_file() and path.stat().st_size < LARGEST else {}
+    except (OSError, ValueError, RecursionError):
+        return {}
+    return found if isinstance(found, dict) else {}
+
+
+def _digest(path: Path) -> str:
+    return hashlib.sha256(path.read_bytes()).hexdigest()

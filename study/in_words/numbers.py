@@ -1,0 +1,60 @@
+"""Inputs and results as text: a number with its unit and ±."""
+
+import numpy as np
+import xarray as xr
+
+from ..physical.bodies import BODIES
+from ..physical.scene import ASSUMED
+from ..spec.vocabulary import CONTROLS
+from ..specimen.quantities import READABLE, readable
+
+
+def given_text(case: xr.Dataset, name: str) -> str:
+    """An input with its unit: "h = 2 µm"."""
+    if name not in case:
+        return str(name)
+    value = case[name].values[()]
+    assumed = " (assumed)" * (case[name].attrs.get("comment") == ASSUMED)
+    if isinstance(value, (str, np.str_)):
+        return f"{name} of {value}" if name in BODIES else str(value).replace("_", " ") + assumed
+    text = f"{name} = {in_its_unit(case, name, float(value), spread_of(case, name))}"
+    text += " Ra/E1*^beta" * (name == "B") + assumed
+    return text + " (fitted to Nbar and Ra)" * ("comment" in case[name].attrs and name in ("B", "beta"))
+
+
+def in_its_unit(case: xr.Dataset, name: str, value: float, spread: float = 0.0) -> str:
+    """A number with ± in the unit of a variable, or with its scale: "2.5 µm", "0.02 R"."""
+    unit = case[name].attrs.get("units", "1")
+    if unit in READABLE and unit != "1":
+        return readable(value, unit, spread)
+    scale = case[name].attrs.get("scale", "" if unit == "1" else unit)
+    return f"{readable(value, '1', spread)} {scale}".rstrip()
+
+
+def spread_of(case: xr.Dataset, name: str) -> float:
+    """The spread of an input, or what the spreads of the inputs make of a result; 0 where there is none."""
+    return float(case[f"{name}_spread"]) if f"{name}_spread" in case else 0.0
+
+
+def result_text(case: xr.Dataset, name: str) -> str:
+    """A result with its unit and ±."""
+    given = name in CONTROLS and name in case.coords
+    return _with_spread(case, name, float(case[name]), spread_of(case, name), "error" * (not given))
+
+
+def ring_text(case: xr.Dataset, place: int) -> str:
+    """The nominal pressure at a point of the profile, with ±, and its radius: "487 ± 12 MPa at r = 146.5 µm"."""
+    spread = float(case["p_spread"][place]) if "p_spread" in case else 0.0
+    pressure = _with_spread(case, "p", float(case["p"][place]), spread, "profile_error")
+    return f"{pressure} at r = {in_its_unit(case, 'a', float(case['a'] * case['x'][place]))}"
+
+
+def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error: str) -> str:
+    """A value with ±: of its spread, of its `error` and of `model_error`. error : "" of what was given."""
+    if not np.isfinite(value):
+        return "unknown"
+    if not np.isfinite(spread):  # the case was not solved with one of its inputs moved
+        return f"{in_its_unit(case, name, value)} ± unknown"
+    kinds = [kind for kind in (error, "model_error") if error and kind in case and np.isfinite(case[kind])]
+    parts = [spread, *(value * float(case[kind]) for kind in kinds)]
+    return in_its_unit(case, name, value, float(np.sqrt(np.sum(np.square(parts)))))

@@ -1,0 +1,65 @@
+"""Sentences about how a contact was solved, by which model, and what it rests on."""
+
+import xarray as xr
+
+from solver import Status
+
+from ..data.dataset import decode
+from ..physical.bodies import BODIES
+from ..physical.scene import ASSUMED
+from ..spec.vocabulary import VOCABULARY
+from .beyond import doubts
+from .pressures import RUBBER, not_checked
+
+_BASES = {
+    "half_space": "a half-space",
+    "layer_alone": "a half-space of the layer's material",
+    "thin_layer": "the thin-layer equation",
+    "layered": "the exact layered half-space",
+}
+MODELS = {base: f"{words} under the asperities" for base, words in _BASES.items()}
+MODELS |= {f"smooth_{base}": f"{words}, without asperities" for base, words in _BASES.items()}
+NOT_VIOLATED = "None of the assumptions that are checked is violated (docs/model.md, Four answers)."
+#: Behind a model with asperities.
+WHOSE = " The asperities are the punch's; a rough surface under a polished punch is the same contact, and of two rough \
+surfaces the sum counts (docs/model.md, Elastic punch)."
+SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
+does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
+
+
+def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
+    """How well the case is solved, by which model, and which assumptions it violates.
+
+    judged : the quantities shown of which `error` is the largest error; p_max is among them where there are asperities
+    """
+    word, used = decode(case["status"]).item(), decode(case["model_used"]).item()
+    if word == "converged":
+        *first, last = (VOCABULARY[name].symbol for name in judged)
+        within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
+        found = [f"Solved: {within} of the model's solution."]
+    else:
+        known = {one.name.lower(): one.meaning for one in Status}
+        meaning = known.get(word, "the case has not been computed")
+        found = [f"NOT SOLVED ({word}): {meaning}."]
+    model = MODELS.get(used)
+    if model:
+        error = float(case["model_error"])
+        exact = used in ("half_space", "layered")  # then `model_error` is that of the micro law
+        against = "the micro law itself errs" if exact else "against the exact layered contact it errs"
+        errs = f"; {against} by about {100 * error:.2g} %" if error > 0 else ""
+        found.append(f"Model: {model}{errs}.{WHOSE * (not used.startswith('smooth'))}")
+    beyond = doubts(case)
+    found += [f"Beware: {sentence}" for sentence in beyond]
+    found += [NOT_VIOLATED] * (not beyond and word == "converged")
+    found += [f"Not checked (docs/model.md, Limits): {not_checked(case, 'p_max' in judged)}."] * (word == "converged")
+    return found + [f"Assumed: {sentence}" for sentence in _assumed(case.variables)]
+
+
+def _assumed(v) -> list[str]:
+    """A sentence for each default that stands for an input which was not given, and may be far from it."""
+    taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
+    found = [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
+    for modulus, ratio, _ in BODIES.values():
+        if ratio in taken and modulus in v and v[modulus].attrs.get("units") == "Pa" and v[modulus] < RUBBER:
+            found.append(f"{ratio} = {v[ratio].item():g}. Of rubbers and gels, as soft as this, it is nearly 0.5.")
+    return found

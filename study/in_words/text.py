@@ -1,0 +1,110 @@
+"""A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
+
+import numpy as np
+import xarray as xr
+
+from ..physical.bodies import BODIES
+from ..physical.inputs import is_rigid, used_inputs
+from ..physical.scene import SAME_PIECE
+from ..spec.laws import smooth_laws
+from ..spec.vocabulary import CONTROLS, VOCABULARY
+from .numbers import given_text, in_its_unit, result_text, ring_text, spread_of
+from .pressures import largest
+from .sentences import sentences
+
+MOST_CASES = 20  # of a grid that a summary writes out
+SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
+_JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is the largest error of
+#: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
+_OF_ASPERITIES = ("p_max", "Ar_An")
+#: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
+_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta")
+#: What stands behind "indentation depth" where the punch yields too, or may.
+OF_BOTH = " (approach of both bodies)"
+RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
+
+
+class Summary(str):
+    """A text whose repr is the text itself, so that a notebook shows its lines."""
+
+    def __repr__(self) -> str:
+        return str(self)
+
+
+def summary(contact: xr.Dataset) -> Summary:
+    """What `study.solve` found, in words.
+
+    contact : a dataset of `study.solve`, in physical units or dimensionless; of a grid the first cases are written out
+
+    The text has the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
+    standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
+    inputs make of the quantity (`NAME_spread`). `error` and `model_error` are of the other six quantities; dP/dD is
+    taken to be as sure. Where the profile p is larger in a ring than in the centre, the text has the pressure of that
+    ring and its radius. Raises ValueError where the dataset is not one of contacts.
+    """
+    missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
+    if missing:
+        raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
+    bare = [name for name in ("status", "model_used", "validity") if "flag_meanings" not in contact[name].attrs]
+    if bare:
+        raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
+    dims = list(contact["status"].dims)
+    contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
+    if not dims:
+        return Summary(_summary_of_case(contact))
+    cases = contact.stack({"one": dims}, create_index=False)
+    texts = []
+    for i in range(min(cases.sizes["one"], MOST_CASES)):
+        case = cases.isel(one=i)
+        where = str(case["label"].values) if "label" in case else ", ".join(given_text(case, dim) for dim in dims)
+        texts.append(f"--- {where}\n{_summary_of_case(case, dims)}")
+    if cases.sizes["one"] > MOST_CASES:
+        texts.append(f"--- and {cases.sizes['one'] - MOST_CASES} more cases: choose some with sel() or isel()")
+    return Summary("\n\n".join(texts))
+
+
+def _summary_of_case(case: xr.Dataset, dims=()) -> str:
+    """The text of one case; inputs along `dims` are not repeated."""
+    rough = case["micro"].values not in smooth_laws()
+    used = used_inputs(case)
+    inputs = [name for name in used if name not in (*dims, *CONTROLS)]
+    unsaid = " (assumed)" * ("R" in case and "E_punch" not in case)
+    rigid = [f"a rigid punch{unsaid}"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
+    unused = [name for name in _OPTIONAL if name in case and name not in (*used, *dims)]
+    unused = [name for name in unused if np.isfinite(case[name])]  # NaN: given for other cases
+    given = [*rigid, *(given_text(case, name) for name in inputs), *_pieces(case, used)]
+    lines = ["Given: " + ", ".join(given)]
+    lines += [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused) + [""]
+    names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
+    rows = _rows(case, names)
+    width = max(len(label) for label, _, _ in rows)
+    lines += [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
+    return "\n".join([*lines, "", *sentences(case, [name for name in names if name in _JUDGED])])
+
+
+def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
+    """Long name, symbol and text of each result; after those of the centre those of a ring, where that has more."""
+    top, rows = largest(case), []
+    for name in names:
+        label = VOCABULARY[name].long_name + OF_BOTH * (name == "D" and not is_rigid(case, "punch"))
+        rows.append((label, VOCABULARY[name].symbol, result_text(case, name)))
+        if name == "p0" and top.place is not None:
+            rows.append((RING_LABEL, VOCABULARY["p_ring"].symbol, ring_text(case, top.place)))
+        if name == "p_max" and top.place is not None and np.isfinite(top.real):
+            real = in_its_unit(case, name, float(f"{top.real:.3g}"))
+            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, real))
+    return rows
+
+
+def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
+    """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
+    of_material = {}
+    for body, (modulus, ratio, _) in BODIES.items():
+        if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
+            of_material.setdefault(str(case[body].values), []).append(body)
+    texts = []
+    for material, bodies in of_material.items():
+        one = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
+        which = "one piece" if one else "independent pieces"
+        texts += [f"{', '.join(bodies[:-1])} and {bodies[-1]} {which} of {material}"] * (len(bodies) > 1)
+    return texts

@@ -1,0 +1,203 @@
+"""From positions and heights as a file has them to a scan: x y z of a grid, rounded positions, the part to keep."""
+
+import dataclasses
+import math
+from decimal import Decimal
+
+import numpy as np
+
+from .foreign import plain
+from .quantities import has_unit, quantity
+from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
+from .scan_texts import Table
+
+#: A grid that is found in x y z has heights at this share of its points at least: a disk in its square has 0.79.
+FULL = 0.25
+#: A position may be off the grid by the last digit that is written of it, if that is at most this share of all.
+COARSE = 0.01
+
+
+def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
+    """The columns of positions and heights, or all of a map, and where they stand; None where dx is the position."""
+    numbers, dx, picked = table.numbers, given.get("dx"), plain(given.get("columns"))
+    places = [0, -1]
+    if picked is not None:
+        picked = list(picked) if isinstance(picked, (list, tuple)) else [picked]
+        places = all(type(i) is int and 0 <= i < numbers.shape[1] for i in picked)
+        if len(picked) not in (1, 2, 3) or not places or len(picked) > max(2, len(set(picked))):
+            raise ValueError(
+                f"{name}: columns = {given['columns']}, but the file has the columns 0 to {numbers.shape[1] - 1}; "
+                "allowed are two of them, for x and z, or one, for z, or three, for x, y and z"
+            )
+        numbers, places = numbers[:, picked], picked if len(picked) > 1 else picked * 2
+    elif len(numbers) == 1:
+        numbers = numbers.T
+    elif numbers.shape[1] == 3:
+        places = [0, 1, 2]
+    n = numbers.shape[1]
+    if n >= FEWEST and picked is None:
+        _no_positions(numbers, name)
+    if n >= FEWEST and dx is None:
+        raise ValueError(f"{name}: a map of {numbers.shape[0]} × {n} heights: give dx (and dy), their distance")
+    if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in given))):
+        said = "".join(f" with {key} = {given[key]}" for key in ("dx", "dy") if key in given)
+        raise ValueError(
+            f"{name}: {numbers.shape[0]} rows of {n} column(s){said}; allowed are "
+            f"two columns (x, z), one column (z) with dx, three (x, y, z of a grid), or {FEWEST} columns and more (a "
+            "map) with dx and dy. Choose among others with columns=(0, 2). A comma cannot separate columns and "
+            "decimals."
+        )
+    return numbers, places if dx is None else [None, places[-1]]
+
+
+def _no_positions(heights: np.ndarray, name: str) -> None:
+    """Raise ValueError for a map whose first row or column has positions or numbers of the points."""
+    for two, line in ((heights[:2], "row"), (heights[:, :2].T, "column")):
+        there = [each[~np.isnan(each)] for each in two]  # pandas leaves the corner empty
+        first, steps = there[0], [np.diff(each) for each in there]
+        equal = [each.size > 1 and each[0] != 0 and np.ptp(each) <= 1e-6 * abs(each[0]) for each in steps]
+        if equal[0] and not equal[-1]:
+            raise ValueError(
+                f"{name}: the first {line} has equal steps, {first[0]:g}, {first[1]:g}, {first[2]:g} ...: "
+                "positions or numbers, not heights; take it out of the file"
+            )
+
+
+def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) -> tuple[np.ndarray, list]:
+    """Heights (y, x) of points x, y in any order, NaN where there is none, and the positions [y, x] of the grid.
+
+    steps : (dy, dx) where x and y are numbers of points; None: x and y are lengths
+
+    Raises ValueError: the points are on no grid, in a single line, or two of them are at one place.
+    """
+    rows = f"{name}: {len(z)} rows of {columns.shape[1]} column(s)"
+    there = ~np.isnan(columns[:, :2]).all(axis=1)
+    xy, z = columns[there, :2], z[there]
+    if np.isnan(xy).any():
+        raise ValueError(f"{rows}, x, y and z: {np.isnan(xy).any(axis=1).sum()} positions are not numbers")
+    axes = [_axis(values) for values in xy.T]
+    why = [f"{of} has no equal steps" for of, axis in zip("xy", axes, strict=True) if axis is None]
+    if not why and 1 in (size := [len(axis[0]) for axis in axes]):
+        why = [f"all {'xy'[size.index(1)]} are equal"]
+    if not why and len(z) < FULL * math.prod(size):
+        why = [f"{size[0]} × {size[1]} points of a grid have {len(z)} heights"]
+    if why:
+        raise ValueError(
+            f"{rows}; they are no x, y, z of a grid: {' and '.join(why)}. Choose others with columns=(0, 2) for x and "
+            "z, or interpolate to a grid"
+        )
+    (x, column), (y, row) = axes
+    places = row * len(x) + column
+    if len(np.unique(places)) < len(places):
+        i = int(np.argmax(np.bincount(places)))
+        raise ValueError(f"{rows}, x, y and z: x = {x[i % len(x)]:g}, y = {y[i // len(x)]:g} stands there twice")
+    heights = np.full((len(y), len(x)), np.nan)
+    heights[row, column] = z
+    if steps is not None:
+        if not all(np.isclose(np.diff(axis), 1, rtol=0, atol=1e-6).all() for axis in (x, y)):
+            raise ValueError(f"{rows}, x, y and z, have their distances: leave out dx and dy")
+        x, y = x * steps[1], y * steps[0]
+    return heights, [y, x]
+
+
+def _axis(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
+    """The uniform positions that the values have, rising, and the number of each value; None if there are none."""
+    unique = np.unique(values)
+    span, gaps = unique[-1] - unique[0], np.sort(np.diff(unique))
+    if not gaps.size:
+        return unique, np.zeros(len(values), dtype=int)
+    jump = int(np.argmax(gaps[1:] / gaps[:-1])) + 1 if gaps.size > 1 else 0  # the gaps before it are of rounding
+    for gap in (span / gaps.size, span / (gaps.size - jump), np.median(gaps), np.median(gaps[jump:])):
+        points = round(span / gap) + 1
+        step = span / (points - 1)
+        index = np.rint((values - unique[0]) / step)
+        off = np.abs(values - unique[0] - index * step).max()
+        if off <= UNEVEN * step or (off <= 0.4 * step and off <= _last_digit(unique)):
+            return unique[0] + step * np.arange(points), index.astype(int)
+    return None
+
+
+def _last_digit(values: np.ndarray) -> float:
+    """The largest last digit of numbers that were written with equally many decimals, or equally many digits.
+
+    Trailing zeros may have been left out: of 0.5, 1 and 10.5 it is 0.1.
+    """
+    written = [Decimal(repr(value)).normalize() for value in np.unique(values[values != 0]).tolist()]
+    powers = [(number.adjusted(), number.as_tuple().exponent) for number in written]
+    digits, last = max(top - low for top, low in powers), min(low for _, low in powers)
+    return max(10.0 ** max(last, top - digits) for top, _ in powers)
+
+
+def _rounded_step(x: np.ndarray) -> float | None:
+    """The mean step of positions of which only the rounding is uneven; None if they are even, or uneven without it.
+
+    Instruments write x with few digits: 0.3, 0.7, 1.0 of a step of 1/3. Steps of mostly one last digit are left alone:
+    there a point may be missing.
+    """
+    steps = np.diff(x)
+    mean = (x[-1] - x[0]) / max(len(steps), 1)
+    if not np.isfinite(x).all() or mean == 0 or np.abs(x - x[0] - mean * np.arange(len(x))).max() <= UNEVEN * abs(mean):
+        return None
+    digit, line = _last_digit(x), np.polynomial.Polynomial.fit(np.arange(len(x)), x, 1)
+    rounded = np.abs(x - line(np.arange(len(x)))).max() <= 0.75 * digit  # half of it, and the error of the line
+    lone = np.mean(np.isclose(np.abs(steps), digit, rtol=1e-6, atol=0)) > 0.9
+    return abs(line.deriv()(0)) if rounded and not lone and digit <= COARSE * abs(x[-1] - x[0]) else None
+
+
+def scan_of(name, z, positions, *, steps=None, units=("m", "m"), crop=None, notes=(), how) -> Scan:
+    """The scan of heights at positions, of which `crop` is kept.
+
+    z : heights (x) or (y, x) in units[1], NaN where a point is missing
+    positions : of each axis of z, in units[0]; uniform ones of a map
+    steps : distance of the points along each axis; None: that of the positions
+    crop : (x0, x1) or (x0, x1, y0, y1), or None
+    notes : sentences about how the file was read
+    how : missing, steep and huge of `height_map`
+    """
+    how = how | {"unit": units[0], "height_unit": units[1], "name": name}
+    if crop is not None:
+        part = _part(crop, positions, units[0], name)
+        z, positions = z[part], [axis[keep] for axis, keep in zip(positions, part, strict=True)]
+    if z.ndim == 2:
+        dy, dx = steps or [abs(axis[-1] - axis[0]) / max(len(axis) - 1, 1) for axis in positions]
+        scan = height_map(z, dx=dx, dy=dy, **how)
+    elif steps:
+        scan = profile(z, dx=steps[0], **how)
+    elif (step := _rounded_step(positions[0])) is not None:
+        notes = (*notes, f"the positions x are rounded: their mean step, {step:.5g} {units[0]}, is taken")
+        scan = profile(z, dx=step, **how)
+    else:
+        scan = profile(z, x=positions[0], **how)
+    return dataclasses.replace(scan, notes=tuple(notes) + scan.notes)
+
+
+def _part(crop, positions: list, unit: str, name: str) -> tuple[slice, ...]:
+    """The points of each axis that lie in `crop`. Raises ValueError for one that is not an interval in the scan."""
+    crop = list(crop) if isinstance(crop, (list, tuple, np.ndarray)) else [crop]
+    if len(crop) not in (2, 2 * len(positions)):
+        allowed = "(x0, x1)" + ", or (x0, x1, y0, y1)" * (len(positions) == 2)
+        raise ValueError(f"{name}: crop = {tuple(crop)}; allowed is {allowed} for this scan, in {unit} or with units")
+    ends = [
+        quantity(f"{name}: crop", end, "m").value / metres(unit, name)
+        if has_unit(end)
+        else float(number(f"{name}: crop", end, unit))
+        for end in crop
+    ]
+    part = [slice(None)] * len(positions)
+    for i, (of, low, high) in enumerate(zip("xy", ends[::2], ends[1::2], strict=False)):
+        axis = len(positions) - 1 - i
+        where = positions[axis]
+        first, last, step = where.min(), where.max(), np.ptp(where) / max(len(where) - 1, 1)
+        inside = np.flatnonzero((where >= low - 1e-3 * step) & (where <= high + 1e-3 * step))
+        if not (low < high and first - 1.01 * step <= low and high <= last + 1.01 * step):
+            raise ValueError(
+                f"{name}: crop from {low:g} to {high:g} {unit} in {of}: must rise and lie in the scan, which goes from "
+                f"{first:g} to {last:g} {unit}"
+            )
+        if len(inside) < FEWEST:
+            raise ValueError(
+                f"{name}: crop from {low:g} to {high:g} {unit} in {of} keeps {len(inside)} points; at least {FEWEST} "
+                f"are needed. The scan has {len(where)}, from {first:g} to {last:g} {unit}"
+            )
+        part[axis] = slice(inside[0], inside[-1] + 1)
+    return tuple(part)

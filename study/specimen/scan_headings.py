@@ -1,0 +1,259 @@
+"""What the heading of a text file says of its heights: their unit, a factor, which number stands for a missing point.
+
+And the text formats whose heading has every length: SDF (ISO 25178-71), SMD (ISO 5436-2) and PRF.
+"""
+
+import re
+import unicodedata
+
+import numpy as np
+
+from .scan import UNITS, metres
+from .scan_texts import Table
+
+#: Units as instruments write them; `unit` and `height_unit` have one spelling of each.
+WORDS = {"angstrom": 1e-10, "ångström": 1e-10, "micron": 1e-6}
+PREFIXES = {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "pico": 1e-12}
+WORDS |= {prefix + word: size for prefix, size in PREFIXES.items() for word in ("meter", "metre")}
+_UNIT = rf"(?:(?i:{'|'.join(WORDS)})s?|{'|'.join(sorted(UNITS, key=len, reverse=True))}|Å|A)(?![^\W_])"
+_NUMBER = r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?(?![\w.,])"
+#: A factor whose meaning is stated: height × factor is in that unit. SurfaceTopography and Gwyddion know them too.
+_FACTORS = [
+    re.compile(pattern, re.IGNORECASE)
+    for pattern in (
+        rf"factor\s*\(?\s*(?:->|→|to|in)\s*(?-i:(?P<unit>{_UNIT}))\s*\)?\s*[=:]?\s*(?P<factor>{_NUMBER})",
+        rf"\bbit2(?P<unit>nm|um)\b\W*?(?P<factor>{_NUMBER})",
+        rf"\b(?:z|height|value|data)[\s_-]*units?\s*[=:]\s*(?P<factor>{_NUMBER})\s*\*?\s*(?-i:(?P<unit>{_UNIT}))",
+    )
+]
+#: A name and a number, with a unit and "per bit" perhaps.
+_PAIR = re.compile(
+    rf'(?P<key>[\w\\@][\w ./()\[\]>|\\@"×*-]*?)"?\s*(?:[=:;,\s]|(?<=[(\[×*]))\s*"?\s*(?P<value>{_NUMBER})'
+    rf"\s*(?P<unit>{_UNIT})?(?P<per>\s*(?:/|per)\s*(?:bit|digit|count|lsb|step)s?\b)?"
+)
+#: Names of a scale of heights, and those that have one of these words and are none.
+_SCALE = re.compile(
+    r"scale\b|scaling|scale[\s_-]*(?:data|z|height)|skalier|échelle|fa[ck]t(?:o|eu)r|multipl|\bmult\b|amplif|bit2|\blsb\b"
+    r"|\b1\s*(?:bit|digit|count)\b|quanti[sz]|^units?$|units? of$|[a-z]\s*[*×]$"
+    r"|\b(?:z|heights?|values?|data)\s*[\[(]\s*[x×*]?$"
+    r"|\b(?:z|height|vertical|value|data)[\s_.-]*(?:axis[\s_.-]*)?(?:calib|conver|sens|gain|quant|units?$)",
+    re.IGNORECASE,
+)
+_NO_SCALE = re.compile(
+    r"(?<![^\W_])(?<!\[)(?:x|y|xy|q)(?![^\W_])|\b[xy]{1,2}[\s_-]*(?:scal|fac|cal)|lateral|horizontal|width|pixel|time|colou?r"
+    r"|gr[ae]y|full|\bbar\b|display|date|intensity|phase|auto|force|speed|feedback|form|quality|zoom|filter|sampl|fill"
+    r"|overlap|crest|averag|noise",
+    re.IGNORECASE,
+)
+_VALUE_UNIT = re.compile(
+    r"^\W*(?:value units?|z[\s_-]*units?|units? (?:of )?(?:z|data|heights?|values?)|height units?|data units?|einheiten"
+    r"|unités|unità valore|unidades de valor|jednotky hodnot)\W*?[\s:=,;]\W*([^\W\d_]+)",
+    re.IGNORECASE,
+)
+_KEYENCE_UNIT = re.compile(r'^\W*unit"?[,;\t]\s*"?([^\W\d_]+)', re.IGNORECASE)
+_NO_DATA = re.compile(
+    rf"\b(?:no[\s_-]*data(?:[\s_-]*value)?|(?:missing|invalid|undefined|void|bad|masked)[\w\s-]*value)\W*?[\s:=]\W*?"
+    rf"({_NUMBER})\s*$",
+    re.IGNORECASE,
+)
+_SIZE = re.compile(
+    r"^\W*(?:(?P<rows>nrows|y-pixels|ny|number of rows|vertical)|(?P<columns>ncols|x-pixels|nx|number of columns"
+    r"|horizontal))\"?\s*[=:,;\s]\s*\"?(?P<number>\d+)\W*$",
+    re.IGNORECASE,
+)
+
+
+def length(word: str) -> float | None:
+    """Metres in a unit as a heading writes it; None if it is none of length."""
+    word = unicodedata.normalize("NFC", word)
+    return UNITS.get(word) or WORDS.get(word.lower().removesuffix("s")) or {"A": 1e-10}.get(word)
+
+
+def check_units(table: Table, unit: str, height_unit: str, places: list, name: str) -> None:
+    """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some.
+
+    Where it has one for each column, those at `places` count: of the positions, and last of the heights; None where a
+    distance stands for a position. A single one is then that of the heights.
+    """
+    width = table.numbers.shape[1]
+    columns, line = _column_units(table, width)
+    of_heights, its_line = _value_unit(table)
+    for i, place in enumerate(places):
+        argument, given = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
+        own, said = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
+        if place is None and len(own) in (1, width):
+            continue
+        own = [own[place]] if len(own) == width else own
+        if own and metres(given, name) not in [length(word) for word in own]:
+            raise ValueError(
+                f'{name}: {argument} is {given}, but the heading has {" and ".join(own)}: "{said[:80]}". Give unit '
+                "and height_unit as the heading has them, or take its units out of it."
+            )
+
+
+def _column_units(table: Table, width: int) -> tuple[list[str], str]:
+    """The units in the line that names the columns, or right below it, and that line; [] if there are none."""
+    for i, (_, line) in enumerate(reversed(table.heading[-4:])):
+        brackets = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", line)
+        text = line.strip("#% ")
+        fields = [field.strip(' "') for field in text.split(table.separator) if field.strip(' "')]
+        ends = [re.search(rf"(?:\bin\s|[/_\s(\[])\s*({_UNIT})\s*[)\]]?$", field) for field in fields]
+        if len(brackets) == width or (len(fields) == width and all(length(field) for field in fields)):
+            return (brackets if len(brackets) == width else fields), line
+        if table.separator and len(fields) == width and all(ends):
+            return [end[1] for end in ends], line
+        if i == 0 and (known := [word for word in brackets if length(word)]):
+            return known, line
+    return [], ""
+
+
+def _value_unit(table: Table) -> tuple[str, str]:
+    """The unit of the heights where the heading names it so, and the line; ("", "") if it does not."""
+    keyence = any("xy calibration" in line.lower() for _, line in table.heading)
+    if table.heading and table.heading[0][1].startswith("Zygo XYZ"):
+        return "um", table.heading[0][1]
+    for _, line in table.heading:
+        found = _VALUE_UNIT.match(line) or (keyence and _KEYENCE_UNIT.match(line))
+        if found:
+            return found[1], line
+    return "", ""
+
+
+def height_metres(table: Table, height_unit: str, name: str) -> tuple[float, tuple[str, ...]]:
+    """Metres that the number 1 stands for as a height, and what was done about a factor in the heading.
+
+    A factor of which the heading says what it makes of the heights ("height conversion factor (-> m)=6.3e-008",
+    "Bit2nm = 0.012") is applied where height_unit is its unit. Another line that looks like a scale raises ValueError.
+    """
+    size, notes = metres(height_unit, name), ()
+    stated = any(re.search(rf"\(\s*{_UNIT}\s*\)", line) for _, line in table.heading)
+    for number, line in table.heading:
+        if stated and line.lstrip('#%" ').startswith("\\"):  # of a Nanoscope, whose table has "Height(nm)"
+            continue
+        said, found = f'{name}, line {number}: "{line[:80]}"', _factor(table, line)
+        if not found:
+            _no_scale(line[:300], size, said)
+            continue
+        factor, unit = found
+        if np.isclose(factor * length(unit), metres(height_unit, name), rtol=1e-9, atol=0):
+            continue
+        if length(unit) != metres(height_unit, name):
+            raise ValueError(
+                f"{said} makes {unit} of the heights, but height_unit is {height_unit}: give height_unit={unit!r}, and "
+                "it is applied; or take the line out if the heights have been multiplied"
+            )
+        if notes or factor == 0:
+            raise ValueError(f"{said}: the heading has two factors of the heights, or 0: take out what does not hold")
+        size, notes = factor * length(unit), (f"heights are multiplied by {factor:g} {unit}, as line {number} says",)
+    return size, notes
+
+
+def _factor(table: Table, line: str) -> tuple[float, str] | None:
+    """The factor that a line states, and the unit that it leads to."""
+    if table.heading[0][1].startswith("Wyko ASCII"):
+        return _wyko(table) if re.match(r"wavelength\s", line, re.IGNORECASE) else (1.0, "nm")
+    found = next((found for pattern in _FACTORS if (found := pattern.search(line))), None)
+    if not found or (found["unit"] == "nm" and "2nm" in line.lower() and _value_unit(table)[0]):
+        return None  # SPIP leaves open whether a file with a z-unit has been multiplied
+    return float(found["factor"].replace(",", ".")), found["unit"]
+
+
+def _wyko(table: Table) -> tuple[float, str]:
+    """Heights of Wyko are in wavelengths (in nm) times Mult, or in nm if the second number of its first line is 1."""
+    text = "\n".join(line for _, line in table.heading)
+    values = [re.search(rf"^{key}\s+\d+\s+\d+\s+({_NUMBER})", text, re.MULTILINE) for key in ("Wavelength", "Mult")]
+    in_nm = re.match(r"\D*\d+\s+1\b", text)
+    if not in_nm and not all(values):
+        return float("nan"), "nm"
+    return (1.0 if in_nm else float(values[0][1]) / float(values[1][1])), "nm"
+
+
+def _no_scale(line: str, size: float, said: str) -> None:
+    """Raise ValueError for a line that looks like a scale of the heights and is none that is known, or 1."""
+    for found in _PAIR.finditer(line):
+        key, value = found["key"], float(found["value"].replace(",", "."))
+        if not (found["per"] or _SCALE.search(key)) or _NO_SCALE.search(key):
+            continue
+        unit = length(found["unit"]) if found["unit"] else None
+        grouped = re.fullmatch(r"\d{1,3},\d{3}", found["value"])
+        if grouped or not np.isclose(value * unit / size if unit else value, 1.0, rtol=1e-9, atol=0):
+            raise ValueError(
+                f"{said} looks like a scale of the heights and is not applied. Multiply the heights by it, unless that "
+                "has been done, and take the line out of the file"
+            )
+
+
+def without_no_data(table: Table, columns: np.ndarray, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
+    """The heights with NaN for the number that the heading has for no data ("NODATA_value -9999"), and a note.
+
+    Raises ValueError: a map has other rows or columns than the heading says.
+    """
+    notes = ()
+    for number, line in table.heading:
+        size = _SIZE.match(line)
+        shape = dict(zip(("rows", "columns"), table.numbers.shape, strict=True))
+        for axis, own in shape.items():
+            if min(shape.values()) > 3 and size and size[axis] and int(size["number"]) != own:
+                raise ValueError(
+                    f'{name}, line {number}: "{line[:80]}", but {own} {axis} follow: the file may be cut off. If it is '
+                    "right, take the line out"
+                )
+        if found := _NO_DATA.search(line):
+            value = float(found[1].replace(",", "."))
+            bad = np.isclose(columns, value, rtol=1e-6, atol=0)
+            columns = np.where(bad, np.nan, columns)
+            notes += (f"{bad.sum()} heights of {value:g} are missing points, as line {number} says",) * bool(bad.any())
+    return columns, notes
+
+
+def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]] | None:
+    """Heights and steps in m of a format whose heading states all lengths, SDF, SMD or PRF; None if it is none."""
+    if re.match(r"a[\w .-]+\n", text) and re.search(r"^\s*zscale\s*=", text, re.IGNORECASE | re.MULTILINE):
+        return _sdf(text, name)
+    if re.search(r"^CZ\s+[A-Z]\s", text, re.MULTILINE) and re.search(r"^\s*(?:EOR|\x03)\s*$", text, re.MULTILINE):
+        return _records(text, name)
+    return None
+
+
+def _sdf(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
+    """ISO 25178-71: a heading of "key = value", *, the heights in rows or one a line, *; heights times Zscale in m."""
+    heading, _, rest = text.partition("\n*")
+    pairs = (line.partition("=") for line in heading.splitlines())
+    value = {key.strip().lower(): said.strip() for key, _, said in pairs}
+    try:
+        shape = int(value["numprofiles"]), int(value["numpoints"])
+        dy, dx, scale = (float(value[key]) for key in ("yscale", "xscale", "zscale"))
+    except (KeyError, ValueError) as error:
+        raise ValueError(f"{name}: the SDF heading has no number for {error}") from error
+    if value.get("compression", "0") != "0" or not scale > 0:
+        raise ValueError(f"{name}: Zscale = {scale:g} must be positive, and Compression 0 in an SDF file")
+    z = _heights(rest.partition("\n*")[0].split(), shape, name)
+    marks = {"1": 2**16 - 1, "2": 2**32 - 1, "5": -(2**15), "6": -(2**31)}  # of whole numbers: no data
+    z = np.where(z == marks.get(value.get("datatype")), np.nan, z) * scale
+    return (z[0], (dx,)) if shape[0] == 1 else (z, (dy, dx))
+
+
+def _records(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
+    """SMD and PRF: records of lines; the first has the axes, CX with its step and CZ with its unit and factor."""
+    axis = r"^C{}\s+([A-Z])\s+({})\s+([a-zA-Zµ]+)\s+({})\s+[A-Z](?:\s+({}))?"
+    x, z, y = (re.search(axis.format(of, *[_NUMBER] * 3), text, re.MULTILINE) for of in "XZY")
+    spacing = re.search(rf"^SPACING\s+CX\s+({_NUMBER})", text, re.MULTILINE)
+    step = (x and x[1] == "I" and x[5]) or (spacing and spacing[1])
+    sizes = [UNITS.get(found[3].lower()) for found in (x, z) if found]
+    if not step or y or None in sizes or len(sizes) != 2:
+        raise ValueError(f"{name}: a profile of ISO 5436-2 needs lines CX with a step and CZ, in mm, um or nm; no CY")
+    records = [record.split() for record in re.split(r"^\s*(?:EOR|\x03)\s*$", text, flags=re.MULTILINE)[1:]]
+    numbers = (record for record in records if len(record) > 1 and re.fullmatch(rf"{_NUMBER}|(?i:bad)", record[0]))
+    heights = _heights(next(numbers, []), (int(float(z[2])),), name)
+    return heights * float(z[4]) * sizes[1], (float(step) * float(x[4]) * sizes[0],)
+
+
+def _heights(fields: list[str], shape: tuple, name: str) -> np.ndarray:
+    """The fields as numbers of that shape, NaN for Bad."""
+    try:
+        z = np.array([float("nan" if field.lower() == "bad" else field) for field in fields])
+    except ValueError as error:
+        raise ValueError(f"{name}: the heights have something else than numbers and Bad: {error}") from error
+    if z.size != np.prod(shape):
+        raise ValueError(f"{name}: {z.size} heights, but the heading says {' × '.join(map(str, shape))}")
+    return z.reshape(shape)

@@ -1,0 +1,260 @@
+"""Text files of scans: their encoding, the separator and the decimal mark, which lines are heading and which are rows.
+
+What stands in the heading is read by scan_headings.
+"""
+
+import csv
+import gzip
+import re
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from .scan import FEWEST
+
+#: (separator, decimal mark) of a text file. The first pair that fits its first line of numbers is taken; if only whole
+#: numbers stand there, the first line with a decimal mark shows it. (",", ",") fits fields in quotation marks alone.
+DIALECTS = ((";", "."), (";", ","), ("\t", "."), ("\t", ","), (",", "."), (None, "."), (None, ","), (",", ","))
+#: What stands for a missing point in a row of numbers, in small letters.
+MISSING = ("", "nan", "bad", "***", "--", "-")
+#: "1,024": this comma may be no decimal mark.
+_THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
+#: A comment begins a line or stands behind a gap: "-1.#IND" has none.
+_COMMENT = re.compile(r"(?:^|(?<=[\s;,]))[#%].*")
+#: float takes "inf" and "1_000" as well.
+_NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
+#: Signs that no text has. The end marks 3 and 26 stand in those of ISO 5436-2.
+_BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
+_CHANNEL = re.compile(r"[#%\s]*(?:channel|kanal|kanál|canale?)\s*[:=]\s*(.+?)\s*$", re.IGNORECASE)
+#: Zygo writes this in the place of z.
+_NO_DATA = re.compile(r"(?i)^(\s*[-+\d.,eE]+[\s;,]+[-+\d.,eE]+[\s;,]+)no\s+data[\s;,]*$")
+
+
+@dataclass(frozen=True, eq=False)
+class Table:
+    """The numbers of a text file, shape (rows, columns), NaN where a point is missing, and what stands around them.
+
+    heading : (number, text) of each line that is no row, comments included
+    separator : between the columns; None: spaces
+    channel : what the heading calls it, "" if it does not
+    notes : what was taken for something else than a row, each a sentence
+    """
+
+    numbers: np.ndarray
+    heading: tuple[tuple[int, str], ...] = ()
+    separator: str | None = None
+    channel: str = ""
+    notes: tuple[str, ...] = ()
+
+
+def text_of(path: Path) -> str | None:
+    """The text of a file in UTF-8, UTF-16 or Latin-1, unpacked if it is gzip; None if it is no text."""
+    raw = path.read_bytes()
+    if raw.startswith(b"\x1f\x8b"):
+        try:
+            raw = gzip.decompress(raw)
+        except (OSError, EOFError, zlib.error) as error:
+            raise ValueError(f"{path.name}: the packed file is damaged: {error}") from error
+    if raw.startswith(b"ISO 5436"):  # which separates by zeros
+        raw = raw.replace(b"\0", b" ")
+    zeros = [raw[parity::2].count(0) for parity in (0, 1)]
+    encodings = ["utf-8-sig", "latin-1"]  # older instruments write a µ of Latin-1 in the heading
+    if raw.startswith((b"\xff\xfe", b"\xfe\xff")):
+        encodings = ["utf-16"]
+    elif min(zeros) == 0 and max(zeros) > len(raw) / 3:  # every second byte of European text in UTF-16 is 0
+        encodings = ["utf-16-be" if zeros[0] else "utf-16-le"]
+    for encoding in encodings:
+        try:
+            text = raw.decode(encoding)
+        except UnicodeDecodeError:
+            continue
+        return None if _BINARY.search(text) else text.replace("\r\n", "\n").replace("\r", "\n").replace("−", "-")
+    return None
+
+
+def table_of(text: str, name: str, channel: str | None = None) -> Table:
+    """The rows of numbers in a text, and its heading.
+
+    A line before the first clean row that has as many fields, most of them numbers, is a row too.
+
+    Raises ValueError: no numbers; a row with another number of fields, or with a word, which the message names with
+    its line; channels of which none is chosen, or another.
+    """
+    lines, said = _of_channel(list(enumerate(text.split("\n"), 1)), name, channel)
+    contents = [(number, _content(full)) for number, full in lines]
+    if text.startswith("Zygo XYZ") and (mark := next((i for i, (_, full) in enumerate(lines) if full == "#"), 0)):
+        contents[:mark] = [(number, "") for number, _ in contents[:mark]]  # numbers of the instrument
+    first, dialect, counts = _first_row(contents, name)
+    before = _missing_rows(contents[:first], dialect, len(_fields(contents[first][1], dialect[0])))
+    first -= before
+    rows, numbers = [], []
+    for number, content in contents[first:]:
+        fields = _fields(content, dialect[0])
+        if not any(fields) and len(fields) < FEWEST:
+            continue
+        values = _values(fields, dialect[1])
+        if None in values and _whole(rows) and not _THOUSAND.search(content):  # "0;0" has not shown it
+            dialect = dialect[0], ","
+            values = _values(fields, ",")
+        if None in values:
+            raise ValueError(
+                f"{name}, line {number}: {content.strip()[:60]!r} has something else than numbers: "
+                f"{fields[values.index(None)][:30]!r}. Missing points may be empty fields, nan, Bad, ***, -- or -; "
+                "take out what is no row of the table"
+            )
+        rows.append(values)
+        numbers.append(number)
+        cut = fields[-1] == "" and len(values) == 2
+    table = _even(rows, numbers, name)
+    if cut and table.shape[1] == 2:
+        raise ValueError(f"{name}, line {numbers[-1]}: 1 number(s) after lines of 2: the file may be cut off")
+    _no_rows_in_heading(contents[:first], dialect, table, name)
+    if table[0, 0] == len(table) - 1 > 0 and np.isnan(table[0, 1:]).all():  # the number of the points that follow
+        counts, table, numbers = [contents[first]], table[1:], numbers[1:]
+        if table.shape[1] == 1 and _whole(table):
+            raise ValueError(
+                f"{name}, line {counts[0][0]}: {counts[0][1].strip()} may be a height or the number of the others: "
+                "take it out if it is their number, or write it with a decimal point"
+            )
+    for number, content in counts:
+        _check_counts(number, content, table.shape, name)
+    notes = tuple(f"line {one}, {content.strip()!r}, is taken for the size of the table" for one, content in counts)
+    taken = set(numbers)
+    heading = tuple((number, full.strip()) for number, full in lines if full.strip() and number not in taken)
+    return Table(table, heading, dialect[0], said, notes)
+
+
+def _of_channel(lines: list, name: str, channel: str | None) -> tuple[list, str]:
+    """The lines of one channel, and its name: Gwyddion writes several into one file, one below the other."""
+    starts = [(i, found[1]) for i, (_, full) in enumerate(lines) if (found := _CHANNEL.match(full))]
+    names = [said for _, said in starts]
+    if channel is not None and names.count(channel) != 1:
+        listed = ", ".join(map(repr, names)) or "none by name; choose columns of text with columns="
+        raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
+    ends = [*(i for i, _ in starts), len(lines)][1:]
+    filled = [
+        any(_dialect(_content(full)) for _, full in lines[i:end]) for (i, _), end in zip(starts, ends, strict=True)
+    ]
+    if channel is None and sum(filled) > 1:
+        raise ValueError(f"{name}: the file has the channels {', '.join(map(repr, names))}: choose one with channel=")
+    if channel is None or len(names) == 1:
+        return lines, names[-1] if names else ""
+    i = names.index(channel)
+    return lines[starts[i][0] : ends[i]], channel
+
+
+def _content(full: str) -> str:
+    """A line without comments and end marks."""
+    content = _COMMENT.sub("", full) if "#" in full or "%" in full else full
+    content = _NO_DATA.sub(r"\1nan", content) if "ata" in content[-12:].lower() else content
+    return content.rstrip("\x03\x1a ")
+
+
+def _fields(content: str, separator: str | None) -> list[str]:
+    """The fields of a line. Spaces separate however many there are; other separators have a field between two."""
+    if separator is None:
+        return content.replace('"', " ").split()
+    if '"' in content:
+        content = next(csv.reader([content.strip(" ")], delimiter=separator, skipinitialspace=True), [])
+        return [field.strip() for field in content]
+    return [field.strip() for field in content.split(separator)]
+
+
+def _values(fields: list[str], mark: str) -> list[float | None]:
+    """The number of each field, NaN where a point is missing, None where there is a word."""
+    if mark == ",":  # a point there were one of thousands
+        fields = [field.replace(",", ".") if "." not in field else "a point" for field in fields]
+    return [
+        float(field) if _NUMBER.fullmatch(field) else float("nan") if field.lower() in MISSING else None
+        for field in fields
+    ]
+
+
+def _dialect(content: str) -> tuple | None:
+    """Separator and decimal mark of a clean row, one of numbers and missing points alone; None if it is none."""
+    for separator, mark in DIALECTS:
+        if separator and separator not in content.strip(" "):
+            continue
+        values = _values(_fields(content, separator), mark)
+        if None not in values and not np.isnan(values).all():
+            return separator, mark
+    return None
+
+
+def _first_row(contents: list, name: str) -> tuple[int, tuple, list]:
+    """Where the rows begin, their dialect, and the lines of one or two numbers before them: of how many they are."""
+    counts = []
+    clean = ((i, one) for i, (_, content) in enumerate(contents) if (one := _dialect(content)))
+    for i, dialect in clean:
+        later = next((content for _, content in contents[i + 1 :] if content.strip()), "")
+        width, next_dialect = len(_fields(contents[i][1], dialect[0])), _dialect(later)
+        if width > 2 or not next_dialect or len(_fields(later, next_dialect[0])) <= width or counts:
+            return i, dialect, counts
+        counts.append(contents[i])
+    raise ValueError(f"{name}: no line of numbers in it; columns of numbers are read")
+
+
+def _check_counts(number: int, content: str, shape: tuple, name: str) -> None:
+    """Raise ValueError for a line before the table that does not say how many rows, columns or points it has."""
+    said = sorted(float(field) for field in re.split(r"[\s;,]+", content.strip()) if field)
+    if said not in ([shape[0]], [shape[1]], [shape[0] * shape[1]], sorted(shape)):
+        raise ValueError(
+            f"{name}, line {number}: {content.strip()!r} before a table of {shape[0]} rows of {shape[1]} is not their "
+            "number. If it is a distance, give it as dx; if a scale of the heights, multiply them; then take it out"
+        )
+
+
+def _missing_rows(contents: list, dialect: tuple, width: int) -> int:
+    """How many lines right before the first clean row are rows of missing points alone."""
+    rows = 0
+    for _, content in reversed(contents):
+        fields = _fields(content, dialect[0])
+        words = [field.lower() for field in fields]
+        lone = width == 1 and words in (["nan"], ["bad"])  # a line of "--" under a heading is a rule
+        if not lone and not (len(fields) == width >= FEWEST and set(words) <= set(MISSING)):
+            break
+        rows += 1
+    return rows
+
+
+def _whole(rows: list) -> bool:
+    return all(value != value or value % 1 == 0 for row in rows for value in row)
+
+
+def _even(rows: list, numbers: list, name: str) -> np.ndarray:
+    """The rows as an array. Empty fields behind the last column that has a number are trailing separators."""
+    lengths = np.array([len(row) for row in rows])
+    table = np.full((len(rows), lengths.max()), np.nan)
+    for length in np.unique(lengths):
+        table[lengths == length, :length] = [row for row in rows if len(row) == length]
+    last = np.max(~np.isnan(table) * np.arange(1, lengths.max() + 1), axis=1)  # column with a number, from 1
+    width, allowed = last.max(), min(last.max(), lengths[0])
+    wrong = np.flatnonzero((last > lengths[0]) | (lengths < allowed))
+    if wrong.size:
+        raise ValueError(
+            f"{name}, line {numbers[wrong[0]]}: {last[wrong[0]]} number(s) after lines of {allowed}; take out what is "
+            "no row of the table"
+        )
+    return table[:, :width]
+
+
+def _no_rows_in_heading(contents: list, dialect: tuple, table: np.ndarray, name: str) -> None:
+    """Raise ValueError for a line of the heading that is a row of the table but for a word in it."""
+    width = table.shape[1]
+    for number, content in contents:
+        fields = _fields(content, dialect[0])
+        if len(fields) != width:
+            continue
+        values = _values(fields, dialect[1])
+        words = [field for field, value in zip(fields, values, strict=True) if value is None]
+        mostly = len(words) < width / 2 and not all(value is None or value != value for value in values)
+        if width == 2 and len(table) > 1 and values[0] is not None:  # "0.0 error" goes on where x begins
+            step = table[1, 0] - table[0, 0]
+            mostly = abs(values[0] + step - table[0, 0]) < 0.1 * abs(step)
+        if words and mostly:
+            raise ValueError(
+                f"{name}, line {number}: {content.strip()[:60]!r} is a row of the table but for {words[0][:30]!r}. "
+                "Missing points may be empty fields, nan, Bad, ***, -- or -; take the line out if it is heading"
+            )

@@ -1,0 +1,114 @@
+"""Files of the user that are called like our packages, beside roughcoat installed from a wheel, or editable."""
+
+import os
+import shutil
+import subprocess
+import sysconfig
+import venv
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+from conftest import ROOT
+from test_cli import GOOD
+
+pytest.importorskip("setuptools")
+BUILD = "import sys; from setuptools import build_meta; getattr(build_meta, sys.argv[1])(sys.argv[2])"
+TRAP = "from pathlib import Path\nPath('it-ran').touch()\nraise SystemExit('the wrong one')\n"
+SOLVE = "print(study.solve(P=1e-5, micro='smooth', base='half_space').a.item())"
+POINT = ("point", "P=1e-5", "micro=smooth", "base=half_space")
+#: What a user may have in the working folder: path -> content.
+NEIGHBOURS = {
+    "solver.py": {"solver.py": TRAP},
+    "package solver": {"solver/__init__.py": TRAP},
+    "folder solver": {"solver/data.csv": "1, 2"},
+    "folder study": {"study/data.csv": "1, 2", "studies/data.csv": "3, 4"},
+    "all": {"solver.py": TRAP, "study/solver.py": TRAP, "study/data.csv": "1, 2", "solver/spec.py": TRAP},
+}
+
+
+def run(folder: Path, *command) -> subprocess.CompletedProcess:
+    """A command in a folder, without a PYTHONPATH that would hide the folder."""
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("PYTHON")}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, timeout=300)
+
+
+@pytest.fixture(scope="module", params=["build_wheel", "build_editable"])
+def python(request, tmp_path_factory) -> Path:
+    """The Python of an environment in which roughcoat has been installed, and what it needs is that of this one."""
+    clone, home = tmp_path_factory.mktemp("clone"), tmp_path_factory.mktemp("home")
+    for name in ("solver", "study", "studies"):
+        shutil.copytree(ROOT / name, clone / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
+        shutil.copy(ROOT / name, clone)
+    venv.create(home / "venv", symlinks=True)
+    python = home / "venv/bin/python"
+    packages = Path(sysconfig.get_path("purelib", "venv", {"base": str(home / "venv")}))
+    (packages / "others.pth").write_text(f"{Path(np.__file__).parents[1]}\n")
+    built = run(clone, python, "-c", BUILD, request.param, home)
+    assert built.returncode == 0, built.stderr
+    with zipfile.ZipFile(next(home.glob("*.whl"))) as archive:
+        archive.extractall(packages)
+    return python
+
+
+@pytest.fixture
+def beside(tmp_path):
+    """Write files of a user into a folder of its own, which is returned."""
+
+    def written(files: dict[str, str]) -> Path:
+        for name, text in files.items():
+            (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+            (tmp_path / name).write_text(text, encoding="utf-8")
+        return tmp_path
+
+    return written
+
+
+@pytest.mark.parametrize("files", NEIGHBOURS.values(), ids=NEIGHBOURS)
+def test_files_called_like_our_packages_are_left_alone(python, beside, files):
+    folder = beside(files | {"main.py": f"import study\n{SOLVE}\n"})
+    done = run(folder, python, "main.py")
+    assert (done.returncode, done.stdout) == (0, "0.019574338205844317\n"), done.stderr
+    done = run(folder, python, "-m", "study", *POINT)
+    assert done.returncode == 0 and "= 0.01957" in done.stdout, done.stderr
+    assert not (folder / "it-ran").exists()
+
+
+def test_processes_that_compute_take_our_packages_too(python, beside):
+    """And the command takes no module of the working folder for one that it needs."""
+    many = GOOD.replace("[1e-6, 2e-6, 3e-6]", "{ start = 1e-6, stop = 2e-6, num = 8 }")  # enough blocks for processes
+    folder = beside(NEIGHBOURS["all"] | {"many.toml": many, "dask.py": TRAP})
+    done = run(folder, python, "-m", "study", "run", "many.toml", "--workers", "2")
+    assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
+    (folder / "dask.py").unlink()
+    script = "import numpy as np, study; from study.work import share; share.BLOCK, share.START = 10, 1e-9\n"
+    script += "c = study.solve(P=np.geomspace(1e-6, 1e-5, 40), micro='smooth', base='half_space', workers=2)\n"
+    script += "assert (c.status == 0).all(); print(share._pool.count)"
+    done = run(folder, python, "-c", script)
+    assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
+    assert not (folder / "it-ran").exists()
+
+
+def test_a_script_may_be_called_solver(python, beside):
+    folder = beside({"solver.py": f"import study\n{SOLVE}\n"})
+    done = run(folder, python, "solver.py")
+    assert (done.returncode, done.stdout) == (0, "0.019574338205844317\n"), done.stderr
+
+
+@pytest.mark.parametrize("name", ["solver.py", "solver/__init__.py"])
+def test_another_solver_that_the_program_has_imported_is_named(python, beside, name):
+    folder = beside({name: "mine = 1\n"})
+    done = run(folder, python, "-c", "import solver, study")
+    assert done.returncode == 1
+    assert f"ImportError: {folder / name}: has been imported as solver, which is a package of roughcoat" in done.stderr
+
+
+def test_our_solver_stays_what_it_is(python, beside):
+    """Imported before or after, by the name that the pages use, and though the working folder changes."""
+    folder = beside({"elsewhere/solver.py": TRAP})
+    for order in ("solver, study", "study, solver"):
+        script = f"import os, sys\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{SOLVE}; print(solver.Problem)"
+        done = run(folder, python, "-c", script)
+        assert done.returncode == 0 and "solver.problem.Problem" in done.stdout, done.stderr

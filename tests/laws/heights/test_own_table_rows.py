@@ -1,0 +1,61 @@
+"""Messages about tables of one's own name the row that is wrong, wherever it stands."""
+
+import numpy as np
+import pytest
+
+from solver import laws
+from solver.laws import own_table
+
+P = np.geomspace(1e-5, 0.03, 30)
+NAMES = ("p", "A", "lam", "p_max")
+
+
+def read(tmp_path, columns: dict[str, np.ndarray]) -> str:
+    """What is said of a table with these columns."""
+    path = tmp_path / "mine.csv"
+    rows = ["# remarks are no rows", ",".join(NAMES)]
+    rows += [",".join(map(repr, map(float, row))) for row in zip(*(columns[name] for name in NAMES), strict=True)]
+    path.write_text("\n".join(rows), encoding="utf-8")
+    with pytest.raises(ValueError) as caught:
+        own_table.read(f"table:{path}")
+    return str(caught.value)
+
+
+@pytest.fixture
+def disc() -> dict[str, np.ndarray]:
+    spots = laws.LAWS["disc_cell"].at(P, 1.0, Nbar=250_000.0, Ra=0.004)
+    return {"p": P.copy(), "A": spots.A, "lam": spots.lam, "p_max": spots.p_max}
+
+
+@pytest.mark.parametrize("row", [2, 3, 17, 30])
+@pytest.mark.parametrize("name", ["p", "A", "lam"])
+def test_a_column_that_does_not_rise(tmp_path, disc, name, row):
+    before = disc[name][row - 2]
+    disc[name][row - 1] = before * (1 if name != "lam" else 0.99)
+    assert f"column {name}, row {row}: {disc[name][row - 1]:g}: must " in read(tmp_path, disc)
+
+
+@pytest.mark.parametrize("row", [1, 2, 17, 30])
+def test_numbers_that_cannot_be(tmp_path, disc, row):
+    for name, value, words in (
+        ("p_max", 0.99 * P[row - 1], "must be larger than p"),
+        ("p_max", 1.01 * P[row - 1], "must be at least p/lam, the mean over the spots"),
+    ):
+        message = read(tmp_path, disc | {name: np.where(np.arange(1, 31) == row, value, disc[name])})
+        assert f"column {name}, row {row}: {value:g}: {words}" in message
+    for name in NAMES:
+        message = read(tmp_path, disc | {name: np.where(np.arange(1, 31) == row, -1.0, disc[name])})
+        assert f'column {name}, row {row}: "-1.0": must be a finite number > 0' in message
+    above = np.where(np.arange(1, 31) >= row, 1.5 + 0.01 * np.arange(30), disc["lam"])
+    assert f"column lam, row {row}: {above[row - 1]:g}: must be at most 1" in read(tmp_path, disc | {"lam": above})
+
+
+@pytest.mark.parametrize("row", [2, 9, 29])
+@pytest.mark.parametrize("name", ["A", "lam", "p_max"])
+def test_a_row_off_the_curve_of_the_others(tmp_path, name, row):
+    """15 % are far more than the distance of a smooth curve, and the column still rises: the rows are far apart."""
+    p = np.geomspace(1e-6, 0.03, 30)
+    spots = laws.LAWS["disc_cell"].at(p, 1.0, Nbar=250_000.0, Ra=0.004)
+    columns = {"p": p, "A": spots.A, "lam": spots.lam, "p_max": spots.p_max}
+    columns[name] = np.where(np.arange(1, 31) == row, 0.85 * columns[name], columns[name])
+    assert f"column {name}, row {row}: " in read(tmp_path, columns)

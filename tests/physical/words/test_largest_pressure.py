@@ -1,0 +1,162 @@
+"""Where p peaks in a ring, and what the bodies need to stay elastic: the words use the largest pressure there is."""
+
+import json
+import re
+import warnings
+
+import numpy as np
+import pytest
+
+import study
+from study.__main__ import main
+from study.in_words import STRENGTHS
+
+PLATE = {"R": "3 mm", "punch": "rigid", "layer": "ta-C", "h": "20 um", "bonding": "bonded", "body": "PEEK", "P": "20 N"}
+ROUGH = {"Nbar": "2 1/um^2", "Ra": "10 um"}
+SIZES = {"Pa": 1.0, "kPa": 1e3, "MPa": 1e6, "GPa": 1e9, "nm": 1e-9, "µm": 1e-6, "mm": 1e-3}
+
+
+def quiet(**given):
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return study.solve(**given)
+
+
+def needed(text) -> list[float]:
+    """The yield strengths of the line "Not checked"."""
+    line = next(line for line in text.splitlines() if line.startswith("Not checked"))
+    return [float(number) * SIZES[unit] for number, unit in re.findall(r"above some ([\d.]+) (\w+)", line)]
+
+
+def test_a_ring_is_printed_and_used():
+    """487 MPa in a ring were 207 MPa, those of the centre: so was the strength."""
+    found = quiet(**PLATE, micro="smooth")
+    text, top = study.summary(found), float(found.p.max())
+    assert top > 2.3 * found.p0
+    number, spread, unit, radius, length = re.search(
+        r"\n  largest nominal pressure, in a ring +pring  = ([\d.]+) ± ([\d.]+) (\w+) at r = ([\d.]+) (\w+)\n", text
+    ).groups()
+    place = int(np.argmax(found.p.values))
+    assert float(number) * SIZES[unit] == pytest.approx(top, rel=2e-3)
+    assert float(spread) * SIZES[unit] == pytest.approx(float(found.p_spread[place]), rel=0.06), "two digits"
+    assert float(radius) * SIZES[length] == pytest.approx(float(found.a * found.x[place]), rel=1e-3)
+    assert needed(text) == pytest.approx([top / STRENGTHS], rel=0.05)
+
+
+def test_under_asperities_both_pressures_are_those_of_the_ring():
+    found = quiet(**PLATE | ROUGH)
+    text, peak = study.summary(found), study.derived.peak_pressure(found).item()
+    assert peak > 1.1 * found.p_max
+    number, unit = re.search(r"\n  largest real pressure, in the ring +ppeak  = ([\d.]+) (\w+)\n", text).groups()
+    assert float(number) * SIZES[unit] == pytest.approx(peak, rel=5e-3), "three digits"
+    assert needed(text) == pytest.approx([float(found.p.max()) / STRENGTHS, peak / STRENGTHS], rel=0.05)
+    plain = study.solve(P=1e-5, h=0.002, n=100, bonding="bonded", Nbar=1e5, Ra=0.004)
+    assert re.search(r"pring  = \S+ E2\* at r = 0\.0118\d+ R\n", study.summary(plain))
+
+
+def test_without_a_ring_nothing_is_said_of_one():
+    for more in ({"P": "1 mN"}, {"layer": "PTFE"}, {"base": "half_space"}):
+        found = quiet(**PLATE | more, micro="smooth")
+        text = study.summary(found)
+        assert "ring" not in text and "largest" not in text
+        assert needed(text) == pytest.approx([float(found.p0) / STRENGTHS], rel=0.05)
+
+
+@pytest.mark.parametrize("profile", [{"x": 2}, {"x": 9}, {"profiles": False}, {"profiles": ["lam"]}])
+def test_where_no_profile_shows_a_ring_no_strength_is_said(profile):
+    """The strength was that of p(0), less than half of what the ring needs."""
+    text = study.summary(quiet(**PLATE, micro="smooth", **profile))
+    if "pring" in text:  # nine points show it, not its largest pressure
+        assert profile == {"x": 9}
+    assert needed(text) == [] and "which these results do not show: solve with the profile p" in text
+    soft = study.summary(quiet(**PLATE | {"layer": "PTFE"}, micro="smooth", **profile))
+    assert len(needed(soft)) == 1, "a soft layer has no ring"
+
+
+def test_points_show_rings_and_where_there_are_none():
+    """The figures beside _STEP and in _may_have_a_ring."""
+    x = np.sin(np.linspace(0, np.pi / 2, 129))
+    given = {"a": 0.01, "micro": "smooth", "bonding": ["bonded", "frictionless"]}
+    h = [0.01 / ratio for ratio in (0.5, 1.0, 1.1, 1.4, 2.0, 2.5, 3.0, 5.0, 8.0)]
+    for nu1, nu2 in ((0.3, 0.3), (0.5, -0.5), (0.0, 0.5)):
+        found = study.solve(**given, h=h, n=[0.5, 1.5, 2.5, 3, 100], nu1=nu1, nu2=nu2, x=np.r_[x[:-1], 1.0])
+        ring = found.p.max("x") > 1.0001 * found.p0
+        assert not ring.sel(n=[0.5, 1.5, 2.5]).any() and not ring.sel(h=h[:2]).any()
+        assert ring.sel(n=3).any() and ring.sel(h=h[2]).any()
+    rings = {"h": [0.01 / ratio for ratio in (1.7, 3, 5, 8)], "n": [10, 1e3, 1e4]}
+    right = study.solve(**given, **rings, x=1025).p.max("x")
+    for points, missed in ((17, 0.06), (33, 0.03)):
+        assert (1 - study.solve(**given, **rings, x=points).p.max("x") / right).max() < missed
+
+
+def test_point_solves_for_the_profile(capsys):
+    words = [f"{name}={value}" for name, value in PLATE.items()]
+    assert main(["point", *words, "micro=smooth"]) == 0
+    found = quiet(**PLATE, micro="smooth")
+    assert capsys.readouterr().out == study.summary(found) + "\n"
+    assert main(["point", "--json", *words, "micro=smooth"]) == 0
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["p_ring"] == {"value": found.p.max().item(), "unit": "Pa"}
+    assert printed["r_ring"]["value"] == pytest.approx(0.9375 * found.a.item(), rel=1e-12)
+    assert printed["D_body"]["value"] == found.D.item(), "of a rigid punch"
+    assert main(["point", "--json", *words, "P=20 N", "micro=smooth"]) == 2
+
+
+def test_doubts_about_yielding_see_the_ring():
+    """A film of steel on PEEK, whose ring is pressed by 0.03 of its modulus, and its centre by half of that."""
+    given = PLATE | {"layer": "steel 52100", "R": "0.1 mm", "micro": "smooth"}
+    loads = ["1 N", "2 N", "5 N", "10 N", "20 N", "50 N"]
+    found = quiet(**given | {"P": loads})
+    ring, centre = ((one > 0.03 * found.E1).values for one in (found.p.max("x"), found.p0))
+    assert (ring & ~centre).any()
+    for i, P in enumerate(loads):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            study.solve(**given | {"P": P})
+        assert any("metals yield" in str(one.message) for one in caught) == ring[i], P
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        (
+            {"micro": "smooth"},
+            ". The body below needs a yield strength above some {p}. The layer is not assessed: where",
+        ),
+        (
+            {"micro": "smooth", "punch": "steel 52100"},
+            ". The body below and the punch need a yield strength above some",
+        ),
+        ({"micro": "smooth", "base": "half_space"}, ". The body needs a yield strength above some {p}."),
+        (
+            {"micro": "smooth", "base": "half_space", "punch": "steel 52100"},
+            ". The body and the punch need a yield strength above some {p}.",
+        ),
+        ({"micro": "smooth", "body": "rigid"}, "stay elastic. The layer is not assessed."),
+        (
+            {"micro": "smooth", "body": "rigid", "punch": "steel 52100"},
+            ". The punch needs a yield strength above some {p}. The layer is not assessed.",
+        ),
+        (
+            ROUGH,
+            ". The body below needs a yield strength above some {p}; what meets at the asperities needs above some",
+        ),
+        (
+            ROUGH | {"body": "rigid"},
+            ". What meets at the asperities needs a yield strength above some {s}. The layer is not assessed.",
+        ),
+        (
+            ROUGH | {"base": "half_space"},
+            ". The body needs a yield strength above some {p}; what meets at the asperities needs above some {s}.",
+        ),
+    ],
+)
+def test_the_strength_is_said_of_what_it_holds_for(change, sentence):
+    """Von Mises at the bottom of a hard layer is up to 223 times p(0)/1.6, which was said of all bodies."""
+    found = quiet(**PLATE | change)
+    largest = (found.p.max(), study.derived.peak_pressure(found))
+    strengths = [study.in_words.pressures._strength(float(one)) for one in largest]
+    line = next(line for line in study.summary(found).splitlines() if line.startswith("Not checked"))
+    assert sentence.format(p=strengths[0], s=strengths[1]) in line
+    assert ("The layer is not assessed" in line) == (change.get("base") != "half_space")
+    assert "They need" not in line

@@ -1,0 +1,159 @@
+"""A file that comes to the place of the results while they are computed stays, and so do the results."""
+
+import os
+from pathlib import Path
+
+import pytest
+from line_study import load, present
+from same import assert_same_numbers
+
+import study
+from study.evidence import tradeoff
+from study.files import results_file
+from study.files.examine import examine
+from study.files.seal import seal
+from study.work import cases
+
+STAYS = "line.nc: has appeared or changed while its results were computed, and stays; they are in "
+
+
+def during(monkeypatch, action) -> None:
+    """Do something while the last block of the line is computed."""
+    real = cases.compute
+
+    def compute(wanted):
+        if wanted.last > 20:
+            action()
+        return real(wanted)
+
+    monkeypatch.setattr(cases, "compute", compute)
+
+
+def at_the_end(monkeypatch, action) -> None:
+    """Do something when the file is complete, just before it gets its place."""
+    monkeypatch.setattr("study.store.writer.seal", lambda path: (seal(path), action()))
+
+
+def refused(opened: study.Study, **options) -> Path:
+    """The path of the results of a run that says that another file has its place."""
+    with pytest.raises(study.StudyError) as caught:
+        opened.run(**options)
+    (message,) = caught.value.messages
+    assert caught.value.code == 1 and STAYS in message and message.endswith(": move one of the two away")
+    return Path(message.partition(STAYS)[2].removesuffix(": move one of the two away"))
+
+
+def another(path: Path) -> None:
+    """Results of another study of the same name."""
+    other = path.parents[1] / "elsewhere"
+    other.mkdir(exist_ok=True)
+    (other / "line.toml").write_text("[model]\nmicro = 'smooth'\nbase = 'half_space'\nP = 3e-6\n")
+    study.load(other / "line.toml", other).run()
+    os.rename(other / "line.nc", path)
+
+
+APPEAR = {
+    "text": lambda path: path.write_text("precious"),
+    "results": another,
+    "folder": lambda path: (path.mkdir(), (path / "precious").touch()),
+    "pipe": os.mkfifo,
+    "link to nothing": lambda path: path.symlink_to("nowhere.nc"),
+    "link to a file": lambda path: (path.with_name("far").write_text("precious"), path.symlink_to("far")),
+}
+
+
+def shape(path: Path) -> tuple:
+    """What is at a path, without opening it."""
+    found = path.lstat()
+    return found.st_ino, found.st_mode, found.st_size, found.st_mtime_ns
+
+
+@pytest.mark.usefixtures("read_in_a_fork")
+@pytest.mark.parametrize("what", APPEAR)
+def test_what_appears_during_a_run_stays(file, monkeypatch, what):
+    opened = load(file)
+    path, before = opened.results / "line.nc", []
+    with monkeypatch.context() as patched:
+        # a link to nothing that comes before the writing begins is followed, as one that was there
+        when = at_the_end if what == "link to nothing" else during
+        when(patched, lambda: (APPEAR[what](path), before.append(shape(path))))
+        kept = refused(opened)
+    assert shape(path) == before[0], "it is as it was"
+    assert kept.name in ("line.nc.computed", "far.computed") and examine(kept).kind == "sound"
+    os.rename(path, path.with_name("aside"))
+    report = opened.run()
+    assert report.complete and report.computed == 0, "the blocks have stayed too"
+    assert_same_numbers(opened.open(), study.open_results(kept))
+
+
+@pytest.mark.usefixtures("read_in_a_fork")
+@pytest.mark.parametrize("links", ["links", "no links"])
+def test_a_file_that_changes_during_a_run_stays(file, monkeypatch, links):
+    """One that the run would replace, since its cases are in the study. An earlier such file stays too."""
+    load(file, **{"num = 23": "num = 2"}).run()
+    opened = load(file)
+    path = opened.results / "line.nc"
+    path.with_name("line.nc.computed").write_text("precious", encoding="utf-8")
+    if links == "no links":
+        monkeypatch.setattr(os, "link", lambda *_: (_ for _ in ()).throw(PermissionError(1, "not permitted")))
+    with monkeypatch.context() as patched:
+        at_the_end(patched, lambda: os.utime(path))
+        kept = refused(opened)
+    assert study.open_results(path).sizes["P"] == 2 and kept.name == "line.nc.computed-2"
+    assert path.with_name("line.nc.computed").read_text(encoding="utf-8") == "precious"
+    assert study.open_results(kept).sizes["P"] == 23
+    with monkeypatch.context() as patched:
+        at_the_end(patched, lambda: os.chmod(path, 0o600))
+        assert opened.run().complete, "what is in it is the same"
+    assert opened.open().sizes["P"] == 23
+
+
+def test_results_that_are_removed_during_a_run_are_written(file, monkeypatch):
+    load(file, **{"num = 23": "num = 3"}).run()
+    opened = load(file)
+    with monkeypatch.context() as patched:
+        at_the_end(patched, (opened.results / "line.nc").unlink)
+        assert opened.run().complete and opened.status()["state"] == "done"
+
+
+def test_the_same_results_by_another_run_are_no_harm(file, monkeypatch):
+    """Of a file system without locks."""
+    opened = load(file)
+
+    def elsewhere():
+        monkeypatch.undo()
+        other = study.Study(opened.definition, opened.results.with_name("other"))
+        other.run()
+        os.rename(other.results / "line.nc", opened.results / "line.nc")
+
+    during(monkeypatch, elsewhere)
+    assert opened.run().complete and opened.status()["state"] == "done"
+
+
+@pytest.mark.usefixtures("read_in_a_fork")
+def test_what_appears_between_the_last_look_and_the_name(file, monkeypatch):
+    opened = load(file)
+    path = opened.results / "line.nc"
+    monkeypatch.setattr(results_file, "stamp", lambda _: path.write_text("precious") and None)
+    kept = refused(opened)
+    assert path.read_text(encoding="utf-8") == "precious" and examine(kept).kind == "sound"
+    assert not list(opened.results.rglob("*.tmp")) and present(opened) == 23
+
+
+@pytest.mark.usefixtures("read_in_a_fork")
+def test_the_last_part_looks_again_too(file, monkeypatch):
+    opened = load(file)
+    path = opened.results / "line.nc"
+    opened.run(part=(1, 2))
+    at_the_end(monkeypatch, lambda: path.write_text("precious"))
+    refused(opened, part=(2, 2))
+    assert path.read_text(encoding="utf-8") == "precious"
+
+
+def test_measurements_of_the_trade_off_do_not_replace_what_appears(tmp_path, monkeypatch):
+    path = tmp_path / "tradeoff.nc"
+    few = tradeoff.measure(2, ways={"auto": tradeoff.WAYS["auto"]})
+    monkeypatch.setattr(tradeoff, "measure", lambda *_, **__: path.write_text("precious") and few)
+    with pytest.raises(study.StudyError, match=r"tradeoff.nc: has appeared or changed .* they are in .*nc.computed: "):
+        tradeoff.results(tmp_path)
+    assert path.read_text(encoding="utf-8") == "precious"

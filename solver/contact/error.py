@@ -25,17 +25,19 @@ _RISEN = 0.05
 #: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
 #: with it 3 % (`python tests/contact/errors/error_bars.py`); two that need it are "blind" of
 #: tests/contact/errors/test_error_bars.py.
-_BLIND = 1.0
+_BLIND = 3.0
 #: In the centre the pressures of two meshes may agree by chance: those of "centre" of
 #: tests/contact/errors/test_error_bars.py do, to a twentieth of their error. So any change of the pressure where s is
 #: above this counts; not on panels, which may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
 _NEAR = 1e-8
-#: The quadratures of two meshes may agree by chance, where λ rises as any power from the edge, or sharply inside the
-#: contact. So Ar/An is compared with a third, which has _TIMES as many points on each panel as the mesh has nodes, and
-#: _MORE: "saturated" and "quadratures" of tests/contact/errors/test_error_bars.py. With 5 points more than nodes it
-#: agreed by chance too, in 12 of 3,000 random power laws on thin layers.
+#: The quadratures of two meshes may agree by chance, if λ rises sharply inside the contact. It may, if λ in the centre
+#: is above _SATURATED or the exponent of the displacement below _SHARP. Then Ar/An is compared with another rule, which
+#: has _TIMES as many points on each panel as the mesh has nodes, and _MORE: "saturated" and "quadratures" of
+#: tests/contact/errors/test_error_bars.py. With 5 points more than nodes it agreed by chance too, in 12 of 3,000 random
+#: power laws on thin layers. Elsewhere the third rule never more than doubled the error of 24,000 random contacts.
+_SATURATED, _SHARP = 0.3, 0.45
 _TIMES, _MORE = 2, 4
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
 #: that of a law with corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
@@ -106,7 +108,8 @@ def estimate(ev, found, refined):
     error = np.maximum(margin(ev) * change, ev.floor)
     if not ev.cases.law.rough:
         return error
-    return np.maximum(error, np.maximum(_missed_ring(ev), MARGIN * _moved_edge(refined)))  # "edge" of the same tests
+    moved = MARGIN * _moved_edge(refined) if ev.mesh.order == ev.mesh.n else 0.0  # "edge" of the same tests
+    return np.maximum(error, np.maximum(_missed_ring(ev), moved))
 
 
 def _moved_edge(refined):
@@ -114,11 +117,14 @@ def _moved_edge(refined):
 
     Near an edge that moves by δ a the pressure, q ~ s, changes by δ/s² of itself where the body yields most. Where the
     asperities do, their displacement, g ~ s², changes by 2 δ/s². So s² times both changes, each weighed by its share of
-    s² in the equation, is δ or a little more. From node to node these numbers cannot cancel, as they do in the radius.
+    the right-hand side, is δ or a little more. From node to node these numbers cannot cancel, as they do in the radius.
+    Under a hard plate the pressure inside a ring is nearly 0, and its relative changes say nothing: there it counts as
+    s² of the largest.
     """
     start, end, s2 = refined.start.curve, refined.end.curve, refined.start.mesh.s**2
-    share = np.clip(refined.start.Z * start.g / s2, 0.0, 1.0)
-    moved = (1 - share) * np.abs(end.q / start.q - 1) + share * np.abs(end.g / start.g - 1)
+    share = np.clip(refined.start.Z * start.g / refined.start.drop, 0.0, 1.0)
+    least = np.maximum(start.q, 0.02 * s2 * start.q.max(axis=1, keepdims=True))
+    moved = (1 - share) * np.abs(end.q - start.q) / least + share * np.abs(end.g / start.g - 1)
     return (s2 * moved).max(axis=1)
 
 
@@ -176,9 +182,9 @@ def completed(ev, Ar_An, error, rows):
 
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`
 
-    If λ has risen before the first node, what is missed there is counted by _UNSEEN. Ar/An is compared with another
-    quadrature; where the displacement hardly depends on the pressure, with one for corners too. A law with corners has
-    a quadrature of its own.
+    If λ has risen before the first node, what is missed there is counted by _UNSEEN. Where λ may rise sharply, Ar/An is
+    compared with another quadrature; where the displacement hardly depends on the pressure, with one for corners too. A
+    law with corners has a quadrature of its own.
     """
     law, mesh, area, error = ev.cases.law.take(rows), ev.mesh, Ar_An[rows], error[rows]
     if not law.rough or not len(rows):
@@ -189,10 +195,12 @@ def completed(ev, Ar_An, error, rows):
     ends = law.area(ev.state.y[rows][:, [0, -1]], ev.curve.q[rows][:, [0, -1]])
     ring = np.where(ends[:, 0] > _RISEN, _UNSEEN * mesh.s[0] ** 2 / 2 * ends[:, 0] / area, 0.0)
     _, exponent = law.edge()
-    s, w = gauss_rule(_TIMES * mesh.order + _MORE, mesh.breaks)
-    y = interpolate(ev, s, rows=rows)
-    other = law.area(y, law.evaluate(y).q) @ (2 * w * s)
-    error = np.maximum(np.maximum(error, ring), MARGIN * np.abs(other / area - 1))
+    error, sharp = np.maximum(error, ring), np.flatnonzero((ends[:, 1] > _SATURATED) | (exponent < _SHARP))
+    if len(sharp):
+        s, w = gauss_rule(_TIMES * mesh.order + _MORE, mesh.breaks)
+        y, law = interpolate(ev, s, rows=rows[sharp]), law.take(sharp)
+        other = law.area(y, law.evaluate(y).q) @ (2 * w * s)
+        error[sharp] = np.maximum(error[sharp], MARGIN * np.abs(other / area[sharp] - 1))
     steep = np.flatnonzero((exponent < _STEEP) & (mesh.order == mesh.n))
     if len(steep):
         other, of_area, _, _ = cornered(ev, rows[steep])

@@ -14,7 +14,7 @@ from solver.laws import Law
 
 from .carried import with_coordinates
 from .data.dataset import Parts, parts
-from .in_words import doubts
+from .in_words import FarOutside, doubts, far_outside
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
@@ -24,6 +24,7 @@ from .spec.vocabulary import NUMERICS, VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
+from .work.screen import screen_of
 from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
@@ -86,6 +87,7 @@ def solve(
     title: str = "",
     workers: int | None = None,
     same_piece: bool = False,
+    progress: bool | None = None,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -127,6 +129,8 @@ def solve(
     workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
     same_piece : whether bodies of one material (`punch`, `layer`, `body` of one name) are one piece, whose E and ν are
         off together; otherwise each is a piece of its own, and their spreads are independent
+    progress : whether a call of more than two seconds says how far it is, in a notebook or on stderr; None: in a
+        notebook or on a terminal
     parameters : of registered laws
 
     Returns
@@ -137,7 +141,7 @@ def solve(
     says it in words. The results also have what a DataArray brings as further coordinates, such as who measured its
     loads; the levels of a MultiIndex are coordinates without an index, which netCDF can hold. A warning tells of those
     that are left out, of physical cases that violate an assumption of the model, or that have inputs of which the unit
-    must be wrong.
+    must be wrong. Rough contacts on exact layers that are far outside the model are warned of before they are solved.
 
     Raises
     ------
@@ -153,6 +157,7 @@ def solve(
     workers = plain(workers)
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
+    stream = screen_of(plain(progress))
     ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
     if ranges:
         hint = "a range stands in study files; here give its values, as of numpy.geomspace"
@@ -175,7 +180,9 @@ def solve(
         for name, given in parameters.items():
             draft.of_any_form(name, given)
         definition = complete(draft, *about, LARGE)
-    arrays = solved(definition, workers)
+    if far := far_outside(definition):
+        warnings.warn("\n".join(far), FarOutside, stacklevel=2)
+    arrays = solved(definition, workers, stream)
     found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:

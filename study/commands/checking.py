@@ -26,15 +26,17 @@ def assumed_lines(definition: Definition) -> list[str]:
 
 
 def doubtful_lines(definition: Definition) -> list[str]:
-    """A line for each input of a study with units that no body has, such as 210 TPa, or whose spread is too wide."""
+    """A line for each input of a study with units that no body has, such as 210 TPa, or whose spread is too wide, and
+    for what it is far outside of."""
     if not definition.scene:
         return []
+    from ..in_words.early import far_outside
     from ..physical.bounds import INPUTS, absurd  # here: it imports xarray
 
     given = {name: value for name, value in definition.scene.given.items() if name in INPUTS}
     given = {name: v.isel({MOVED: 0}) if MOVED in getattr(v, "dims", ()) else v for name, v in given.items()}
     spreads = {name: one for name, one in definition.scene.spreads.items() if name in INPUTS}
-    return [f"{definition.name}: beware: {text}" for text in absurd(given, spreads)]
+    return [f"{definition.name}: beware: {text}" for text in (*absurd(given, spreads), *far_outside(definition))]
 
 
 def law_lines(definition: Definition) -> list[str]:

@@ -2,6 +2,7 @@
 
 import json
 import math
+import sys
 import warnings
 from argparse import ArgumentTypeError
 
@@ -9,12 +10,12 @@ import xarray as xr
 
 from ..data.dataset import decode
 from ..data.derived import QUANTITIES
-from ..in_words import SHOWN, doubts, summary
+from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..physical.inputs import all_inputs
 from ..physical.names import INFINITE
 from ..solving import solve
 from ..spec.definition import StudyError
-from ..terminal import answer
+from ..terminal import answer, say
 from .arguments import assignment
 
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
@@ -30,7 +31,9 @@ def point(options, given: list[str]) -> int:
     """Solve the contact and say what was found; exit code 1 for one that has no solution."""
     parameters = parameters_of(given)
     with warnings.catch_warnings():
-        warnings.simplefilter("ignore")  # the summary says it
+        warnings.simplefilter("ignore")  # the summary says it; but that may take long
+        warnings.simplefilter("always", FarOutside)
+        warnings.showwarning = lambda text, *_: say(f"beware: {text}", sys.stderr)
         try:
             found = solve(**parameters)  # with the profile p, which may be largest in a ring
         except StudyError as error:

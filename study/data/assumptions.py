@@ -58,10 +58,11 @@ def validity(dataset: xr.Dataset) -> xr.DataArray:
     return xr.DataArray(validity_of(dataset.variables), dataset["status"].coords, name="validity")
 
 
-def validity_of(variables: Mapping) -> xr.Variable:
+def validity_of(variables: Mapping, times: float = 1.0) -> xr.Variable:
     """`validity` of the variables of a dataset. It computes with arrays, since DataArrays take as long as a contact.
 
     variables : dimensionless; with R1 and R2, in R, where the radii of both bodies are known
+    times : how many times beyond its limit an assumption counts as violated
     """
     status, used = variables["status"], variables["model_used"].attrs
     v = {name: _along(status.dims, own) for name, own in variables.items() if set(own.dims) <= set(status.dims)}
@@ -70,20 +71,20 @@ def validity_of(variables: Mapping) -> xr.Variable:
     E1 = np.where(layered, layer_modulus(n), 1.0) / (1 + v.get("m", 0.0))  # of layer and punch in series
     # By (13) this is at most b/Ra of the central spot. It also serves laws whose b(0) is a mean, and those without Ra.
     steep = np.pi / 2 * (v.get("p_max", np.nan) - v["p0"]) / E1
-    compressed = (v["D"] > COMPRESSED * h) & (v["p0"] > COMPRESSED * layer_modulus(n))
-    stretched = layer_modulus(n) * np.minimum(h, v["a"]) * v["a"] ** 2 > 8 * STRETCHED * v["p0"]
+    compressed = (v["D"] > times * COMPRESSED * h) & (v["p0"] > times * COMPRESSED * layer_modulus(n))
+    stretched = layer_modulus(n) * np.minimum(h, v["a"]) * v["a"] ** 2 > 8 * times * STRETCHED * v["p0"]
     models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
     thin = sum(v["model_used"] == value for value, word in models if word.endswith("thin_layer")) > 0
     violated = {
-        1: thin & (v["model_error"] > NOT_THIN),
-        2: rough & (spots(v) * _touching(v) < FEW_SPOTS),
-        4: layered & rough & (spot_radius(v) > SPOT_OVER_LAYER * h),
-        8: (v["base"] == "thin_layer") & (n >= 1),
-        16: rough & have("smears", v["micro"]) & (v["lam0"] > MERGING),
-        32: (v["a"] > STEEP) | layered & (compressed | stretched),
-        64: rough & ((spot_radius(v) > STEEP_SPOT * v.get("Ra", np.nan)) | (steep > STEEP_SPOT)),
-        128: layered & rough & (v.get("Nbar", np.nan) * (PITCH_OVER_LAYER * h) ** 2 < 1),
-        256: v["a"] > STEEP * np.minimum(*(np.abs(v.get(name, np.nan)) for name in ("R1", "R2"))),
+        1: thin & (v["model_error"] > times * NOT_THIN),
+        2: rough & (spots(v) * _touching(v) < FEW_SPOTS / times),
+        4: layered & rough & (spot_radius(v) > times * SPOT_OVER_LAYER * h),
+        8: (v["base"] == "thin_layer") & (n >= times),
+        16: rough & have("smears", v["micro"]) & (v["lam0"] > times * MERGING),
+        32: (v["a"] > times * STEEP) | layered & (compressed | stretched),
+        64: rough & ((spot_radius(v) > times * STEEP_SPOT * v.get("Ra", np.nan)) | (steep > times * STEEP_SPOT)),
+        128: layered & rough & (v.get("Nbar", np.nan) * (times * PITCH_OVER_LAYER * h) ** 2 < 1),
+        256: v["a"] > times * STEEP * np.minimum(*(np.abs(v.get(name, np.nan)) for name in ("R1", "R2"))),
     }
     flags = sum((np.int32(mask) * where for mask, where in violated.items()), np.zeros(status.shape, np.int32))
     return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())

@@ -19,6 +19,11 @@ NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
 """Statuses of cases whose equations have no solution in the model. The solver has not failed there."""
 
 
+def failed_cases(status: np.ndarray) -> np.ndarray:
+    """The places in `status` (n,) of the cases that have failed."""
+    return np.flatnonzero(~np.isin(status, (0, *NO_SOLUTION)))
+
+
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     """What `arrays_of` gives for `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
     found = {name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *names("result"))}

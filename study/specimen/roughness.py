@@ -9,7 +9,8 @@ import math
 
 import numpy as np
 
-from .measured import Roughness, measure
+from .heights.asperities import Roughness
+from .measured import measure
 from .quantities import readable
 from .scan import Scan, height_map, profile
 from .scan_files import read

@@ -2,6 +2,7 @@
 
 import math
 import numbers
+import unicodedata
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,14 +12,18 @@ from .heights.missing import treated
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
 UNITS = {"m": 1.0, "mm": 1e-3, **MICRO, "nm": 1e-9, "pm": 1e-12, "angstrom": 1e-10, "Å": 1e-10}
+#: Units as instruments and people write them, in small letters and without a plural s.
+WORDS = {"angstrom": 1e-10, "ångström": 1e-10, "micron": 1e-6}
+PREFIXES = {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "pico": 1e-12}
+WORDS |= {prefix + word: size for prefix, size in PREFIXES.items() for word in ("meter", "metre")}
 #: Fewest points in a direction. They can show two bumps of eight points each.
 FEWEST = 16
 #: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
 #: atomic force microscope up to 2.7. A steeper scan has other units than the caller says, or is full of spikes.
 STEEPEST = 3.0
-#: What no scan of a rough surface has, unless its unit is another: a size above 1 m (stitched white-light maps and
-#: profilometers reach 0.3 m), heights that spread by less than 1 pm (cleaved mica has 50 pm, the noise of the best
-#: instruments 10 pm), and asperities of a radius above 1 km (a float glass has some metres at its longest waves).
+#: What no scan of a rough surface has, unless its unit is another: a size above 1 m, which no instrument reaches; an
+#: rms of the heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms
+#: of 1 nm have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_sizes.py).
 LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.
@@ -64,7 +69,7 @@ def profile(
 
     z : heights, in height_unit (None: as `unit`)
     x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
-    unit, height_unit : one of m, mm, um, nm, pm, angstrom
+    unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
     missing, steep, huge : as of `height_map`
 
     Raises ValueError: neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them.
@@ -91,7 +96,7 @@ def height_map(
     """A map of heights z, shape (y, x), in height_unit (None: as `unit`).
 
     dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
-    unit, height_unit : one of m, mm, um, nm, pm, angstrom
+    unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
     missing : what is done with heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
         "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
     steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
@@ -111,9 +116,21 @@ def height_map(
 
 def metres(unit: str, name: str) -> float:
     """Metres in a unit of length."""
-    if unit not in UNITS:
+    size = spelt(unit)
+    if size is None:
         raise ValueError(f"{name}: the unit {unit!r} is unknown; allowed are {', '.join(UNITS)}")
-    return UNITS[unit]
+    return size
+
+
+def spelt(word) -> float | None:
+    """Metres in a unit however it is spelt, "Ångström", "microns"; None if it is none of length.
+
+    Å has a character of its own, and is also written as A and a ring.
+    """
+    if not isinstance(word, str):
+        return None
+    word = unicodedata.normalize("NFC", word)
+    return UNITS.get(word) or WORDS.get(word.lower().removesuffix("s"))
 
 
 def number(name: str, value, unit: str) -> float:
@@ -130,7 +147,7 @@ def _in_unit(name: str, values, unit: str):
     """
     quantity = hasattr(values, "magnitude")
     own = values.units if quantity else getattr(values, "attrs", {}).get("units", unit)
-    if quantity or (own != unit and UNITS.get(own) != UNITS.get(unit)):
+    if quantity or (own != unit and spelt(own) != spelt(unit)):
         raise ValueError(f"{name} is in {own}, but must be numbers in {unit}: give the numbers, and their unit")
     return values
 

@@ -4,17 +4,12 @@ And the text formats whose heading has every length: SDF (ISO 25178-71), SMD (IS
 """
 
 import re
-import unicodedata
 
 import numpy as np
 
-from .scan import UNITS, metres
+from .scan import UNITS, WORDS, metres, spelt
 from .scan_texts import Table
 
-#: Units as instruments write them; `unit` and `height_unit` have one spelling of each.
-WORDS = {"angstrom": 1e-10, "ångström": 1e-10, "micron": 1e-6}
-PREFIXES = {"": 1.0, "milli": 1e-3, "micro": 1e-6, "nano": 1e-9, "pico": 1e-12}
-WORDS |= {prefix + word: size for prefix, size in PREFIXES.items() for word in ("meter", "metre")}
 _UNIT = rf"(?:(?i:{'|'.join(WORDS)})s?|{'|'.join(sorted(UNITS, key=len, reverse=True))}|Å|A)(?![^\W_])"
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?(?![\w.,])"
 #: A factor whose meaning is stated: height × factor is in that unit. SurfaceTopography and Gwyddion know them too.
@@ -65,8 +60,7 @@ _SIZE = re.compile(
 
 def length(word: str) -> float | None:
     """Metres in a unit as a heading writes it; None if it is none of length."""
-    word = unicodedata.normalize("NFC", word)
-    return UNITS.get(word) or WORDS.get(word.lower().removesuffix("s")) or {"A": 1e-10}.get(word)
+    return spelt(word) or {"A": 1e-10}.get(word)
 
 
 def check_units(table: Table, unit: str, height_unit: str, places: list, name: str) -> None:

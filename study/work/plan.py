@@ -19,6 +19,7 @@ from ..store.blocks import Inventory, Store, count_statuses
 from ..store.earlier import statuses
 from ..terminal import shown
 from .cost import PER_CASE, describe, estimate
+from .screen import screen_of
 
 
 @dataclass(frozen=True)
@@ -52,7 +53,9 @@ class Order:
     force : replace the results file even if cases in it are lost
     renew : replace it even so if the same study file made it, by another version of the numerics
     yes : go on however large the study is
-    command : for the history of the results; stream : where progress is written
+    command : for the history of the results
+    stream : where progress is written
+    progress : without a stream, whether it is shown as that of a call is, see `screen.screen_of`
     """
 
     definition: Definition
@@ -68,6 +71,7 @@ class Order:
     yes: bool = False
     command: str = ""
     stream: TextIO | None = None
+    progress: bool | None = None
 
     def __post_init__(self):
         def whole(*values) -> bool:
@@ -85,6 +89,7 @@ class Order:
             wrong.append(f"{name}: {laws} was registered anew after the study was loaded: load it again")
         if wrong:
             raise StudyError(wrong)
+        screen_of(self.progress)
 
     @property
     def store(self) -> Store:

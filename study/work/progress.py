@@ -1,6 +1,8 @@
-"""Progress of a run: one line that is rewritten on a terminal, a plain line now and then elsewhere."""
+"""Progress of a run or a call: one line that is rewritten on a terminal, a plain line now and then elsewhere."""
 
+import contextvars
 import os
+import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,14 +10,20 @@ from typing import TextIO
 
 EVERY = 10.0  # seconds between plain lines
 BLINK = 0.1  # seconds between rewritten lines
+SILENT = 2.0  # seconds that may pass without a word: after some three people wonder whether the program has stopped
+AGAIN = 0.5  # seconds after which the line is looked at again: the seconds in it go up one by one
+ERASE = "\r\x1b[K"  # to the beginning of the line of a terminal, and erase it
 
 
 @dataclass
 class Progress:
-    """Counts cases and writes how far a run is.
+    """Counts cases and writes how far a run is. As a context manager it also says every second that the run goes on,
+    from SILENT seconds on, and ends the line.
 
     done : cases on disk when the run began, and those computed since; computed : the latter alone, for the rate
     failed : cases that have failed; a case without a solution has not
+    passing : of a call: nothing is said if it ends within SILENT seconds, and nothing stays on a terminal
+    As long as nothing is computed it says the seconds: "fig04: 8 s". A call of one block never says anything else.
     """
 
     name: str
@@ -26,27 +34,65 @@ class Progress:
     computed: int = 0
     begun: float = field(default_factory=time.monotonic)
     written: float = field(default_factory=time.monotonic)
+    passing: bool = False
+
+    def __post_init__(self):
+        self._shown, self._writing, self._ended, self._thread = False, threading.RLock(), threading.Event(), None
+        self._updated = self.begun
+        if self.passing:
+            self.written = -EVERY  # its first line does not wait
+
+    def __enter__(self) -> "Progress":
+        if self.stream is not None:
+            # in the context of the caller, by which a notebook knows the cell that the line belongs to
+            run = contextvars.copy_context().run
+            self._thread = threading.Thread(target=run, args=(self._go_on,), daemon=True)
+            self._thread.start()
+        return self
+
+    def __exit__(self, *_) -> None:
+        self._ended.set()
+        if self._thread is not None:
+            self._thread.join()
+        self.close()
+
+    def _go_on(self) -> None:
+        wait = SILENT
+        while not self._ended.wait(wait):
+            self.tell()
+            wait = AGAIN
+
+    def tell(self) -> None:
+        """Say how far it is, if that was said long ago."""
+        if self.done < self.total:
+            self._write(self._line)
 
     def update(self, cases: int, failed: int) -> None:
-        """Add a finished block."""
-        self.done += cases
-        self.computed += cases
-        self.failed += failed
-        self._write(self._line)
+        """Add a finished block; any thread may."""
+        with self._writing:
+            self.done += cases
+            self.computed += cases
+            self.failed += failed
+            self._updated = time.monotonic()
+        if not self.passing:
+            self._write(self._line)
 
     def close(self) -> None:
-        """End the rewritten line."""
-        self._write(lambda terminal: "\n" if terminal and self.computed else "")
+        """End the rewritten line, or erase that of a call."""
+        end = ERASE if self.passing else "\n"
+        self._write(lambda terminal: end if terminal and self._shown else "")
 
     def _write(self, text: Callable[[bool], str]) -> None:
         """Write text(whether it is for a terminal that can erase a line), if there is a stream. When that fails, go on
         without it: a run must not end because of it."""
-        try:
-            if self.stream is not None and (shown := text(self.stream.isatty() and os.environ.get("TERM") != "dumb")):
-                self.stream.write(shown)
-                self.stream.flush()
-        except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
-            self.stream = None
+        with self._writing:
+            try:
+                if self.stream is not None and (shown := text(erases(self.stream))):
+                    self.stream.write(shown)
+                    self.stream.flush()
+                    self._shown = True
+            except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
+                self.stream = None
 
     def _line(self, terminal: bool) -> str:
         """How far the run is; "" as long as the last line is young."""
@@ -54,10 +100,19 @@ class Progress:
         if now - self.written < (BLINK if terminal else EVERY) and self.done < self.total:
             return ""
         self.written = now
-        counts = (self.name, self.done, self.total, self.failed, self.computed, now - self.begun)
-        if terminal:  # a line that fills the last column may wrap
-            return f"\r\x1b[K{describe(*counts, width=columns(self.stream) - 1)}"
-        return f"{describe(*counts)}\n"
+        width = columns(self.stream) - 1 if terminal else None  # a line that fills the last column may wrap
+        if self.computed:
+            counts = (self.name, self.done, self.total, self.failed, self.computed, self._updated - self.begun)
+            line = describe(*counts, since=now - self._updated, width=width)
+        else:
+            done = f", {self.done} of {self.total} cases are there" * bool(self.done)
+            line = f"{self.name}: {duration(now - self.begun)}{done}"[:width]
+        return f"{ERASE}{line}" if terminal else f"{line}\n"
+
+
+def erases(stream: TextIO) -> bool:
+    """Whether a stream is a terminal that can erase a line."""
+    return stream.isatty() and os.environ.get("TERM") != "dumb"
 
 
 def columns(terminal: TextIO) -> int:
@@ -69,11 +124,14 @@ def columns(terminal: TextIO) -> int:
 
 
 def describe(
-    name: str, done: int, total: int, failed: int, computed: int, seconds: float, *, width: int | None = None
+    name: str, done: int, total: int, failed: int, computed: int, seconds: float, since=0.0, *, width: int | None = None
 ) -> str:
-    """The line "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left", shortened to at most `width` characters."""
+    """The line "fig04: 1200 of 2000 cases, 3 failed, 410/s, 2 s left", shortened to at most `width` characters.
+
+    seconds : from the beginning to the last block, which was `since` seconds ago
+    """
     rate = computed / seconds if seconds > 0 else 0.0
-    left = f", {duration((total - done) / rate)} left" if rate and done < total else ""
+    left = f", {duration(max((total - done) / rate - since, 0.0))} left" if rate and done < total else ""
     share = f"{100 * done // total} %"
     lines = (
         f"{name}: {done} of {total} cases, {failed} failed, {rate:.3g}/s{left}",

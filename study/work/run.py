@@ -6,10 +6,9 @@ from contextlib import closing, nullcontext
 from dataclasses import replace
 from pathlib import Path
 
-import numpy as np
 import xarray as xr
 
-from ..data.dataset import NO_SOLUTION, parts, status_words
+from ..data.dataset import failed_cases, parts, status_words
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..files.lock import held
@@ -24,6 +23,7 @@ from .cases import Failure, blocks_of, can_travel, guarded, parcel
 from .cost import Estimate, estimate
 from .plan import Order, Report, check_countable, check_size, check_writable, look
 from .progress import Progress
+from .screen import screen_of
 from .workers import as_they_come, engine
 
 log = logging.getLogger(__name__)
@@ -123,9 +123,10 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
     if not blocks:
         return failures
     size = order.definition.grid.size
-    shown = Progress(order.definition.name, size, order.stream, size - len(known.missing))
+    stream, passing = order.stream or screen_of(order.progress), order.stream is None
+    shown = Progress(order.definition.name, size, stream, size - len(known.missing), passing=passing)
     many = len(blocks) if order.processes and can_travel(order.definition) else 0
-    with closing(shown) as progress, engine(order.workers, order.scheduler, many) as workers:
+    with shown as progress, engine(order.workers, order.scheduler, many) as workers:
         tasks = (parcel(order.definition, index) for index in blocks)
         for number, result in as_they_come(workers, guarded, tasks):
             if isinstance(result, Failure):
@@ -134,7 +135,7 @@ def compute_blocks(order: Order, known: Inventory, steps: Iterator[None]) -> dic
             else:
                 add(order.store, known, blocks[number], result)
                 next(steps, None)
-                failed = np.flatnonzero(~np.isin(result["status"], (0, *NO_SOLUTION)))
+                failed = failed_cases(result["status"])
                 progress.update(len(result["status"]), len(failed))
                 if order.fail_fast and len(failed):
                     case, value = blocks[number][failed[0]], int(result["status"][failed[0]])

@@ -17,13 +17,17 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
+from ..data.dataset import failed_cases
 from ..spec.definition import Definition
 from ..spec.grid import USUAL, usual_block
+from ..terminal import counted
 from .cases import Failure, can_travel, compute, guarded, parcel
 from .processes import Processes
+from .progress import Progress
 from .workers import available_workers
 
 log = logging.getLogger(__name__)
@@ -68,19 +72,29 @@ _pool, _in_use = _Pool(), threading.Lock()
 atexit.register(_pool.end)
 
 
-def solved(definition: Definition, workers: int | None = None) -> dict[str, np.ndarray]:
+def solved(definition: Definition, workers: int | None = None, stream: TextIO | None = None) -> dict[str, np.ndarray]:
     """The columns of all cases of a grid: name -> (B, ...).
 
     workers : most processors to be used; 1: the calling thread alone; None: all, or one, see `_processes_allowed`
+    stream : where a call of more than two seconds says how far it is
     """
+    size, times = definition.grid.size, definition.times
+    moved = f", {'each ' * (size > times)}{times} times for the spreads" * (times > 1)
+    name = f"solving {counted(size // times, 'contact')}{moved}"
+    with Progress(name, size, stream, passing=True) as shown:
+        return _of_blocks(definition, workers, shown)
+
+
+def _of_blocks(definition: Definition, workers: int | None, shown: Progress) -> dict[str, np.ndarray]:
+    """`solved`, which tells `shown` of each block if there are several."""
     blocks = blocks_of_grid(definition)
     if len(blocks) == 1:
         return compute(parcel(definition, blocks[0]))
     most = min(_processes_allowed(definition, workers), len(blocks) - 1)
     if not most or not _in_use.acquire(blocking=False):  # another thread is using the processes
-        return _solve(definition, blocks, 0)
+        return _solve(definition, blocks, 0, shown)
     try:
-        return _solve(definition, blocks, most)
+        return _solve(definition, blocks, most, shown)
     except BaseException:
         _pool.end()
         raise
@@ -111,7 +125,7 @@ def _processes_allowed(definition: Definition, workers: int | None) -> int:
     return 0 if divided else available_workers() - 1
 
 
-def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[str, np.ndarray]:
+def _solve(definition: Definition, blocks: list[np.ndarray], most: int, shown: Progress) -> dict[str, np.ndarray]:
     """Solve all blocks, in this thread and in at most `most` processes. More are started only if much work is left."""
     waiting, failed, columns = deque(blocks), [], {}
 
@@ -120,6 +134,7 @@ def _solve(definition: Definition, blocks: list[np.ndarray], most: int) -> dict[
         for name, array in found.items():
             whole = columns.setdefault(name, np.empty((definition.grid.size, *array.shape[1:]), array.dtype))
             whole[index[0] : index[-1] + 1] = array
+        shown.update(len(index), len(failed_cases(found["status"])))
 
     def feeder(call: Callable) -> None:
         for index in _taken(waiting):

@@ -1,6 +1,5 @@
 """Where blocks are computed: threads or processes of this machine, or workers of a dask cluster; one interface."""
 
-import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from contextlib import contextmanager
@@ -10,28 +9,27 @@ from functools import partial
 from dask.system import cpu_count as available_workers  # no more than the limit of a container is worth
 
 from .cases import Failure
+from .cluster import Cluster, Lost
 from .processes import Processes
 from .scheduler import connected
 
 CONNECT = 10  # seconds in which something must listen at the address of a scheduler
 ANSWER = 60  # seconds that a scheduler which listens has to answer: it may be busy
 AHEAD = 4  # blocks submitted for each worker, which goes on with them while this thread writes
+AGAIN = 5  # seconds after which a run that waits looks which workers of a cluster are there: it is one short message
 MANY = 8  # blocks from which on it pays to start processes, which do not share a lock of Python as threads do
-
-
-class Lost(ConnectionError):
-    """The scheduler is gone."""
-
-    def __init__(self):
-        super().__init__("the scheduler is gone")
 
 
 @dataclass(frozen=True, eq=False)
 class Engine:
-    """submit(function, task) -> Future; width() : how many tasks it should have at a time, which may change."""
+    """submit(function, task) -> Future; width() : how many tasks it should have at a time, which may change.
+
+    again : seconds after which a wait for results asks for the width again; None: never
+    """
 
     submit: Callable[..., Future]
     width: Callable[[], int]
+    again: float | None = None
 
 
 @contextmanager
@@ -64,42 +62,16 @@ def processes_for(workers: int, blocks: int) -> int:
 
 @contextmanager
 def _cluster(workers: int | None, scheduler: str) -> Iterator[Engine]:
-    client = connected(scheduler, CONNECT, ANSWER)
-    handing, ended = threading.Lock(), threading.Event()
+    cluster = Cluster(connected(scheduler, CONNECT, ANSWER))
 
     def width() -> int:
-        try:
-            threads = sum(client.nthreads().values())  # workers come and go
-        except OSError:
-            raise Lost from None
+        threads = cluster.threads()
         return AHEAD * max(1, min(threads, workers or threads))
 
-    def submit(function: Callable, task: object) -> Future:
-        found = Future()
-        client.submit(function, task, pure=False).add_done_callback(partial(hand_over, found))
-        return found
-
-    def hand_over(found: Future, computed) -> None:
-        """Give `found` the result of a future of dask, or the exception.
-
-        Dask's own executor reads the state of the future once more when it has the result. If the worker is lost in
-        between, it takes the result for an exception, and a block that has been computed fails.
-        """
-        with handing:
-            if ended.is_set():
-                return
-            try:
-                found.set_result(computed.result())
-            except BaseException as error:
-                found.set_exception(Lost() if computed.cancelled() else error)
-
     try:
-        yield Engine(submit, width)
+        yield Engine(cluster.submit, width, AGAIN)
     finally:
-        ended.set()
-        if handing.acquire(timeout=CONNECT):  # of a client that is closed, dask's thread waits for a result for ever
-            handing.release()
-        client.close(timeout=1)
+        cluster.leave(CONNECT)
 
 
 def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterator[tuple[int, object]]:
@@ -112,13 +84,14 @@ def as_they_come(engine: Engine, function: Callable, tasks: Iterable) -> Iterato
     for number, task in enumerate(tasks):
         pending[engine.submit(function, task)] = number
         while len(pending) >= engine.width():
-            yield _next(pending)
+            yield _next(pending, engine)
     while pending:
-        yield _next(pending)
+        yield _next(pending, engine)
 
 
-def _next(pending: dict[Future, int]) -> tuple[int, object]:
-    done, _ = wait(pending, return_when=FIRST_COMPLETED)
+def _next(pending: dict[Future, int], engine: Engine) -> tuple[int, object]:
+    while not (done := wait(pending, engine.again, FIRST_COMPLETED).done):
+        engine.width()
     future = min(done, key=pending.get)
     number = pending.pop(future)
     try:

@@ -101,6 +101,18 @@ def test_auto_and_the_judged_thin_layer():
     assert found.model_error[1] < 3 * error[1], "the estimate knows of the punch"
 
 
+@pytest.mark.parametrize("m", [1e-3, 0.5, 4.0])
+def test_the_closed_form_of_an_elastic_punch_is_that_at_given_radius(m):
+    """The largest of the three controls, for each of them; a rigid one has its own."""
+    given = {"n": 0.3, "h": [1e-4, 1e-3], "base": "thin_layer", "micro": "smooth", "bonding": "bonded"}
+    a = solve(Problem.of(a=[0.02, 0.03], **given, m=m))
+    for control in ("P", "D"):
+        other = solve(Problem.of(**{control: getattr(a, control)}, **given, m=m))
+        assert_allclose(other.model_error, a.model_error, rtol=1e-4)
+        rigid = solve(Problem.of(**{control: getattr(a, control)}, **given))
+        assert (rigid.model_error < solve(Problem.of(a=rigid.a, **given)).model_error).all()
+
+
 @pytest.mark.parametrize(("h", "rtol"), [(0.02, 1e-10), (1e-5, 1e-7)], ids=["layer", "film"])
 @pytest.mark.parametrize("micro", [{"micro": "smooth"}, ROUGH], ids=["smooth", "rough"])
 def test_rigid_and_elastic_punches_in_one_batch(h, rtol, micro):

@@ -18,13 +18,12 @@ BUILD = "import sys; from setuptools import build_meta; getattr(build_meta, sys.
 TRAP = "from pathlib import Path\nPath('it-ran').touch()\nraise SystemExit('the wrong one')\n"
 SOLVE = "print(study.solve(P=1e-5, micro='smooth', base='half_space').a.item())"
 POINT = ("point", "P=1e-5", "micro=smooth", "base=half_space")
-#: What a user may have in the working folder: path -> content.
+#: What a user may have in the working folder: path -> content. A package hides a module of its name, and both hide a
+#: plain folder, so each of the three is tried where it counts.
 NEIGHBOURS = {
-    "solver.py": {"solver.py": TRAP},
-    "package solver": {"solver/__init__.py": TRAP},
-    "folder solver": {"solver/data.csv": "1, 2"},
-    "folder study": {"study/data.csv": "1, 2", "studies/data.csv": "3, 4"},
-    "all": {"solver.py": TRAP, "study/solver.py": TRAP, "study/data.csv": "1, 2", "solver/spec.py": TRAP},
+    "modules": {"solver.py": TRAP, "study/solver.py": TRAP, "study/data.csv": "1, 2", "solver/spec.py": TRAP},
+    "packages": {"solver/__init__.py": TRAP},
+    "folders": {"solver/data.csv": "1, 2", "study/data.csv": "1, 2", "studies/data.csv": "3, 4"},
 }
 
 
@@ -79,7 +78,7 @@ def test_files_called_like_our_packages_are_left_alone(python, beside, files):
 def test_processes_that_compute_take_our_packages_too(python, beside):
     """And the command takes no module of the working folder for one that it needs."""
     many = GOOD.replace("[1e-6, 2e-6, 3e-6]", "{ start = 1e-6, stop = 2e-6, num = 8 }")  # enough blocks for processes
-    folder = beside(NEIGHBOURS["all"] | {"many.toml": many, "dask.py": TRAP})
+    folder = beside(NEIGHBOURS["modules"] | {"many.toml": many, "dask.py": TRAP})
     done = run(folder, python, "-m", "study", "run", "many.toml", "--workers", "2")
     assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
     (folder / "dask.py").unlink()

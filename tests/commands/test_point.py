@@ -6,6 +6,7 @@ import math
 import pytest
 
 import study
+from study import solving
 from study.__main__ import main
 from study.in_words import BROKEN
 
@@ -111,3 +112,31 @@ def test_bad_input_is_said_before_anything_is_computed(given, messages, capsys):
 def test_a_unit_of_something_else(capsys):
     assert main(["point", *words(**BALL, P="10 GPa")]) == 2
     assert capsys.readouterr().err == 'P = "10 GPa" is a pressure: must be a force, such as "2 N"\n'
+
+
+def test_what_is_far_outside_is_said_before_it_is_solved(capsys, monkeypatch):
+    """On stderr, once; what is within the model is solved without a word."""
+    film = {"R": "5 mm", "layer": "PTFE", "h": "10 nm", "body": "steel 52100", "P": "5 N", "bonding": "bonded"}
+    film |= {"Nbar": "0.1 1/um^2", "Ra": "2 um"}
+    assert main(["point", "--json", *words(**film | {"h": "0.2 mm"})]) == 0
+    assert capsys.readouterr().err == ""
+
+    def interrupted(*_):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(solving, "solved", interrupted)
+    assert main(["point", "--json", *words(**film)]) == 130
+    answer = capsys.readouterr()
+    assert answer.out == "" and answer.err.startswith("beware: this contact is far outside what the model describes")
+    assert BROKEN["pitch_not_small_against_h"] in answer.err
+
+
+def test_run_and_check_say_what_is_far_outside(tmp_path, capsys):
+    """Before anything is computed."""
+    text = '[model]\nR = "5 mm"\nlayer = "PTFE"\nh = "10 nm"\nbody = "steel 52100"\nbonding = "bonded"\n'
+    text += 'Nbar = "0.1 1/um^2"\nRa = "2 um"\n[axes]\nP = ["1 N", "5 N"]\n[output]\nspreads = false\n'
+    (tmp_path / "film.toml").write_text(text, encoding="utf-8")
+    file, said = str(tmp_path / "film.toml"), "film: beware: at least half of these contacts are far outside"
+    assert main(["check", file]) == 0 and said in capsys.readouterr().out
+    assert main(["run", "--dry-run", file, "--results", str(tmp_path)]) == 0
+    assert said in capsys.readouterr().err

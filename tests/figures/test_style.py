@@ -49,13 +49,10 @@ def otherwise() -> dict:
     return changed
 
 
-SETTINGS = {
-    "usetex": {"text.usetex": True},  # where there is no LaTeX, figures broke
-    "parse_math": {"text.parse_math": False},
-    "dark": "dark_background",
-    "savefig": {"savefig.bbox": "tight", "savefig.transparent": True, "savefig.format": "svg", "savefig.dpi": 30},
-    "all": "all",
-}
+#: What users have set: words, and what `otherwise` hides. Where there is no LaTeX, figures broke under text.usetex, and
+#: with it text.parse_math means nothing.
+SAVED = {"savefig.bbox": "tight", "savefig.transparent": True, "savefig.format": "svg", "savefig.dpi": 30}
+SETTINGS = {"styles": ["dark_background", SAVED, {"text.parse_math": False}], "all": "all"}
 
 
 def using(given):

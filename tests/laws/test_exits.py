@@ -2,13 +2,14 @@
 
 import dataclasses
 import os
-import subprocess
+import runpy
 import sys
 from pathlib import Path
 
 import cones
 import numpy as np
 import pytest
+from children import joined, started
 
 import study
 from solver import laws
@@ -37,19 +38,24 @@ def test_an_entry_point_that_ends_python(tmp_path, code, said):
     (about / "entry_points.txt").write_text("[roughcoat.laws]\nleaving = leaving:LAW\n")
     (tmp_path / "leaving.py").write_text(code + "\n")
     (tmp_path / "s.toml").write_text(LAW)
-    path = os.pathsep.join([str(tmp_path), str(Path(study.__file__).parents[1])])
     for command in (["check", "s.toml"], ["run", "s.toml"], POINT):
-        ended = subprocess.run(
-            [sys.executable, "-m", "study", *command],
-            cwd=tmp_path,
-            env=os.environ | {"PYTHONPATH": path},
-            capture_output=True,
-            text=True,
-        )
+        process = started(_command, tmp_path, command)
+        joined(process)
         where = "entry point leaving = leaving:LAW of roughcoat.laws: "
-        assert ended.returncode == 2 and ended.stdout == ""
-        assert where + said + "which would end the program" in ended.stderr, ended.stderr
-        assert "Traceback" not in ended.stderr and not (tmp_path / "results").exists()
+        out, err = ((tmp_path / name).read_text() for name in ("out", "err"))
+        assert process.exitcode == 2 and out == ""
+        assert where + said + "which would end the program" in err, err
+        assert "Traceback" not in err and not (tmp_path / "results").exists()
+
+
+def _command(folder: Path, command: list[str]) -> None:
+    """In a process that has imported everything: what `python -m study COMMAND` does beside the installed package."""
+    os.chdir(folder)
+    for name, file in (("out", sys.stdout), ("err", sys.stderr)):
+        os.dup2(os.open(name, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), file.fileno())
+    sys.path.insert(0, str(folder))
+    sys.argv = ["study", *command]
+    runpy.run_module("study", run_name="__main__", alter_sys=True)
 
 
 def law(**functions) -> laws.Law:

@@ -9,12 +9,21 @@ from numpy.testing import assert_allclose, assert_array_equal
 
 from solver.laws import LAWS
 from solver.laws import disc_cell as micro
+from solver.laws.law import inverse
 
 TABLE = np.genfromtxt(Path(__file__).parents[1] / "references" / "micro_reference.csv", delimiter=",", names=True)
 
 
 def test_table_spans_isolated_spots_to_full_contact():
     assert_allclose(TABLE["lam"][[0, -1]], [1e-12, 1 - 1e-12], rtol=1e-14, atol=0)
+
+
+def test_an_inverse_that_is_not_found_is_nan():
+    """Of a value that stays below its target, beside some that are found."""
+    target = np.array([0.5, 2.0, np.nan, 0.0, 1e-9])
+    with np.errstate(all="ignore"):  # as in the solver
+        found = inverse(lambda y: (y / (1 + y), 1 / (1 + y) ** 2), target, np.ones(5))
+    assert_allclose(found, [1.0, np.nan, np.nan, 0.0, 1e-9], rtol=1e-8)
 
 
 @pytest.mark.parametrize("name", ["q", "g", "dq", "dg"])

@@ -115,30 +115,28 @@ def test_laws_of_this_package_pass(name, monkeypatch):
         )
 
 
+def declared(name="alpha", **other) -> dict:
+    return {name: Parameter(**{"interval": "(0, 1)"} | other)}
+
+
+OTHER = "has another interval, default, unit or words than that of disc_cell: give it another name"
 DECLARED = {
     "no dictionary": (["alpha"], "parameters must be a dictionary, name -> Parameter"),
     "no Parameter": ({"alpha": (0, 1)}, "the parameter alpha must be a Parameter with an interval"),
     "no interval": ({"alpha": Parameter()}, "the parameter alpha must be a Parameter with an interval"),
-    "no blank": ({"alpha": Parameter(interval="(0,1)")}, "the parameter alpha must be a Parameter with an interval"),
-    "backwards": ({"alpha": Parameter(interval="(1, 0)")}, "the parameter alpha must be a Parameter with an interval"),
+    "no blank": (declared(interval="(0,1)"), "the parameter alpha must be a Parameter with an interval"),
+    "backwards": (declared(interval="(1, 0)"), "the parameter alpha must be a Parameter with an interval"),
     "words": ({"alpha": Parameter(choices=("a", "b"))}, "the parameter alpha must be a Parameter with an interval"),
-    "default": (
-        {"alpha": Parameter(3.0, interval="(0, 1)")},
-        "the parameter alpha has the default 3.0, outside (0, 1)",
-    ),
-    "powers": (
-        {"alpha": Parameter(interval="(0, 1)", powers=(1,))},
-        "the parameter alpha must have powers of two whole numbers, (i, j) of E2*^i R^j",
-    ),
-    "name": ({"al pha": Parameter(interval="(0, 1)")}, "the parameter 'al pha' must have a name of letters"),
-    "of another law": (
-        {"Ra": Parameter(interval="(0, 1)")},
-        "the parameter Ra has another interval, default, unit or words than that of disc_cell: give it another name",
-    ),
-} | {
-    name: ({name: Parameter(interval="(0, 1)")}, f"the name of the parameter {name} is that of something else")
-    for name in ("E", "E1", "punch", "workers", "a_spread", "P", "rtol", "take", "p_max")
+    "default": (declared(default=3.0), "the parameter alpha has the default 3.0, outside (0, 1)"),
+    "of another law": (declared("Ra"), f"the parameter Ra {OTHER}"),
 }
+for powers in ((1,), (0.5, 1.0), (1.0, -1.0), [1, -1]):
+    said = "the parameter alpha must have powers of two whole numbers, (i, j) of E2*^i R^j"
+    DECLARED[f"powers {powers}"] = declared(powers=powers), said
+for name in ("al pha", "_alpha", "1alpha", "", 1):
+    DECLARED[f"name {name!r}"] = declared(name), f"the parameter {name!r} must have a name of letters"
+for name in ("E", "E1", "punch", "workers", "a_spread", "P", "rtol", "take", "p_max"):
+    DECLARED[f"name {name}"] = declared(name), f"the name of the parameter {name} is that of something else"
 
 
 @pytest.mark.parametrize(("parameters", "text"), DECLARED.values(), ids=DECLARED)
@@ -147,6 +145,12 @@ def test_what_a_law_declares_is_checked(parameters, text):
     with pytest.raises(ValueError, match=re.escape(f"micro law slip: {text}")):
         laws.register(dataclasses.replace(cones.CONES, name="slip", parameters=parameters))
     assert before == PARAMETERS and "slip" not in laws.LAWS
+
+
+@pytest.mark.parametrize("version", [1, 1.5, True, None, "", ("1",)])
+def test_a_version_is_a_text(version):
+    with pytest.raises(ValueError, match="micro law slip: version must be a text, which changes whenever"):
+        laws.register(dataclasses.replace(cones.CONES, name="slip", version=version))
 
 
 def test_no_law_can_hide_an_attribute_of_a_problem():

@@ -10,6 +10,7 @@ from scipy.integrate import quad
 import study
 from solver import Model, Problem, Status, solve
 from solver.laws.disc_cell import contact_fraction, largest_pressure
+from solver.models.auto import bounds
 from study.physical.study_file import read
 from study.spec.grid import columns
 
@@ -115,6 +116,15 @@ def test_accuracy_is_kept_where_asperities_yield_at_once(control, value):
     known = (true.status == 0) & (found.model_used == Model.SMOOTH_LAYER_ALONE)
     assert known.sum() > 10
     assert (errors(found, true) <= found.model_error + true.error)[known].all()
+
+
+def test_no_bound_above_a_third_is_trusted():
+    """It is of first order: the exact layer is solved there, whatever `accuracy` is."""
+    given = CONTACT | {"P": 1e-5, "h": np.geomspace(1e-3, 3.0, 40)}
+    found = solve(Problem.of(**given, base="auto", accuracy=0.99))
+    least = np.min(list(bounds(Problem.of(**given, base="auto")).values()), axis=0)
+    assert ((least > 0.3) & (least < 0.99)).any(), "some that accuracy alone would allow"
+    assert ((found.model_used == Model.LAYERED) == (least > 0.3)).all() and not (least > 0.3).all()
 
 
 def test_every_model_is_used_and_named():

@@ -22,7 +22,7 @@ from fnmatch import fnmatch
 from importlib import import_module
 from pathlib import Path
 
-from mutants import FRESH, ROOT, Batch, Mutant, Verdict, batches, totals
+from mutants import FRESH, ROOT, Batch, Mutant, Verdict, batches, totals, with_figures
 from mutate import LIBRARIES, NIGHT, PATIENCE, SLOWER, Task, _copy, answers, judge, results_in, tested
 
 #: Audit events of a process that begins. What it runs is not seen: such a test may run any file.
@@ -171,14 +171,18 @@ def there(batch: Batch, root: Path) -> list[Mutant]:
 
 
 def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
-    """Run a list and print what stands above it; returns the exit code."""
+    """Run a list and print what is then written at its head; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("list", nargs="?", help=f"its name in tests/mutants/{FRESH} (default: the latest)")
     parser.add_argument("--only", nargs="+", metavar="ID", default=["*"], help="these alone, say solver.kernel.*")
     parser.add_argument("--part", metavar="I/N", default="1/1", help="the I-th of N parts: each N-th mutant")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="how many at a time (default: 2)")
     parser.add_argument("--map", type=Path, metavar="FILE", help="keep here which functions each test runs")
+    parser.add_argument("--page", type=Path, metavar="FILE", help="put the lists' figures on this page, run nothing")
     options = parser.parse_args(arguments)
+    if options.page:
+        options.page.write_text(with_figures(options.page.read_text(encoding="utf-8"), root), encoding="utf-8")
+        return 0
     batch = next(one for one in reversed(batches(root)) if options.list in (None, one.name))
     part, parts = map(int, options.part.split("/"))
     mutants = [one for one in there(batch, root) if any(fnmatch(one.id, pattern) for pattern in options.only)]
@@ -197,6 +201,8 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     minutes = (time.monotonic() - begun) / 60
     print(f"{minutes:.0f} min with {options.jobs} processes, {len(mutants)} of {len(batch.mutants)}:")
     print("\n".join(f"{name}/: {killed} of {size}" for name, (killed, size) in sorted(totals(verdicts).items())))
+    left = {one.id for one in batch.mutants} - {v.mutant.id for v in verdicts}
+    print("untried = " + json.dumps(sorted(left), indent=4))
     print("survived = " + json.dumps(sorted(v.mutant.id for v in verdicts if not v.killed), indent=4))
     return 0
 

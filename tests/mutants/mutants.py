@@ -22,9 +22,9 @@ lists of two kinds.
 ## Fresh lists: how much the tests notice
 
 The lists in tests/mutants/fresh were written before their authors looked at the tests. All tests that run the file of a
-mutant were tried, once, at the commit at which the list was written. A list is never mended, and no test is written for
-one of its mutants alone: so these are the figures that say what the tests notice. `make fresh_mutants` tries the latest
-list again, without those whose line has changed.
+mutant were tried, once, at the commit of the table, without the mutants whose line had changed. A list is never mended,
+and no test is written for one of its mutants alone: so these are the figures that say what the tests notice. `make
+fresh_mutants` tries the latest list again.
 
 {fresh}
 
@@ -78,7 +78,8 @@ class Verdict:
 
 class Batch(NamedTuple):
     """A fresh list. about : `written`, the date; `commit`, of the code and of the tests that were tried; `survived`,
-    the mutants that these did not kill; `remark`, what else is to be said of it"""
+    the mutants that these did not kill; `untried`, those whose line had gone, or that were left out at random;
+    `remark`, what else is to be said of it"""
 
     name: str
     about: dict
@@ -134,11 +135,17 @@ def table(verdicts: list[Verdict], root: Path, remark: str) -> str:
     return HEAD.format(fresh=_figures(batches(root)), totals="\n".join(lines), rows="\n".join(rows))
 
 
+def with_figures(page: str, root: Path) -> str:
+    """The page with the figures of the fresh lists as these say them now; the kept list stays as it is."""
+    return re.sub(r"(?m)^\| written \|.*\n(\|.*\n)*", lambda _: f"{_figures(batches(root))}\n", page, count=1)
+
+
 def _figures(lists: list[Batch]) -> str:
     """The figures of the fresh lists that have been tried, in Markdown."""
     rows = []
     for batch in (one for one in lists if "survived" in one.about):
-        found = totals([Verdict(mutant, mutant.id not in batch.about["survived"]) for mutant in batch.mutants])
+        tried = [mutant for mutant in batch.mutants if mutant.id not in batch.about.get("untried", ())]
+        found = totals([Verdict(mutant, mutant.id not in batch.about["survived"]) for mutant in tried])
         cells = [f"{killed} of {size} ({killed / size:.0%})" for killed, size in map(found.get, ("solver", "study"))]
         rows.append(f"| {batch.about['written']} | {batch.about['commit']} | {' | '.join(cells)} |")
         rows[-1] += f" {batch.about.get('remark', '')} |"

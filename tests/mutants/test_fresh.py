@@ -8,7 +8,7 @@ from collections import Counter
 import pytest
 from conftest import ROOT
 from fresh import order
-from mutants import Mutant, batches, read, table
+from mutants import Mutant, batches, read, table, with_figures
 
 LISTS = batches()
 MODULE = "SIDE = 3\n\n\ndef square(x):\n    return x * x\n\n\ndef cube(x):\n    return x**SIDE\n"
@@ -25,6 +25,7 @@ TREE = {
 written = "2020-01-01"
 commit = "0123456"
 survived = ["study.two.unseen"]
+untried = ["solver.one.gone"]
 [solver.one.sum]
 old = 'x * x'
 new = 'x + x'
@@ -58,7 +59,7 @@ def test_the_runner_chooses_the_tests(tmp_path):
     }, found.stdout + found.stderr
     assert "solver/: 2 of 2\nstudy/: 0 of 1\n" in found.stdout and '    "study.two.unseen"\n' in found.stdout
     (batch,) = batches(tmp_path / "tree")
-    assert "| 2020-01-01 | 0123456 | 3 of 3 (100%) | 0 of 1 (0%) |" in table([], tmp_path / "tree", "")
+    assert "| 2020-01-01 | 0123456 | 2 of 2 (100%) | 0 of 1 (0%) |" in table([], tmp_path / "tree", "")
 
 
 def test_tests_of_the_function_come_first_those_that_start_processes_last():
@@ -93,7 +94,22 @@ def test_a_list_is_one_of_its_own(batch):
     known = {(mutant.file, mutant.old.strip(), mutant.new.strip()) for mutant in earlier}
     assert not [mutant.id for mutant in batch.mutants if (mutant.file, mutant.old.strip(), mutant.new.strip()) in known]
     names = Counter(mutant.id for mutant in batch.mutants)
-    assert max(names.values()) == 1 and set(batch.about.get("survived", ())) <= set(names)
-    packages = Counter(name.partition(".")[0] for name in names)
+    survived, untried = (set(batch.about.get(which, ())) for which in ("survived", "untried"))
+    assert max(names.values()) == 1 and survived | untried <= set(names) and not survived & untried
+    packages = Counter(name.partition(".")[0] for name in names if name not in untried)
     assert set(packages) == {"solver", "study"} and min(packages.values()) >= 75
-    assert {"written", "commit"} <= set(batch.about) <= {"written", "commit", "survived", "remark"}
+    assert {"written", "commit"} <= set(batch.about) <= {"written", "commit", "survived", "untried", "remark"}
+
+
+def test_figures_are_put_on_the_page_that_is_there(tmp_path):
+    """The figures of the lists are written anew; the kept list, which takes hours, stays as it was."""
+    lists = tmp_path / "tests/mutants/fresh"
+    lists.mkdir(parents=True)
+    (lists / "2020-01-01.toml").write_text(TREE["tests/mutants/fresh/2020-01-01.toml"])
+    page = table([], tmp_path, "2019-12-31, 80 min:")
+    (lists / "2020-02-02.toml").write_text(
+        TREE["tests/mutants/fresh/2020-01-01.toml"].replace("2020-01-01", "2020-02-02")
+    )
+    later = with_figures(page, tmp_path)
+    assert later == table([], tmp_path, "2019-12-31, 80 min:") != page and "| 2020-02-02 |" in later
+    assert with_figures(later, tmp_path) == later

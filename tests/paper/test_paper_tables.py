@@ -95,6 +95,8 @@ def test_the_error_counts_both_ends_of_the_interval_and_nothing_beyond(monkeypat
     [
         ([[0.0, 0.0, 0.2, 0.4]], 1.0 * 10**0.5),  # half-way from 0 to 0.2, in ln(h/a)
         ([[0.0, 0.0, -0.2, 0.4]], 1.0 * 10**0.5),  # too small counts as too large
+        ([[0.0, 0.0, -0.2, -0.4]], 1.0 * 10**0.5),  # also where it is too small everywhere
+        ([[-0.3, -0.3, -0.3, -0.3]], 0.1),
         ([[0.05, 0.2, 0.0, 0.0]], 0.1 * 10 ** (1 / 3)),  # beyond it only for a while
         ([[0.3, 0.3, 0.3, 0.3]], 0.1),  # nowhere within: the thinnest of the study
         ([[0.05, 0.05, 0.05, 0.05]], np.inf),

@@ -18,7 +18,7 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "body", "problem"),
-        *("solution", "contact", "scaling", "schemes", "models", "solve"),
+        *("solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
     ),
     "study": (
         *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
@@ -173,7 +173,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     from study.spec.vocabulary import PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

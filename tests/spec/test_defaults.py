@@ -52,6 +52,13 @@ COUNTS = [
 ]
 
 
+def test_an_unknown_parameter_is_named():
+    """Of several the first in the alphabet, in whatever order they are given; and before what is missing."""
+    for unknown in (["nu3"], ["nu3", "gamma"], ["gamma", "nu3", "zeta"]):
+        with pytest.raises(TypeError, match=f"^unknown parameter {min(unknown)}$"):
+            Problem.of(P=1e-5, **dict.fromkeys(unknown, 1.0))
+
+
 def test_the_table():
     """Of defaults: no other parameter has one, in the solver or in a study."""
     assert {name: own.default for name, own in PARAMETERS.items() if own.default is not None} == DEFAULTS

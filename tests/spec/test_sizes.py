@@ -54,6 +54,31 @@ def test_a_study_file_may_be_ten_times_larger():
     assert (definition.LARGE, definition.MOST_VALUES) == (5e8, 5e9)
 
 
+LAYER = {"base": "layered", "h": 0.01, "n": 0.5}
+ROUGH = {"micro": "disc_cell", "Nbar": 1e5, "Ra": 0.01}
+
+
+@pytest.mark.parametrize(
+    ("model", "axes", "size"),
+    [
+        (LAYER, {}, 8000),
+        (LAYER, {"n": [0.5, 1e4, 0.4]}, 100),
+        (LAYER, {"rtol": [1e-4, 1e-10, 1e-6]}, 100),
+        (LAYER | {"n": 1e4}, {}, 100),
+        (LAYER | {"base": "auto"}, {"rtol": [1e-10, 1e-6]}, 100),
+        (LAYER | ROUGH, {"scheme": ["newton", "picard"]}, 100),
+        (LAYER | ROUGH | {"base": "thin_layer"}, {"scheme": ["newton", "picard"]}, 1000),
+        (LAYER, {"nodes": [12, 120]}, 1000),
+        (LAYER | {"base": "thin_layer"}, {"n": [0.5, 1e4], "rtol": [1e-4, 1e-10]}, 8000),
+    ],
+)
+def test_the_slowest_case_gives_the_usual_block(model, axes, size):
+    """One is enough, wherever it stands: a block of thousands of its kind would take minutes."""
+    fixed = {name: value for name, value in (SMOOTH | model).items() if name not in axes}
+    tables = {"model": fixed, "axes": {"P": [1e-6, 2e-6]} | axes}
+    assert grid.usual_block(from_tables(tables, "s", "", "s").grid) == size
+
+
 def test_just_allowed_and_just_refused():
     for text, right, wrong in (
         ("block", {"block": 1_000_000}, {"block": 1_000_001}),

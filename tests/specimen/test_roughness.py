@@ -6,28 +6,10 @@ import re
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from surfaces import ELL, SLOPE, lattice, random_surface, spectrum
 
 from study import roughness
 from study.specimen import summits
-
-ELL = 1e-6  # correlation length of the random surfaces, m
-SLOPE = 0.1  # their rms slope
-
-
-def random_surface(points: int, steps_per_length: int, dimensions: int = 2, seed: int = 1) -> tuple[np.ndarray, float]:
-    """Heights of a periodic Gaussian surface of correlation m0 exp(-r²/(2 ELL²)), m0 = (SLOPE ELL)², and their step.
-
-    Its moments: m2 = m0/ELL², m4 = 3 m0/ELL⁴, so α = 3.
-    """
-    power = spectrum(points, steps_per_length, dimensions)
-    white = np.random.default_rng(seed).normal(size=power.shape)
-    z = np.fft.ifftn(np.fft.fftn(white) * np.sqrt(power / power.mean())).real
-    return SLOPE * ELL * z, ELL / steps_per_length
-
-
-def spectrum(points: int, steps_per_length: int, dimensions: int) -> np.ndarray:
-    q = 2 * np.pi * np.fft.fftfreq(points) * steps_per_length  # in 1/ELL
-    return np.exp(-sum(np.meshgrid(*(q**2,) * dimensions)) / 2)
 
 
 def scatter(points: int, steps_per_length: int, dimensions: int, power: int) -> float:
@@ -123,14 +105,6 @@ def test_summits_of_a_random_surface_are_those_of_nayak(points, dimensions):
     assert_allclose(answer.Ra, 0.375 * math.sqrt(math.pi / 3) * ELL / SLOPE, rtol=4 * spread / math.sqrt(n) + 0.02)
     sigma = math.sqrt(1 - 0.8968 / 3) * SLOPE * ELL
     assert_allclose(answer.sigma_summits, sigma, rtol=4 / math.sqrt(2 * n) + 0.02)
-
-
-def lattice(cells: int, points: int, step: float, radius: float, shift: float) -> np.ndarray:
-    """Paraboloids -r²/(2 radius) on a square lattice of cells x cells, and a point more at each border."""
-    x = (np.arange(-1, cells * points + 1) + 0.5 + shift) * step
-    pitch = points * step
-    u = (x % pitch) - pitch / 2
-    return -np.add.outer(u**2, u**2) / (2 * radius)
 
 
 @pytest.mark.parametrize("shift", [0.0, 0.3, 0.5])  # of the tips against the points; 0: four points are equally high

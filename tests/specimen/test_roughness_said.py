@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from pages import check_examples
-from test_roughness import random_surface
+from surfaces import random_surface
 
 from study import roughness
 from study.paper.numbers import TABLE1

@@ -173,6 +173,21 @@ def test_of_two_blocks_the_case_that_ended_better_is_taken(some):
     assert inventory(some, retry=(0, 1, 2, 3)).missing.tolist() == [1, 2, 3]
 
 
+def test_blocks_with_a_case_of_another_study_are_not_given_up(some):
+    """What is not going to be in the results file would be lost with them: cases that only another study has, wherever
+    their keys are among those of this one, and digits that this one does not write."""
+    keys = case_keys(some.definition.grid)
+    whole = put(some, block(some, [0, 1], [0, 0]))
+    for place, other in enumerate((0, 2**64 - 1, int(keys[:, 0].min()) + 1)):
+        theirs = block(some, [2, 3], [0, 0], first=place)
+        theirs.keys[place % 2] = [other, 7]
+        put(some, theirs)
+    known = inventory(some)
+    assert known.covered == {whole} and len(known.blocks) == 4 and known.status.tolist() == [0, 0, 0, 0]
+    half = Store(line(dtype="float32"), some.folder.parent)
+    assert half.folder == some.folder and not inventory(half).covered
+
+
 def test_a_part_of_the_cases_is_gathered_from_its_blocks(some):
     put(some, block(some, [3, 1], [0, 2], first=10))
     put(some, block(some, [0], [1], first=20))

@@ -1,1 +1,1 @@
-"""What is done to heights before asperities are counted on them: missing points, form, row jumps."""
+"""What is done to the heights of a scan, what is doubted of them, and the asperities that come out."""

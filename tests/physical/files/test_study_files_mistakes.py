@@ -4,8 +4,20 @@ import pytest
 from test_study_files import DRAWN, TEXT, of
 
 import study
+from study.physical.study_file import from_tables
 
 pytest.importorskip("pint")
+
+
+@pytest.mark.parametrize("section", ["model", "axes", "sample", "cases"])
+def test_one_unit_anywhere_makes_it_a_study_with_units(section):
+    """What else it needs is then asked for in the words of units."""
+    given = {"model": {"micro": "smooth", "base": "half_space"}, "axes": {}, "sample": {}, "cases": []}
+    load = {"model": {"P": "1 N"}, "axes": {"P": ["1 N", "2 N"]}, "cases": [{"P": "1 N"}, {"P": "2 N"}]}
+    load["sample"] = {"size": 3, "seed": 1, "P": {"start": "1 N", "stop": "2 N"}}
+    given[section] = given[section] + load[section] if section == "cases" else given[section] | load[section]
+    with pytest.raises(study.StudyError, match="R is missing: the radius of the punch"):
+        from_tables({name: table for name, table in given.items() if table}, "s", "", "s.toml")
 
 
 def test_all_mistakes_are_named_at_once(tmp_path):

@@ -56,6 +56,13 @@ def test_what_is_of_rigid_bodies_is_stated_where_some_are_elastic():
         assert not names & {*used_inputs(rigid)} and is_rigid(rigid, "punch" if names == punch else "base")
 
 
+def test_the_ratio_of_a_half_space_says_nothing_of_a_base():
+    """n = 0 is that of a rigid base under a layer; on the half-space it is a number that is not used."""
+    contacts = study.solve(P=1e-5, h=0.02, n=0.0, micro="smooth", base=["half_space", "layered"], bonding="bonded", x=2)
+    known = [is_rigid(contacts.isel(base=part), "base") for part in ([0], [0, 1], [1])]
+    assert known == [False, False, True]
+
+
 def test_asperities_of_a_law_that_is_gone():
     """It may depend on whatever there is of asperities."""
     found = contacts(BARE | SPOTS, BARE | FLAT)

@@ -19,7 +19,7 @@ from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_dis
 from same import assert_same_numbers
 
 import study
-from study.work import run
+from study.work import cases, run
 from study.work import workers as engines
 
 distributed = pytest.importorskip("distributed")
@@ -39,9 +39,19 @@ class Cluster:
         self.processes.append(launched(_serve, kind, options, environment, self.folder / "cluster.log"))
         return self.processes[-1]
 
-    def worker(self, first: int = CASES) -> multiprocessing.Process:
-        """Start a worker that holds its blocks from case `first` on until folder/go is there."""
-        return self.start({"scheduler_ip": self.address, "nthreads": 1}, "Worker", holding(self.folder, first))
+    def worker(self, first: int = CASES, numerics: str = "") -> multiprocessing.Process:
+        """Start a worker that holds its blocks from case `first` on until folder/go is there.
+
+        numerics : the version that it has in place of ours
+        """
+        environment = holding(self.folder, first) | ({"OTHER_NUMERICS": numerics} if numerics else {})
+        return self.start({"scheduler_ip": self.address, "nthreads": 1}, "Worker", environment)
+
+    def wait_for_workers(self, count: int) -> list[str]:
+        """The addresses of the workers, when there are so many."""
+        with distributed.Client(self.address, set_as_default=False) as client:
+            client.wait_for_workers(count, timeout=PATIENCE)
+            return list(client.nthreads())
 
     @property
     def address(self) -> str:
@@ -60,6 +70,8 @@ def _serve(kind: str, options: dict, environment: dict[str, str], log: Path) -> 
     os.dup2(os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND), sys.stderr.fileno())
     if environment:
         import hold  # noqa: F401
+    if "OTHER_NUMERICS" in environment:
+        cases.NUMERICS_VERSION = environment["OTHER_NUMERICS"]
 
     async def serve():
         async with getattr(distributed, kind)(host="127.0.0.1", dashboard=False, **options) as served:
@@ -83,6 +95,8 @@ def run_on(address: str, file: Path, results: Path, answers) -> None:
     from study.__main__ import main
 
     engines.CONNECT = engines.ANSWER = PATIENCE
+    engines.AGAIN = 0.1
+
     with contextlib.redirect_stderr(io.StringIO()) as errors:
         code = main(["run", str(file), "--results", str(results), "--scheduler", address])
     answers.put((code, errors.getvalue()))
@@ -191,8 +205,7 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
     process, answers = started(cluster, opened, tmp_path)
     wait_for(lambda: held(tmp_path))
     cluster.worker()
-    with distributed.Client(cluster.address, set_as_default=False) as client:
-        client.wait_for_workers(2, timeout=PATIENCE)
+    cluster.wait_for_workers(2)
     (tmp_path / "go").touch()
     joined(process)
     assert answers.get(timeout=PATIENCE)[0] == 0
@@ -215,6 +228,54 @@ def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path
     assert reason.startswith("cases 50 to 54: RuntimeError: the worker has version")
     assert report.computed == CASES - BLOCK
     assert_ends_well(opened, undisturbed, BLOCK)
+
+
+def test_blocks_that_a_worker_of_another_version_refuses_go_elsewhere(cluster, tmp_path, undisturbed):
+    """71 of 72 blocks failed: a worker that refuses is the first to be idle again."""
+    cluster.worker(numerics="22")
+    (other,) = cluster.wait_for_workers(1)
+    cluster.worker(0)
+    good = {*cluster.wait_for_workers(2)} - {other}
+    opened = written(tmp_path)
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: held(tmp_path))
+    (tmp_path / "go").touch()
+    joined(process)
+    code, errors = answers.get(timeout=PATIENCE)
+    assert code == 0, errors
+    said = f"the worker {other} has version 22 of the numerics, not {cases.NUMERICS_VERSION}: it is left out"
+    assert errors.count(said) == 1 and not any(each in errors for each in good)
+    assert_ends_well(opened, undisturbed, 0)
+
+
+def test_only_workers_of_other_versions(cluster, tmp_path, undisturbed):
+    for numerics in ("21", "22"):
+        cluster.worker(numerics=numerics)
+    workers, opened = cluster.wait_for_workers(2), written(tmp_path)
+    process, answers = started(cluster, opened, tmp_path)
+    joined(process)
+    code, errors = answers.get(timeout=PATIENCE)
+    assert code == 1 and all(f"the worker {worker} has version 2" in errors for worker in workers)
+    assert "cases 0 to 4: RuntimeError: the worker has version 2" in errors
+    assert_ends_well(opened, undisturbed, CASES)
+
+
+def test_blocks_wait_for_no_worker_that_is_gone_when_another_is_left_out(cluster, tmp_path, undisturbed):
+    """They are to be computed by the good worker alone; a new one comes, and it is killed."""
+    cluster.worker(numerics="22")
+    cluster.wait_for_workers(1)
+    few = TEXT.replace(f"block = {BLOCK}", "block = 50")  # all are under way at once: none is submitted later
+    good, opened = cluster.worker(0), written(tmp_path, few)
+    cluster.wait_for_workers(2)
+    process, answers = started(cluster, opened, tmp_path)
+    wait_for(lambda: held(tmp_path) and "out-of-band" in (tmp_path / "cluster.log").read_text())  # both have been asked
+    cluster.worker()
+    cluster.wait_for_workers(3)
+    good.kill()
+    joined(process)
+    code, errors = answers.get(timeout=PATIENCE)
+    assert code == 0 and errors.count("it is left out") == 1, errors
+    assert_same_numbers(opened.open(), undisturbed)
 
 
 def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch):

@@ -1,0 +1,54 @@
+"""What can be said of contacts before they are solved: that they are far outside the model's validity."""
+
+import numpy as np
+import xarray as xr
+
+from solver import Problem
+from solver.estimate import estimate
+
+from ..data.assumptions import have, validity_of
+from ..data.dataset import broken, model_attributes
+from ..spec.definition import Definition
+from ..spec.grid import MOVED, along, columns
+from .beyond import BROKEN
+
+#: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
+#: that factor: of 300 random contacts beyond no limit it takes none for far outside, and of 300 that exceed one 50
+#: times it finds all but a few (tests/physical/words/test_far_outside.py).
+FAR = 10.0
+MOST = 100  # contacts of a grid that are looked at, evenly spread: some 3 ms
+SAID = f"far outside what the model describes: an estimate exceeds limits {FAR:g} times and more. It may take long."
+
+
+class FarOutside(UserWarning):
+    """Said before anything is solved."""
+
+
+def far_outside(definition: Definition) -> list[str]:
+    """A sentence for each assumption that at least half of the contacts of a study violate FAR times over, by an
+    estimate; below a first one that says so. [] of most studies.
+
+    Only rough contacts on exact layers are looked at, of studies with units: others are solved at once, or not judged.
+    """
+    grid = definition.grid
+    slow = np.isin(along(grid, "base"), ("layered", "auto")) & have("rough", along(grid, "micro"))
+    if not (definition.scene and slow.any()):
+        return []
+    as_given = np.arange(grid.size).reshape(grid.shape)
+    as_given = as_given.take(0, list(grid.sizes).index(MOVED)) if MOVED in grid.sizes else as_given
+    index = as_given.ravel()[:: -(-as_given.size // MOST)]
+    looked_at = index[np.broadcast_to(slow, grid.shape).ravel()[index]]
+    far = _exceeded(columns(grid, looked_at)) if len(looked_at) else {}
+    found = [BROKEN[word] for word, where in far.items() if 2 * where.sum() >= len(index)]
+    who = "this contact is" if as_given.size == 1 else "at least half of these contacts are"
+    return [f"{who} {SAID}", *found] if found else []
+
+
+def _exceeded(parameters: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+    """Name of each assumption -> (n,) bool: the contact exceeds its limit FAR times, by an estimate."""
+    size = len(parameters["micro"])
+    unknown = {"status": np.zeros(size), "model_used": np.full(size, np.nan), "model_error": np.full(size, np.nan)}
+    arrays = parameters | unknown | estimate(Problem.of(**parameters))
+    variables = {name: xr.Variable("case", array) for name, array in arrays.items()}
+    variables["model_used"].attrs = model_attributes()
+    return broken(validity_of(variables, FAR))

@@ -1,0 +1,135 @@
+"""The form of a scan, which is no roughness: its mean, a plane, a quadratic, or a sphere of known or fitted radius.
+
+Heights z of a profile have shape (x), of a map (y, x); steps are the distances of the points along these axes. NaN is a
+missing point, which no fit sees.
+"""
+
+import math
+import numbers
+
+import numpy as np
+
+from ..quantities import has_unit, quantity, readable
+
+#: The polynomials by name: their degree.
+DEGREES = {"mean": 0, "plane": 1, "quadratic": 2}
+#: Most steps of the fit of a sphere. A scan whose diagonal is a tenth of the radius takes 5, one as long as the radius
+#: 22 (tests/specimen/heights/test_forms.py).
+_STEPS = 30
+#: The fit has ended when the height of the sphere changes by less than this part of the heights' standard deviation.
+_SETTLED = 1e-9
+
+
+def without_form(z: np.ndarray, steps: tuple, form, name: str) -> tuple[np.ndarray, str]:
+    """The heights without their form, and what was taken off, in words.
+
+    form : "mean", "plane" (least squares), "quadratic" (least squares), "sphere" (the one that fits), or the radius of
+        a sphere, in m or as text with its unit; negative: a cup
+
+    Raises ValueError: another form, or a sphere that is smaller than the scan.
+    """
+    sizes = tuple((n - 1) * step for n, step in zip(z.shape, steps, strict=True))
+    if isinstance(form, str) and form in DEGREES:
+        return _residual(z, steps, DEGREES[form]), f"{form} taken off"
+    if isinstance(form, str) and form == "sphere":
+        z, curvature = _without_sphere(z, steps, None)
+        if not abs(curvature) * math.hypot(*sizes) < 1:
+            raise ValueError(
+                f'{name}: form = "sphere": that which fits has a radius of {_text(1 / curvature)}, but must be larger '
+                f"than the scan, {' × '.join(map(_text, reversed(sizes)))}; crop the scan, or give another form"
+            )
+        return z, f"a sphere of the fitted radius {_text(1 / curvature)} and the plane taken off"
+    radius = _radius(form, name)
+    if not abs(radius) > math.hypot(*sizes):
+        raise ValueError(f"{name}: form = {radius} m: a sphere must be larger than the scan, {sizes} m")
+    z, _ = _without_sphere(z, steps, 1 / radius)
+    return z, f"a sphere of radius {_text(radius)} and the plane taken off"
+
+
+def taken_by_polynomial(z: np.ndarray, steps: tuple, degree: int) -> float:
+    """The part of the variance of the heights that the polynomial of least squares takes, 0 to 1."""
+    return max(0.0, 1 - float(np.nanvar(_residual(z, steps, degree)) / np.nanvar(z)))
+
+
+def _radius(form, name: str) -> float:
+    if has_unit(form):
+        return quantity(f"{name}: form", form, "m").value
+    if isinstance(form, numbers.Real) and not isinstance(form, bool):
+        return float(form)
+    raise ValueError(
+        f'{name}: form = {form!r}; allowed are "mean", "plane", "quadratic", "sphere" and the radius of a sphere, in m '
+        'or as text with its unit, "5 mm"'
+    )
+
+
+def _text(radius: float) -> str:
+    return ("-" if radius < 0 else "") + readable(float(f"{abs(radius):.3g}"), "m")
+
+
+def _residual(z: np.ndarray, steps: tuple, degree: int) -> np.ndarray:
+    """The heights without the polynomial of this total degree that fits best."""
+    x = _lines(z, steps)
+    powers = [(i, j) for i in range(degree + 1) for j in range(degree + 1 - i) if z.ndim == 2 or i == 0]
+    return z - _surface(_fitted(z, x, powers, np.eye(len(powers))), x, powers).reshape(z.shape)
+
+
+def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tuple[np.ndarray, float]:
+    """The heights without a sphere of this curvature, 1/m, or of the one that fits, and the plane; and the curvature.
+
+    Least squares: what is left has neither a slope nor, where the curvature is free, a part like r². The top of the
+    sphere may be anywhere: its slopes in the middle of the scan say where.
+    """
+    x, free = _lines(z, steps), curvature is None
+    half = max((n - 1) * step for n, step in zip(z.shape, steps, strict=True)) / 2
+    powers = [(0, 0), (0, 1), (1, 0), (0, 2), (2, 0)] if z.ndim == 2 else [(0, 0), (0, 1), (0, 2)]
+    round_ = np.array([[2 in power for power in powers]], dtype=float)  # r², a sum of two powers
+    plain = np.eye(len(powers))[: 1 + z.ndim]
+    basis = np.concatenate([plain, round_]) if free else plain
+    kappa, slopes, settled = (0.0 if free else half * curvature), np.zeros(2), _SETTLED * np.nanstd(z) / half
+    for _ in range(_STEPS):
+        left = z - half * _sphere(x, slopes, kappa).reshape(z.shape)
+        found = basis @ _fitted(left, x, powers, basis) / half
+        change = found[1 : 1 + z.ndim]
+        slopes = slopes + np.pad(change, (0, 2 - z.ndim))
+        kappa -= 2 * found[-1] / np.sum(round_) if free else 0.0
+        if np.abs(found[1:]).max() <= settled:
+            break
+    return _residual(z - half * _sphere(x, slopes, kappa).reshape(z.shape), steps, 1), kappa / half
+
+
+def _sphere(x: list, slopes: np.ndarray, kappa: float) -> np.ndarray:
+    """Heights of a sphere over the middle of the scan, where it has these slopes (along x, y); of no curvature: a
+    plane. All lengths are in one unit. Beyond its equator it ends in a cylinder."""
+    sines = slopes / math.sqrt(1 + slopes @ slopes)
+    squared = sum((kappa * one - sine) ** 2 for one, sine in zip(x, sines, strict=True))
+    linear = sum(2 * sine * one - kappa * one**2 for one, sine in zip(x, sines, strict=True))
+    return linear / (np.sqrt(np.maximum(0.0, 1 - squared)) + math.sqrt(1 - sines @ sines))
+
+
+def _lines(z: np.ndarray, steps: tuple) -> list[np.ndarray]:
+    """The coordinates x (1, nx) and y (ny, 1) from the middle of the scan, in half its longer side; y is 0 in a
+    profile."""
+    half = max((n - 1) * step for n, step in zip(z.shape, steps, strict=True)) / 2
+    lines = [(np.arange(n) - (n - 1) / 2) * step / half for n, step in zip(z.shape, steps, strict=True)]
+    return [lines[-1][None, :], lines[0][:, None] if z.ndim == 2 else np.zeros((1, 1))]
+
+
+def _fitted(z: np.ndarray, x: list, powers: list, basis: np.ndarray) -> np.ndarray:
+    """Coefficients of the powers (of y, of x) in the combination of the rows of `basis` that fits the heights best."""
+    across, along = (np.vander(one.ravel(), 2 * max(map(max, powers)) + 1, increasing=True) for one in x)
+    present = np.isfinite(z).reshape(along.shape[0], across.shape[0])
+    mean = np.nanmean(z)
+    heights = np.where(present, z.reshape(present.shape) - mean, 0.0)
+    sums, moments = (along.T @ (of @ across) for of in (present.astype(float), heights))
+    normal = np.array([[sums[i + k, j + m] for k, m in powers] for i, j in powers])
+    side = np.array([moments[power] for power in powers])
+    coefficients = np.linalg.lstsq(basis @ normal @ basis.T, basis @ side, rcond=1e-14)[0] @ basis
+    coefficients[powers.index((0, 0))] += mean
+    return coefficients
+
+
+def _surface(coefficients: np.ndarray, x: list, powers: list) -> np.ndarray:
+    """The polynomial on the grid, shape (y, x)."""
+    table = np.zeros(np.max(powers, axis=0) + 1)
+    table[tuple(np.transpose(powers))] = coefficients
+    return np.polynomial.polynomial.polygrid2d(x[1].ravel(), x[0].ravel(), table)

@@ -23,9 +23,13 @@ _UNSEEN = 8.0
 _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
 #: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
-#: with it 3 % (`python tests/contact/errors/error_bars.py`); two that need it are "blind" of
+#: with it 3 % (`python tests/contact/errors/error_bars.py`); one that needs it is "blind" of
 #: tests/contact/errors/test_error_bars.py.
 _BLIND = 3.0
+#: There both meshes may also place the edge alike by chance, but not the pressures near it: :func:`_moved_edge`. Of
+#: what moves the edge by δ a, Ar/An and P change by 2 δ and 3 δ. With 1 in place of this, 8 of 179,490 random contacts
+#: have an error of up to 1.7 times the estimate; with it none has; "edge" of the same tests.
+_FARTHER = 2.0
 #: In the centre the pressures of two meshes may agree by chance: those of "centre" of
 #: tests/contact/errors/test_error_bars.py do, to a twentieth of their error. So any change of the pressure where s is
 #: above this counts; not on panels, which may enclose a corner there.
@@ -108,8 +112,10 @@ def estimate(ev, found, refined):
     error = np.maximum(margin(ev) * change, ev.floor)
     if not ev.cases.law.rough:
         return error
-    moved = MARGIN * _moved_edge(refined) if ev.mesh.order == ev.mesh.n else 0.0  # "edge" of the same tests
-    return np.maximum(error, np.maximum(_missed_ring(ev), moved))
+    error = np.maximum(error, _missed_ring(ev))
+    if ev.mesh.order == ev.mesh.n:
+        error = np.maximum(error, np.where(_blind(ev), _FARTHER, 1.0) * MARGIN * _moved_edge(refined))
+    return error
 
 
 def _moved_edge(refined):
@@ -157,9 +163,13 @@ def of_ring(t, s1, beta=1.0):
 
 def margin(ev):
     """The factor (B,) by which an error may be larger than the change on the finer mesh."""
-    share = ev.Z[:, 0] * ev.curve.g[:, 0] / ev.drop[:, 0]
-    # if the share of the asperities is small at the first node already, the mesh misses the ring where it is large
-    return np.where(ev.cases.law.rough & (share < 0.5), _BLIND * MARGIN, MARGIN)
+    return np.where(_blind(ev), _BLIND * MARGIN, MARGIN)
+
+
+def _blind(ev):
+    """(B,) bool: the share of the asperities is small at the first node already, so the mesh misses the ring where it
+    is large."""
+    return ev.cases.law.rough & (ev.Z[:, 0] * ev.curve.g[:, 0] / ev.drop[:, 0] < 0.5)
 
 
 def of_profiles(ev, refined, rows):

@@ -5,6 +5,7 @@ import pytest
 import study
 from solver.parameters import Parameter
 from study.__main__ import main
+from study.catalogue import FIGURES, TABLES
 from study.figures import registry
 from study.spec.vocabulary import allowed, check
 from study.terminal import counted
@@ -22,7 +23,7 @@ def test_one_and_several():
     assert [counted(number, "case") for number in (0, 1, 2, 1000)] == ["0 cases", "1 case", "2 cases", "1000 cases"]
 
 
-@pytest.mark.parametrize("known", [registry.FIGURES, registry.TABLES], ids=["figures", "tables"])
+@pytest.mark.parametrize("known", [FIGURES, TABLES], ids=["figures", "tables"])
 def test_the_command_that_is_told_is_one_that_there_is(known, tmp_path, monkeypatch, capsys):
     """`run` takes studies; what is no study file has a command of its own."""
     monkeypatch.chdir(tmp_path)

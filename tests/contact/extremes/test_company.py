@@ -7,6 +7,7 @@ from solver_cases import ALL_KINDS, JUDGED, LOAD, MAIN, RANGES, random_cases
 from test_extremes import sample
 
 from solver import Problem, Status, solve
+from solver.laws import heights
 
 NUMBERS = (*JUDGED, "A0", "dP_dD", "p", "lam")
 
@@ -30,19 +31,36 @@ def mixed(size, seed):
     return case
 
 
-def test_mixed_batches_are_single_cases():
+def beyond(size, seed):
+    """The same with elastic punches, rigid bases, a lattice, random heights and the base "auto"."""
+    rng = np.random.default_rng(seed)
+    case = mixed(size, seed) | {"sigma": 10 ** rng.uniform(-5, -3, size), "cut": rng.uniform(3, 5, size)}
+    case["n"] = np.where(rng.random(size) < 0.2, 0.0, case["n"])
+    for name, choices in {
+        "base": ("half_space", "thin_layer", "layered", "auto"),
+        "micro": ("disc_cell", "hex_lattice", "normal_heights", "uniform_heights"),
+        "m": (0.0, 0.1, 3.0),
+    }.items():
+        case[name] = rng.choice(choices, size)
+    return case
+
+
+@pytest.mark.parametrize(("kinds", "size", "seed"), [(mixed, 180, 4), (beyond, 50, 7)])
+def test_mixed_batches_are_single_cases(monkeypatch, kinds, size, seed):
     """Each case of a batch has the numbers it has alone, and in any other order and company.
 
     To rounding: BLAS rounds a product of more rows otherwise, and where that decides whether a residual is below 1e-13
-    the iteration takes a step more or less, of that size, which a pressure may feel a hundred times.
+    the iteration takes a step more or less, of that size, which a pressure may feel a hundred times. A case alone makes
+    its own table of heights.
     """
-    size, x = 180, np.array([0.0, 0.5, 1.0])
-    case = mixed(size, 4)
+    x = np.array([0.0, 0.5, 1.0])
+    case = kinds(size, seed)
     together = solve(Problem.of(**case), x)
     assert set(together.status) >= {Status.CONVERGED, Status.INVALID_INPUT, Status.THIN_LAYER_NOT_APPLICABLE}
     order = np.random.default_rng(0).permutation(size)
     shuffled = solve(Problem.of(**{name: v[order] for name, v in case.items()}), x)
     for i in range(size):
+        monkeypatch.setattr(heights, "_TABLES", {})
         alone = solve(Problem.of(**{name: v[i] for name, v in case.items()}), x)
         for other, j in ((together, i), (shuffled, int(np.flatnonzero(order == i)[0]))):
             assert other.status[j] == alone.status[0]
@@ -50,6 +68,21 @@ def test_mixed_batches_are_single_cases():
             for name in NUMBERS:
                 value, expected = getattr(other, name)[j], getattr(alone, name)[0]
                 assert_allclose(value, expected, rtol=1e-11, atol=0, err_msg=f"{name} of case {i}")
+
+
+def test_a_table_of_heights_is_the_same_in_any_company(monkeypatch):
+    """Tables that are made together take the steps that one of them needs. λ was 2e-10 off, A and p_max 6e-15; now λ is
+    within 7e-14."""
+    rng, p = np.random.default_rng(0), np.geomspace(1e-6, 1e-1, 200)
+    sigma, cut = 10 ** rng.uniform(-6, -1.5, 40), rng.uniform(3, 5, 40)
+    case = {"E": 1.0, "Nbar": 250_000.0, "Ra": 0.004}
+    monkeypatch.setattr(heights, "_TABLES", {})
+    together = heights.LAW.at(p[:, None], **case, sigma=sigma, cut=cut)
+    for i in range(0, 40, 2):
+        monkeypatch.setattr(heights, "_TABLES", {})
+        alone = heights.LAW.at(p, **case, sigma=sigma[i], cut=cut[i])
+        for values, expected in zip(together, alone, strict=True):
+            assert_allclose(values[:, i], expected, rtol=1e-12, atol=0)
 
 
 def test_arguments_are_not_edited():
@@ -60,11 +93,22 @@ def test_arguments_are_not_edited():
         assert_array_equal(v, before[name])
 
 
-GOOD = MAIN | {"P": LOAD, "R": 1.0, "E2": 1.0, "rtol": 1e-6, "nu1": 0.3, "nu2": 0.3}
+GOOD = MAIN | {
+    "P": LOAD,
+    "R": 1.0,
+    "E2": 1.0,
+    "rtol": 1e-6,
+    "nu1": 0.3,
+    "nu2": 0.3,
+    "m": 0.1,
+    "sigma": 1e-4,
+    "cut": 4.0,
+}
 OF_A_LAYER, OF_ASPERITIES, OF_POWER_LAWS = ("h", "n", "nu1", "nu2"), ("Nbar", "Ra"), ("B", "beta")
+KINDS = [*ALL_KINDS, ("auto", "disc_cell"), ("half_space", "normal_heights"), ("layered", "normal_heights")]
 #: A number that no case can have, of every parameter: (name, value).
 POISON = [(name, bad) for name in GOOD for bad in (np.nan, np.inf, -np.inf, -1.0, 0.0)
-          if (name, bad) not in (("n", 0.0), ("nu1", 0.0), ("nu2", 0.0))]  # fmt: skip
+          if (name, bad) not in ((free, 0.0) for free in ("n", "nu1", "nu2", "m", "sigma"))]  # fmt: skip
 
 
 def used(name, base, law):
@@ -73,10 +117,11 @@ def used(name, base, law):
         (name in OF_A_LAYER and base == "half_space")
         or (name in OF_ASPERITIES and law == "smooth")
         or (name in OF_POWER_LAWS and law != "power_law")
+        or (name in ("sigma", "cut") and law != "normal_heights")
     )
 
 
-@pytest.mark.parametrize(("base", "law"), ALL_KINDS, ids=["-".join(kind) for kind in ALL_KINDS])
+@pytest.mark.parametrize(("base", "law"), KINDS, ids=["-".join(kind) for kind in KINDS])
 def test_poison_is_flagged_and_harmless(base, law):
     """Every bad number of every parameter between good cases: INVALID_INPUT and NaN where the parameter is used; the
     others have the numbers they have without them."""

@@ -61,7 +61,7 @@ EDGES = {
 
 @pytest.mark.parametrize(("law", "more", "base", "ratio"), EDGES.values(), ids=EDGES)
 def test_an_edge_where_the_area_rises_fast(tmp_path, law, more, base, ratio):
-    """Ar/An is off because λ is a guess below the first row: of power laws up to 1.7 times as far as `model_error` said,
+    """Ar/An is off because λ is a guess below the first row: of power laws up to 1.7 times what `model_error` said,
     however many rows the table has."""
     given = {"P": 1e-5, "base": base, **CASE}
     true = study.solve(**given, micro=law, **ASPERITIES, **more)

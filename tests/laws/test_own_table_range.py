@@ -17,7 +17,7 @@ CASE = {"h": 0.02, "n": 0.5, "x": 3}
 )
 def test_the_error_covers_rows_of_equal_steps(law, first, last, rows):
     """The second pressure is 20 to 30 times the first: curves of high degree went astray between them, up to 1900 times
-    farther than `error`. A factor of 5 is left, where two curves are wrong alike."""
+    farther than `error`; curves of neighbouring degrees, which are wrong alike, up to 5 times."""
 
     def truth(p):
         return laws.LAWS[law].at(p, 1.0, **ASPERITIES)
@@ -26,7 +26,7 @@ def test_the_error_covers_rows_of_equal_steps(law, first, last, rows):
     own_table._check(p, *truth(p))
     found = own_table.of_columns("table:steps.csv", p, *truth(p))
     far = max(np.abs(a / b - 1).max() for a, b in zip(found.at(between, 1.0), truth(between), strict=True))
-    assert far < 5 * found.error
+    assert far < found.error
 
 
 def limited(folder, law, more, first, last):
@@ -48,6 +48,27 @@ def test_what_the_table_does_not_say_of_the_edge(tmp_path, law, more, ratio):
         found = study.solve(**given, micro=limited(tmp_path, law, more, top / ratio, 30 * top))
         far = max(abs(float(found[name] / true[name]) - 1) for name in ("a", "D", "p0", "p_max", "Ar_An"))
         assert found.status == 0 and far < found.model_error < 0.12
+
+
+#: Law, more of its parameters, base, p(0) over the first pressure of the table.
+EDGES = {
+    "small exponent": ("power_law", {"B": 0.39, "beta": 0.33}, "half_space", 200),
+    "small exponent, layer": ("power_law", {"B": 0.36, "beta": 0.37}, "layered", 150),
+    "heights": ("normal_heights", {"sigma": 2e-5, "cut": 3.0}, "half_space", 35),
+    "heights, layer": ("normal_heights", {"sigma": 2e-5, "cut": 3.0}, "layered", 100),
+}
+
+
+@pytest.mark.parametrize(("law", "more", "base", "ratio"), EDGES.values(), ids=EDGES)
+def test_an_edge_where_the_area_rises_fast(tmp_path, law, more, base, ratio):
+    """Ar/An is off because λ is a guess below the first row: of power laws up to 1.7 times what `model_error` said,
+    however many rows the table has."""
+    given = {"P": 1e-5, "base": base, **CASE}
+    true = study.solve(**given, micro=law, **ASPERITIES, **more)
+    top = float(true.p0) / (1.0 if base == "half_space" else CASE["n"])
+    found = study.solve(**given, micro=limited(tmp_path, law, more, top / ratio, 30 * top))
+    far = max(abs(float(found[name] / true[name]) - 1) for name in ("a", "D", "p0", "p_max", "Ar_An"))
+    assert found.status == 0 and far < found.error + found.model_error < 0.01
 
 
 @pytest.mark.parametrize("x", [2, 51])

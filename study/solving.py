@@ -142,7 +142,7 @@ def solve(
     says it in words. The results also have what a DataArray brings as further coordinates, such as who measured its
     loads; the levels of a MultiIndex are coordinates without an index, which netCDF can hold. A warning tells of those
     that are left out, of physical cases that violate an assumption of the model, or that have inputs of which the unit
-    must be wrong. Rough contacts on exact layers that are far outside the model are warned of before they are solved.
+    must be wrong. Rough contacts on soft layers that are far outside the model are warned of before they are solved.
 
     Raises
     ------

@@ -12,6 +12,7 @@ EVERY = 10.0  # seconds between plain lines
 BLINK = 0.1  # seconds between rewritten lines
 SILENT = 2.0  # seconds that may pass without a word: after some three people wonder whether the program has stopped
 AGAIN = 0.5  # seconds after which the line is looked at again: the seconds in it go up one by one
+SPEAKER = "roughcoat progress"  # the name of the thread
 ERASE = "\r\x1b[K"  # to the beginning of the line of a terminal, and erase it
 
 
@@ -46,7 +47,7 @@ class Progress:
         if self.stream is not None:
             # in the context of the caller, by which a notebook knows the cell that the line belongs to
             run = contextvars.copy_context().run
-            self._thread = threading.Thread(target=run, args=(self._go_on,), daemon=True)
+            self._thread = threading.Thread(target=run, args=(self._go_on,), name=SPEAKER, daemon=True)
             self._thread.start()
         return self
 

@@ -73,6 +73,7 @@ def test_the_warning_is_at_the_line_of_the_call(unsolved):
 ORDINARY = {
     "lining": LINING,
     "thin layer": FILM | {"base": "thin_layer", "bonding": "frictionless"},
+    "hard film": FILM | {"layer": "DLC a-C:H"},
     "smooth film": {name: FILM[name] for name in FILM if name not in ("Nbar", "Ra")} | {"micro": "smooth"},
     "half-space": {"R": "5 mm", "E2": "1 GPa", "P": "5 N", "Nbar": "0.1 1/um^2", "Ra": "2 um", "base": "half_space"},
     "one of three": LINING | {"h": ["10 nm", "0.2 mm", "0.3 mm"]},

@@ -7,7 +7,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from ..spec.places import STUDIES, known_studies
+from ..spec.places import STUDIES, files_in, known_studies
 from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
@@ -73,10 +73,10 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
     elif command in ("plot", "table"):
-        from .. import catalogue
+        from ..figures import beside
 
-        figures = [*catalogue.FIGURES, *catalogue.SCHEMES, *known_studies()]
-        known = ["all", *(figures if command == "plot" else catalogue.TABLES)]
+        known = ["all", *beside.names("figure" if command == "plot" else "table")]
+        known += known_studies() if command == "plot" else []
     elif command == "--x":
         from ..data.derived import QUANTITIES
         from ..spec.vocabulary import SCENE, VOCABULARY
@@ -87,7 +87,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         known = list(status_words().values())
     else:
-        files = [*Path().glob("*.toml"), *STUDIES.glob("*.toml")]
+        files = [*Path().glob("*.toml"), *files_in(STUDIES)]
         files += Path("results").glob("*.nc") if command == "verify" else ()
         known = [*known_studies(), *(path.as_posix() for path in sorted(files))]
     return [name for name in known if name.startswith(prefix)]

@@ -90,8 +90,7 @@ def cycle(axes) -> None:
 
     Results hold no iterates. These are in a file, which tests/references/make_picard_cycle.py has written.
     """
-    rows = Path(__file__).with_name("picard_cycle.csv").read_text(encoding="utf-8").splitlines()
-    x, *iterates, solution = np.loadtxt(rows, delimiter=",", skiprows=1).T
+    x, *iterates, solution = np.loadtxt(Path(__file__).with_name("picard_cycle.csv"), delimiter=",", skiprows=1).T
     for p, count, mark in zip(iterates, (1000, 1001), "os", strict=True):
         axes.plot(x, 1e3 * p, f"-{mark}", markersize=3, linewidth=0.9, label=f"iterate {count}")
     axes.plot(x, 1e3 * solution, "k-", linewidth=0.9, label="solution")

@@ -5,7 +5,6 @@ import pytest
 import study
 from solver.parameters import Parameter
 from study.__main__ import main
-from study.catalogue import FIGURES, TABLES
 from study.figures import registry
 from study.spec.vocabulary import allowed, check
 from study.terminal import counted

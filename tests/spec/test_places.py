@@ -8,7 +8,6 @@ from pathlib import Path
 
 import pytest
 from conftest import ROOT
-from test_cli import studies  # noqa: F401
 
 import study
 from study.__main__ import main
@@ -26,8 +25,12 @@ def run(script: str, folder: Path, *packages) -> str:
     return ended.stdout
 
 
-def test_a_study_is_loaded_by_its_name_as_the_command_line_does(studies, tmp_path, monkeypatch, capsys):  # noqa: F811
+def test_a_study_is_loaded_by_its_name_as_the_command_line_does(tmp_path, monkeypatch, capsys):
     """In studies/, then among those that come with roughcoat."""
+    monkeypatch.chdir(tmp_path)
+    studies = tmp_path / "studies"
+    studies.mkdir()
+    (studies / "good.toml").write_text(TEXT, encoding="utf-8")
     assert repr(study.load("good")) == repr(study.load(studies / "good.toml"))
     assert study.load("dlc_on_steel").definition.name == "dlc_on_steel"
     (studies / "dlc_on_steel.toml").write_text(TEXT, encoding="utf-8")

@@ -140,33 +140,36 @@ def fuzz(groups, seed, singles=0, share=1):
 
     singles : part of the cases that are solved alone; share : groups are this many times smaller.
     """
-    with TemporaryDirectory() as folder:
-        return _fuzz(groups, seed, singles, share, Path(folder))
-
-
-def _fuzz(groups, seed, singles, share, folder):
     found, ended, times = [], Counter(), []
-    for number in groups:
-        case, control = group(seed, number, folder, share)
-        with warnings.catch_warnings():
-            warnings.simplefilter("error")
-            try:
-                s = solve(Problem.of(**case), X)
-                wrong = wrong_numbers(s, case["rtol"], case["bonding"] == "bonded")
-                other = differs(s, case, control)
-            except Exception as error:
-                found.append(f"group {number}: {type(error).__name__}: {error}")
-                continue
-        ended.update(Status(value).name for value in s.status.tolist())
-        for text, mask in (("impossible", wrong), ("not the same by its radius", other)):
-            found += [f"{text}: {alone(case, i)}: {shown(s, i)}" for i in np.flatnonzero(mask)]
-        for i in np.flatnonzero(np.random.default_rng([seed, number, 1]).random(len(s.a)) < singles):
-            start = time.process_time()
-            one = solve(Problem.of(**alone(case, i)), X)
-            times.append(time.process_time() - start)
-            if times[-1] > SLOWEST:
-                found.append(f"{times[-1]:.1f} s: {alone(case, i)}: {Status(one.status[0]).name}")
+    with TemporaryDirectory() as folder:
+        for number in groups:
+            wrong = [*violations(seed, number, Path(folder), singles, share, ended, times)]
+            own = Path(folder) / f"{number}.csv"
+            found += [f"{text}\n{own.read_text(encoding='utf-8')}" if own.exists() else text for text in wrong]
     return found, ended, times
+
+
+def violations(seed, number, folder, singles, share, ended, times):
+    """Yield the violations of a group; `ended` and `times` get how its cases ended, and the seconds of those alone."""
+    case, control = group(seed, number, folder, share)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        try:
+            s = solve(Problem.of(**case), X)
+            wrong = wrong_numbers(s, case["rtol"], case["bonding"] == "bonded")
+            other = differs(s, case, control)
+        except Exception as error:
+            yield f"group {number}: {type(error).__name__}: {error}"
+            return
+    ended.update(Status(value).name for value in s.status.tolist())
+    for words, mask in (("impossible", wrong), ("not the same by its radius", other)):
+        yield from (f"{words}: {alone(case, i)}: {shown(s, i)}" for i in np.flatnonzero(mask))
+    for i in np.flatnonzero(np.random.default_rng([seed, number, 1]).random(len(s.a)) < singles):
+        start = time.process_time()
+        one = solve(Problem.of(**alone(case, i)), X)
+        times.append(time.process_time() - start)
+        if times[-1] > SLOWEST:
+            yield f"{times[-1]:.1f} s: {alone(case, i)}: {Status(one.status[0]).name}"
 
 
 def alone(case, i):

@@ -61,3 +61,10 @@ def test_a_slow_case_and_a_violation_make_it_fail(monkeypatch, capsys):
     assert capsys.readouterr().out.splitlines()[-1] in [f"{count} violations" for count in range(1, 91)]
     monkeypatch.setattr(fuzz_solver, "SLOWEST", 10.0)
     assert fuzz_solver.main(["--cases", "48"]) == 0
+
+
+def test_a_violation_comes_with_its_table(monkeypatch):
+    monkeypatch.setattr(fuzz_solver, "SLOWEST", -1.0)
+    (rows,) = [n for n in QUICK if n < 36 and n // 4 == fuzz_solver.LAWS.index("rows")]
+    found, _, _ = fuzz_solver.fuzz([rows], 0, singles=1, share=90)
+    assert found and all("p,A,lam,p_max\n" in text for text in found)

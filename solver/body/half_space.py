@@ -94,6 +94,6 @@ class HalfSpace(NamedTuple):
         return np.maximum(nodes, np.where(springs & (rtol < _FINE), _SECOND, 0))
 
 
-def half_space(h, n, nu1, nu2, bonded, m):
-    """The half-space alone, n = 1, under a punch of m = E2*/E3*. There is no layer: the other arguments do nothing."""
-    return HalfSpace(n / (n + m), 0 * n)
+def half_space(m):
+    """The half-space alone, of E2* = 1, under a punch of m (B,) = E2*/E3*."""
+    return HalfSpace(1 / (1 + m), 0 * m)

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 import study
 from solver import Problem, solve
-from solver.body.kernel import layered_kernel
+from solver.kernels.closed_form import layered_kernel
 from study.figures.registry import TABLES
 from study.literature import compared, formulas
 from study.literature.shown import SHOWN_AT

@@ -17,7 +17,18 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "body", "problem"),
+        *(
+            "threads",
+            "status",
+            "closed_forms",
+            "numerics",
+            "parameters",
+            "punches",
+            "laws",
+            "kernels",
+            "body",
+            "problem",
+        ),
         *("solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
     ),
     "study": (
@@ -27,7 +38,7 @@ ROOMS = {
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
-APART = {"body": {"laws"}}
+APART = {"body": {"laws"}, "kernels": {"laws", "punches"}}
 
 
 def name(path: Path) -> str:

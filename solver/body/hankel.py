@@ -1,4 +1,4 @@
-"""The exact layer of E1* on an elastic half-space: the half-space of E1* plus a Hankel integral over L - 1.
+"""A body with a kernel L: the half-space of E1* at its surface, plus a Hankel integral over L - 1.
 
     K q = H[q] + (π/2) Λ[q], both less their values at the edge,
     Λ_ij = ∫₀^∞ (L(kh/a) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
@@ -7,19 +7,20 @@ with k in units of 1/a, and l_j the Lagrange polynomials of the mesh. H carries 
 decays like e^(-2u), so Λ is smooth for every h/a. What depends on k and the mesh alone is tabulated for each octave of
 h/a (:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
 dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first octave are films. They
-all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
+all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`. The kernels are in
+:mod:`..kernels`.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
+from ..kernels.kernel import Kernel
 from ..numerics.mesh import Mesh
 from .film import MANY
-from .kernel import whole
 from .operator import fitted_nodes
 from .part import join, parts_of
-from .springs import layer_modulus, thin_layer
+from .springs import thin_layer
 from .tables import between, felt, film_rows
 from .wave_rule import CUT, FILM, LOOSE, place_of
 
@@ -46,48 +47,44 @@ _PLATE = 3 * np.finfo(float).eps
 _SHORT, _POINTS = 45.0, 64
 
 
-class Layered(NamedTuple):
-    """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
-    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, and m = E1*/E3*. `loose`, (B,) bool, or
-    None if no case is: whether the operator is made of fewer values of L (:meth:`within`).
+class Hankel(NamedTuple):
+    """The :class:`~solver.body.operator.Body` of B cases with a kernel; arrays (B,): thickness h of the layer at the
+    surface in R, and m = E1*/E3*. `loose`, (B,) bool, or None if no case is: whether the operator is made of fewer
+    values of L (:meth:`within`).
 
     The punch yields as a half-space of E3* does, so the kernel of both is L + m relative to E1*. Relative to the
     modulus E of both, 1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m): L - 1 becomes (L - 1)/(1 + m).
     """
 
+    kernel: Kernel
     h: np.ndarray
-    n: np.ndarray
-    nu1: np.ndarray
-    nu2: np.ndarray
-    bonded: np.ndarray
     m: np.ndarray
     loose: np.ndarray | None = None
 
     @property
     def E(self):
-        return layer_modulus(self.n) / (1 + self.m)
-
-    @property
-    def material(self):
-        return self[1:5]
+        return self.kernel.E1 / (1 + self.m)
 
     @property
     def L0(self):
         """The kernel (B,) at u = 0."""
-        return (self.n + self.m) / (1 + self.m)
+        return (self.kernel.L0 + self.m) / (1 + self.m)
 
     def whole(self, u):
         """The kernel (L + m)/(1 + m) (B,) at u (B,)."""
-        return (whole(u, *self.material) + self.m) / (1 + self.m)
+        return (self.kernel.whole(u) + self.m) / (1 + self.m)
 
     @property
     def C(self):
-        return 0 * self.n
+        return 0 * self.m
 
     def take(self, index):
-        return Layered(*(None if field is None else field[index] for field in self))
+        loose = None if self.loose is None else self.loose[index]
+        return Hankel(self.kernel.take(index), self.h[index], self.m[index], loose)
 
     def within(self, rtol, a):
+        if self.kernel.sampler is None:
+            return self
         every = self._replace(loose=np.ones(len(a), dtype=bool))
         may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not be: their class may change with the radius
         return self._replace(loose=may_be & (every.error(a, 1) <= _OF_RTOL * rtol))
@@ -103,7 +100,7 @@ class Layered(NamedTuple):
         if near is not None and near.mesh == mesh and not far.any():
             return near
         parts += parts_of(self, a, np.flatnonzero(far))
-        return LayeredOperator(mesh, parts, _rows(parts, mesh))
+        return HankelOperator(mesh, parts, _rows(parts, mesh))
 
     def softness(self, a):
         """The kernel at the wave number 1.5/a."""
@@ -132,7 +129,7 @@ class Layered(NamedTuple):
         if not len(thin):
             return shift
         u = np.geomspace(h_a[thin] / s1**2, _SHORT, _POINTS, axis=1)
-        level = np.log(whole(u, *(field[thin, None] for field in self.material)) + self.m[thin, None])
+        level = np.log(self.kernel.take(thin).whole(u) + self.m[thin, None])
         f = np.abs(level - level[:, :1]) / u
         shift[thin] = (np.trapezoid(f, np.log(u), axis=1) + f[:, -1]) * h_a[thin] / np.pi
         return shift
@@ -148,7 +145,7 @@ class Layered(NamedTuple):
 
     def alike(self, a):
         """The thin layer, if all cases are much thinner than a and it applies to them."""
-        thin = thin_layer(*self[:6])
+        thin = thin_layer(self.h, self.kernel, self.m)
         return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
 
     def first_nodes(self, rtol, a, rise=None):
@@ -157,9 +154,9 @@ class Layered(NamedTuple):
         return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))
 
 
-class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: its mesh; `parts`, the kernel; and `rows` (B, n + 1, n),
-    the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
+class HankelOperator(NamedTuple):
+    """The :class:`~solver.body.operator.Operator` of bodies with a kernel: its mesh; `parts`, the kernel; and `rows`
+    (B, n + 1, n), the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
 
     mesh: Mesh
     parts: list
@@ -180,7 +177,7 @@ class LayeredOperator(NamedTuple):
         at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
         parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, at, strict=True) if len(r)]
         rows = np.take(self.rows.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
-        return LayeredOperator(self.mesh, parts, rows)
+        return HankelOperator(self.mesh, parts, rows)
 
     def join(self, operators, places):
         size, n = sum(len(place) for place in places), self.mesh.n
@@ -189,8 +186,8 @@ class LayeredOperator(NamedTuple):
             rows[place] = operator.rows
             for part in operator.parts:
                 part = part._replace(index=place[part.index])
-                groups.setdefault((part.stiffness, part.film is None), []).append(part)
-        return LayeredOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
+                groups.setdefault(part.kind, []).append(part)
+        return HankelOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
 
     def products(self, q):
         found = np.einsum("bij,bj->bi", self.rows, q)

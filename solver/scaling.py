@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 
 from .body import BODIES
-from .body.springs import STIFF, local_compliance
+from .body.half_space import STIFF, local_compliance
 from .contact.equation import Cases
 from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out

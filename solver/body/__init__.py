@@ -1,9 +1,8 @@
 """What lies under the punch, one body a file, by its name; the protocol is in :mod:`.operator`."""
 
 from ..kernels.two_layers import TwoLayers
-from .half_space import half_space
+from .half_space import half_space, thin_layer
 from .hankel import Hankel
-from .springs import thin_layer
 
 #: Name -> ``body(problem)``, of cases of a :class:`~solver.problem.Problem` in units R = E2* = 1.
 BODIES = {

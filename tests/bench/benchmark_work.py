@@ -69,7 +69,7 @@ def flops_per_second() -> float:
 @contextmanager
 def counted():
     """A list of the flops, while it is open, of forming layered matrices from the few nodes and of eliminating all."""
-    flops, form, eliminate = [], hankel._rows, newton.solve_stack
+    flops, form, eliminate = [], hankel.rows_of, newton.solve_stack
 
     def forming(parts, mesh):
         flops.extend(2 * part.L1.size * mesh.n**2 for part in parts)
@@ -80,11 +80,11 @@ def counted():
         flops.append(size * (2 / 3 * n**3 + 2 * n**2 * columns))
         return eliminate(K, diagonal, rhs)
 
-    hankel._rows, newton.solve_stack, start.solve_stack = forming, eliminating, eliminating
+    hankel.rows_of, newton.solve_stack, start.solve_stack = forming, eliminating, eliminating
     try:
         yield flops
     finally:
-        hankel._rows, newton.solve_stack, start.solve_stack = form, eliminate, eliminate
+        hankel.rows_of, newton.solve_stack, start.solve_stack = form, eliminate, eliminate
 
 
 def latency() -> list[dict]:

@@ -92,8 +92,8 @@ def test_the_operator_at_the_same_radius_is_made_once():
 
 def test_a_search_for_the_radius_makes_one_operator_a_radius(monkeypatch):
     """Each began with that of the smooth contact, and threw it away."""
-    made, plain = [], hankel._rows
-    monkeypatch.setattr(hankel, "_rows", lambda *arguments: made.append(1) or plain(*arguments))
+    made, plain = [], hankel.rows_of
+    monkeypatch.setattr(hankel, "rows_of", lambda *arguments: made.append(1) or plain(*arguments))
     case = Problem.of(a=0.04, h=1e-5, n=1e3, Nbar=250000.0, Ra=0.004)
     ev = smooth_start(as_cases(case), mesh_of(12))
     assert len(made) == 1 and ev.operator.mesh == mesh_of(12)

@@ -38,7 +38,7 @@ ROOMS = {
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
-APART = {"body": {"laws"}, "kernels": {"laws", "punches"}}
+APART = {"body": {"laws"}, "kernels": {"laws", "punches"}, "edges": {"laws", "punches"}}
 
 
 def name(path: Path) -> str:

@@ -17,19 +17,8 @@ STUDY = sorted((ROOT / "study").rglob("*.py"))
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *(
-            "threads",
-            "status",
-            "closed_forms",
-            "numerics",
-            "parameters",
-            "punches",
-            "laws",
-            "kernels",
-            "body",
-            "problem",
-        ),
-        *("solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
+        *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
     ),
     "study": (
         *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),

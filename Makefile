@@ -34,7 +34,7 @@ table1 paper_numbers validity extremes:
 	@cat tables/$@.txt
 
 map: $(READY) ## 25,000 cases for exploration: results/parameter_map.nc
-	$(RUN) run studies/parameter_map.toml
+	$(RUN) run parameter_map
 
 tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs/tradeoff_measured.txt, tradeoff.png
 	$(RUN) table --run tradeoff tradeoff_cheapest tradeoff_factors paper_error
@@ -109,7 +109,7 @@ $(READY): requirements.lock pyproject.toml $(wildcard setup.py)
 
 # A study whose results are there and right computes nothing.
 results/%.nc: always | $(READY)
-	$(RUN) run studies/$*.toml
+	$(RUN) run $*
 
 figures/%.pdf: always | $(READY)
 	$(RUN) plot --run $*

@@ -23,3 +23,7 @@ class Status(IntEnum):
         found = int.__new__(cls, value)
         found._value_, found.meaning = value, meaning
         return found
+
+
+#: Statuses of cases whose equations have no solution in the model. The solver has not failed there.
+NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)

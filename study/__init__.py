@@ -40,11 +40,15 @@ _BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the fol
 
 class _OwnSolver:
     """A finder of modules that takes `solver` from beside this package. Python asks it first: otherwise a solver.py, or
-    a folder solver, in the working folder would be imported, and run, in its place."""
+    a folder solver, in the working folder would be imported, and run, in its place.
+
+    And `study.studies`, the book, in a clone, where it lies there too: a wheel has it in this package."""
 
     @staticmethod
     def find_spec(name: str, path=None, target=None) -> ModuleSpec | None:
-        return PathFinder.find_spec(name, [_BESIDE]) if name == "solver" else None
+        if name == "solver" or (name == "study.studies" and not os.path.isdir(os.path.join(*__path__, "studies"))):
+            return PathFinder.find_spec(name, [_BESIDE])
+        return None
 
 
 def _take_own_solver() -> None:

@@ -10,9 +10,10 @@ import xarray as xr
 from .data.provenance import command_line
 from .files.access import Unusable
 from .files.examine import Condition
-from .files.results_file import open_lazily, open_results
+from .files.results_file import LAZY, open_lazily, open_results
 from .physical.study_file import read
 from .spec.definition import Definition, StudyError
+from .spec.places import study_file
 from .spec.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, of_what, statuses
@@ -20,8 +21,6 @@ from .store.tidy import clean
 from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look
 from .work.run import dry_run, partial_dataset, run
-
-LAZY = 200_000_000  # bytes; a larger results file is opened lazily
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,13 +97,13 @@ class Study:
 
         Any thread may open results, and read them, while others run studies.
 
-        A large file is opened lazily, its variables are dask arrays in chunks of some thousand cases; others are read.
+        Results of more than 200 MB in memory are opened lazily, as dask arrays in chunks of some thousand cases.
 
         partial : give the blocks computed so far instead, with status 127 (not run) for the rest
         """
         path, found = self._store.path, look(self._store, ())
         if belongs(self.definition, found):
-            return open_lazily(path) if path.stat().st_size > LAZY else open_results(path)
+            return open_lazily(path) if found.unpacked > LAZY else open_results(path)
         if partial:
             with suppress(FileNotFoundError):
                 return partial_dataset(self.definition, self.results)
@@ -123,5 +122,8 @@ class Study:
 
 
 def load(path, results="results") -> Study:
-    """Read and check a study file. Raises StudyError with all that is wrong with it."""
-    return Study(read(os.path.expanduser(path)), Path(os.path.expanduser(results)))
+    """Read and check a study file. Raises StudyError with all that is wrong with it.
+
+    path : of the file, or the name of a study in studies/ or of one that comes with roughcoat, such as "dlc_on_steel"
+    """
+    return Study(read(study_file(path)), Path(os.path.expanduser(results)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import time
 import warnings
 from collections.abc import Sequence
 from typing import Any, Literal, TypedDict, Unpack
@@ -154,7 +155,7 @@ def solve(
     >>> found.a.sel(P=2e-5).round(5).item()
     0.02466
     """
-    workers = plain(workers)
+    begun, workers = time.monotonic(), plain(workers)
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     stream = screen_of(plain(progress))
@@ -182,7 +183,7 @@ def solve(
         definition = complete(draft, *about, LARGE)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
-    arrays = solved(definition, workers, stream)
+    arrays = solved(definition, workers, stream, begun)
     found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:

@@ -27,7 +27,7 @@ from study.spec.laws import update_vocabulary
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]
-STUDIES = sorted((ROOT / "studies").glob("*.toml"))
+STUDIES = sorted((ROOT / "studies").glob("*/*.toml"))
 
 
 def shrunken(tables: dict) -> dict:
@@ -88,9 +88,11 @@ def results(tmp_path_factory) -> Path:
 
 def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
-    from study.evidence.tradeoff import WAYS, measure
+    from study.figures.measured import described
+    from study.figures.registry import entry
     from study.files.results_file import write
     from study.physical.study_file import from_tables
+    from study.studies.evidence.tradeoff import WAYS, measure
     from study.work.run import run
 
     for toml in STUDIES:
@@ -98,7 +100,8 @@ def compute_results(folder: Path) -> None:
         run(from_tables(shrunken(tomllib.loads(text)), toml.stem, text, toml.name), folder)
     most = {"intervals": 2}  # the paper's way is slow
     ways = {name: replace(way, settings=way.settings[:1], most=most.get(way.varied, 5)) for name, way in WAYS.items()}
-    write(measure(10, 0, ways), folder / "tradeoff.nc")
+    measured = entry("measured", "tradeoff")
+    write(described(measure(10, 0, ways), "tradeoff", measured, ""), folder / "tradeoff.nc")
 
 
 @pytest.fixture(scope="session")
@@ -118,10 +121,10 @@ def drawing(results) -> Callable:
 @pytest.fixture(scope="session")
 def tables(results, tmp_path_factory) -> Path:
     """Folder with every table of the shrunken results, as .txt, .csv and .tex."""
-    from study.catalogue import TABLES, tabulate
+    from study.catalogue import names, tabulate
 
     folder = tmp_path_factory.mktemp("tables")
-    for name in TABLES:
+    for name in names("table"):
         assert tabulate(name, results, folder) == [folder / f"{name}.{suffix}" for suffix in ("txt", "csv", "tex")]
     return folder
 

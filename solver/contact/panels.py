@@ -64,7 +64,7 @@ def solve_on_panels(case, rtol, budget, at=None):
 def _first(case, rtol, budget):
     """:class:`.driver.Iterated` of one case on its first panels, and the work. If there is a body that is nearly the
     same and far cheaper, the first panels are those that resolve the contact with it. That takes an eighth off the time
-    of studies/extremes_layered.toml, of which every tenth case was solved with and without it."""
+    of the study extremes_layered, of which every tenth case was solved with and without it."""
     alike, start, mesh, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
     if alike is not None:
         found, work = solve_on_panels(case._replace(body=alike), rtol, budget)

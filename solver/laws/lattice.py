@@ -31,9 +31,9 @@ ENDS = {
     "square": {"J": 1.0, "relief": 1 / 12, "above": 0.2206356, "rate": 3 * np.pi},
     "hex": {"J": _PITCH, "relief": 5 / (36 * np.sqrt(3)), "above": 0.2177788, "rate": 4 * np.pi / _PITCH},
 }
-#: Largest relative error of A, λ and p_max (tests/laws/test_lattice.py). It is that of λ; A and p_max have 1e-5.
+#: Largest relative error of A, λ and p_max (tests/laws/lattice/test_lattice.py). It is that of λ; A and p_max have 1e-5.
 ERROR = 2e-4
-#: Degree of the polynomials. They are near enough to the rows: FITTED in tests/laws/test_lattice.py.
+#: Degree of the polynomials. They are near enough to the rows: FITTED in tests/laws/lattice/test_lattice.py.
 _DEGREE = 12
 #: Beyond the last row the fit is led by guiding points. This is their weight; that of a row is at most 1.
 _WEIGHT = 1e-4

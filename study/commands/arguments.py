@@ -7,11 +7,10 @@ import sys
 from functools import partial
 from pathlib import Path
 
+from ..spec.places import STUDIES, files_in, known_studies
 from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
-STUDIES = Path("studies")
-PACKAGE = Path(__file__).resolve().parents[1]
 MOST_DIGITS = 9  # of a whole number: Python refuses to read 4301
 
 
@@ -66,34 +65,6 @@ def assignment(text: str) -> tuple[str, float | str]:
         return name, value
 
 
-def packaged() -> Path:
-    """Folder of the studies that come with roughcoat: in the installed package, or beside it in a clone."""
-    inside = PACKAGE / "studies"
-    return inside if inside.is_dir() else PACKAGE.parent / "studies"
-
-
-def study_file(text: str) -> Path:
-    """The study file at a path, or of the study of a name, in studies/ or among those that come with roughcoat.
-
-    Raises StudyError when there is none.
-    """
-    from ..spec.definition import StudyError
-    from ..spec.vocabulary import suggest
-
-    given, short = Path(os.path.expanduser(text)), STUDIES / f"{text}.toml"
-    by_path = given.suffix == ".toml"
-    ours = [packaged() / f"{text}.toml"] if given.name == text else []
-    for path in (given,) if by_path else (given, short, *ours):
-        if path.exists():
-            return path
-    paths = [path.as_posix() for folder in (given.parent, STUDIES) for path in sorted(folder.glob("*.toml"))]
-    beside = Path(f"{text}.toml")  # whoever writes "mine" means it, and no study of a name that is like it
-    same = [path for path in paths if Path(path).name == given.name]
-    known = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
-    looked = "" if by_path else f" (looked for {given.as_posix()} and {short.as_posix()})"
-    raise StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
-
-
 def proposed(command: str, prefix: str, **_) -> list[str]:
     """Completions of a word of a command or option: names of studies, figures ... that begin with `prefix`."""
     if command == "point":
@@ -102,10 +73,10 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
     elif command in ("plot", "table"):
-        from .. import catalogue
+        from ..figures import beside
 
-        figures = [*catalogue.FIGURES, *catalogue.SCHEMES, *known_studies()]
-        known = ["all", *(figures if command == "plot" else catalogue.TABLES)]
+        known = ["all", *beside.names("figure" if command == "plot" else "table")]
+        known += known_studies() if command == "plot" else []
     elif command == "--x":
         from ..data.derived import QUANTITIES
         from ..spec.vocabulary import SCENE, VOCABULARY
@@ -116,15 +87,10 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
 
         known = list(status_words().values())
     else:
-        files = [*Path().glob("*.toml"), *STUDIES.glob("*.toml")]
+        files = [*Path().glob("*.toml"), *files_in(STUDIES)]
         files += Path("results").glob("*.nc") if command == "verify" else ()
         known = [*known_studies(), *(path.as_posix() for path in sorted(files))]
     return [name for name in known if name.startswith(prefix)]
-
-
-def known_studies() -> list[str]:
-    """Names of the studies in studies/, and of those that come with roughcoat."""
-    return list(dict.fromkeys(path.stem for where in (STUDIES, packaged()) for path in sorted(where.glob("*.toml"))))
 
 
 def folder(text: str) -> str:

@@ -5,9 +5,9 @@ import numpy as np
 from ..physical.study_file import read
 from ..spec.definition import Definition
 from ..spec.grid import MOVED
+from ..spec.places import study_file
 from ..spec.vocabulary import VOCABULARY
 from ..terminal import answer
-from .arguments import study_file
 
 
 def check(_, file: str) -> int:

@@ -8,11 +8,11 @@ from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition, examine
 from ..in_words import doubts
 from ..spec.definition import Definition, StudyError
+from ..spec.places import STUDIES, files_in, packaged, study_file
 from ..spec.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
 from ..work.plan import Report, status_values
-from .arguments import STUDIES, packaged, study_file
 from .checking import doubtful_lines
 
 
@@ -21,7 +21,7 @@ def items(options) -> list:
     if options.command != "list":
         return options.items
     folder = Path(options.folder) if options.folder else STUDIES if STUDIES.is_dir() else packaged()
-    files = sorted(folder.glob("*.toml")) if folder.is_dir() else [folder]
+    files = files_in(folder) if folder.is_dir() else [folder]
     if not files:
         answer(f"no study files in {folder.as_posix()}")
     return files

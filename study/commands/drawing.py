@@ -1,33 +1,39 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
 import logging
+import os
 import sys
 from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
+from xarray import Dataset
 
 from .. import catalogue
 from ..api import load
 from ..data.provenance import command_line
-from ..evidence import tradeoff as measured
+from ..figures import measured
 from ..figures.lines import drawn
+from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..files.access import Unusable
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
 from ..spec.grid import twins
+from ..spec.places import known_studies, study_file
 from ..terminal import answer, on_one_line, say
-from .arguments import known_studies, study_file
 from .computing import completed
 
 log = logging.getLogger(__name__)
+KINDS = {"plot": "figure", "table": "table"}
+"""Command -> kind of what it writes."""
 
 
 def items(options) -> list[str]:
     """The names of figures, tables or studies that were given; "all" stands for those that need no long study."""
-    known = catalogue.FIGURES if options.command == "plot" else catalogue.TABLES
-    return catalogue.usual(known) if options.items == ["all"] else options.items
+    if options.command == "tradeoff":
+        return ["tradeoff"]
+    return catalogue.usual(KINDS[options.command]) if options.items == ["all"] else options.items
 
 
 def plot(options, name: str) -> int:
@@ -35,10 +41,10 @@ def plot(options, name: str) -> int:
     if options.x or options.y or options.hue or options.where:
         return _curves(options, name)
     try:
-        return _write(options, name, catalogue.FIGURES)
+        return _write(options, name)
     except StudyError:
         what = "file" if Path(name).suffix == ".nc" else "study"
-        if name in catalogue.FIGURES or not (what == "file" or name in known_studies()):
+        if name in catalogue.names("figure") or not (what == "file" or name in known_studies()):
             raise
         how = "give --x and --y to draw curves of it, such as --x P --y a"
         raise StudyError([f"{name} is a {what}, not a figure: {how}"]) from None
@@ -51,44 +57,61 @@ def _curves(options, name: str) -> int:
     for i, _ in twins([axis for axis, _ in options.where]):
         raise StudyError([f"--where {options.where[i][0]} is given twice"])
     if Path(name).suffix == ".nc":
-        if not Path(name).exists():
-            raise StudyError([f"{name}: does not exist"])
-        try:
-            found = open_results(name)
-        except Unusable as error:
-            raise StudyError(error.messages) if error.kind == "foreign" else error from None
+        found = _of_file(name)
     else:
         study = load(study_file(name), options.results)
         if options.run and (code := completed(study)):
             return code
         found = study.open()
-    with style():
-        figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
-    stem = f"{Path(name).stem}_{options.y}"
-    title = f"{Path(name).stem}: {options.y} against {options.x}"
-    answer(*catalogue.save(Path(options.folder) / stem, figure, columns, title))
+    stem, title = f"{Path(name).stem}_{options.y}", f"{Path(name).stem}: {options.y} against {options.x}"
+    try:
+        with style():
+            figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
+        written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
+    except (StudyError, OSError):
+        raise
+    except Exception as error:  # of a file of another program, in which there may be anything
+        log.info("%s", name, exc_info=True)
+        raise StudyError([f"{name}: cannot be drawn: {_said(error)}"], code=1) from error
+    answer(*written)
     return 0
+
+
+def _of_file(name: str) -> Dataset:
+    """The dataset of a results file, or of a netCDF file of another program."""
+    if not Path(os.path.expanduser(name)).exists():
+        raise StudyError([f"{name}: does not exist"])
+    try:
+        return open_results(name)
+    except Unusable as error:
+        raise StudyError(error.messages) if error.kind == "foreign" else error from None
+
+
+def _said(error: Exception) -> str:
+    """What an exception says, and where to look."""
+    return f"{type(error).__name__}: {on_one_line(str(error), 300)}; -v before the command shows where"
 
 
 def table(options, name: str) -> int:
     """Write a table, and say which files it is in."""
-    return _write(options, name, catalogue.TABLES)
+    return _write(options, name)
 
 
-def tradeoff(options, _) -> int:
-    """Measure error against time, and say in which file it is."""
+def tradeoff(options, name: str) -> int:
+    """Measure what no study file makes, of this name, and say in which file it is."""
     force = getattr(options, "force", False)  # `plot` and `table` have no such option
-    measured.results(options.results, force=force, command=command_line())
-    answer(f"{options.results}/tradeoff.nc")
+    measured.results(name, options.results, force=force, command=command_line())
+    answer(f"{options.results}/{name}.nc")
     return 0
 
 
-def _write(options, name: str, known: dict) -> int:
-    make = catalogue.tabulate if known is catalogue.TABLES else catalogue.draw
+def _write(options, name: str) -> int:
+    kind = KINDS[options.command]
+    make = catalogue.tabulate if kind == "table" else catalogue.draw
     if options.run:
-        make = partial(catalogue.renewed, known)
-        code = max((_ready(options, study) for study in catalogue.needed(name, known)), default=0)
-        if code or not catalogue.outdated(name, known, options.results, options.folder):
+        make, studies = partial(catalogue.renewed, kind), catalogue.needed(kind, name)
+        code = max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
+        if code or not catalogue.outdated(kind, name, options.results, options.folder):
             return code
     try:
         answer(*make(name, options.results, options.folder))
@@ -96,23 +119,23 @@ def _write(options, name: str, known: dict) -> int:
         raise
     except Exception as error:  # of the function of the figure or table; the others are made
         log.info("%s", name, exc_info=True)
-        reason = f"{type(error).__name__}: {on_one_line(str(error), 300)}"
-        wrong = f"{name}: its function fails: {reason}; -v before the command shows where"
-        raise StudyError([wrong], code=1) from error
+        raise StudyError([f"{name}: its function fails: {_said(error)}"], code=1) from error
     return 0
 
 
-def _ready(options, study: str) -> int:
+def _ready(options, study: str, beside: Path | None) -> int:
     """Compute what is missing of a study, if this command has not done so yet.
+
+    beside : the folder where its file is looked for first
 
     Results that the same study file made are replaced; others are refused as by `run`, once.
     """
     codes = vars(options).setdefault("codes", {})  # study -> exit code, of this command
     try:
-        if study not in codes and study == "tradeoff":
+        if study not in codes and is_measured(study):
             codes[study] = tradeoff(options, study)
         elif study not in codes:
-            codes[study] = completed(load(study_file(study), options.results), renew=True)
+            codes[study] = completed(load(study_file(study, beside), options.results), renew=True)
     except StudyError as error:
         say(str(error), sys.stderr)
         codes[study] = error.code

@@ -6,6 +6,7 @@ import sys
 import warnings
 from argparse import ArgumentTypeError
 
+import numpy as np
 import xarray as xr
 
 from ..data.dataset import decode
@@ -65,7 +66,7 @@ def parameters_of(given: list[str]) -> dict[str, float | str | bool]:
 
 def as_numbers(found: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
-    found = found.assign({name: QUANTITIES[name](found) for name in _DERIVED})
+    found = found.assign({name: QUANTITIES[name](found) for name in _DERIVED} | _spreads_of_derived(found))
     shown = {
         name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *_DERIVED)) if name in found
     }
@@ -73,6 +74,22 @@ def as_numbers(found: xr.Dataset) -> dict:
     shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
     shown["validity"] = decode(found["validity"]).item().split()
     return shown | {"beware": doubts(found)}
+
+
+def _spreads_of_derived(found: xr.Dataset) -> dict[str, xr.DataArray]:
+    """NAME_spread of derived quantities, if results have spreads: NaN where it does not follow from these.
+
+    A largest pressure does not change with its place to first order. Of a ring's radius, of the real pressure in a ring
+    and of the share of an elastic punch the inputs would have to be moved.
+    """
+    if "p_spread" not in found:
+        return {}
+    place, unknown = int(np.argmax(found["p"].values)), xr.DataArray(math.nan)
+    spreads = {"p_ring": found["p_spread"][place].drop_vars("x"), "r_ring": unknown, "p_peak": unknown}
+    if place == 0:
+        spreads["p_peak"] = found["p_max_spread"]
+    spreads["D_body"] = unknown if float(found.get("m", 0.0)) else found.get("D_spread")
+    return {f"{name}_spread": spread for name, spread in spreads.items() if spread is not None}
 
 
 def described(found: xr.Dataset, name: str) -> dict | str:

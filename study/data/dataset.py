@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Model, Status
+from solver.status import NO_SOLUTION
 
 from ..spec.definition import Definition
 from ..spec.fitted import COMMENT
@@ -14,9 +15,6 @@ from ..spec.identity import law_versions
 from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
 from .assumptions import validity_attributes, validity_of
 from .provenance import provenance
-
-NO_SOLUTION = (Status.THIN_LAYER_NOT_APPLICABLE, Status.LIFT_OFF)
-"""Statuses of cases whose equations have no solution in the model. The solver has not failed there."""
 
 
 def failed_cases(status: np.ndarray) -> np.ndarray:

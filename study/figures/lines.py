@@ -16,6 +16,7 @@ from ..data.derived import QUANTITIES
 from ..spec.definition import StudyError
 from ..spec.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
+from .drawable import check_size, drawable
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
 from .marks import as_points, shades, spaced_by_factors, tick_decades
 from .registry import Columns, joined
@@ -53,7 +54,9 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         raise StudyError([f'{stacked[0]} is several axes in one: give dataset.unstack("{stacked[0]}")'])
     bare = [dim for dim in dataset.dims if dim in (x, y, hue, *where) and dim not in dataset.coords]
     dataset = dataset.assign_coords({dim: np.arange(dataset.sizes[dim]) for dim in bare})  # they are numbered
+    dataset = drawable(dataset, (x, y, hue, *where))
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
+    check_size(found, x, y)
     hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
     check_roles(found, x, y, hue)
     found = found.sortby(x) if x in found.dims else found  # a curve through loads as they were given runs to and fro

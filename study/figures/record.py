@@ -22,12 +22,14 @@ LIBRARIES = ("roughcoat", "numpy", "scipy", "xarray", "matplotlib")
 LARGEST = 10_000_000  # bytes of a record: an entry has some 400
 
 
-def digest_of(what: str, endings: tuple[str, ...], results: list[Path]) -> str:
+def digest_of(what: str, endings: tuple[str, ...], results: list[Path], beside: list[Path]) -> str:
     """sha256 of all that the files of a figure or table follow from.
 
-    what : "figure fig03"; endings : of its files; results : the files of the studies that it needs
+    what : "figure fig03"; endings : of its files; results : the files of the studies that it needs; beside : the code
+    that draws it, and what this may read
     """
-    content = [what, endings, program(), [numbers_digest(path) for path in results]]
+    code = [(path.name, _digest(path)) for path in beside]
+    content = [what, endings, program(), code, [numbers_digest(path) for path in results]]
     return hashlib.sha256(json.dumps(content).encode()).hexdigest()
 
 

@@ -1,10 +1,10 @@
 """The register of figures and tables. Each is a decorated function of the datasets of the studies that it names.
 
-`study.catalogue` imports every file of the rooms figures, paper, literature and evidence. So `python -m study plot` and
-`table`, and `make`, know a function in one of these rooms without another line anywhere.
+They stand in a file `figures.py` beside studies, see `study.figures.beside`, or in a script of one's own.
 """
 
 import re
+from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -14,10 +14,12 @@ import xarray as xr
 
 from ..files.results_file import open_results
 from ..spec.definition import StudyError
-from ..spec.vocabulary import suggest
+from ..spec.places import BOOK
 from ..terminal import program
+from . import beside
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
+COMMANDS = ("tradeoff",)  # what is measured that has a command of its own
 Columns = dict[str, np.ndarray]
 """The numbers that a figure shows: heading of the CSV -> column."""
 
@@ -37,6 +39,14 @@ class Figure(NamedTuple):
     caption: str
 
 
+class Drawing(NamedTuple):
+    """See `drawing`."""
+
+    stem: Callable[[], Path]
+    caption: str
+    studies: tuple[str, ...] = ()
+
+
 class Column(NamedTuple):
     """One column of a table: heading, format of its numbers ("s": text), heading in LaTeX if it has its own."""
 
@@ -54,11 +64,21 @@ class Table(NamedTuple):
     columns: tuple[Column, ...]
 
 
-FIGURES: dict[str, Figure] = {}
-TABLES: dict[str, Table] = {}
+class Measured(NamedTuple):
+    """See `measured`."""
+
+    measure: Callable[[], xr.Dataset]
+    plan: Callable[[], str]
+    title: str
 
 
-def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), caption: str = ""):
+#: Package of files beside studies -> kind -> name -> what is registered there. "": by scripts and other modules.
+REGISTERS = defaultdict[str, dict[str, dict]](lambda: {kind: {} for kind in beside.KINDS.values()})
+FIGURES, TABLES = REGISTERS[""]["figure"], REGISTERS[""]["table"]
+"""The figures, and tables, of the program that runs, which go before those beside studies."""
+
+
+def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), caption: str = "", long: bool = False):
     """Register `draw(axes, *datasets)`, which draws the figure NAME and returns the numbers that it shows.
 
     studies : names of the studies whose datasets `draw` takes, in this order
@@ -66,41 +86,74 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
     panels : rows and columns; several make `axes` an array
     caption : what the figure shows; by default the first paragraph of the docstring. The parameters that the studies
         share are added by themselves, and stand above the figure
+    long : whether a study takes minutes to compute; `plot all` goes without the figure
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
-        check_new(name, draw, FIGURES)
-        FIGURES[name] = Figure(studies, draw, size, panels, caption_of(draw, caption))
+        add("figure", name, draw, Figure(studies, draw, size, panels, caption_of(draw, caption)))
         return draw
 
     return register
 
 
-def table(name: str, *studies: str, columns: str, caption: str = ""):
+def drawing(name: str, caption: str = ""):
+    """Register `stem()`, the path, without its ending, of a drawing that is copied as it is: .svg, .pdf and .png.
+
+    caption : by default the first paragraph of the docstring
+    """
+
+    def register(stem: Callable[[], Path]) -> Callable[[], Path]:
+        add("figure", name, stem, Drawing(stem, caption_of(stem, caption)))
+        return stem
+
+    return register
+
+
+def table(name: str, *studies: str, columns: str, caption: str = "", long: bool = False):
     """Register `rows(*datasets)`, which gives the table NAME as a list of tuples, one value per column.
 
     studies : names of the studies whose datasets `rows` takes, in this order
     columns : "heading | format of its numbers | heading in LaTeX" of each, on lines or separated by "; "; without a
         format the cells are text, without a heading in LaTeX it is the plain one
     caption : by default the first paragraph of the docstring
+    long : whether a study takes minutes to compute; `table all` goes without the table
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
-        check_new(name, rows, TABLES)
         heads = tuple(column(one) for one in re.split(r"\n|(?<!\\); ", columns.strip()))
-        TABLES[name] = Table(studies, rows, caption_of(rows, caption), heads)
+        add("table", name, rows, Table(studies, rows, caption_of(rows, caption), heads))
         return rows
 
     return register
 
 
-def check_new(name: str, function: Callable, known: dict) -> None:
-    """Raise ValueError if another function has the name. In a notebook a function may be defined anew."""
-    own = getattr(function, "func", function)  # of a partial
-    other = known[name][1] if name in known else own
+def measured(name: str, plan: Callable[[], str], title: str):
+    """Register `measure()`, whose dataset is kept as results of the study NAME, which has no study file.
+
+    plan : what is measured, as text; results of another plan are measured anew
+    title : of the dataset
+    """
+
+    def register(measure: Callable[[], xr.Dataset]) -> Callable[[], xr.Dataset]:
+        add("measured", name, measure, Measured(measure, plan, title))
+        return measure
+
+    return register
+
+
+def add(kind: str, name: str, function: Callable, made: NamedTuple) -> None:
+    """Put what a function gives into the register of its package.
+
+    Raises ValueError if another function there has the name. In a notebook a function may be defined anew.
+    """
+    function = getattr(function, "func", function)  # of a partial
+    package = (function.__module__ or "").rpartition(".")[0]
+    register = REGISTERS[package if package.startswith(BOOK) else ""][kind]
+    other = next((value for value in register.get(name, ()) if callable(value)), function)
     other = getattr(other, "func", other)
-    if (other.__module__, other.__name__) != (own.__module__, own.__name__):
+    if (other.__module__, other.__name__) != (function.__module__, function.__name__):
         raise ValueError(f'"{name}" is that of {other.__module__}.{other.__name__} already: take another name')
+    register[name] = made
 
 
 def caption_of(function: Callable, given: str = "") -> str:
@@ -114,25 +167,60 @@ def column(given: str) -> Column:
     return Column(text, form or "s", latex)
 
 
-def entry(name: str, known: dict[str, NamedTuple]) -> NamedTuple:
-    """The figure or table of a name. Raises StudyError, which suggests another name, if there is none."""
-    if name not in known:
-        raise StudyError([f'"{name}" is not known{suggest(name, known)}'])
-    return known[name]
+def names(kind: str, *, long: bool = True) -> list[str]:
+    """The names of all figures ("figure"), or tables ("table"), that there are; without long ones if wanted."""
+    return list(dict.fromkeys([*REGISTERS[""][kind], *beside.names(kind, long=long)]))
 
 
-def open_studies(name: str, known: dict[str, NamedTuple], results) -> list[xr.Dataset]:
-    """The datasets that a figure or table needs, in their order. Raises StudyError if a study has no results yet."""
-    paths = {study: Path(results) / f"{study}.nc" for study in entry(name, known).studies}
-    missing = [
-        # the trade-off is no study file and has a command of its own
-        f"{path}: does not exist, {name} needs it; make it with: {program()} {'run ' * (study != 'tradeoff')}{study}"
-        for study, path in paths.items()
-        if not path.exists()
-    ]
+def entry(kind: str, name: str) -> NamedTuple:
+    """What is registered of a name: of the program itself, or beside studies, where it is run now.
+
+    Raises StudyError, which suggests another name, if there is none.
+    """
+    if name in REGISTERS[""][kind]:
+        return REGISTERS[""][kind][name]
+    place = beside.place_of(kind, name)
+    if place is None:
+        raise beside.unknown(kind, name, list(REGISTERS[""][kind]))
+    file, last = place
+    register = REGISTERS[beside.run(file)][kind]
+    if last not in register:
+        raise StudyError([f"{file.as_posix()}: registers no {kind} {last}, though the name stands there"], code=1)
+    return register[last]
+
+
+def code_of(kind: str, name: str) -> list[Path]:
+    """Files beside studies from which a figure or table that has been run may follow; none for one of a script."""
+    place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
+    return beside.files_of(beside.package_of(place[0])) if place else []
+
+
+def study_beside(kind: str, name: str) -> Path | None:
+    """The folder of a figure or table of the user, where the studies that it needs are looked for first."""
+    place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
+    return place[0].parent if place and place[0] not in beside.of_the_book() else None
+
+
+def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Dataset]:
+    """The datasets of the studies that a figure or table needs. Raises StudyError if one has no results yet."""
+    paths = {study: Path(results) / f"{study}.nc" for study in studies}
+    missing = [f"{path}: does not exist, {name} needs it; {_way_out(path.stem)}"
+               for path in paths.values() if not path.exists()]  # fmt: skip
     if missing:
         raise StudyError(missing)
     return [open_results(path) for path in paths.values()]
+
+
+def _way_out(study: str) -> str:
+    """How to get the results of a study that has none."""
+    if is_measured(study):
+        return f"make it with: {program()} {study}" if study in COMMANDS else "--run measures it"
+    return f"make it with: {program()} run {study}"
+
+
+def is_measured(study: str) -> bool:
+    """Whether the results of a study are measured by code beside studies, see `measured`."""
+    return study in REGISTERS[""]["measured"] or beside.place_of("measured", study) is not None
 
 
 def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:

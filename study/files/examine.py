@@ -7,6 +7,7 @@ import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from math import inf
 from pathlib import Path
 
 import numpy as np
@@ -41,6 +42,7 @@ class Condition:
     damage : names of the checksums that do not fit, see `checksums`
     intact : (N,) whether the numbers of each case can be trusted; None if not all variables were examined
     seen : its `stamp` before it was examined, None where there was no file
+    unpacked : bytes of its variables in memory
     """
 
     path: Path
@@ -53,6 +55,7 @@ class Condition:
     damage: tuple[str, ...] = ()
     intact: np.ndarray | None = None
     seen: tuple | None = None
+    unpacked: int = 0
 
     @property
     def good(self) -> bool:
@@ -66,11 +69,12 @@ class Condition:
             raise Unusable(self.path, self.kind, self.reason)
 
 
-def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
+def examine(path, columns: tuple[str, ...] | None = None, most: float = inf) -> Condition:
     """The condition of a results file.
 
     columns : the variables over the cases to be examined; None: all. Attributes, coordinates and one column take
         milliseconds, all of the file as long as reading and summing it twice
+    most : of a file of more unpacked bytes attributes and coordinates alone are examined
 
     A file whose seal is broken or missing (see `seal`) is examined in a child process, which takes a second more.
     """
@@ -78,13 +82,14 @@ def examine(path, columns: tuple[str, ...] | None = None) -> Condition:
     seen = stamp(path)
     try:
         check_regular(path)
-        if not is_whole(path, LARGE if columns is not None else float("inf")):
-            return replace(examined_in_child(path, columns, seen), seen=seen)
+        columns = () if path.stat().st_size > most else columns
+        if not is_whole(path, LARGE if columns is not None else inf):
+            return replace(examined_in_child(path, columns, most, seen), seen=seen)
     except (FileNotFoundError, Unusable):
         pass  # `examined` finds the same, and says it
     except OSError as error:
         return Condition(path, "unreadable", f"cannot be read: {error.strerror}", seen=seen)
-    return replace(examined(path, columns), seen=seen)
+    return replace(examined(path, columns, most), seen=seen)
 
 
 def stamp(path: Path) -> tuple | None:
@@ -97,12 +102,12 @@ def stamp(path: Path) -> tuple | None:
 
 
 @lru_cache(maxsize=16)
-def examined_in_child(path: Path, columns: tuple[str, ...] | None, _) -> Condition:
+def examined_in_child(path: Path, columns: tuple[str, ...] | None, most: float, _) -> Condition:
     """`examine` in a child process: a file with a broken seal may crash the interpreter that reads it."""
     statement = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
     statement += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
     command, environment = python_command(statement)
-    options = {"input": pickle.dumps((path, columns)), "env": environment, "capture_output": True}
+    options = {"input": pickle.dumps((path, columns, most)), "env": environment, "capture_output": True}
     patience = PATIENCE + path.stat().st_size / SLOWEST
     try:
         child = subprocess.run(command, **options, timeout=patience)
@@ -111,11 +116,12 @@ def examined_in_child(path: Path, columns: tuple[str, ...] | None, _) -> Conditi
         return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
 
 
-def examined(path: Path, columns: tuple[str, ...] | None = None) -> Condition:
+def examined(path: Path, columns: tuple[str, ...] | None = None, most: float = inf) -> Condition:
     """`examine` in this process."""
     try:
         with File(path) as file:
-            return _examined(file, columns)
+            unpacked = file.unpacked
+            return replace(_examined(file, () if unpacked > most else columns), unpacked=unpacked)
     except FileNotFoundError:
         return Condition(path, "missing")
     except Unusable as error:

@@ -3,6 +3,7 @@
 import os
 import stat
 from contextlib import suppress
+from math import prod
 from pathlib import Path
 
 import netCDF4
@@ -13,6 +14,7 @@ from .access import Access, Unusable, access
 from .lock import locked
 
 HDF5 = b"\x89HDF\r\n\x1a\n"
+MOST_INDEXED = 1_000_000  # values of a coordinate: an axis of a study has no more
 END = {0: 40, 1: 44, 2: 28, 3: 28}
 """Version of an HDF5 file, which is its byte 8 -> place of the 8 bytes that tell the length of the file."""
 
@@ -63,6 +65,13 @@ class File:
         """Name -> dimensions; a text has one more, of its characters."""
         with self._access():
             return {name: variable.dimensions for name, variable in self._file.variables.items()}
+
+    @property
+    def unpacked(self) -> int:
+        """Bytes of all variables in memory; a text of netCDF's own counts as eight."""
+        with self._access():
+            variables = self._file.variables.values()
+            return sum(prod(one.shape) * int(getattr(one.dtype, "itemsize", 8)) for one in variables)
 
     def dtype(self, name: str) -> np.dtype | type:
         """Type of a variable, `str` for netCDF's own texts."""
@@ -126,6 +135,21 @@ def read_lazily(path: Path) -> xr.Dataset:
     check_regular(path)
     with access(path):
         return xr.open_dataset(path, engine="netcdf4", chunks={}, lock=Access(path))
+
+
+def read_of_others(path: Path) -> xr.Dataset:
+    """A large file of another program: numbers are read when they are asked for, under the lock.
+
+    There are no dask arrays, since a file may have millions of chunks, most of which were never written, and no
+    indexes of coordinates of more than MOST_INDEXED values, which would be read at once.
+    """
+    check_regular(path)
+    with access(path):
+        dataset = xr.open_dataset(path, engine="netcdf4", lock=Access(path), create_default_indexes=False)
+    for name, size in dataset.sizes.items():
+        if name in dataset.coords and dataset[name].dims == (name,) and size <= MOST_INDEXED:
+            dataset = dataset.set_xindex(name)
+    return dataset
 
 
 def check_regular(path: Path) -> None:

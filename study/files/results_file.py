@@ -15,12 +15,17 @@ from ..data.provenance import OF_THE_RUN
 from ..physical.index import searchable
 from ..spec.definition import StudyError
 from ..spec.laws import recall
+from ..terminal import on_one_line
 from .access import Unusable
 from .atomic import replacing
 from .checksums import ATTRIBUTE, NOT_SUMMED, CaseDigests, as_text, lines_of_head, parsed
 from .examine import Condition, examine, stamp
-from .netcdf import File, check_regular, read, read_lazily
+from .netcdf import File, check_regular, read, read_lazily, read_of_others
 from .seal import seal
+
+#: Bytes of all variables in memory; a larger file is opened lazily. Files are packed by up to a hundred times, so their
+#: own size says little. Reading and verifying so much takes a second or two.
+LAZY = 200_000_000
 
 
 def encoding(array: xr.DataArray) -> dict:
@@ -175,21 +180,27 @@ def numbers_digest(path: Path) -> str:
 
 
 def open_results(path) -> xr.Dataset:
-    """A results file, read into memory and closed, when nothing in it is damaged.
+    """A results file, read into memory and closed, when nothing in it is damaged. A large one is opened lazily.
 
     Any thread may open, and read, while others run studies. A file without checksums, of an earlier version, is read
-    unverified.
+    unverified. A netCDF file of another program is read as it is.
 
     Raises FileNotFoundError: there is none; StudyError: it is damaged, or cannot be read; also an OSError.
     """
-    found = examine(path)
-    if found.kind != "foreign":  # a netCDF file of another program is read as it is
+    path = Path(os.path.expanduser(path))
+    found = examine(path, most=LAZY)
+    large = found.unpacked > LAZY
+    if found.kind != "foreign":
         found.raise_if_bad()
+        return open_lazily(path) if large else _for_users(read(path))
     try:
-        return _for_users(read(Path(path)))
+        return _for_users(read_of_others(path) if large else read(path))
     except OSError:
         found.raise_if_bad()
         raise
+    except Exception as error:  # of xarray, which takes attributes of variables for units of time and so on
+        reason = f"{found.reason}, which xarray cannot read: {on_one_line(str(error), 200)}"
+        raise Unusable(path, "foreign", reason) from error
 
 
 def open_lazily(path) -> xr.Dataset:
@@ -204,5 +215,6 @@ def open_lazily(path) -> xr.Dataset:
 def _for_users(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset without the checksums: they would be wrong in a file that a user makes of it. Its laws are known."""
     dataset.attrs.pop(ATTRIBUTE, None)
-    recall(dataset.attrs.get("micro_laws", ""))
+    laws = dataset.attrs.get("micro_laws", "")
+    recall(laws if isinstance(laws, str) else "")
     return searchable(without_fill_values(dataset))

@@ -92,7 +92,8 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
             rows.append((RING_LABEL, VOCABULARY["p_ring"].symbol, ring_text(case, top.place)))
         if name == "p_max" and top.place is not None and np.isfinite(top.real):
             real = in_its_unit(case, name, float(f"{top.real:.3g}"))
-            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, real))
+            unknown = " ± unknown" * ("p_max_spread" in case)  # the inputs would have to be moved
+            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, real + unknown))
     return rows
 
 

@@ -17,6 +17,8 @@ from .names import RIGID_TEXTS, CaseValues, QuantityList
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 laws.RESERVED.update(SCENE, BODIES)  # a law must not call a parameter like an input of a scene
 _MAY_BE_RIGID = ("punch", "body")
+#: What people give as `punch` that is no material; names of materials near these would mislead.
+_SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "pyramid")
 
 
 def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
@@ -84,6 +86,9 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
     """Name, E and ν of a material, or of a name. Raises LookupError for a name that is not in the table."""
     if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
         return "rigid", Quantity(np.inf), Quantity(0.3)
+    if body == "punch" and str(name).lower() in _SHAPES:
+        shape = "the punch is a ball of radius R, other shapes are not in the model"
+        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
     found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
     if not all(map(finite, (found.E, found.nu, found.E_spread, found.nu_spread))):
         raise LookupError(f"{shown(found.name)}: E, nu and their spreads must be finite numbers, E in Pa")

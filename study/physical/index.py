@@ -56,6 +56,7 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
 def searchable(dataset: xr.Dataset) -> xr.Dataset:
     """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
     for name, variable in dataset.variables.items():
-        if variable.dims == (name,) and name in ROWS and variable.attrs.get("units") == ROWS[name].unit != "1":
+        unit = variable.attrs.get("units")
+        if variable.dims == (name,) and name in ROWS and isinstance(unit, str) and unit == ROWS[name].unit != "1":
             dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
     return dataset

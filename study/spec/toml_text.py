@@ -6,9 +6,11 @@ import tomllib
 from pathlib import Path
 
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
+MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
 MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
 _PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
+TABLE = re.compile(r"^[ \t]*+\[\[|\{", re.MULTILINE)
 
 #: A value that begins with a word, or with a number and a word or ±; the e of "1e-6" is none.
 _NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)")
@@ -23,6 +25,10 @@ def text_in(path: Path) -> str:
     if len(raw) > LARGEST_FILE:
         raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
     text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    tables = sum(1 for _ in TABLE.finditer(text))
+    if tables > MOST_TABLES:  # before tomllib reads them
+        wrong = f"has {tables} tables, [[cases]] and those in braces: at most {MOST_TABLES}"
+        raise OSError(errno.EFBIG, f"{wrong}; [axes] and [sample] say as many cases in a few lines")
     _check_keys(text)
     return text
 

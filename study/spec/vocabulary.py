@@ -3,6 +3,7 @@
 import difflib
 import math
 import numbers
+import re
 import tomllib
 from collections import ChainMap
 from dataclasses import dataclass
@@ -179,34 +180,44 @@ def no_parameter(name: str, known, place: str = "") -> str:
 
     place : what stands before the name, such as "[model] "; known : the names to propose
     """
-    lacking = absent(name)
-    if lacking == _RESULT:
+    known, hint = list(known), absent(name)
+    if hint == _RESULT:
         search = "solve for several P, which become an axis, and interpolate in it, or find P by scipy.optimize.brentq"
-        lacking += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
-    return f"{place}{shown(str(name))} is not a parameter{f'; {lacking}' if lacking else suggest(name, known)}"
+        hint += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
+    like = [one for one in known if one[0].lower() == str(name)[:1].lower()]  # one letter more or less: Er is no R
+    near = suggest(name, like, known)
+    return f"{place}{shown(str(name))} is not a parameter{f'; {hint}' if hint else near}"
 
 
 def absent(name: str) -> str:
-    """What not_there.toml says of a name that is no parameter, "" if nothing; results are in it too."""
-    if name in names("result"):
-        return _RESULT
-    word = _as_word(str(name)[:LONGEST])
-    return next((_ABSENT[one] for one in (name, word, word.rstrip("0123456789")) if one in _ABSENT), "")
+    """What not_there.toml says of a name that is no parameter, "" if nothing; results are in it too.
+
+    The whole name is looked for, then its parts, of which the first in that file counts: "friction_coeff", "E_film".
+    """
+    name = str(name)[:LONGEST]
+    if name in PARAMETERS or name in SCENE:
+        return ""
+    known = _ABSENT | dict.fromkeys((one for one in names("result", "derived") if one not in _ABSENT), _RESULT)
+    whole = (name, _as_word(name), _as_word(re.sub(r"[\d*']", "", name)))
+    first, *others = re.split(r"[\s_.*-]+", name)
+    parts = [re.sub(r"\d+$", "", first)] * bool(others) + [_as_word(one) for one in (first, *others) if len(one) > 2]
+    found = [known[one] for one in whole if one in known] or [says for one, says in known.items() if one in parts]
+    return found[0] if found else ""
 
 
 def _as_word(name: str) -> str:
     """A name of three letters or more in small letters, without blanks and underscores; a shorter one as it is."""
-    return name.replace("_", "").replace(" ", "").lower() if len(name) > 2 else name
+    return re.sub(r"[\s_-]", "", name).lower() if len(name) > 2 else name
 
 
 _ABSENT = {_as_word(word): entry["says"] for entry in _NOT_THERE.values() for word in entry["words"]}
 
 
-def suggest(word: str, known) -> str:
-    """The end of a message: '; did you mean "Nbar"?' when a known word is near, otherwise what is known."""
+def suggest(word: str, known, listed=None) -> str:
+    """The end of a message: '; did you mean "Nbar"?' when a known word is near, else what is known, or `listed`."""
     lower = {name.lower(): name for name in known}
     near = difflib.get_close_matches(str(word).lower()[:LONGEST], lower, n=1, cutoff=0.6)
     if near:
         return f'; did you mean "{lower[near[0]]}"?'
-    listed = list(known)
+    listed = list(listed or known)
     return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from .scan import FEWEST, Scan, metres, number
-from .scan_grids import columns_of, on_grid, scan_of
+from .scan_grids import columns_of, npy_table, on_grid, scan_of
 from .scan_headings import check_units, height_metres, stated, without_no_data
 from .scan_texts import Table, table_of, text_of
 
@@ -59,6 +59,8 @@ def read(
     allowed; ImportError: the format of an instrument, and SurfaceTopography is not installed.
     """
     path = Path(path)
+    if path.exists() and not path.is_file() and not path.is_dir():  # which would be waited for, or has no end
+        raise ValueError(f"{path.name}: is no file but a pipe or device")
     ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge}
     given = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
     given = {name: value for name, value in given.items() if value is not None}
@@ -69,7 +71,7 @@ def read(
         return _of_text(path.name, text, given, channel, crop, how)
     if channel is not None:
         raise ValueError(f"{path.name}: channel = {channel!r}: .npy has no channels; leave it out")
-    return _of_table(path.name, _npy(path), given, crop, how)
+    return _of_table(path.name, npy_table(path), given, crop, how)
 
 
 def _of_text(name: str, text: str, given: dict, channel: str | None, crop, how: dict) -> Scan:
@@ -130,16 +132,6 @@ def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
         positions = [columns[:, 0] if dx is None else dx * np.arange(len(z))]
     steps = None if dx is None else [dy, dx][-z.ndim :]
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
-
-
-def _npy(path: Path) -> Table:
-    try:
-        numbers = np.load(path, allow_pickle=False).astype(float, casting="same_kind")
-    except (ValueError, TypeError, EOFError) as error:
-        raise ValueError(f"{path.name}: not a .npy file of real numbers: {error}") from error
-    if numbers.ndim not in (1, 2) or not numbers.size:
-        raise ValueError(f"{path.name}: an array of shape {numbers.shape}; allowed are one or two dimensions")
-    return Table(numbers.reshape(len(numbers), -1))
 
 
 def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -> Scan:

@@ -1,10 +1,12 @@
-"""From positions and heights as a file has them to a scan: x y z of a grid, rounded positions, the part to keep."""
+"""From positions and heights as a file has them to a scan: .npy, x y z of a grid, rounding, the part to keep."""
 
 import dataclasses
 import math
 from decimal import Decimal
+from pathlib import Path
 
 import numpy as np
+from numpy.lib.format import MAGIC_PREFIX
 
 from .foreign import plain
 from .quantities import has_unit, quantity
@@ -15,6 +17,23 @@ from .scan_texts import Table
 FULL = 0.25
 #: A position may be off the grid by the last digit that is written of it, if that is at most this share of all.
 COARSE = 0.01
+
+
+def npy_table(path: Path) -> Table:
+    """The numbers in a .npy file. Raises ValueError: it is none, whatever its name, or no array of real numbers."""
+    refused = f"{path.name}: not a .npy file of real numbers"
+    with open(path, "rb") as file:
+        begins = file.read(len(MAGIC_PREFIX))
+    if begins != MAGIC_PREFIX:  # numpy would open a zip, and speak of pickled data of all else
+        zipped = "a zip file: save one array of it by numpy.save" if begins.startswith(b"PK") else "of another format"
+        raise ValueError(f"{refused}: it is {zipped if begins else 'empty'}")
+    try:
+        numbers = np.load(path, allow_pickle=False).astype(float, casting="same_kind")
+    except Exception as error:  # numpy takes the header for Python, and allocates what it says
+        raise ValueError(f"{refused}: {(str(error).splitlines() or [type(error).__name__])[0][:200]}") from error
+    if numbers.ndim not in (1, 2) or not numbers.size:
+        raise ValueError(f"{path.name}: an array of shape {numbers.shape}; allowed are one or two dimensions")
+    return Table(numbers.reshape(len(numbers), -1))
 
 
 def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:

@@ -20,7 +20,7 @@ WORKER = 110_000_000  # bytes of a worker process, which has fewer packages
 PER_CASE = 100  # bytes for the key of a case, and to find it
 WORKING = 5  # while a block is solved, its arrays (B, m) take so many times the memory of its result
 # Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time. Measured: peaks of runs on 17 to
-# 256 nodes, and of 300 cases of studies/extremes_layered.toml, which fill every table (0.86 GB in one process).
+# 256 nodes, and of 300 cases of the study extremes_layered, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
 KEY = 16  # bytes of the key of a case in a block
 # A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at

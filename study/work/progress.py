@@ -57,7 +57,7 @@ class Progress:
         self.close()
 
     def _go_on(self) -> None:
-        wait = SILENT
+        wait = max(SILENT - (time.monotonic() - self.begun), 0.0)
         while not self._ended.wait(wait):
             self.tell()
             wait = AGAIN

@@ -72,16 +72,20 @@ _pool, _in_use = _Pool(), threading.Lock()
 atexit.register(_pool.end)
 
 
-def solved(definition: Definition, workers: int | None = None, stream: TextIO | None = None) -> dict[str, np.ndarray]:
+def solved(
+    definition: Definition, workers: int | None = None, stream: TextIO | None = None, begun: float | None = None
+) -> dict[str, np.ndarray]:
     """The columns of all cases of a grid: name -> (B, ...).
 
     workers : most processors to be used; 1: the calling thread alone; None: all, or one, see `_processes_allowed`
-    stream : where a call of more than two seconds says how far it is
+    stream : where a call of more than two seconds says how far it is; begun : when it began, by time.monotonic, if
+        that was before: reading what was given may take a second of the two
     """
     size, times = definition.grid.size, definition.times
     moved = f", {'each ' * (size > times)}{times} times for the spreads" * (times > 1)
     name = f"solving {counted(size // times, 'contact')}{moved}"
-    with Progress(name, size, stream, passing=True) as shown:
+    begun = time.monotonic() if begun is None else begun
+    with Progress(name, size, stream, begun=begun, passing=True) as shown:
         return _of_blocks(definition, workers, shown)
 
 

@@ -30,8 +30,8 @@ from benchmark_study import beside_the_solver, whole_run  # noqa: E402
 from benchmark_threads import blas_threads  # noqa: E402
 
 from solver import NUMERICS_VERSION, Status, solve  # noqa: E402
-from study.evidence.problem_sets import SETS  # noqa: E402
-from study.evidence.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
+from study.studies.evidence.problem_sets import SETS  # noqa: E402
+from study.studies.evidence.tradeoff import WAYS, measured, paper_way, taken, with_reference  # noqa: E402
 
 SIZES = (1_000, 10_000, 100_000, 1_000_000)
 #: From this size on the time per case is called flat if it is within FLAT of its mean.

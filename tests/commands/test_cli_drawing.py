@@ -96,11 +96,23 @@ def test_a_table_that_fails_says_what_it_must_return(results, tmp_path, monkeypa
     assert none.startswith("none: its function fails: TypeError: unsupported format string")
 
 
-def test_a_figure_does_not_take_the_name_of_another():
-    with pytest.raises(ValueError, match='"fig03" is that of study.paper.curves.* already: take another name'):
-        registry.figure("fig03", "main_case")(lambda axes, main: {})
-    with pytest.raises(ValueError, match='"table1" is that of study.* already: take another name'):
-        registry.table("table1", "main_case", columns="a")(lambda main: [])
+def test_a_figure_does_not_take_the_name_of_another(monkeypatch):
+    """Of the program itself. One of the book is left alone: that of the user goes before it."""
+    for kind in ("figure", "table"):
+        monkeypatch.setitem(registry.REGISTERS[""], kind, {})
+    registry.figure("fig03", "main_case")(lambda axes, main: {})
+    registry.table("table1", "main_case", columns="a")(lambda main: [])
+    assert (
+        registry.entry("figure", "fig03").draw(None, None) == {} and registry.entry("table", "table1").rows(None) == []
+    )
+
+    def other(*_):
+        """Not that of the same name that is defined anew, as a cell of a notebook is run again."""
+
+    with pytest.raises(ValueError, match='"fig03" is that of test_cli_drawing.<lambda> already: take another name'):
+        registry.figure("fig03", "main_case")(other)
+    with pytest.raises(ValueError, match='"table1" is that of test_cli_drawing.* already: take another name'):
+        registry.table("table1", "main_case", columns="a")(other)
 
 
 def test_a_file_that_holds_no_results_is_bad_input(capsys):

@@ -8,7 +8,6 @@ from test_cli import GOOD, studies  # noqa: F401
 
 import study
 from study.__main__ import main
-from study.evidence import tradeoff
 from study.figures import registry
 from study.files.examine import examine
 
@@ -136,7 +135,8 @@ def test_a_study_that_is_called_like_the_measurements_stays(monkeypatch, capsys)
     Path("mine/tradeoff.toml").write_text(GOOD, encoding="utf-8")
     assert main(["run", "mine/tradeoff.toml"]) == 0
     before = Path("results/tradeoff.nc").read_bytes()
-    monkeypatch.setattr(tradeoff, "measure", lambda *_, **__: pytest.fail("measures"))
+    made = registry.entry("measured", "tradeoff")._replace(measure=lambda: pytest.fail("measures"))
+    monkeypatch.setitem(registry.REGISTERS[""]["measured"], "tradeoff", made)
     for command in (["plot", "--run", "tradeoff"], ["table", "--run", "tradeoff"], ["tradeoff", "--force"]):
         capsys.readouterr()
         assert main(command) == 2

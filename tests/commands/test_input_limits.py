@@ -85,6 +85,21 @@ def test_a_file_that_is_too_large_is_not_read(studies, monkeypatch, capsys):  # 
     assert said == [f"studies/{name}.toml: cannot be read: is no regular file" for name in ("endless", "pipe")]
 
 
+@pytest.mark.parametrize("cases", ["[[cases]]\nP = 1e-5\n" * 600_000, f"cases = [{'{P = 1e-5}, ' * 600_000}]"])
+def test_very_many_tables_are_refused_before_they_are_read(cases, tmp_path, monkeypatch):
+    """Reading 600,000 equal ones took half a minute."""
+    monkeypatch.setattr("tomllib.loads", lambda _: pytest.fail("they are read"))
+    (found,) = refused(f'model = {{ micro = "smooth" }}\n{cases}', tmp_path)
+    assert "[[cases]] and those in braces: at most 100000; [axes] and [sample] say" in found
+    monkeypatch.undo()
+    monkeypatch.setattr(toml_text, "MOST_TABLES", 3)
+    text = '[model]\nbase = "half_space"\nmicro = "smooth"\n'
+    three = [f"[[cases]]\nP = {i}e-6\n" for i in range(1, 4)]
+    (tmp_path / "good.toml").write_text(text + "".join(three), encoding="utf-8")
+    assert read(tmp_path / "good.toml").grid.size == 3
+    assert "has 4 tables" in refused(text + "".join([*three, "[[cases]]\nP = 9e-6\n"]), tmp_path)[0]
+
+
 def test_messages_are_no_more_than_one_reads(tmp_path):
     keys = [f"key{i} = 1" for i in range(100)]
     for text in ("\n".join(keys), "[model]\n" + "\n".join(keys), "[numerics]\n" + "\n".join(keys)):

@@ -90,6 +90,34 @@ def test_processes_that_compute_take_our_packages_too(python, beside):
     assert not (folder / "it-ran").exists()
 
 
+FIGURES = """
+from study.figures.registry import figure
+
+
+@figure("radius", "mine")
+def radius(axes, line):
+    \"\"\"The radius against the load.\"\"\"
+    axes.plot(line["P"], line["a"])
+    return {"P": line["P"].values, "a": line["a"].values}
+"""
+
+
+def test_a_figure_of_the_user_and_the_book_in_a_folder_with_nothing_else(python, beside):
+    """Whatever the user has that is called like our packages."""
+    folder = beside(NEIGHBOURS["modules"] | {"studies/mine.toml": GOOD, "studies/figures.py": FIGURES})
+    done = run(folder, python, "-m", "study", "plot", "--run", "radius", "fig01", "fig03", "fig09")
+    assert done.returncode == 0, done.stderr
+    names = {path.name for path in (folder / "figures").iterdir()}
+    assert {"radius.csv", "radius.pdf", "radius.png", "fig01.svg", "fig03.pdf", "fig09.csv"} <= names
+    assert (folder / "figures/radius.csv").read_text().splitlines()[0] == "P,a"
+    done = run(folder, python, "-m", "study", "table", "table1")
+    assert done.returncode == 0 and (folder / "tables/table1.txt").exists(), done.stderr
+    (folder / "studies/figures.py").write_text(TRAP)
+    done = run(folder, python, "-m", "study", "list")
+    assert (done.returncode, done.stdout.split()[0]) == (0, "mine"), done.stderr
+    assert not (folder / "it-ran").exists()
+
+
 def test_a_script_may_be_called_solver(python, beside):
     folder = beside({"solver.py": f"import study\n{SOLVE}\n"})
     done = run(folder, python, "solver.py")

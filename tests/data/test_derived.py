@@ -7,8 +7,8 @@ import xarray as xr
 import study
 from solver import Model
 from study.data import dataset, derived
-from study.evidence import validity_maps
 from study.spec.vocabulary import attributes
+from study.studies.evidence import validity_maps
 
 
 def made(**variables) -> xr.Dataset:

@@ -59,9 +59,9 @@ def test_where_no_case_is_left_it_was_not_run():
 def test_objects_show_themselves_in_one_line(tmp_path):
     problem = Problem.of(P=[1e-6, 2e-5], micro="smooth", base="half_space")
     assert repr(problem) == "Problem(2 cases, P = 1e-06 ... 2e-05, base: half_space, micro: smooth)"
-    solution = solve(problem, [0.0, 1.0])
+    solution = solve(problem, [0.0, 0.5, 1.0])
     solution.status[1] = Status.DIVERGED
-    assert repr(solution) == "Solution(2 cases: 1 converged, 1 diverged; profiles at 2 radii)"
+    assert repr(solution) == "Solution(2 cases: 1 converged, 1 diverged; profiles at 3 radii)"
     file = tmp_path / "mine.toml"
     text = 'axes.P = [1e-6, 1e-5]\naxes.h = [0.01]\nmodel.n = 0.5\nmodel.micro = "smooth"'
     file.write_text(text, encoding="utf-8")

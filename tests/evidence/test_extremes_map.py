@@ -7,7 +7,7 @@ from drawn import frame, legend, lines, mesh
 from matplotlib.figure import Figure
 
 from solver import Status
-from study.evidence.extremes_map import BINS, ROWS, binned, maps, shares
+from study.studies.evidence.extremes_map import BINS, ROWS, binned, maps, shares
 
 
 @pytest.fixture(scope="module")

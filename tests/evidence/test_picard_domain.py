@@ -14,8 +14,8 @@ from solver import Problem, Status, solve
 from solver.contact import picard
 from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases, dimensionless
-from study.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
-from study.paper.uniform import uniform_mesh
+from study.studies.evidence.picard_domain import LARGEST, MAPS, SHARES, cycle_size, theory
+from study.studies.paper.uniform import uniform_mesh
 
 CASE = (
     {"a": 0.04} | {name: MAIN[name] for name in ("n", "Nbar", "Ra", "B")} | {"base": "thin_layer", "micro": "power_law"}

@@ -2,6 +2,7 @@
 
 import re
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 import pytest
@@ -11,11 +12,13 @@ from conftest import ROOT
 from solver import Problem, solve
 from solver.contact.results import JUDGED
 from study import open_results
-from study.evidence import tradeoff
-from study.evidence.problem_sets import SETS
-from study.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
-from study.evidence.tradeoff_view import DRAWN, MODELS, columns, factors, rows, time_to
-from study.paper import paper_error
+from study.figures import registry
+from study.figures.measured import digest, results
+from study.studies.evidence import tradeoff
+from study.studies.evidence.problem_sets import SETS
+from study.studies.evidence.tradeoff import WAYS, errors, measure, taken, timed, with_reference
+from study.studies.evidence.tradeoff_view import DRAWN, MODELS, columns, factors, rows, time_to
+from study.studies.paper import paper_error
 
 
 @pytest.fixture(scope="module")
@@ -150,13 +153,28 @@ def test_two_iterates_have_the_papers_load_and_depth(found):
 def test_measured_once(tmp_path, monkeypatch, on_the_papers_layer):
     calls = []
     small = measure(5, 1, {name: replace(WAYS[name], settings=(1e-3,)) for name in ("newton, rtol",)})
-    small.attrs["study_digest"] = tradeoff.digest(tradeoff.plan(WAYS, 5))
-    monkeypatch.setattr(tradeoff, "measure", lambda *_, **__: calls.append(1) or small)
+    measured = registry.entry("measured", "tradeoff")
+
+    def planned(size: int) -> None:
+        plan = partial(tradeoff.plan, WAYS, size)
+        made = measured._replace(measure=lambda: calls.append(1) or small, plan=plan)
+        monkeypatch.setitem(registry.REGISTERS[""]["measured"], "tradeoff", made)
+
+    planned(5)
     for force, expected in ((False, 1), (False, 1), (True, 2)):
-        assert tradeoff.results(tmp_path / "new", 5, force).sizes == small.sizes
-        assert len(calls) == expected
-    tradeoff.results(tmp_path / "new", 6)
+        found = results("tradeoff", tmp_path / "new", force, "the command")
+        assert found.sizes == small.sizes and len(calls) == expected
+    assert (found.attrs["study_name"], found.attrs["command"]) == ("tradeoff", "the command")
+    assert found.attrs["title"] == "Work and precision of every way to solve the model"
+    planned(6)
+    results("tradeoff", tmp_path / "new")
     assert len(calls) == 3, "another plan"
+
+
+def test_other_numerics_are_another_plan(monkeypatch):
+    before = digest("a plan")
+    monkeypatch.setattr("study.figures.measured.NUMERICS_VERSION", "other")
+    assert digest("a plan") != before
 
 
 def test_the_page_in_the_repository_has_the_picture_it_shows():

@@ -8,10 +8,10 @@ import xarray as xr
 
 from solver import Problem, Status, solve
 from study import open_results
-from study.evidence import tradeoff
-from study.evidence.problem_sets import SETS
-from study.evidence.tradeoff import WAYS, Way, changed, measure, measured, paper_way, swapped
-from study.paper import paper_error
+from study.studies.evidence import tradeoff
+from study.studies.evidence.problem_sets import SETS
+from study.studies.evidence.tradeoff import WAYS, Way, changed, measure, measured, paper_way, swapped
+from study.studies.paper import paper_error
 
 
 @pytest.mark.parametrize(("name", "base"), [("paper, layer", "thin_layer"), ("paper, half-space", "half_space")])
@@ -112,7 +112,7 @@ def test_measurements_stand_at_their_set_way_and_step(monkeypatch):
         "one": Way(None, "knob", (1.0, 2.0), ("paper, layer", "half"), copies=4),
         "two": Way(None, "lever", (3.0,), ("half",), most=2),
     }
-    found = measure(5, 6, ways, "the command")
+    found = measure(5, 6, ways)
     assert seen == [(5, 6, 4), (5, 6, 4), (10, 6, 1), (10, 6, 1), (2, 6, 1)]
     assert found["cases"].values.tolist() == [[5, 0], [10, 2]]
     assert found["varied"].values.tolist() == ["knob", "lever"]
@@ -121,20 +121,16 @@ def test_measurements_stand_at_their_set_way_and_step(monkeypatch):
         np.testing.assert_array_equal(found[name], expected)
         assert found[name].attrs.get("units") == ("s" if name == "time" else None)
     assert found["time"].attrs["long_name"] == "processor time per case on one thread"
-    assert (found.attrs["study_name"], found.attrs["command"]) == ("tradeoff", "the command")
     assert found["set"].values.tolist() == list(sets) and found["way"].values.tolist() == list(ways)
 
 
-def test_plan_names_all_that_changes_the_numbers(monkeypatch):
+def test_plan_names_all_that_changes_the_numbers():
     text = tradeoff.plan(WAYS, 100)
     way = WAYS["newton, rtol"]
     for change in ({"varied": "x"}, {"settings": (1e-3,)}, {"sets": ("coatings",)}, {"most": 3}, {"copies": 2}):
         other = tradeoff.plan(WAYS | {"newton, rtol": replace(way, **change)}, 100)
-        assert tradeoff.digest(other) != tradeoff.digest(text), change
+        assert other != text, change
     assert tradeoff.plan(WAYS, 99) != text
-    before = tradeoff.digest(text)
-    monkeypatch.setattr(tradeoff, "NUMERICS_VERSION", "other")
-    assert tradeoff.digest(text) != before
 
 
 def test_ways_change_what_they_say():

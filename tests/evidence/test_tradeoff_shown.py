@@ -7,8 +7,8 @@ from drawn import frame, legend, lines, texts, ticks
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
-from study.evidence import tradeoff_view
-from study.evidence.tradeoff_view import work_precision
+from study.studies.evidence import tradeoff_view
+from study.studies.evidence.tradeoff_view import work_precision
 
 SETS = ("paper, layer", "paper, half-space", "coatings", "extremes")
 LABELS = {  # of the ways that are curves, in the order of the legend

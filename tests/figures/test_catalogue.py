@@ -12,11 +12,11 @@ from conftest import STUDIES, opened
 from scipy.integrate import simpson
 
 from study import StudyError
-from study.catalogue import FIGURES, SCHEMES, draw, save
+from study.catalogue import draw, entry, names, save
 from study.data.derived import effective_modulus, peak_pressure
-from study.evidence.validity_maps import from_layered
 from study.figures.registry import pick
-from study.paper.curves import CURVES, EXACT_LAYER
+from study.studies.evidence.validity_maps import from_layered
+from study.studies.paper.curves import CURVES, EXACT_LAYER
 
 
 @pytest.fixture(scope="module")
@@ -37,6 +37,9 @@ def numbers(figures, name: str) -> dict[str, np.ndarray]:
         head, *rows = csv.reader(file)
     return dict(zip(head, np.array(rows, dtype=float).T, strict=True))
 
+
+DRAWINGS = ("fig01", "fig02")
+FIGURES = {name: entry("figure", name) for name in names("figure") if name not in DRAWINGS}
 
 # picard_domain maps what does not converge: test_picard_domain.py
 CONVERGING = [file for file in STUDIES if file.stem != "picard_domain"]
@@ -163,7 +166,7 @@ def test_schemes_are_copies_with_every_letter_of_the_model(name, letters, tmp_pa
     words = "".join(ElementTree.parse(svg).getroot().itertext())
     assert set(letters.split()) <= set(words)
     assert pdf.read_bytes().startswith(b"%PDF") and png.read_bytes().startswith(b"\x89PNG")
-    assert name in SCHEMES
+    assert name in DRAWINGS
 
 
 def test_messages_of_plot(results, tmp_path):
@@ -197,7 +200,7 @@ def test_captions_of_all_figures_that_have_results(results, tmp_path, monkeypatc
     monkeypatch.setattr("study.figures.registry.open_results", opened)
     (path,) = draw("captions", results, tmp_path)
     said = dict(re.findall(r"^[*]{2}(\w+)\.[*]{2} (.*)$", path.read_text(encoding="utf-8"), flags=re.MULTILINE))
-    assert set(said) == {*FIGURES, *SCHEMES} and all(len(text) > 40 for text in said.values())
+    assert set(said) == {*FIGURES, *DRAWINGS} and all(len(text) > 40 for text in said.values())
     assert "Parameters: $P/(E_2^*\\,R^2)$ = $2.704\\times10^{-5}$, $h/R$ = 0.02" in said["fig03"]
     assert "The layer is exact" in said["fig03_layered"] and "1e-14 to 1e-3" in said["coatings"]
     found = opened(results / "coatings.nc")

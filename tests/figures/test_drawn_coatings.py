@@ -6,7 +6,7 @@ import xarray as xr
 from conftest import opened
 from drawn import frame, legend, lines, ticks
 
-from study.figures.coatings import COLOURS, PALE, power
+from study.studies.systems.figures import COLOURS, PALE, power
 
 # Row -> label, scale of the ordinate, column of the CSV.
 ROWS = (

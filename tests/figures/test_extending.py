@@ -3,14 +3,15 @@
 import csv
 import re
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pages
 import pytest
-from children import PATIENCE, run_forked
 
 import study
 from study import catalogue, open_results
+from study.__main__ import main
 from study.data import derived
 from study.figures.registry import FIGURES, TABLES
 from study.spec import vocabulary
@@ -24,13 +25,6 @@ def code(heading: str) -> list[str]:
 
 (FIGURE,), (TABLE,), (FORMULA,) = map(code, ("A figure", "A table", "An output quantity"))
 (ROW,) = pages.blocks("docs/extending.md", "toml")[-1:]
-SCRIPT = """
-import sys
-import study.figures
-study.figures.__path__.append(sys.argv[1])
-from study.__main__ import main
-print(main(["plot", "stiffness", "--results", sys.argv[2], "--figures", sys.argv[3]]))
-"""
 
 
 @pytest.fixture(autouse=True)
@@ -48,23 +42,30 @@ def numbers(path) -> tuple[list[str], np.ndarray]:
     return head, np.array(rows, dtype=float)
 
 
-def test_a_figure_is_one_function_in_one_new_file(results, tmp_path):
-    """In a process of its own, where the file lies beside those of study/figures."""
-    (tmp_path / "stiffness.py").write_text(FIGURE, encoding="utf-8")
-    arguments = [str(path) for path in (tmp_path, results, tmp_path / "figures")]
-    ran = run_forked([f"import sys; sys.argv[1:] = {arguments}\n{SCRIPT}"], input=b"", timeout=PATIENCE)
-    assert ran.stdout.endswith(b"\n0\n")
-    assert sorted(path.suffix for path in (tmp_path / "figures").iterdir()) == [".csv", ".pdf", ".png"]
-    head, columns = numbers(tmp_path / "figures/stiffness.csv")
+@pytest.fixture
+def folder(tmp_path, monkeypatch) -> Path:
+    """The working folder of a user, with `figures.py` of the page beside his studies."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "studies").mkdir()
+    (tmp_path / "studies/figures.py").write_text(FIGURE, encoding="utf-8")
+    return tmp_path
+
+
+def test_a_figure_is_one_function_in_one_new_file(results, folder):
+    assert main(["plot", "stiffness", "--results", str(results)]) == 0
+    assert sorted(path.suffix for path in (folder / "figures").iterdir()) == [".csv", ".pdf", ".png"]
+    head, columns = numbers(folder / "figures/stiffness.csv")
     sweep = open_results(results / "load_sweep.nc")
     assert head == ["P/(E2* R^2)", *sweep["label"].values]
     np.testing.assert_array_equal(columns[:, 0], sweep["P"])
     np.testing.assert_array_equal(columns[:, 1:], sweep["dP_dD"].transpose("P", "case"))
+    assert {"stiffness", "fig03"} <= set(catalogue.usual("figure"))
+    assert "**stiffness.** dP/dD of every case of the study load_sweep." in catalogue.captions(results)
 
 
-def test_a_figure_of_a_script_is_among_those_of_make_figures(results, tmp_path):
+def test_a_figure_of_a_script_is_among_those_of_all(results, tmp_path):
     exec(FIGURE, {})
-    assert "stiffness" in catalogue.usual(FIGURES)
+    assert "stiffness" in catalogue.usual("figure")
     assert [path.name for path in catalogue.draw("stiffness", results, tmp_path)][0] == "stiffness.csv"
 
 

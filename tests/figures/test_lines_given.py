@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import study
+from study.figures.registry import pick
 
 pint = pytest.importorskip("pint")
 
@@ -26,6 +27,21 @@ def test_values_of_axes(found):
     for wrong in (["5 N"], None, slice(0, 1)):
         with pytest.raises(study.StudyError, match="must be a force, such as"):
             study.plot(found, "nu2", "a", P=wrong)
+
+
+def test_lengths_of_nanometres_are_told_apart():
+    """In metres they are small numbers, which are as near to each other as any."""
+    film = {"R": "5 um", "E1": "200 GPa", "E2": "70 GPa", "base": "layered", "micro": "smooth", "x": 2}
+    found = study.solve(**film, P=["1 uN", "2 uN"], h=["2 nm", "3 nm", "5 nm"])
+    axes = study.plot(found, "P", "a", h="3 nm").axes
+    assert len(axes) == 1 and len(axes[0].lines) == 2, "a dotted line below a solid one"
+    np.testing.assert_allclose(axes[0].lines[1].get_ydata(), 1e9 * found.a.sel(h=3e-9), rtol=1e-12)
+    with pytest.raises(study.StudyError, match="h = 4 nm is not there"):
+        study.plot(found, "P", "a", h="4 nm")
+    cases = study.solve(**film, P="1 uN", cases=[{"h": "2 nm"}, {"h": "3 nm"}])
+    assert float(pick(cases, h=3e-9).h) == 3e-9
+    with pytest.raises(study.StudyError, match=r"0 cases have h = 2.5e-09"):
+        pick(cases.assign_attrs(study_name="s"), h=2.5e-9)
 
 
 def test_what_study_readable_made_is_stated_with_its_units(found):

@@ -38,6 +38,9 @@ def test_evenly_spaced_loads_and_what_may_be_zero():
     found = smooth(P=LOADS)
     assert scales(found, "P", "A0") == ("log", "linear"), "a smooth punch has A0 = 0"
     assert scales(found, "a", "P") == ("linear", "linear"), "a grows by less than a decade"
+    for least in (0.0, -1e-6):
+        partly = found.assign(P2=("P", [least, *LOADS[1:]]))
+        assert scales(partly, "P", "P2") == ("log", "linear"), "a logarithm of it is not there"
     lost = found.assign(P2=("P", [np.nan, *(1e3 * LOADS[1:])]))
     assert scales(lost, "P", "P2") == ("log", "log"), "a failed case has no say"
 
@@ -45,9 +48,9 @@ def test_evenly_spaced_loads_and_what_may_be_zero():
 def test_the_band_lies_across_where_the_abscissa_has_the_spread():
     """P was given and a follows from it: a ± its spread at each load, in the units of the axes."""
     ball = {"R": "5 mm", "E2": "210 ± 20 GPa", "base": "half_space", "micro": "smooth"}
-    found = study.solve(**ball, P=["1 N", "10 N"], x=2)
+    found = study.solve(**ball, P=["1 mN", "10 mN"], x=2)
     figure, columns = drawn(found, "a", "P", "", {}, Figure)
-    assert frame(figure.axes[0])[0:3:2] == ("$a$, µm", "$P$, N")
+    assert frame(figure.axes[0])[0:3:2] == ("$a$, µm", "$P$, mN")
     (band,) = figure.axes[0].collections
     corners = {(round(x, 6), round(y, 6)) for x, y in band.get_paths()[0].vertices.tolist()}
     a, half = 1e6 * found.a.values, 1e6 * found.a_spread.values

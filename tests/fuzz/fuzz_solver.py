@@ -3,8 +3,8 @@
     python tests/fuzz/fuzz_solver.py [--cases 20000] [--seed 0] [--singles 0.1]
 
 Cases of every base, law, control, interface and scheme, from rtol 1e-12 to 0.1. They are drawn in groups and solved as
-batches; a random part of them once more, alone, and timed. What is wrong is printed with its case; the exit code is
-then 1.
+batches; a random part of them once more, alone, and timed. Tables of one's own are drawn for each group, from files.
+What is wrong is printed with its case and table; the exit code is then 1.
 """
 
 import argparse
@@ -12,20 +12,25 @@ import sys
 import time
 import warnings
 from collections import Counter
+from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import numpy as np
 
-from solver import Problem, Solution, Status, solve
+from solver import Problem, Solution, Status, laws, solve
 from solver.parameters import BASES, BONDINGS, CONTROL, MODEL_CHECKS, PARAMETERS, ends
 
 #: Under a plate nearly all of the load may lie in a narrow ring at the edge.
 X = np.unique([*np.linspace(0.0, 1.0, 9), *(1 - 2.0 ** -np.arange(4, 20))])
 #: Cases of a group, which is of one base, law, control and scheme: on the exact layer a case takes a hundred times as
-#: long as on the others. 48 groups have every base, law and control, 2400 cases.
+#: long as on the others. ROUND groups have every base, law and control, 5400 cases.
 SIZES = {"half_space": 90, "thin_layer": 90, "layered": 10, "auto": 10}
-LAWS = ("smooth", "disc_cell", "power_law", "square_lattice")
+#: The last two are tables of one's own: rows of a law, and a histogram of heights.
+LAWS = ("smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
+        "rows", "histogram")  # fmt: skip
+ROUND = len(BASES) * len(LAWS) * len(CONTROL)
 #: Drawn by the logarithm between their bounds; the others are what a study may have.
-LOGARITHMIC = ("h", "n", "Nbar", "Ra", "B", "beta")
+LOGARITHMIC = ("h", "n", "Nbar", "Ra", "B", "beta", "sigma", "cut")
 #: Share of the successive approximations: they are the slowest, and the least used.
 PICARD = 0.1
 SLOWEST = 10.0
@@ -36,13 +41,45 @@ AGREE = 10.0
 def logarithmic(random, name, size):
     """Numbers (size,) between the bounds of a parameter, uniform in their logarithm; one in eight at an end."""
     low, high = ends((CONTROL | PARAMETERS)[name].interval)[:2]
-    low = low or 1e-9  # m may be none at all
-    values = np.exp(random.uniform(np.log(low), np.log(high), size)).clip(low, high)
+    least = low or 1e-9  # of m and sigma, which may be none at all
+    values = np.exp(random.uniform(np.log(least), np.log(high), size)).clip(least, high)
     return np.where(random.random(size) < 1 / 8, random.choice([low, high], size), values)
 
 
-def group(seed, number, share=1):
-    """Arguments of ``Problem.of`` of a group, and its control."""
+def rows(random):
+    """Text of a table of a law, of the disc cell over many decades of pressure, half of them with noise."""
+    first, last = random.uniform(-12, -5), random.uniform(-3, 1)
+    p = 10.0 ** np.linspace(first, last, random.integers(12, 60))
+    Ra = 10 ** random.uniform(-6, 0)
+    spots = laws.LAWS["disc_cell"].at(p, 1.0, Nbar=10 ** random.uniform(-3, 3) / Ra**2, Ra=Ra)
+    noise = random.choice([0.0, 0.01]) * random.uniform(-1, 1, (3, len(p)))
+    return text("p,A,lam,p_max", p, *np.array(spots) * (1 + noise))
+
+
+def histogram(random):
+    """Text of a histogram of heights, from two classes to the most."""
+    count = round(2 ** random.uniform(1, 5))
+    z, share = 10 ** random.uniform(-9, -1) * np.arange(count), 10 ** random.uniform(-2, 0, count)
+    return text("z,share", z, share)
+
+
+def text(heading, *columns):
+    return "\n".join([heading, *(",".join(map(repr, row)) for row in np.stack(columns, axis=1).tolist())])
+
+
+def table(random, kind, file):
+    """Name of the law of a random table of a kind, "rows" or "histogram", which is written to the file. What is refused
+    is drawn again."""
+    while True:
+        file.write_text({"rows": rows, "histogram": histogram}[kind](random), encoding="utf-8")
+        try:
+            return laws.named(f"{laws.own_table.PREFIX}{file}")
+        except ValueError:
+            pass
+
+
+def group(seed, number, folder, share=1):
+    """Arguments of ``Problem.of`` of a group, and its control. A table is written in the folder."""
     random = np.random.default_rng([seed, number])
     base, law = BASES[number % len(BASES)], LAWS[number // len(BASES) % len(LAWS)]
     control = tuple(CONTROL)[number // (len(BASES) * len(LAWS)) % len(CONTROL)]
@@ -54,6 +91,8 @@ def group(seed, number, share=1):
     case |= {"nodes": random.choice([0, 0, 0, 0, 4, 17, 48], size), "model_check": random.choice(MODEL_CHECKS, size)}
     case |= {"m": np.where(random.random(size) < 0.5, 0.0, logarithmic(random, "m", size))}
     case |= {"n": np.where(random.random(size) < 0.1, 0.0, case["n"])}
+    if law in ("rows", "histogram"):
+        law = table(random, law, folder / f"{number}.csv")
     scheme = "picard" if law != "smooth" and random.random() < PICARD else "newton"
     return case | {control: logarithmic(random, control, size), "base": base, "micro": law, "scheme": scheme}, control
 
@@ -101,9 +140,14 @@ def fuzz(groups, seed, singles=0, share=1):
 
     singles : part of the cases that are solved alone; share : groups are this many times smaller.
     """
+    with TemporaryDirectory() as folder:
+        return _fuzz(groups, seed, singles, share, Path(folder))
+
+
+def _fuzz(groups, seed, singles, share, folder):
     found, ended, times = [], Counter(), []
     for number in groups:
-        case, control = group(seed, number, share)
+        case, control = group(seed, number, folder, share)
         with warnings.catch_warnings():
             warnings.simplefilter("error")
             try:
@@ -143,7 +187,7 @@ def main(arguments=None):
     parser.add_argument("--singles", type=float, default=0.1, help="part of the cases solved once more, and timed")
     given = parser.parse_args(arguments)
     start = time.perf_counter()
-    found, ended, times = fuzz(range(48 * -(-given.cases // 2400)), given.seed, given.singles)
+    found, ended, times = fuzz(range(ROUND * -(-given.cases // 5400)), given.seed, given.singles)
     print("\n".join(found[:50]))
     seconds = np.array(times) if times else np.zeros(1)
     ends_of = ", ".join(f"{count} {name}" for name, count in ended.most_common())

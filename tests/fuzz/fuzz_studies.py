@@ -50,7 +50,7 @@ def bases() -> list[str]:
     def few(found: re.Match) -> str:
         return f"{found[1]}{min(int(found[2].replace('_', '')), 3)}"
 
-    texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "studies").glob("*.toml"))]
+    texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "studies").glob("*/*.toml"))]
     return [re.sub(r"\b((?:num|size)\s*=\s*)([\d_]+)", few, text) for text in texts]
 
 

@@ -17,6 +17,7 @@ import numpy as np
 
 import study
 from study import api
+from study.files.examine import examine
 
 MODEL = {"micro": "smooth", "base": "half_space"}
 AXES = {"P": [1e-6 * i for i in range(1, 41)]}
@@ -78,7 +79,7 @@ def main(seconds: float) -> int:
         folder = Path(name)
         for one in ("shared", "large"):
             written(folder, one, AXES["P"]).run(workers=1)
-        api.LAZY = (folder / "results" / "large.nc").stat().st_size - 1
+        api.LAZY = examine(folder / "results" / "large.nc").unpacked - 1
         for path in ("shared", "own0", "own1"):
             written(folder, path, AXES["P"])
 

@@ -197,6 +197,16 @@ def test_keys_carry_the_numbers(table):
     assert found[0][1][0] != found[2][1][0] and found[0][1][1] == found[2][1][1]
 
 
+def test_every_column_is_in_the_version(table):
+    """Another λ or p_max alone is another law."""
+    rows = [list(map(float, row.split(","))) for row in ROWS]
+    found = [own_table.read(table(HEAD + "\n".join(ROWS))).version]
+    for column in range(4):
+        changed = [[*row[:column], row[column] * (1 + 1e-12), *row[column + 1 :]] for row in rows]
+        found.append(own_table.read(table(HEAD + "\n".join(",".join(map(repr, row)) for row in changed))).version)
+    assert len(set(found)) == 5
+
+
 def test_a_path_with_blanks(table):
     """In /home/me/My Data: what is computed is found again, and computed again when a number of the table changes."""
     table()

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import study
-from solver import Status, laws
+from solver import Problem, Status, laws, solve
 from solver.laws import own_table
 
 ASPERITIES = {"Nbar": 250_000.0, "Ra": 0.004}
@@ -59,3 +59,29 @@ def test_a_ring_above_its_range(tmp_path, x):
     top = float(np.sqrt(true.p.max() * true.p0)) / 300.0
     found = study.solve(**film, micro=limited(tmp_path, "disc_cell", {}, top / 1e4, top), x=x)
     assert found.status == Status.OUTSIDE_LAW and found.sizes["x"] == x
+
+
+@pytest.mark.parametrize("m", [0.5, 20.0])
+def test_the_range_is_over_the_modulus_of_both_bodies(tmp_path, m):
+    """An elastic punch of E3* = E2*/m on a half-space is a rigid one on E2*/(1 + m), below the range, within it, just
+    above it and far above."""
+    P = np.append(np.geomspace(1e-9, 1e-2, 15), [0.0, 1.0]) + 1e-12
+    name, given = limited(tmp_path, "disc_cell", {}, 3e-3, 0.05), {"base": "half_space", "Nbar": 250_000.0, "Ra": 0.004}
+    elastic = solve(Problem.of(P=P, m=m, micro=name, **given))
+    rigid = solve(Problem.of(P=P, E2=1 / (1 + m), micro=name, **given))
+    assert elastic.status.tolist() == rigid.status.tolist()
+    assert {Status.CONVERGED, Status.OUTSIDE_LAW} == set(elastic.status.tolist())
+    np.testing.assert_allclose(elastic.model_error, rigid.model_error, rtol=1e-5)
+
+
+@pytest.mark.parametrize("base", ["half_space", "layered"])
+def test_the_error_of_the_edge_falls_with_the_first_pressure(tmp_path, base):
+    """As its power 1.5, from table to table: that of the ring in which the pressure is below it."""
+    given = {"P": 1e-5, "base": base, **CASE}
+    true = study.solve(**given, micro="disc_cell", **ASPERITIES)
+    top, errors = float(true.p0) / (1.0 if base == "half_space" else CASE["n"]), []
+    for ratio in (3.0, 12.0, 48.0):
+        found = study.solve(**given, micro=limited(tmp_path, "disc_cell", {}, top / ratio, 30 * top))
+        errors.append(float(found.model_error) - own_table.read(f"table:{tmp_path / 'mine.csv'}").error)
+    steps = -np.diff(errors)
+    np.testing.assert_allclose(steps[0] / steps[1], 4**1.5, rtol=0.02)

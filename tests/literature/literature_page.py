@@ -5,15 +5,14 @@ import sys
 from pathlib import Path
 
 from study.figures.formats import formatted
-from study.figures.registry import TABLES, open_studies
-from study.literature import shown  # noqa: F401  which puts the tables into the register
+from study.figures.registry import entry, open_studies
 
 
 def markdown(name: str, results) -> str:
     """A table of the register in Markdown."""
-    table = TABLES[name]
+    table = entry("table", name)
     cells = [[column.text for column in table.columns], ["---"] * len(table.columns)]
-    cells += formatted(table, table.rows(*open_studies(name, TABLES, results)))
+    cells += formatted(table, table.rows(*open_studies(name, table.studies, results)))
     return "".join(f"| {' | '.join(row)} |\n" for row in cells)
 
 

@@ -14,16 +14,16 @@ from scipy.integrate import quad
 import study
 from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
-from study.figures.registry import TABLES
-from study.literature import compared, formulas
-from study.literature.shown import SHOWN_AT
+from study.figures.registry import entry
+from study.studies.literature import compared, formulas
+from study.studies.literature.figures import SHOWN_AT
 
 A = 0.01
 NU = (0.0, 0.3, 0.45, 0.5)
 
 
 def rigid(x) -> xr.Dataset:
-    """As the dataset of studies/literature.toml, at the a/h of x."""
+    """As the dataset of the study literature, at the a/h of x."""
     h, materials = A / np.asarray(x), [("frictionless", 0.3), *(("bonded", nu) for nu in NU)]
     given = {"a": A, "h": h, "n": 0, "base": "layered", "micro": "smooth", "rtol": 1e-9}
     found = [solve(Problem.of(**given, bonding=bonding, nu1=nu)) for bonding, nu in materials]
@@ -158,7 +158,7 @@ def test_the_numbers_on_the_page_are_those_of_the_solver(contacts):
 
 def test_greenwood_and_tripp_are_right_where_spots_are_far_apart(results):
     """And Greenwood, Johnson and Matsubara where μ is not small; the page has the same numbers."""
-    rows = TABLES["literature_rough"].rows(opened(results / "literature_rough.nc"))
+    rows = entry("table", "literature_rough").rows(opened(results / "literature_rough.nc"))
     covered, p0, radius = np.array([[row[3], row[6], row[9]] for row in rows]).T
     assert np.all(p0 < 0) and np.all(radius > 0), "who leaves the neighbours out has too soft a surface"
     sparse = covered < 0.01
@@ -173,5 +173,5 @@ def test_greenwood_and_tripp_are_right_where_spots_are_far_apart(results):
 
 def test_what_is_decided_is_drawn_from_the_results(results):
     rigid_base, coated = (opened(results / f"{name}.nc") for name in ("literature", "literature_coatings"))
-    for row in TABLES["literature_decided"].rows(rigid_base, coated):
+    for row in entry("table", "literature_decided").rows(rigid_base, coated):
         assert row[4] == row[2] / row[3] - 1 or np.isnan(row[4])

@@ -12,7 +12,7 @@ from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
 from solver.kernels.two_layers import thin_layer_coefficients
 from solver.models.thin_layer_error import edge_shift, thin_layer_error
-from study.evidence.validity_maps import from_layered
+from study.studies.evidence.validity_maps import from_layered
 
 STATED = {  # largest |ln| of estimated over computed: of P_thin/P at given a, of a_thin/a at given P
     "frictionless": (0.05, 0.02),

@@ -156,7 +156,8 @@ def results_in(folder: Path) -> list[str]:
     from conftest import compute_results
 
     compute_results(folder)
-    return [name for name in sys.modules if name.startswith(("solver.", "study."))]
+    names = (name.removeprefix("study.") if name.startswith("study.studies.") else name for name in sys.modules)
+    return [name for name in names if name.startswith(("solver.", "study.", "studies."))]
 
 
 def judged(mutants: list[Mutant], folders: list[Path], everything: bool) -> Iterator[Verdict]:
@@ -223,7 +224,7 @@ def judge(mutant: Mutant, found) -> Verdict:
 def _copy(root: Path, folder: Path) -> None:
     """Copy what the tests need of a tree."""
     shutil.copytree(root, folder, ignore=lambda at, names: NOT_COPIED & set(names) if Path(at) == root else [])
-    for package in ("solver", "study"):
+    for package in ("solver", "study", "studies"):
         compileall.compile_dir(folder / package, quiet=1)
 
 

@@ -8,8 +8,8 @@ from drawn import frame, legend, lines, texts
 
 from solver import laws
 from solver.laws.disc_cell import displacement
-from study.catalogue import TABLES
-from study.paper import lattice_laws
+from study.catalogue import entry
+from study.studies.paper import lattice_laws
 
 P = 1e-4 * np.arange(1, 251)
 PRINTED = {4.0: (0.1, 0.50), 1.0: (0.3, 0.53), 0.25: (1.0, 0.57)}  # in Ra
@@ -21,7 +21,7 @@ def lattice(Ra, Nbar):
 
 def test_table_1_against_a_lattice():
     """Errors from 0.0025 E1* on; the fit leaves nothing that a change of B or beta would take away."""
-    for row in TABLES["table1_lattice"].rows():
+    for row in entry("table", "table1_lattice").rows():
         Ra, Nbar, density, paper, disc, B, beta, error = row
         true, inside = lattice(Ra, Nbar), P > 0.00249
         factor, power = PRINTED[round(density, 9)]

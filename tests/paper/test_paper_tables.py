@@ -8,13 +8,13 @@ import xarray as xr
 from conftest import opened
 
 from study import StudyError
-from study.catalogue import TABLES, tabulate
-from study.evidence.validity_maps import largest_thickness
+from study.catalogue import entry, names, tabulate
 from study.figures import registry
 from study.figures.formats import as_latex, as_text, latex
 from study.figures.registry import Table, column
-from study.paper import law_fits, numbers
-from study.paper.paper_error import paper_numbers
+from study.studies.evidence.validity_maps import largest_thickness
+from study.studies.paper import law_fits, numbers
+from study.studies.paper.paper_error import paper_numbers
 
 CONVERGED = {  # of the thin-layer equation with the power law; every digit stable under refinement
     "P": 2.70408e-5,
@@ -115,20 +115,22 @@ def test_the_largest_thickness_is_where_the_error_first_exceeds_the_level(errors
     case = xr.Dataset({"p0": (("h", "base", "n"), np.array([thin, exact]).transpose(2, 0, 1)), "a": a}, coordinates)
     # interpolation between two numbers
     assert largest_thickness(case, "p0", 0.1) == pytest.approx(thickness, rel=1e-12)
+    below = case.assign(p0=(("h", "base", "n"), np.array([2 * exact - thin, exact]).transpose(2, 0, 1)))
+    assert largest_thickness(below, "p0", 0.1) == pytest.approx(thickness, rel=1e-12), "too small is as wrong"
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", names("table"))
 def test_text_is_aligned(tables, name):
     caption, _, head, rule, *lines = (tables / f"{name}.txt").read_text(encoding="utf-8").splitlines()
-    assert caption and caption == TABLES[name].caption
+    assert caption and caption == entry("table", name).caption
     assert set(rule) == {"-"} and len(rule) == max(map(len, [head, *lines]))
     assert len({len(line) for line in lines}) == 1
 
 
-@pytest.mark.parametrize("name", TABLES)
+@pytest.mark.parametrize("name", names("table"))
 def test_latex_has_every_cell(tables, name):
     text = (tables / f"{name}.tex").read_text(encoding="utf-8")
-    columns = len(TABLES[name].columns)
+    columns = len(entry("table", name).columns)
     body = [line for line in text.splitlines() if line.endswith(r"\\")]
     assert len(body) == len(rows_of(tables / f"{name}.csv"))
     assert all(line.count("&") == columns - 1 for line in body)
@@ -153,9 +155,11 @@ def test_formats_of_cells():
 
 def test_columns_may_share_a_line(monkeypatch):
     """A thin space in mathtext separates no columns."""
-    monkeypatch.setattr(registry, "TABLES", {})
+    monkeypatch.setattr(registry, "REGISTERS", {"": {"table": {}}})
     registry.table("shared", columns="of; number | d | $N\\; R$\n    last | .1%")(list)
-    assert registry.TABLES["shared"].columns == tuple(map(column, ("of", "number | d | $N\\; R$", "last | .1%")))
+    assert registry.entry("table", "shared").columns == tuple(
+        map(column, ("of", "number | d | $N\\; R$", "last | .1%"))
+    )
 
 
 def test_messages_of_table(results, tmp_path):

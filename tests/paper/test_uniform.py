@@ -1,5 +1,7 @@
 """The paper's own way: its mesh, its halving, its successive approximations; second order towards Newton's answer."""
 
+import doctest
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -7,13 +9,18 @@ from scipy.special import ellipk
 from solver_cases import LOAD, MAIN, difference, one
 
 from solver import Problem, Status
-from study.paper import uniform
-from study.paper.uniform import halved, rows, solve_uniform, uniform_mesh
+from study.studies.paper import uniform
+from study.studies.paper.uniform import halved, rows, solve_uniform, uniform_mesh
 
 
 def paper(intervals=40, k=2.0, tolerance=1e-5, **case):
     problem = Problem.of(**(MAIN | {"base": "thin_layer", "micro": "power_law"} | case))
     return solve_uniform(problem, intervals, k, tolerance)
+
+
+def test_its_example():
+    """pytest looks for examples in packages, and studies are none."""
+    assert doctest.testmod(uniform) == (0, 4)
 
 
 def test_the_operator_on_hertz_converges_as_piecewise_linear_must():

@@ -87,6 +87,8 @@ def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
     ("change", "message"),
     [
         ({"layer": "unobtainium"}, '^layer: "unobtainium" is no material; did you mean[^\n]*$'),
+        ({"punch": "cone"}, '^punch: "cone" is no material, such as "steel 52100"; the punch is a ball[^?]*$'),
+        ({"punch": "Sphere"}, '^punch: "Sphere" is no material, such as "steel 52100"; the punch is a ball[^?]*$'),
         ({"layer": "rigid"}, 'layer: "rigid" is no material'),
         ({"body": 5.0}, "body: 5.0 is no name of a material"),
         ({"punch": ["steel", 1 << 20_000]}, "^punch: a number of more than 4300 digits is no name of a material"),

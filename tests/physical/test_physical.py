@@ -9,6 +9,7 @@ import pytest
 import xarray as xr
 
 import study
+from study.in_words import FarOutside
 
 pytest.importorskip("pint")
 COATED = {"R": "5 mm", "E1": "200 GPa", "nu1": 0.25, "E2": "210 GPa", "nu2": 0.3, "h": "2 um", "micro": "smooth"}
@@ -244,7 +245,8 @@ def test_what_is_beyond_the_model_is_said_once():
     with pytest.warns(UserWarning, match="The strain is not small") as said:
         study.solve(**COATED | {"E1": "10 MPa"}, P="10 N", x=2)
     assert len(said) == 1
-    with pytest.warns(UserWarning, match="roughness Ra of ISO"):
+    # what is far outside is said before, too
+    with pytest.warns(FarOutside, match="far apart"), pytest.warns(UserWarning, match="roughness Ra of ISO"):
         study.solve(**COATED | {"micro": "disc_cell"}, Nbar="400 1/mm^2", Ra="1.0 um", P="10 N", x=2)
     with warnings.catch_warnings():
         warnings.simplefilter("error")

@@ -166,3 +166,13 @@ def test_slips_are_named(change, message):
     given = {name: value for name, value in (FILM | {"E2": "1 GPa", "P": "1 nN"} | change).items() if value is not None}
     with pytest.raises(study.StudyError, match=message):
         study.solve(**given)
+
+
+@pytest.mark.parametrize("place", [0, 1, 2])
+@pytest.mark.parametrize("name", ["R1", "R2"])
+def test_one_radius_of_0_among_others(name, place):
+    radii = ["10 mm", "20 mm", "30 mm"]
+    radii[place] = "0 mm"
+    given = {"R1": "5 mm", "R2": "6 mm"} | {name: radii}
+    with pytest.raises(study.StudyError, match=f"{name} = .*: must not be 0"):
+        study.solve(**given, P="1 N", E2="210 GPa", base="half_space", micro="smooth", x=2)

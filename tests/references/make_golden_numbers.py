@@ -1,4 +1,4 @@
-"""Write golden_numbers.csv: what the solver answers to some 50 cases of every kind. Status quo, not independent.
+"""Write golden_numbers.csv: what the solver answers to some 80 cases of every kind. Status quo, not independent.
 
 Its first line names the NUMERICS_VERSION that made it. test_golden_numbers.py solves the cases again; where a change of
 the solver moves the numbers, that is a new NUMERICS_VERSION, and this script is run again:
@@ -8,8 +8,10 @@ the solver moves the numbers, that is a new NUMERICS_VERSION, and this script is
 from pathlib import Path
 
 from solver import NUMERICS_VERSION, Problem, solve
+from solver.laws.own_table import PREFIX
 
-FILE = Path(__file__).parent / "golden_numbers.csv"
+FOLDER = Path(__file__).parent
+FILE = FOLDER / "golden_numbers.csv"
 #: Radii r/a of the profiles.
 X = (0.3, 0.95)
 #: The case that the others differ from; every parameter is named, so that no default counts.
@@ -17,7 +19,7 @@ MAIN = {
     "control": "P", "value": 2.7e-5, "h": 0.02, "n": 0.5, "nu1": 0.3, "nu2": 0.3, "bonding": "frictionless",
     "Nbar": 250000.0, "Ra": 0.004, "base": "layered", "accuracy": 0.01, "model_check": "closed_form",
     "micro": "disc_cell", "B": 0.1, "beta": 0.5, "scheme": "newton", "k": 1.0, "rtol": 1e-6, "nodes": 0,
-    "max_iterations": 0, "R": 1.0, "E2": 1.0,
+    "max_iterations": 0, "R": 1.0, "E2": 1.0, "m": 0.0, "sigma": 1e-4, "cut": 4.0,
 }  # fmt: skip
 TEXT = {name for name, value in MAIN.items() if isinstance(value, str)}
 WHOLE = {"nodes", "max_iterations"}
@@ -26,6 +28,11 @@ ERRORS = ("error", "profile_error", "model_error")
 NUMBERS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", *(f"{name}_{x:g}" for name in ("p", "lam") for x in X))
 
 SMOOTH, POWER = {"micro": "smooth"}, {"micro": "power_law"}
+SQUARE, HEX = {"micro": "square_lattice"}, {"micro": "hex_lattice"}
+NORMAL, EVEN = {"micro": "normal_heights"}, {"micro": "uniform_heights"}
+#: Tables of one's own, which lie beside this file: rows of a law, and a histogram of heights.
+TABLE, BINS = {"micro": "table:golden_law.csv"}, {"micro": "table:golden_histogram.csv"}
+RIGID = {"n": 0.0}
 HALF, THIN, AUTO = {"base": "half_space"}, {"base": "thin_layer"}, {"base": "auto"}
 BONDED, PICARD, FINE = {"bonding": "bonded"}, {"scheme": "picard", "nodes": 24}, {"rtol": 1e-9}
 RADIUS, DEPTH = {"control": "a", "value": 0.04}, {"control": "D", "value": 1e-3}
@@ -63,15 +70,36 @@ CASES = [
     THIN | POWER | PICARD | {"k": 10.0, "rtol": 1e-4}, HALF | POWER | PICARD | {"k": 40.0, "rtol": 1e-4},
     # no numbers
     {"value": -1.0}, THIN | BONDED | {"n": 2.0},
+    # elastic punches; rigid bases
+    HALF | SMOOTH | RADIUS | {"m": 0.5}, THIN | SMOOTH | DEPTH | {"m": 2.0, "n": 1e-9}, {"m": 0.3} | RADIUS | BONDED,
+    THIN | SMOOTH | RIGID | DEPTH, THIN | RIGID | BONDED | {"m": 0.2}, RIGID, RIGID | DEPTH | SMOOTH | {"m": 3.0},
+    THIN | RIGID | RADIUS | {"h": 0.002, "model_check": "first_order"}, AUTO | RIGID | {"h": 3e-4, "m": 1.0},
+    # lattices; heights of one, little and large spread, and of other cuts
+    HALF | SQUARE, SQUARE | RADIUS | BONDED, HALF | HEX | {"m": 0.5}, THIN | HEX | DEPTH,
+    HALF | NORMAL | {"sigma": 0.0}, HALF | NORMAL, NORMAL | RADIUS | {"cut": 3.0, "sigma": 1e-3},
+    THIN | NORMAL | DEPTH | {"cut": 5.0, "sigma": 1e-5}, HALF | EVEN, EVEN | DEPTH | BONDED | {"m": 0.3},
+    # tables; one that does not reach the pressures
+    HALF | TABLE, TABLE | RADIUS, HALF | TABLE | {"value": 1e-2}, HALF | BINS, BINS | DEPTH,
+    # the error of a law, and of its first row, is part of that of the model; another scale
+    AUTO | NORMAL | {"h": 20.0, "n": 2.0}, AUTO | HEX | {"h": 1e-4},
+    HALF | TABLE | {"value": 1e-10, "m": 1.0},
+    {"R": 0.01, "E2": 2e11, "value": 540.0, "h": 2e-4, "Ra": 4e-5, "Nbar": 2.5e9, "sigma": 1e-6, "m": 0.1} | NORMAL,
 ]  # fmt: skip
 
 
 def answers(problem):
-    """EXACT, ERRORS and NUMBERS (dict of arrays) for the arguments of ``Problem.of``."""
-    found = solve(Problem.of(**problem), X)
+    """EXACT, ERRORS and NUMBERS (dict of arrays) for the arguments of ``Problem.of``, `micro` one name or a list."""
+    found = solve(Problem.of(**problem | {"micro": known(problem["micro"])}), X)
     profiles = {f"{name}_{x:g}": getattr(found, name)[:, i] for name in ("p", "lam") for i, x in enumerate(X)}
     values = vars(found) | profiles | {"nodes_used": found.nodes}
     return {name: values[name] for name in (*EXACT, *ERRORS, *NUMBERS)}
+
+
+def known(micro):
+    """The name of a law, or a list of them, with the path of each table."""
+    if isinstance(micro, list):
+        return [known(name) for name in micro]
+    return micro.replace(PREFIX, f"{PREFIX}{FOLDER}/")
 
 
 def main():

@@ -1,7 +1,7 @@
 """Print p(0) and a_eff of rough spheres as Greenwood and Tripp (1967) have them, over those of Hertz.
 
 python tests/references/make_greenwood_tripp.py: for each μ and α = σ R/a_H², on two meshes. They stand in
-study/literature/formulas.py. Nothing of the solver is used: p*(ρ) = μ F(d* + ρ² + w*), F(h) = ∫ (z - h)^(3/2) φ(z) dz
+studies/literature/formulas.py. Nothing of the solver is used: p*(ρ) = μ F(d* + ρ² + w*), F(h) = ∫ (z - h)^(3/2) φ(z) dz
 over z > h, lengths in sqrt(2 R σ), heights in σ, pressures in E* sqrt(σ/(8 R)), and
 w* = (2/π) ∫ p* t/(ρ + t) K(4 ρ t/(ρ + t)²) dt.
 """

@@ -1,4 +1,4 @@
-"""Write study/evidence/picard_cycle.csv, which the last panel of the figure `picard_domain` shows.
+"""Write studies/evidence/picard_cycle.csv, which the last panel of the figure `picard_domain` shows.
 
 python tests/references/make_picard_cycle.py: two successive iterates of Eq. (8) with k = 0 for the main case at
 a = 0.04 on 64 nodes, long after the load has settled, and the solution, near the edge.
@@ -35,7 +35,7 @@ def main() -> None:
     x = mesh_of(NODES).x
     exact = solve(Problem.of(a=A, h=H, n=N, base="thin_layer", micro="power_law", **CASE, nodes=NODES, rtol=1e-9), x)
     table = np.array([x, *iterates(1001), exact.p[0]]).T[x > LEAST]
-    path = Path(__file__).parents[2] / "study/evidence/picard_cycle.csv"
+    path = Path(__file__).parents[2] / "studies/evidence/picard_cycle.csv"
     np.savetxt(path, table, "%.10g", ",", header="r/a,iterate 1000,iterate 1001,solution", comments="")
 
 

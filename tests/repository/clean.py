@@ -6,7 +6,8 @@ Usage: python tests/repository/clean.py, in the folder that is to be cleaned
 import shutil
 from pathlib import Path
 
-from study.catalogue import CAPTIONS, FIGURE, FIGURES, SCHEME, SCHEMES, TABLE, TABLES
+from study.catalogue import CAPTIONS, ENDINGS
+from study.figures import beside
 from study.figures.record import RECORD
 
 CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
@@ -14,8 +15,11 @@ CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
 
 def written() -> list[Path]:
     """The files of all figures and tables, whether they are there or not."""
-    figures = [Path("figures", f"{name}.{kind}") for name in (*FIGURES, *SCHEMES) for kind in {*FIGURE, *SCHEME}]
-    tables = [Path("tables", f"{name}.{kind}") for name in TABLES for kind in TABLE]
+    names = {kind: [name for file in beside.of_the_book() for one, name in beside.names_in(file) if one == kind]
+             for kind in ("figure", "table")}  # fmt: skip
+    drawn = {*ENDINGS["figure"], *ENDINGS["drawing"]}
+    figures = [Path("figures", f"{name}.{ending}") for name in names["figure"] for ending in drawn]
+    tables = [Path("tables", f"{name}.{ending}") for name in names["table"] for ending in ENDINGS["table"]]
     records = [Path(folder, RECORD) for folder in ("figures", "tables")]
     return [*figures, *tables, *records, Path("figures", f"{CAPTIONS}.md"), Path("bench.json")]
 
@@ -23,6 +27,7 @@ def written() -> list[Path]:
 if __name__ == "__main__":
     for file in written():
         file.unlink(missing_ok=True)
-    compiled = [folder for room in ("solver", "study", "tests") for folder in Path(room).rglob("__pycache__")]
+    rooms = map(Path, ("solver", "study", "studies", "tests"))
+    compiled = [folder for room in rooms for folder in room.rglob("__pycache__")]
     for folder in (*map(Path, CACHES), *compiled):
         shutil.rmtree(folder, ignore_errors=True)

@@ -13,6 +13,9 @@ import pytest
 ROOT = Path(__file__).resolve().parents[2]
 SOLVER = sorted((ROOT / "solver").rglob("*.py"))
 STUDY = sorted((ROOT / "study").rglob("*.py"))
+BOOK = sorted((ROOT / "studies").rglob("*.py"))
+
+OURS = {"solver", "study", "studies"}
 
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
@@ -22,8 +25,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
-        *("carried", "solving", "figures", "api", "paper", "literature", "evidence"),
-        *("catalogue", "commands", "__main__"),
+        *("carried", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -96,7 +98,25 @@ def test_rooms_import_one_way(path):
     assert others <= {*rooms[: mine + 1]} - APART.get(room, set())
 
 
-@pytest.mark.parametrize("package", ["solver", "study"])
+@pytest.mark.parametrize("path", BOOK, ids=name)
+def test_the_book_imports_the_face_and_the_figures(path):
+    """And the solver. What a chapter needs beyond it is missing to a user as well."""
+    assert tops(path) - set(sys.stdlib_module_names) <= {"numpy", "scipy", "xarray", "matplotlib", *OURS}
+    import study
+
+    names = {full.split(".")[1] for full in imported(path) if full.startswith("study.")}
+    assert names <= {*dir(study), "figures"}
+
+
+@pytest.mark.parametrize("path", [*SOLVER, *STUDY], ids=name)
+def test_nothing_imports_the_book(path):
+    """It is found as the studies of a user are, and run when it is asked for."""
+    assert not {full for full in imported(path) if full.startswith(("studies", "study.studies"))}
+    text = path.read_text(encoding="utf-8")
+    assert "study.studies" not in text or name(path) in ("study/spec/places.py", "study/__init__.py")
+
+
+@pytest.mark.parametrize("package", ["solver", "study", "studies"])
 def test_no_cycles(package):
     graph = {}
     for path in (ROOT / package).rglob("*.py"):
@@ -115,7 +135,7 @@ def test_rooms_are_named(package):
     } == {*ROOMS[package], "__init__"}
 
 
-@pytest.mark.parametrize("top", ["solver", "study", "tests"])
+@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests"])
 def test_folders_are_small(top):
     sizes = {folder: len(list(folder.glob("*.py"))) for folder in [ROOT / top, *(ROOT / top).rglob("*")]}
     assert {folder.name: size for folder, size in sizes.items() if size > 12} == {}

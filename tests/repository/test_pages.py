@@ -6,10 +6,11 @@ import tomllib
 
 import pages
 import pytest
+import xarray as xr
 from benchmark_page import PAGE
 from conftest import ROOT
 from test_repository import TARGETS
-from validate_page import PAGE as RESOLVED
+from validate_page import page as resolved
 
 import solver
 import study
@@ -37,9 +38,41 @@ def test_the_page_of_speeds_is_that_of_its_command():
     assert len(pieces) > 10 and [piece for piece in pieces if piece not in TEXT["docs/speed.md"]] == []
 
 
-def test_the_page_of_resolved_spheres_is_that_of_its_command():
-    pieces = [piece.replace("{{", "{").replace("}}", "}") for piece in re.split(r"(?<!\{)\{[A-Za-z][^{}]*\}", RESOLVED)]
-    assert len(pieces) > 20 and [piece for piece in pieces if piece not in TEXT["docs/validate.md"]] == []
+def test_the_page_of_resolved_spheres_is_that_of_its_numbers():
+    """What `make validate` has solved, which takes hours, is in docs/validate.nc; the page is written of it anew."""
+    with xr.open_datatree(ROOT / "docs/validate.nc") as tree:
+        written = resolved({name: tree[name].to_dataset().load() for name in tree.children})
+    assert pages.same(written.split(), TEXT["docs/validate.md"].split())
+
+
+@pytest.mark.parametrize(
+    ("printed", "expected", "alike"),
+    [
+        ("12", "12", True),
+        ("12", "13", False),  # a count
+        ("12345", "12346", False),
+        ("-12", "12", False),
+        ("6e-11", "3e-10", False),
+        ("3e-10", "4e-10", False),
+        ("5.1", "5.2", False),  # two percent
+        ("0.999", "1.00", False),
+        ("1.37", "1.38", False),
+        ("0.19714", "0.19715", True),
+        ("0.19714", "0.19716", False),
+        ("3.4504e-05", "3.4505e-05", True),
+        ("3.4504e-05", "3.4504e-04", False),
+        ("9.999e-05", "1.000e-04", True),
+        ("0.1971", "0.19714", False),  # of other digits
+        ("nan", "nan", True),
+        ("nan", "0.19714", False),
+        ("inf", "0.19714", False),
+        ("word", "0.19714", False),
+        ("-0.0001", "0.0000", False),
+    ],
+)
+def test_when_words_of_a_page_are_the_same(printed, expected, alike):
+    assert pages.same([printed], [expected]) == pages.same([expected], [printed]) == alike
+    assert not pages.same([printed], [expected, expected])
 
 
 @pytest.mark.parametrize("page", pages.PAGES)
@@ -58,7 +91,7 @@ def test_what_a_page_names_exists(page):
     code = "\n".join(re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL))
     assert set(re.findall(r"\bmake ([a-z0-9_]+)\b", code)) <= set(TARGETS)
     files = re.findall(r"`((?:studies|study|solver|tests)/[\w/]+\.(?:py|toml|csv))`", text)
-    for path in set(files) - {"studies/mine.toml"}:
+    for path in set(files) - {"studies/mine.toml", "studies/figures.py"}:
         assert (ROOT / path).exists(), path
     for package, names in re.findall(r"`(study|solver|derived)((?:\.[a-z_]\w*)+)", code):
         found = {"study": study, "solver": solver, "derived": study.derived}[package]
@@ -88,7 +121,7 @@ def test_the_table_of_real_systems_has_their_numbers_of_cases():
     rows = re.findall(r"^\| `(\w+)` \| [^|]* \| (\d+) \| (\d+) times \|$", TEXT["docs/studies.md"], flags=re.MULTILINE)
     assert len(rows) == 6
     for name, cases, times in rows:
-        assert read(ROOT / f"studies/{name}.toml").grid.size == int(cases) * int(times)
+        assert read(ROOT / f"studies/systems/{name}.toml").grid.size == int(cases) * int(times)
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md"])
@@ -121,9 +154,8 @@ def test_of_softness_and_thickness(results):
 def test_of_the_thin_layer_in_the_main_case(results):
     cases = open_results(results / "main_case.nc").set_index(case="label")
     exact, thin = (cases.sel(case=f"rough, {base}") for base in ("exact layer", "layered"))
-    for name, error in (("a", 0.092), ("p0", -0.045), ("D", 0.025)):
-        assert float(thin[name] / exact[name]) - 1 == pytest.approx(error, abs=6e-4)
-    assert "9.2 % too wide, p(0) 4.5 % too low and D 2.5 % too" in TEXT["docs/accuracy.md"]
+    a, p0, D = (100 * (float(thin[name] / exact[name]) - 1) for name in ("a", "p0", "D"))
+    assert f"{a:.1f} % too wide, p(0) {-p0:.1f} % too low and D {D:.1f} % too" in TEXT["docs/accuracy.md"]
 
 
 def microseconds(text: str, head: str, row: str, between: str) -> dict[float, float]:
@@ -138,6 +170,7 @@ def microseconds(text: str, head: str, row: str, between: str) -> dict[float, fl
 @pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
 def test_times_are_those_of_tradeoff(ours, measured):
     page = (ROOT / "docs/tradeoff_measured.txt").read_text(encoding="utf-8")
+    """To the two digits that are shown."""
     found = microseconds(TEXT["docs/accuracy.md"], r"\| processor time", rf"\| {ours}", r" \| ")
     known = microseconds(page, "set  ", rf"{measured} +newton, rtol", " {2,}")
-    assert found == pytest.approx({error: known[error] for error in (1e-3, 1e-6, 1e-9)}, rel=0.3)
+    assert found == {error: float(f"{known[error]:.2g}") for error in (1e-3, 1e-6, 1e-9)}

@@ -15,7 +15,7 @@ PAGE = """# Two scales against one
 `make validate` presses rough spheres with every asperity resolved, by conjugate gradients on square elements that are
 not periodic, and compares them with what two scales say: a base and a micro law. It writes this page, its figures and
 `docs/validate.nc`. Each contact is kept once it is solved, so a run that was interrupted goes on where it was.
-R = E2* = 1 and Ra = {Ra:g}, on square lattices. `tests/laws/test_lattice_sphere.py`,
+R = E2* = 1 and Ra = {Ra:g}, on square lattices. `tests/laws/lattice/test_lattice_sphere.py`,
 `tests/resolved/test_layered_sphere.py` and `tests/laws/heights/test_heights_sphere.py` have coarse ones.
 
 A percentage is the error of the prediction. "Resolved" is extrapolated from the two finest meshes, ± half the change

@@ -53,15 +53,27 @@ def check_examples(page: str, folder: Path, most: int | None = None) -> None:
         assert not text or same(printed.split(), text.split()), f"{code}\nprints\n{printed}\nnot\n{text}"
 
 
+#: The share of itself by which a printed number may differ. The solver's numbers on other processors differ by 1e-9 at
+#: most, the SAME of tests/contact/errors/test_golden_numbers.py. That moves the last of six digits in one number of a
+#: thousand, and that of three digits in one of a million. One in the last of three digits is more than 1e-3, and so a
+#: wrong page. Under four kernels of OpenBLAS (`make kernels`) all pages are the same to the last digit.
+_SHARE = 1e-3
+
+
 def same(printed: list[str], expected: list[str]) -> bool:
-    """Whether two lists of words are the same; numbers may differ by one in the last digit."""
+    """Whether two lists of words are the same; numbers of four digits or more may differ by one in the last decimal."""
     return len(printed) == len(expected) and all(map(_same_word, printed, expected))
 
 
 def _same_word(printed: str, expected: str) -> bool:
-    try:
-        difference = abs(float(printed) - float(expected))
-    except ValueError:
-        return printed == expected
+    """Words and whole numbers are equal. Decimal numbers may differ by one in the last, and by _SHARE of themselves."""
     mantissa, _, exponent = expected.partition("e")
-    return difference < 1.01 * 10.0 ** (int(exponent or 0) - len(mantissa.partition(".")[2]))
+    decimals = mantissa.partition(".")[2]
+    if printed == expected or not decimals:
+        return printed == expected
+    try:
+        difference, known = abs(float(printed) - float(expected)), abs(float(expected))
+        last = 10.0 ** (int(exponent or 0) - len(decimals))
+    except ValueError:
+        return False
+    return len(printed) == len(expected) and difference < 1.01 * last and difference <= _SHARE * known

@@ -5,6 +5,7 @@ from test_definition import GOOD, messages, read
 
 import study
 from study.physical import study_file
+from study.spec.definition import MOST_MESSAGES, refusal
 
 # what is replaced in GOOD, by what, and the message that must appear
 BAD = [
@@ -191,3 +192,21 @@ def test_missing_file(tmp_path):
 def test_names_that_are_refused(tmp_path, name):
     with pytest.raises(study.StudyError, match="a study file is called NAME.toml"):
         read(tmp_path, GOOD, name)
+
+
+def test_the_longest_name(tmp_path):
+    """With all characters that there may be."""
+    longest = ("aZ_09.-" * 29)[:200]
+    assert read(tmp_path, GOOD, f"{longest}.toml").name == longest
+    with pytest.raises(study.StudyError, match="200 at most"):
+        read(tmp_path, GOOD, f"{longest}b.toml")
+
+
+@pytest.mark.parametrize("count", [1, 2, MOST_MESSAGES - 1, MOST_MESSAGES, MOST_MESSAGES + 1, 1000])
+def test_no_mistake_is_lost_in_the_count(count):
+    """Each is said, or counted in the last line; where all are said there is no such line."""
+    messages = refusal("s.toml", [f"mistake {i}" for i in range(count)]).messages
+    said = [message for message in messages if message.startswith("s.toml: mistake")]
+    assert said == [f"s.toml: mistake {i}" for i in range(min(count, MOST_MESSAGES))]
+    rest = [f"s.toml: and {count - MOST_MESSAGES} more mistakes"] if count > MOST_MESSAGES else []
+    assert list(messages[len(said) :]) == rest

@@ -10,7 +10,7 @@ from pages import check_examples
 from surfaces import random_surface
 
 from study import roughness
-from study.paper.numbers import TABLE1
+from study.studies.paper.numbers import TABLE1
 
 
 def test_the_answer_in_sentences():

@@ -8,10 +8,12 @@ from line_study import load, present
 from same import assert_same_numbers
 
 import study
-from study.evidence import tradeoff
+from study.figures import registry
+from study.figures.measured import results
 from study.files import results_file
 from study.files.examine import examine
 from study.files.seal import seal
+from study.studies.evidence import tradeoff
 from study.work import cases
 
 STAYS = "line.nc: has appeared or changed while its results were computed, and stays; they are in "
@@ -153,7 +155,8 @@ def test_the_last_part_looks_again_too(file, monkeypatch):
 def test_measurements_of_the_trade_off_do_not_replace_what_appears(tmp_path, monkeypatch):
     path = tmp_path / "tradeoff.nc"
     few = tradeoff.measure(2, ways={"auto": tradeoff.WAYS["auto"]})
-    monkeypatch.setattr(tradeoff, "measure", lambda *_, **__: path.write_text("precious") and few)
+    made = registry.entry("measured", "tradeoff")._replace(measure=lambda: path.write_text("precious") and few)
+    monkeypatch.setitem(registry.REGISTERS[""]["measured"], "tradeoff", made)
     with pytest.raises(study.StudyError, match=r"tradeoff.nc: has appeared or changed .* they are in .*nc.computed: "):
-        tradeoff.results(tmp_path)
+        results("tradeoff", tmp_path)
     assert path.read_text(encoding="utf-8") == "precious"

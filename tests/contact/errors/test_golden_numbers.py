@@ -1,7 +1,7 @@
-"""The numbers of some 50 cases of every kind as the present NUMERICS_VERSION has them: golden_numbers.csv.
+"""The numbers of some 80 cases of every kind as the present NUMERICS_VERSION has them: golden_numbers.csv.
 
-That they are right is for other tests to say. Here no change may move them unnoticed: what was computed under one
-NUMERICS_VERSION is taken for the same, and reused.
+That they are right is for other tests to say, test_golden_known.py among them. Here no change may move them unnoticed:
+what was computed under one NUMERICS_VERSION is taken for the same, and reused.
 """
 
 import csv
@@ -85,7 +85,15 @@ def test_numbers(found, name):
 
 
 def test_every_kind_is_there():
-    """Status but those of the paper's scheme, models, bases, laws, controls, bondings."""
-    assert set(column("status")) >= {0, 1, 4, 5, 6, 8} and set(column("model_used")) == set(range(1, 9))
-    for name, choices in {"base": 4, "micro": 3, "control": 3, "bonding": 2, "scheme": 2, "model_check": 2}.items():
+    """Status but those of the paper's scheme, models, bases, laws, tables, controls, bondings, punches, heights."""
+    assert set(column("status")) >= {0, 1, 4, 5, 6, 8, 10} and set(column("model_used")) == set(range(1, 9))
+    for name, choices in {"base": 4, "micro": 9, "control": 3, "bonding": 2, "scheme": 2, "model_check": 2}.items():
         assert len({row[name] for row in ROWS}) == choices
+    assert {row["base"] for row, n in zip(ROWS, column("n"), strict=True) if n == 0} == {
+        "thin_layer",
+        "layered",
+        "auto",
+    }
+    assert {row["base"] for row, m in zip(ROWS, column("m"), strict=True) if m > 0} == {row["base"] for row in ROWS}
+    spread = {(float(row["sigma"]), float(row["cut"])) for row in ROWS if row["micro"] == "normal_heights"}
+    assert min(spread)[0] == 0 and len({cut for _, cut in spread}) == 3 and len({sigma for sigma, _ in spread}) > 3

@@ -1,6 +1,7 @@
 """No silent failure, far beyond any scene: fixed samples of the cases of `make extremes`, every base and law.
 
-The ranges are those of studies/extremes.toml and extremes_layered.toml. Warnings are errors here, as in all tests.
+The ranges are those of studies/evidence/extremes.toml and extremes_layered.toml. Warnings are errors here, as in all
+tests.
 """
 
 import tomllib
@@ -36,7 +37,7 @@ kinds = pytest.mark.parametrize(("base", "law"), ALL_KINDS, ids=["-".join(kind) 
 @cache
 def sample(base, size=None, seed=11, **start):
     """Arguments of ``Problem.of`` without base and law; `start`: of a range, where it is not the study's."""
-    study = ROOT / "studies" / ("extremes_layered.toml" if base == "layered" else "extremes.toml")
+    study = ROOT / "studies/evidence" / ("extremes_layered.toml" if base == "layered" else "extremes.toml")
     table = tomllib.loads(study.read_text(encoding="utf-8"))["sample"]
     ranges = {name: table[name] | {"start": value} for name, value in start.items()}
     errors, known = [], {name: VOCABULARY[name].own for name in table if name in VOCABULARY}

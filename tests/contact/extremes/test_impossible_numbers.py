@@ -8,7 +8,7 @@ from solver_cases import LOAD, MAIN
 
 from solver import Problem, Status, solve
 from solver.contact import smooth
-from study.paper.uniform import solve_uniform
+from study.studies.paper.uniform import solve_uniform
 
 X = np.linspace(0.0, 1.0, 5)
 #: So small an exponent makes A almost a step of p: p leaves the range of floating point near the edge, and with
@@ -102,6 +102,9 @@ def test_what_is_not_given_and_what_did_not_converge(good):
     s = copied(good)
     s.p0[1], s.status[1] = -1.0, Status.TOLERANCE_NOT_MET  # lift-off is told from such numbers
     assert not (s.not_finite() | s.out_of_range()).any()
+    for number in (np.nan, np.inf):  # but what has a solution has numbers, also where their error is too large
+        s.p0[1] = number
+        assert s.not_finite().tolist() == [False, True]
     s.p0[1], s.status[1] = np.nan, Status.ITERATION_LIMIT
     assert not (s.not_finite() | s.out_of_range()).any()
 

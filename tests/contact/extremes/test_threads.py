@@ -15,7 +15,7 @@ import solver.threads
 from solver import Problem, fit_power_law, solve
 from solver.models.thin_layer_error import edge_shift
 from solver.threads import _OfTheProcess, one_blas_thread
-from study.paper.uniform import solve_uniform
+from study.studies.paper.uniform import solve_uniform
 
 OWN = 3  # the user's number of threads: neither the 1 of the solver nor the default of a small machine
 #: Where the solver multiplies or solves, a function for each way.
@@ -25,7 +25,7 @@ WATCHED = (
     "solver.contact.picard.approximate",
     "scipy.optimize.brentq",
     "solver.models.thin_layer_error._integrated",
-    "study.paper.uniform.as_cases",
+    "study.studies.paper.uniform.as_cases",
 )
 PAPER = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
 

@@ -12,7 +12,7 @@ from solver_cases import difference
 import study
 from solver import Problem, laws, solve
 from solver.laws import disc_cell, heights, spread
-from study.literature.formulas import GREENWOOD_TRIPP
+from study.studies.literature.formulas import GREENWOOD_TRIPP
 
 LAW = heights.LAW
 CASE = {"Nbar": 250_000.0, "Ra": 0.004, "h": 0.02, "n": 0.5}

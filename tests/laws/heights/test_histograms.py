@@ -43,3 +43,36 @@ def test_a_few_summits_far_above_the_many_are_refused(tmp_path):
     file.write_text("z,share\n0,0.5\n1e-4,0.5\n2e-4,1e-6\n")
     with pytest.raises(ValueError, match="mine.csv: column share: a few summits stand far above the many: leave out"):
         read(f"table:{file}")
+
+
+@pytest.mark.parametrize("kind", ["counted", "rare"])
+def test_few_spots_are_those_of_the_highest_class(kind):
+    """A ~ p^0.4 as the pressure goes to 0, of the density of the highest summits alone."""
+    share = np.array(SHARES[kind], dtype=float)
+    law, one = heights.histogram("table:x", 0.3 * np.arange(len(share)), share, "1"), np.ones(1)
+    own, y = law.bind(one, Nbar=one / np.pi, Ra=one), np.array([[1e-4, 2e-4, 1e-3]])  # A* = 1, and A = y²
+    with np.errstate(all="ignore"):
+        q, (gamma, beta) = own.evaluate(y).q, own.edge()
+    np.testing.assert_allclose(gamma * q**beta, y**2, rtol=1e-3)
+    np.testing.assert_allclose(own.from_pressure(q), y, rtol=1e-9)
+
+
+def test_the_version_is_of_all_numbers(tmp_path):
+    """Results of other shares or heights would be served after an edit. A remark or a blank is no number."""
+    file = tmp_path / "mine.csv"
+
+    def version(text):
+        file.write_text(text)
+        return read(f"table:{file}").version
+
+    rows = np.array([[0, 0.2], [1e-4, 0.5], [2e-4, 0.3]])
+    text = "z,share\n" + "\n".join(f"{z!r},{share!r}" for z, share in rows.tolist())
+    found = [version(text)]
+    assert version("# the same\n" + text.replace(",", " , ") + "\n") == found[0]
+    for row in range(3):
+        changed = rows.copy()
+        changed[row, 1] *= 1 + 1e-12
+        found.append(version("z,share\n" + "\n".join(f"{z!r},{share!r}" for z, share in changed.tolist())))
+    moved = rows + [1e-4, 0]
+    found.append(version("z,share\n" + "\n".join(f"{z!r},{share!r}" for z, share in moved.tolist())))
+    assert len(set(found)) == 5

@@ -59,3 +59,13 @@ def test_a_row_off_the_curve_of_the_others(tmp_path, name, row):
     columns = {"p": p, "A": spots.A, "lam": spots.lam, "p_max": spots.p_max}
     columns[name] = np.where(np.arange(1, 31) == row, 0.85 * columns[name], columns[name])
     assert f"column {name}, row {row}: " in read(tmp_path, columns)
+
+
+@pytest.mark.parametrize("gap", [2, 3, 5, 7])
+def test_a_gap_that_noise_leaves_open(tmp_path, gap):
+    """The rows are 1.3 apart, with noise of 3 %, and those of the gap 20: there any two curves part."""
+    p = 1e-5 * np.cumprod([1, *np.where(np.arange(1, 8) == gap, 20, 1.3)])
+    spots = laws.LAWS["disc_cell"].at(p, 1.0, Nbar=250_000.0, Ra=0.004)
+    A = spots.A * (1 + 0.03 * np.sin(2.4 * np.arange(8)))
+    message = read(tmp_path, {"p": p, "A": A, "lam": spots.lam, "p_max": spots.p_max})
+    assert f"column A, rows {gap} and {gap + 1}: smooth curves through the rows differ by" in message

@@ -2,11 +2,11 @@
 
 import warnings
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 import xarray as xr
+from conftest import STUDIES
 
 import study
 from solver import Problem, laws, solve
@@ -17,7 +17,6 @@ from study.data.dataset import model_attributes
 from study.in_words import FarOutside, early, far_outside
 from study.physical.study_file import read
 
-ROOT = Path(__file__).resolve().parents[3]
 BALL = {"R": "5 mm", "punch": "steel 52100", "P": "5 N", "Ra": "2 um", "bonding": "bonded"}
 FILM = BALL | {"layer": "PTFE", "h": "10 nm", "body": "steel 52100", "Nbar": "0.1 1/um^2"}
 LINING = FILM | {"h": "0.2 mm"}
@@ -93,9 +92,6 @@ def test_a_law_of_ones_own_is_judged_by_what_is_given(unsolved):
     (text,) = said_before(**FILM | {"micro": law})
     assert text.splitlines()[1:] == [early.BROKEN["pitch_not_small_against_h"]]
     assert said_before(**LINING | {"micro": law}) == []
-
-
-STUDIES = sorted((ROOT / "studies").rglob("*.toml"))
 
 
 @pytest.mark.parametrize("path", STUDIES, ids=lambda path: path.stem)

@@ -47,10 +47,13 @@ def test_under_asperities_both_pressures_are_those_of_the_ring():
     found = quiet(**PLATE | ROUGH)
     text, peak = study.summary(found), study.derived.peak_pressure(found).item()
     assert peak > 1.1 * found.p_max
-    number, unit = re.search(r"\n  largest real pressure, in the ring +ppeak  = ([\d.]+) (\w+)\n", text).groups()
+    number, unit = re.search(
+        r"\n  largest real pressure, in the ring +ppeak  = ([\d.]+) (\w+) ± unknown\n", text
+    ).groups()
     assert float(number) * SIZES[unit] == pytest.approx(peak, rel=5e-3), "three digits"
     assert needed(text) == pytest.approx([float(found.p.max()) / STRENGTHS, peak / STRENGTHS], rel=0.05)
     plain = study.solve(P=1e-5, h=0.002, n=100, bonding="bonded", Nbar=1e5, Ra=0.004)
+    assert re.search(r"ppeak  = \S+ E2\*\n", study.summary(plain)), "no input has a spread"
     assert re.search(r"pring  = \S+ E2\* at r = 0\.0118\d+ R\n", study.summary(plain))
 
 
@@ -96,10 +99,33 @@ def test_point_solves_for_the_profile(capsys):
     assert capsys.readouterr().out == study.summary(found) + "\n"
     assert main(["point", "--json", *words, "micro=smooth"]) == 0
     printed = json.loads(capsys.readouterr().out)
-    assert printed["p_ring"] == {"value": found.p.max().item(), "unit": "Pa"}
+    spread = found.p_spread[int(np.argmax(found.p.values))].item()
+    assert printed["p_ring"] == {"value": found.p.max().item(), "unit": "Pa", "spread": spread} and spread > 0
     assert printed["r_ring"]["value"] == pytest.approx(0.9375 * found.a.item(), rel=1e-12)
-    assert printed["D_body"]["value"] == found.D.item(), "of a rigid punch"
+    assert printed["D_body"] == {"value": found.D.item(), "unit": "m", "spread": found.D_spread.item()}, "rigid punch"
+    assert printed["r_ring"]["spread"] is printed["p_peak"]["spread"] is None, "not known"
     assert main(["point", "--json", *words, "P=20 N", "micro=smooth"]) == 2
+
+
+def test_spreads_of_what_follows_without_a_ring(capsys):
+    """In the centre the largest pressures are those of the results. Of an elastic punch's share nothing is known."""
+    given = PLATE | {"layer": "PTFE", "punch": "steel 52100"} | ROUGH
+    assert main(["point", "--json", *(f"{name}={value}" for name, value in given.items())]) == 0
+    found, printed = quiet(**given), json.loads(capsys.readouterr().out)
+    assert printed["p_ring"]["spread"] == pytest.approx(found.p0_spread.item(), rel=1e-9)
+    assert printed["p_peak"]["spread"] == found.p_max_spread.item()
+    assert printed["D_body"]["spread"] is printed["r_ring"]["spread"] is None
+    exact = {"R": "3 mm", "E2": "210 GPa", "base": "half_space", "P": "20 N", "micro": "smooth"}
+    assert main(["point", "--json", *(f"{name}={value}" for name, value in exact.items())]) == 0
+    assert "spread" not in capsys.readouterr().out
+
+
+def test_of_a_contact_without_a_solution_no_spread_is_known(capsys):
+    given = {"R": "3 mm", "E1": "1000 ± 50 GPa", "E2": "1 MPa", "h": "30 um", "bonding": "bonded", "a": "160 um"}
+    assert main(["point", "--json", *(f"{name}={value}" for name, value in given.items()), "micro=smooth"]) == 1
+    printed = json.loads(capsys.readouterr().out)
+    assert printed["status"] == "lift_off"
+    assert all(printed[name]["value"] is printed[name]["spread"] is None for name in ("p_ring", "p_peak", "D_body"))
 
 
 def test_doubts_about_yielding_see_the_ring():

@@ -63,6 +63,17 @@ def test_the_ratio_of_a_half_space_says_nothing_of_a_base():
     assert known == [False, False, True]
 
 
+@pytest.mark.parametrize(("body", "ratio"), [("punch", "m"), ("base", "n")])
+def test_ratios_of_which_some_are_0(body, ratio):
+    """Without moduli the ratio says what is rigid: the bodies of all contacts, or not."""
+    ratios = {"m": 0.5, "n": 0.5} | {ratio: [0.1, 0.5, 1.0]}
+    some = study.solve(P=1e-5, h=0.02, micro="smooth", bonding="bonded", x=2, **ratios)
+    some = some.assign_coords({ratio: [0.0, 0.5, 1.0]})
+    parts = [some.isel({ratio: part}) for part in ([0], [0, 1], [1, 2])]
+    assert [is_rigid(part, body) for part in parts] == [True, False, False]
+    assert [ratio in used_inputs(part) for part in parts] == [False, True, True]
+
+
 def test_asperities_of_a_law_that_is_gone():
     """It may depend on whatever there is of asperities."""
     found = contacts(BARE | SPOTS, BARE | FLAT)

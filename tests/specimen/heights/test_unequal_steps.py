@@ -49,3 +49,12 @@ def test_fewer_than_sixteen_points_over_the_larger_step_are_refused():
     # what a low-pass leaves of the finer axis
     with pytest.raises(ValueError, match="at least 16 are needed"):
         roughness.measure(roughness.height_map(z[::10, :200], dx=1e-7, dy=1e-6), cutoff=4e-6)
+
+
+@pytest.mark.parametrize("row", [2, 17, 39])
+def test_the_row_of_a_position_out_of_step_is_named(row):
+    """Counted from 1, as the rows of a table are."""
+    x = np.arange(40) * 1e-6
+    x[row - 1] += 0.4e-6
+    with pytest.raises(ValueError, match=f"but x = {x[row - 1]:g} in row {row} is 4e-07 off"):
+        roughness.profile(np.sin(np.arange(40)) * 1e-8, x=x)

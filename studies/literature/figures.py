@@ -4,7 +4,8 @@ import numpy as np
 import xarray as xr
 from matplotlib.ticker import FuncFormatter
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
+from study.figures.registry import TWO_COLUMNS, Columns, figure, joined, table
+
 from . import compared, formulas
 
 SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h whose errors the table tells

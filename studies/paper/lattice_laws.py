@@ -7,8 +7,8 @@ import numpy as np
 import xarray as xr
 
 from solver.laws.fit import least_squares
+from study.figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure, pick, table
 from . import numbers
 from .curves import PAPER, pressures
 from .law_fits import PAPERS_NAME, PRESSURES, draw_laws, exact, largest_error, printed

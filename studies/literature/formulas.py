@@ -8,7 +8,7 @@ feels, over x = a/h: in E1* on a rigid base, in E2* on a half-space with n = E1*
 from collections import namedtuple
 from collections.abc import Callable
 from functools import partial
-from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 
@@ -143,8 +143,9 @@ STIFFNESSES = {
 }
 """Name -> (x, n, ν) -> E_eff/E2* on a bonded layer, and where its constants were read."""
 
+_FILE = Path(__file__).with_name("greenwood_tripp.csv")
 GREENWOOD_TRIPP: dict[int, dict[float, tuple[float, float]]] = {}
 """μ -> α -> p(0) and effective radius over those of Hertz, of the equations of Greenwood and Tripp (1967):
 tests/references/make_greenwood_tripp.py solves them."""
-for _mu, _alpha, *_ratios in np.loadtxt(files(__package__) / "greenwood_tripp.csv", delimiter=",", skiprows=1).tolist():
+for _mu, _alpha, *_ratios in np.loadtxt(_FILE, delimiter=",", skiprows=1).tolist():
     GREENWOOD_TRIPP.setdefault(int(_mu), {})[_alpha] = tuple(_ratios)

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
 
-from ..data.derived import effective_modulus, peak_pressure
-from .labels import stated, written
-from .registry import TWO_COLUMNS, Columns, figure, joined
+from study import derived
+from study.figures.labels import stated, written
+from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
 COLOURS = {
     1e-3: "#08306b", 1e-2: "#2878b8", 0.1: "#7fb5d8", 1.0: "0.2", 10.0: "#f4a36c", 100.0: "#dd5f21", 1e3: "#8c2d04"
@@ -30,10 +30,10 @@ def master_curves(panels, found: xr.Dataset) -> Columns:
     Rows: E_eff/E1*, largest real pressure over that of the uncoated body at the same load, Ar/An; columns: the two
     interfaces. E_eff of the smooth punch is dashed.
     """
-    peak = peak_pressure(found)
+    peak = derived.peak_pressure(found)
     bare = peak.sel(n=1.0, bonding="bonded", drop=True)  # with equal ν this layer is as if it were not there
     quantities = {
-        "E_eff/E1*": effective_modulus(found) / found["n"],
+        "E_eff/E1*": derived.effective_modulus(found) / found["n"],
         "p_peak/p_peak uncoated": peak / bare,
         "Ar/An": found["Ar_An"],
     }

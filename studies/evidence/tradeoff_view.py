@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.lines import Line2D
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure, table
+from study.figures.registry import TWO_COLUMNS, Columns, figure, table
 
 FLOOR = 1e-12  # smaller errors are drawn here: they are those of the reference
 TIMES = (5.0, 4e6)  # µs, ends of the abscissa
@@ -26,7 +26,7 @@ TARGETS = (1e-2, 1e-3, 1e-4, 1e-6, 1e-9)
 ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # errors at which the paper's way is compared with Newton
 
 
-@figure("tradeoff", "tradeoff", size=(TWO_COLUMNS, 6.4), panels=(2, 2))
+@figure("tradeoff", "tradeoff", long=True, size=(TWO_COLUMNS, 6.4), panels=(2, 2))
 def work_precision(panels, found: xr.Dataset) -> Columns:
     """Error below which 95 % of the cases are, against processor time per case, a panel for each problem set
     (docs/tradeoff.md). Open marks: fewer than 99 % of the cases ended. Dashed: half of the cases differ by more between
@@ -79,6 +79,7 @@ def legend(panels) -> None:
 @table(
     "tradeoff",
     "tradeoff",
+    long=True,
     columns=r"""set; way; setting; cases | d; time/us | .1f | time/\textmu s
     error 50% | .1e; error 95% | .1e; largest | .1e; ended | .1%""",
 )
@@ -98,7 +99,12 @@ def rows(found: xr.Dataset) -> list[tuple]:
     return table
 
 
-@table("tradeoff_cheapest", "tradeoff", columns="; ".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]))
+@table(
+    "tradeoff_cheapest",
+    "tradeoff",
+    long=True,
+    columns="; ".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]),
+)
 def cheapest(found: xr.Dataset) -> list[tuple]:
     """Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
     none."""
@@ -118,7 +124,12 @@ def time_to(part: xr.Dataset, target: float) -> float:
     return 1e6 * float(np.min(part["time"].values[reached], initial=np.inf))
 
 
-@table("tradeoff_factors", "tradeoff", columns="error | g; the paper's way | .3g; with; Newton | .3g; factor | .0f")
+@table(
+    "tradeoff_factors",
+    "tradeoff",
+    long=True,
+    columns="error | g; the paper's way | .3g; with; Newton | .3g; factor | .0f",
+)
 def factors(found: xr.Dataset) -> list[tuple]:
     """On the paper's layer: the paper's way at its cheapest beside Newton (rtol), time per case in us.
 

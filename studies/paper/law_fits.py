@@ -10,9 +10,9 @@ import numpy as np
 from solver import fit_power_law
 from solver.laws import LAWS
 from solver.laws.fit import Fit
+from study.figures.annotate import name_curve
+from study.figures.registry import TWO_COLUMNS, Columns, figure, table
 
-from ..figures.annotate import name_curve
-from ..figures.registry import TWO_COLUMNS, Columns, figure, table
 from . import numbers
 
 PRESSURES = np.linspace(1e-4, 0.025, 250)  # p/E1* of the paper's fit, Section 4.1: from 1e-4 to 0.025 in steps of 1e-4

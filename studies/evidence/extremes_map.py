@@ -8,9 +8,8 @@ from matplotlib.colors import BoundaryNorm, LogNorm
 from matplotlib.lines import Line2D
 
 from solver import Status
-
-from ..data.dataset import NO_SOLUTION
-from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
+from solver.status import NO_SOLUTION
+from study.figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 
 BASES = {"half_space": "half-space", "thin_layer": "thin layer", "layered": "exact layer"}
 LAWS = ("smooth", "disc_cell", "power_law")
@@ -27,11 +26,11 @@ COLOURS = {Status.CONVERGED: "0.85"} | dict(zip(NO_SOLUTION, ("0.4", "#56b4e9"),
 ITERATIONS = (1, 5, 10, 15, 20, 30, 50, 100, 200, 500)
 
 
-@figure("extremes", "extremes", "extremes_layered", size=(TWO_COLUMNS, 9.2), panels=(5, 3))
+@figure("extremes", "extremes", "extremes_layered", long=True, size=(TWO_COLUMNS, 9.2), panels=(5, 3))
 def maps(panels, *studies: xr.Dataset) -> Columns:
-    """Random cases far beyond any scene, drawn as studies/extremes.toml and extremes_layered.toml say. Rows: a base and
-    two of its parameters. Columns: every case as a point by its status; of the converged cases of a cell the median of
-    error over rtol, and the largest number of iterations.
+    """Random cases far beyond any scene, drawn as studies/evidence/extremes.toml and extremes_layered.toml say. Rows: a
+    base and two of its parameters. Columns: every case as a point by its status; of the converged cases of a cell the
+    median of error over rtol, and the largest number of iterations.
 
     The numbers are those of the cells that hold cases.
     """
@@ -127,6 +126,7 @@ NUMBERS = "error 50% | .1e; error 99.9% | .1e; error max | .1e; iterations | .0f
     "extremes",
     "extremes",
     "extremes_layered",
+    long=True,
     columns="base; law; cases | d; " + "".join(f"{share} | .2%; " for share in SHARES) + NUMBERS,
 )
 def shares(*studies: xr.Dataset) -> list[tuple]:

@@ -1,6 +1,6 @@
 """Where the paper's successive approximations converge: maps of the cycle in which they end, over C and k."""
 
-from importlib.resources import files
+from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -9,7 +9,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import LogFormatterMathtext
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure, joined
+from study.figures.registry import TWO_COLUMNS, Columns, figure, joined
 
 MAPS = ((0.5, 16), (0.5, 32), (0.5, 64), (0.4, 32), (0.6667, 32))  # β and number of nodes of each map
 SHARES = (1e-2, 1e-4)  # each p/p(0) at which a line A'(p) = (1 + 2k) C is drawn
@@ -21,7 +21,7 @@ LINES = {"color": "black", "linewidth": 0.9}
 DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
 
 
-@figure("picard_domain", "picard_domain", size=(TWO_COLUMNS, 4.8), panels=(2, 3))
+@figure("picard_domain", "picard_domain", long=True, size=(TWO_COLUMNS, 4.8), panels=(2, 3))
 def domain(panels, found: xr.Dataset) -> Columns:
     """Size of the cycle in which the paper's successive approximations (8) end, over the compliance C of the layer and
     the relaxation 1 + 2k, and the lines of the linear theory. Last panel: two successive iterates near the edge, and
@@ -90,7 +90,7 @@ def cycle(axes) -> None:
 
     Results hold no iterates. These are in a file, which tests/references/make_picard_cycle.py has written.
     """
-    x, *iterates, solution = np.loadtxt(files(__package__) / "picard_cycle.csv", delimiter=",", skiprows=1).T
+    x, *iterates, solution = np.loadtxt(Path(__file__).with_name("picard_cycle.csv"), delimiter=",", skiprows=1).T
     for p, count, mark in zip(iterates, (1000, 1001), "os", strict=True):
         axes.plot(x, 1e3 * p, f"-{mark}", markersize=3, linewidth=0.9, label=f"iterate {count}")
     axes.plot(x, 1e3 * solution, "k-", linewidth=0.9, label="solution")

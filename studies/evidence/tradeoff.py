@@ -3,26 +3,20 @@
 docs/tradeoff.md says how both are measured.
 """
 
-import hashlib
 import json
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
-from pathlib import Path
-from types import SimpleNamespace
 
 import numpy as np
 import xarray as xr
 
-from solver import NUMERICS_VERSION, Problem, Solution, Status, solve
+from solver import Problem, Solution, Status, solve
 from solver.contact.results import difference
+from study.figures import registry
 
-from ..data.provenance import provenance
-from ..files.examine import examine
-from ..files.results_file import open_results, write
 from ..paper import paper_error
 from ..paper.uniform import solve_uniform, uniform_mesh
-from ..spec.definition import StudyError
 from .problem_sets import SETS
 
 REFERENCE = 1e-11  # rtol of the solutions with which all others are compared
@@ -126,7 +120,15 @@ WORDS = {
 }
 
 
-def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, command: str = "") -> xr.Dataset:
+def plan(ways: dict[str, Way] = WAYS, size: int = SIZE) -> str:
+    """What is measured, as text."""
+    settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
+    iterates = [paper_error.INTERVALS, paper_error.STEPS]
+    return json.dumps({"size": size, "seed": SEED, "ways": settings, "iterates": iterates})
+
+
+@registry.measured("tradeoff", plan, title="Work and precision of every way to solve the model")
+def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS) -> xr.Dataset:
     """Work and precision over (set, way, step), with `cases` that were measured, and the variables of `paper_error`.
 
     size : cases of each set; those that the model cannot solve (`status` of the reference) are left out
@@ -145,7 +147,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS, com
                 copies = way.copies if name in PAPERS else 1
                 for key, value in measured(way, setting, cases, reference, repeats, copies).items():
                     found[key][i, j, step] = value
-    return assembled(found, counts, ways, size, command)
+    return assembled(found, counts, ways)
 
 
 def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies=1) -> dict[str, float]:
@@ -191,47 +193,12 @@ def errors(solution: Solution, reference: Solution) -> np.ndarray:
     return np.minimum(np.nan_to_num(found, nan=1.0, posinf=1.0), 1.0)
 
 
-def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way], size: int, command: str) -> xr.Dataset:
-    """The dataset, with the provenance of every other one."""
+def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way]) -> xr.Dataset:
+    """The dataset of `measure`."""
     variables = {
         name: (("set", "way", "step"), array, {"long_name": WORDS[name]} | ({"units": "s"} if name == "time" else {}))
         for name, array in found.items()
     }
     variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured"}
     variables["varied"] = "way", [way.varied for way in ways.values()]
-    title, text = "Work and precision of every way to solve the model", plan(ways, size)
-    as_study = SimpleNamespace(title=title, name="tradeoff", text=text, digest=digest(text))
-    coordinates = {"set": list(SETS), "way": list(ways)}
-    return xr.Dataset(variables, coordinates, provenance(as_study, command)).merge(paper_error.measured())
-
-
-def plan(ways: dict[str, Way], size: int) -> str:
-    """What is measured, as text."""
-    settings = {name: [way.varied, way.settings, way.sets, way.most, way.copies] for name, way in ways.items()}
-    iterates = [paper_error.INTERVALS, paper_error.STEPS]
-    return json.dumps({"size": size, "seed": SEED, "ways": settings, "iterates": iterates})
-
-
-def digest(text: str) -> str:
-    """sha256 of a plan and the numerics."""
-    return hashlib.sha256((NUMERICS_VERSION + text).encode()).hexdigest()
-
-
-def results(folder, size: int = SIZE, force: bool = False, command: str = "") -> xr.Dataset:
-    """The measurements in FOLDER/tradeoff.nc. If they are missing, damaged or of another plan, they are made anew.
-
-    force : make them anew in any case
-
-    A damaged file is kept aside. Raises Unusable for a file that roughcoat has not written, StudyError for the cases of
-    a study.
-    """
-    path = Path(folder) / "tradeoff.nc"
-    found = examine(path)
-    if found.kind in ("foreign", "unreadable"):
-        found.raise_if_bad()
-    if found.sizes:
-        raise StudyError([f"{path}: holds the cases of a study: move it away, or use --results DIR"])
-    if force or not found.good or found.digest != digest(plan(WAYS, size)):
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write(measure(size, command=command), path, found)
-    return open_results(path)
+    return xr.Dataset(variables, {"set": list(SETS), "way": list(ways)}).merge(paper_error.measured())

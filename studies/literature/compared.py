@@ -3,8 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from ..data.derived import effective_modulus
-from ..figures.registry import pick
+from study import derived
+from study.figures.registry import pick
+
 from . import formulas
 from .formulas import Formula
 
@@ -36,7 +37,7 @@ def stiffness(coated: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     """a/h (m,), n (k,) and E_eff/E2* (k, m) of coated half-spaces."""
     coated = coated.sortby("h", ascending=False)
     x = float(coated["a"]) / coated["h"].values
-    return x, coated["n"].values, effective_modulus(coated).transpose("n", "h").values
+    return x, coated["n"].values, derived.effective_modulus(coated).transpose("n", "h").values
 
 
 def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
@@ -117,4 +118,4 @@ def kappa(rigid: xr.Dataset, nu: float, at: float | np.ndarray = 1.0) -> np.ndar
 
     contact = of_material(rigid, True, nu)
     x = over_hertz(contact)[0]
-    return np.exp(CubicSpline(np.log(x), np.log(effective_modulus(contact).values))(np.log(at)))
+    return np.exp(CubicSpline(np.log(x), np.log(derived.effective_modulus(contact).values))(np.log(at)))

@@ -8,9 +8,9 @@ import xarray as xr
 
 from solver import Problem, solve
 from solver.closed_forms import hertz
+from study import derived
+from study.figures.registry import pick, table
 
-from ..data.derived import nominal_area_ratio
-from ..figures.registry import pick, table
 from . import numbers
 from .law_fits import bound, exact, fitted, largest_error, printed
 from .uniform import solve_uniform
@@ -75,6 +75,7 @@ def contacts(load: float) -> dict[str, float]:
 @table(
     "paper_error",
     "tradeoff",
+    long=True,
     columns="quantity; paper | .4g; converged | .5g; converged off | +.2%; iterates | .5g; iterates off | +.2%",
 )
 def rows(found: xr.Dataset) -> list[tuple]:
@@ -103,7 +104,7 @@ def paper_numbers(reference: xr.Dataset, main: xr.Dataset) -> list[tuple]:
     fit = fitted(Ra, Nbar)
     ours = {"P": reference["P"]}
     ours |= {name: rough[name] for name in ("p0", "Ar_An", "p_max", "D", "A0")}
-    ours |= {"An_ratio": nominal_area_ratio(homogeneous, reference["a"])}
+    ours |= {"An_ratio": derived.nominal_area_ratio(homogeneous, reference["a"])}
     ours |= {f"{name} homogeneous": homogeneous[name] for name in ("Ar_An", "p_max")}
     ours |= {f"D smooth {base}": pick(main, label=f"smooth, {base}")["D"] for base in ("layered", "homogeneous")}
     ours |= {"B": fit.B / Ra, "beta": fit.beta}

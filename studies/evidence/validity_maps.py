@@ -7,10 +7,10 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import NullFormatter
 
 from solver.models.thin_layer_error import thin_layer_error
+from study import vocabulary
+from study.figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 
-from ..figures.registry import TWO_COLUMNS, Columns, figure, joined, table
 from ..literature.compared import safe_range
-from ..spec.vocabulary import VOCABULARY
 
 LEVELS = (-10.0, -0.1, -0.01, 0.01, 0.1, 10.0)
 COLOURS = ("#4f9bcb", "#c6dcee", "white", "#fbd9b5", "#f0914a")
@@ -96,7 +96,7 @@ def from_layered(dataset: xr.Dataset, name: str) -> xr.DataArray:
     NaN where the thin-layer equation does not apply.
     """
     error = dataset[name].sel(base="thin_layer", drop=True) / dataset[name].sel(base="layered", drop=True) - 1
-    error.attrs = {"long_name": f"{VOCABULARY[name].long_name}: thin layer over exact layer, less 1"}
+    error.attrs = {"long_name": f"{vocabulary.VOCABULARY[name].long_name}: thin layer over exact layer, less 1"}
     return error
 
 
@@ -168,7 +168,7 @@ def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
             cases = (found.isel(case=i) for i in range(len(MATERIALS)))
             largest = [round(largest_thickness(case, name, level), 3) for case in cases for level in (0.01, 0.1)]
             punch, given = "smooth" if micro == "smooth" else "rough", "a" if name == "P" else "P"
-            rows.append((punch, VOCABULARY[name].symbol, given, *largest))
+            rows.append((punch, vocabulary.VOCABULARY[name].symbol, given, *largest))
     return rows
 
 

@@ -4,12 +4,13 @@ The curves have the paper's names: 1 rough, layered; 2 rough, homogeneous; 1' sm
 A companion draws the curves of the layer on the exact layer, with the paper's thin layer dotted beside them.
 """
 
+from collections.abc import Callable
 from functools import partial
 
 import xarray as xr
 
-from ..figures.annotate import load_axis, name_curve, note_violations, shade_violations
-from ..figures.registry import ONE_COLUMN, Columns, caption_of, figure, pick
+from study.figures.annotate import load_axis, name_curve, note_violations, shade_violations
+from study.figures.registry import ONE_COLUMN, Columns, caption_of, figure, pick
 
 CURVES = {"1": "rough, layered", "2": "rough, homogeneous", "1′": "smooth, layered", "2′": "smooth, homogeneous"}
 EXACT_LAYER = {"1": "rough, exact layer", "1′": "smooth, exact layer"}
@@ -21,19 +22,22 @@ LAYER_EXACT = "The layer is exact; thin dotted lines: the same on the paper's th
 OVER_LOADS = """P0 is the load of figures 3, 7 and 10. Grey: loads at which an assumption of the model does not hold,
 for the curves named in the legend."""
 PAPER_LABEL = "thin layer (the paper)"
+OVER_LOAD = ("load_sweep", "main_case")  # the studies of figures 4, 5, 6 and 8
+SIZE, HIGH = (ONE_COLUMN, 3.0), (ONE_COLUMN, 3.6)  # the second has four curves
 
 
-def with_companion(name: str, *studies: str, words: str = "", height: float = 3.0):
-    """Register `draw(axes, *datasets, exact)` as the figure NAME and, with exact = True, as its companion.
+def with_companion(figure: Callable, companion: Callable, words: str = ""):
+    """Register `draw(axes, *datasets, exact)` as a figure and, with exact = True, as its companion.
 
-    words : the caption of both, by default the docstring; what holds for the layer is added
+    figure, companion : decorators of both
+    words : stand in the captions of both after the docstring of `draw`; what holds for the layer is added
     """
 
     def register(draw):
-        for suffix, exact in (("", False), ("_layered", True)):
-            caption = f"{caption_of(draw, words)} {LAYER_EXACT if exact else LAYER_THIN}"
-            named = figure(name + suffix, *studies, size=(ONE_COLUMN, height), caption=caption)
-            named(partial(draw, exact=exact))
+        for exact, decorator in enumerate((figure, companion)):
+            drawn = partial(draw, exact=bool(exact))
+            drawn.__doc__ = " ".join(filter(None, (caption_of(draw), words, LAYER_EXACT if exact else LAYER_THIN)))
+            decorator(drawn)
         return draw
 
     return register
@@ -83,19 +87,19 @@ def main_case(axes, main: xr.Dataset, sides: dict[str, str], exact: bool) -> Col
     return pressures(axes, shown, float(pick(main, label=CURVES["1"])["a"]), PAPER_LABEL * exact)
 
 
-@with_companion("fig03", "main_case")
+@with_companion(figure("fig03", "main_case", size=SIZE), figure("fig03_layered", "main_case", size=SIZE))
 def rough_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure under the rough punch with a layer (1) and without (2); a0 is the radius of contact 1."""
     return main_case(axes, main, {"1": "above", "2": "above"}, exact)
 
 
-@with_companion("fig07", "main_case")
+@with_companion(figure("fig07", "main_case", size=SIZE), figure("fig07_layered", "main_case", size=SIZE))
 def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure, rough and smooth (primes), with a layer (1) and without (2); a0: radius of 1."""
     return main_case(axes, main, {"1": "below", "2": "below", "1′": "above", "2′": "above"}, exact)
 
 
-@with_companion("fig10", "spot_density")
+@with_companion(figure("fig10", "spot_density", size=SIZE), figure("fig10_layered", "spot_density", size=SIZE))
 def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1."""
     paper = [pick(found, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
@@ -107,9 +111,13 @@ def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
     return pressures(axes, shown, float(paper[0]["a"]), PAPER_LABEL * exact)
 
 
-def against_load(axes, sweep: xr.Dataset, main: xr.Dataset, what: tuple, exact: bool) -> Columns:
-    """One quantity against the load; P0 marked, loads shaded where an assumption fails. what : see AGAINST_LOAD"""
-    quantity, scale, label, sides = what
+def against_load(axes, sweep: xr.Dataset, main: xr.Dataset, exact: bool, what: tuple, sides: dict) -> Columns:
+    """One quantity against the load; P0 marked, loads shaded where an assumption fails.
+
+    what : the quantity, its unit and label on the ordinate
+    sides : curve -> on which side of it its name stands
+    """
+    quantity, scale, label = what
     P, columns, first = sweep["P"].values, {"P/(E2* R^2)": sweep["P"].values}, {}
     for curve, side in sides.items():
         cases = cases_of(sweep, curve, exact)
@@ -129,18 +137,27 @@ def against_load(axes, sweep: xr.Dataset, main: xr.Dataset, what: tuple, exact: 
     return columns
 
 
-AGAINST_LOAD = {
-    "fig04": ("Real over nominal contact area against the load.",
-              "Ar_An", 1.0, "$A_r/A_n$", {"1": "above", "2": "below"}),
-    "fig05": ("Largest real pressure in the middle of the contact against the load.",
-              "p_max", 1.0, r"$p_{\max}/E_2^*$", {"1": "below", "2": "below"}),
-    "fig06": ("Depth of the rough punch against the load.",
-              "D", 1e-3, DEPTH, {"1": "above", "2": "below"}),
-    "fig08": ("Depth of the rough punch, and of the smooth one (primes), against the load.",
-              "D", 1e-3, DEPTH, {"1": "above", "2": "above", "1′": "below", "2′": "below"}),
-}  # fmt: skip
-"""Figure -> caption, quantity, its unit and label on the ordinate, curves and on which side of them their names are."""
-for _name, (_words, *_what) in AGAINST_LOAD.items():
-    _height = 3.6 if _name == "fig08" else 3.0  # it has four curves
-    _register = with_companion(_name, "load_sweep", "main_case", words=f"{_words} {OVER_LOADS}", height=_height)
-    _register(partial(against_load, what=tuple(_what)))
+@with_companion(figure("fig04", *OVER_LOAD, size=SIZE), figure("fig04_layered", *OVER_LOAD, size=SIZE), OVER_LOADS)
+def real_areas(axes, sweep: xr.Dataset, main: xr.Dataset, exact: bool) -> Columns:
+    """Real over nominal contact area against the load."""
+    return against_load(axes, sweep, main, exact, ("Ar_An", 1.0, "$A_r/A_n$"), {"1": "above", "2": "below"})
+
+
+@with_companion(figure("fig05", *OVER_LOAD, size=SIZE), figure("fig05_layered", *OVER_LOAD, size=SIZE), OVER_LOADS)
+def real_pressures(axes, sweep: xr.Dataset, main: xr.Dataset, exact: bool) -> Columns:
+    """Largest real pressure in the middle of the contact against the load."""
+    what = "p_max", 1.0, r"$p_{\max}/E_2^*$"
+    return against_load(axes, sweep, main, exact, what, {"1": "below", "2": "below"})
+
+
+@with_companion(figure("fig06", *OVER_LOAD, size=SIZE), figure("fig06_layered", *OVER_LOAD, size=SIZE), OVER_LOADS)
+def rough_depths(axes, sweep: xr.Dataset, main: xr.Dataset, exact: bool) -> Columns:
+    """Depth of the rough punch against the load."""
+    return against_load(axes, sweep, main, exact, ("D", 1e-3, DEPTH), {"1": "above", "2": "below"})
+
+
+@with_companion(figure("fig08", *OVER_LOAD, size=HIGH), figure("fig08_layered", *OVER_LOAD, size=HIGH), OVER_LOADS)
+def all_depths(axes, sweep: xr.Dataset, main: xr.Dataset, exact: bool) -> Columns:
+    """Depth of the rough punch, and of the smooth one (primes), against the load."""
+    sides = {"1": "above", "2": "above", "1′": "below", "2′": "below"}
+    return against_load(axes, sweep, main, exact, ("D", 1e-3, DEPTH), sides)

@@ -1,0 +1,188 @@
+"""`figures.py` beside studies: which figures and tables stand in it, read without running it, and what it registers.
+
+Names are read from the text: those of decorators `@figure("NAME", ...)` and the like, in `figures.py` and in the files
+beside it that it imports (`from . import curves`). The file is run when one of its figures or tables is asked for.
+"""
+
+import ast
+import hashlib
+import logging
+import sys
+from collections.abc import Iterator
+from functools import lru_cache
+from importlib import import_module, invalidate_caches
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+from ..spec.definition import StudyError
+from ..spec.places import BOOK, STUDIES, chapters, packaged, root_of
+from ..spec.vocabulary import suggest
+from ..terminal import on_one_line
+
+log = logging.getLogger(__name__)
+FILE = "figures.py"
+KINDS = {"figure": "figure", "drawing": "figure", "table": "table", "measured": "measured"}
+"""Decorator of `study.figures.registry` -> kind of what it registers."""
+LARGEST = 1_000_000  # bytes of a file beside `figures.py` that counts as its data; of ours the largest has 6,000
+
+
+def own() -> list[Path]:
+    """Each `figures.py` of the user: in the working folder, in `studies`, and in its chapters."""
+    book = packaged().resolve()
+    files = [folder / FILE for folder in (Path(), *chapters(STUDIES))]
+    return [file for file in files if file.is_file() and not file.resolve().is_relative_to(book)]
+
+
+def of_the_book() -> list[Path]:
+    """Each `figures.py` of the book."""
+    return [folder / FILE for folder in chapters(packaged()) if (folder / FILE).is_file()]
+
+
+class Text(NamedTuple):
+    """What stands in one file. modules : those beside it that it imports; found : (kind, name) -> whether it is long"""
+
+    modules: tuple[str, ...]
+    found: dict[tuple[str, str], bool]
+
+
+def names_in(file: Path) -> dict[tuple[str, str], bool]:
+    """(kind, name) of what stands in a `figures.py` -> whether it is `long`. Nothing of it is run.
+
+    Raises StudyError for a file that is no Python.
+    """
+    found, wanted, seen = {}, [file], set()
+    while wanted:
+        path = wanted.pop()
+        seen.add(path)
+        about = path.stat()
+        text = read(path, (about.st_ino, about.st_size, about.st_mtime_ns))
+        found |= text.found
+        paths = {file.parent / f"{module.replace('.', '/')}.py" for module in text.modules}
+        wanted += sorted(path for path in paths - {*seen, *wanted} if path.is_file())
+    return found
+
+
+@lru_cache(maxsize=256)  # every command asks several times for each figure; a file is read in a millisecond
+def read(path: Path, _: tuple) -> Text:
+    """What stands in a file; the second argument changes when the file does. Raises StudyError if it is no Python."""
+    try:
+        nodes = list(ast.walk(ast.parse(path.read_bytes())))
+    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:  # some of a null byte, or of deep brackets
+        line = f"line {error.lineno}: " if isinstance(error, SyntaxError) and error.lineno else ""
+        raise StudyError([f"{path.as_posix()}: is no Python: {line}{getattr(error, 'msg', error)}"]) from None
+    except OSError as error:
+        raise StudyError([f"{path.as_posix()}: cannot be read: {error.strerror}"]) from None
+    imports = [node for node in nodes if isinstance(node, ast.ImportFrom)]
+    beside = [node for node in imports if node.level == 1]
+    modules = [name for node in beside for name in ([node.module] if node.module else [a.name for a in node.names])]
+    called = {alias.asname or alias.name: alias.name for node in imports for alias in node.names if alias.name in KINDS}
+    return Text(tuple(modules), dict(_calls(nodes, called)))
+
+
+def _calls(nodes: list[ast.AST], called: dict[str, str]) -> Iterator[tuple[tuple[str, str], bool]]:
+    """(kind, name) and `long` of each call of a decorator. called : what the file calls it -> its own name"""
+    for node in nodes:
+        if isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
+            decorator = called.get(getattr(node.func, "id", None), getattr(node.func, "attr", None))
+            name = node.args[0].value
+            if decorator in KINDS and isinstance(name, str):  # `@figure` as well as `@registry.figure`
+                options = {word.arg: word.value for word in node.keywords}
+                yield (KINDS[decorator], name), bool(getattr(options.get("long"), "value", False))
+
+
+def names(kind: str, *, long: bool = True) -> list[str]:
+    """The names of all figures, or tables, beside studies, the user's before the book's; without long ones if wanted.
+
+    In place of a file that cannot be read its path is given: `place_of` says what is wrong with it.
+    """
+    found = []
+    for file in (*own(), *of_the_book()):
+        try:
+            here = names_in(file).items()
+            found += sorted(name for (one, name), takes in here if one == kind and (long or not takes))
+        except StudyError:
+            found.append(file.as_posix())
+    return list(dict.fromkeys(found))
+
+
+def place_of(kind: str, name: str) -> tuple[Path, str] | None:
+    """The `figures.py` of a figure or table and its name there; None if there is none. FOLDER/NAME names the folder.
+
+    The user's go before those of the book. Raises StudyError for two of the user, or of the book, that have one name.
+    """
+    folder, _, last = name.rpartition("/")
+    if folder:
+        file = Path(folder, FILE)
+        found = [file] if file.is_file() and (kind, last) in names_in(file) else []
+    else:
+        found = [file for file in own() if (kind, name) in _readable(file)]
+        found = found or [file for file in of_the_book() if (kind, name) in _readable(file)]
+    if len(found) > 1:
+        paths = " and ".join(file.as_posix() for file in found)
+        raise StudyError([f"{name}: is in {paths}: say which, such as {found[0].parent.as_posix()}/{name}"])
+    return (found[0], last) if found else None
+
+
+def _readable(file: Path) -> dict:
+    try:
+        return names_in(file)
+    except StudyError:
+        return {}
+
+
+def unknown(kind: str, name: str, others: list[str]) -> StudyError:
+    """The error of a figure or table that is nowhere. others : names known besides
+
+    A file that cannot be read is told too: the name may stand there.
+    """
+    lines = [f'"{name}" is not known{suggest(name, [*others, *names(kind)])}']
+    for file in (*own(), *of_the_book()):
+        try:
+            names_in(file)
+        except StudyError as error:
+            lines += error.messages
+    return StudyError(lines)
+
+
+def package_of(file: Path) -> str:
+    """The package as which a `figures.py` is imported, with the files beside it, so that it can import these.
+
+    Chapters of one folder of studies are in one package: `from ..paper import numbers`.
+    """
+    folder = file.resolve().parent
+    root, book = root_of(folder), packaged().resolve()
+    if folder.is_relative_to(book):
+        root, top = book, BOOK
+    else:
+        top = f"{BOOK}_{hashlib.sha256(str(root).encode()).hexdigest()[:8]}"
+    if top not in sys.modules:
+        sys.modules[top] = ModuleType(top)
+        sys.modules[top].__path__ = [str(root)]
+    return ".".join((top, *folder.relative_to(root).parts))
+
+
+def run(file: Path) -> str:
+    """Run a `figures.py`, once, and return its package. Raises StudyError if it fails."""
+    package = package_of(file)
+    try:
+        invalidate_caches()  # the file may be a second old
+        import_module(f"{package}.{Path(FILE).stem}")
+    except StudyError:
+        raise
+    except Exception as error:
+        log.info("%s", file, exc_info=True)
+        reason = f"{type(error).__name__}: {on_one_line(str(error), 300)}"
+        wrong = f"{file.as_posix()}: cannot be run: {reason}; -v before the command shows where"
+        raise StudyError([wrong], code=1) from error
+    return package
+
+
+def files_of(package: str) -> list[Path]:
+    """Files from which figures of a package may follow: the code of its studies that has run, and the data beside."""
+    top = ".".join(package.split(".")[:2])
+    modules = [module for name, module in sys.modules.copy().items() if f"{name}.".startswith(f"{top}.")]
+    code = {Path(module.__file__) for module in modules if getattr(module, "__file__", None)}
+    beside = {path for folder in {file.parent for file in code} for path in folder.iterdir()}
+    data = {path for path in beside if path.suffix != ".py" and path.is_file() and path.stat().st_size <= LARGEST}
+    return sorted(code | {path for path in data if not path.name.startswith(".")})

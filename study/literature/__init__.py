@@ -1,1 +1,0 @@
-"""Published formulas of smooth contacts on layers, beside the exact value of this program."""

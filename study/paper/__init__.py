@@ -1,1 +1,0 @@
-"""What only the paper needs: its numbers, its own numerical method, its figures."""

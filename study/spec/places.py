@@ -1,0 +1,109 @@
+"""Where studies lie: in `studies` of the working folder, and in the book that comes with roughcoat.
+
+Both have the same form: study files, and folders of them, its chapters. Beside study files may be a file `figures.py`.
+"""
+
+import os
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+STUDIES = Path("studies")
+PACKAGE = Path(__file__).resolve().parents[1]
+BOOK = "study.studies"  # the package of the code in the book, in a clone and from a wheel
+
+
+def packaged() -> Path:
+    """Folder of the book: in the installed package, or beside it in a clone."""
+    for folder in (PACKAGE / "studies", PACKAGE.parent / "studies"):
+        if folder.is_dir():
+            return folder
+    return Path(_unpacked().name)
+
+
+@cache
+def _unpacked() -> TemporaryDirectory:
+    """A folder, until the program ends, with the book of a package that is in a zip file."""
+    folder, package = TemporaryDirectory(prefix="roughcoat-"), files("study")
+    waiting = [(place, Path(folder.name)) for place in (package.parent / "studies", package / "studies")]
+    while waiting:
+        place, copy = waiting.pop()
+        copy.mkdir(exist_ok=True)
+        for file in place.iterdir() if place.is_dir() else ():
+            if file.is_dir():
+                waiting.append((file, copy / file.name))
+            else:
+                (copy / file.name).write_bytes(file.read_bytes())
+    return folder
+
+
+def chapters(root: Path) -> list[Path]:
+    """A folder of studies and its chapters, which are the folders in it, by name."""
+    inside = sorted(path for path in root.glob("*/") if path.is_dir() and not path.name.startswith((".", "_")))
+    return [root, *inside]
+
+
+def files_in(root: Path) -> list[Path]:
+    """The study files of a folder and of its chapters."""
+    return [path for folder in chapters(root) for path in sorted(folder.glob("*.toml"))]
+
+
+def root_of(folder: Path) -> Path:
+    """The folder of studies of which a folder is a chapter; itself, if it is none."""
+    parent = folder.parent
+    return parent if parent.name == STUDIES.name and "." not in folder.name else folder
+
+
+def known_studies() -> list[str]:
+    """Names of the studies in `studies`, and of those of the book."""
+    return list(dict.fromkeys(path.stem for root in (STUDIES, packaged()) for path in files_in(root)))
+
+
+def study_file(path, beside: Path | None = None) -> Path:
+    """The study file at a path, or of the study of a name, in `studies` or in the book.
+
+    beside : a folder where a name is looked for first, then in the studies of which it is a chapter
+
+    A name may have its chapter, "paper/main_case", and a path may lack it: `studies/main_case.toml` is
+    `studies/paper/main_case.toml`. Raises StudyError when there is no such file, or there are two.
+    """
+    text = os.fspath(path)
+    given = Path(os.path.expanduser(text))
+    if given.exists():
+        return given
+    if by_path := given.suffix == ".toml":
+        roots = [given.parent] if given.parent.name == STUDIES.name else []
+    else:
+        roots = [beside, root_of(beside), STUDIES, packaged()] if beside else [STUDIES, packaged()]
+    for root in roots if ".." not in given.parts else ():
+        if found := _in(root, given.stem if by_path else text):
+            return found
+    raise _not_found(text, given)
+
+
+def _in(root: Path, name: str) -> Path | None:
+    """The study file of a name in a folder, or in the one chapter that has it. Raises StudyError if two chapters do."""
+    here, *inside = (folder / f"{name}.toml" for folder in chapters(root))
+    found = [here] if here.exists() else [path for path in inside if path.exists()]
+    if len(found) > 1:
+        from .definition import StudyError
+
+        paths = " and ".join(path.as_posix() for path in found)
+        raise StudyError([f"{name}: is in {paths}: give the path of one"])
+    return found[0] if found else None
+
+
+def _not_found(text: str, given: Path) -> Exception:
+    """The error of a study file that is not there. It tells which are meant perhaps."""
+    from .definition import StudyError
+    from .vocabulary import suggest
+
+    by_path, beside = given.suffix == ".toml", Path(f"{text}.toml")
+    there = (*sorted(given.parent.glob("*.toml")), *files_in(STUDIES))
+    paths = list(dict.fromkeys(path.as_posix() for path in there))
+    same = [path for path in paths if Path(path).name == given.name]
+    # whoever writes "mine" means the file beside, and no study of a name that is like it
+    known = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
+    looked = "" if by_path else f" (looked for {given.as_posix()} and {(STUDIES / f'{text}.toml').as_posix()})"
+    return StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])

@@ -1,0 +1,56 @@
+"""What holds of every law of this package: no pressure, full contact, and that no law has the numbers of another."""
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose, assert_array_equal
+
+from solver import laws
+from solver.laws import heights
+
+ROUGH = [law for law in laws.BUILT_IN if law.rough]
+GIVEN = {"Nbar": 250_000.0, "Ra": 0.004, "B": 0.1, "beta": 0.53, "sigma": 1e-5, "cut": 3.0}
+
+
+def at(law, p, **other):
+    return law.at(p, 1.0, **{name: (GIVEN | other)[name] for name in law.parameters})
+
+
+@pytest.mark.parametrize("law", ROUGH, ids=[law.name for law in ROUGH])
+@pytest.mark.parametrize("sigma", [0.0, 1e-8, 1e-5, 1e-2])
+def test_nothing_at_no_pressure(law, sigma):
+    """Zeros, not 0/0; beside pressures, and alone. NaN stays NaN."""
+    for found, p in ((at(law, np.array([0.0, 1e-4, np.nan]), sigma=sigma), 3), (at(law, 0.0, sigma=sigma), 1)):
+        values = np.array([np.ravel(one) for one in found])
+        assert values.shape == (3, p)
+        assert_array_equal(values[:, 0], 0.0)
+        assert (values[:, 1:2] > 0).all() and np.isnan(values[:, 2:]).all()
+
+
+@pytest.mark.parametrize("law", ROUGH, ids=[law.name for law in ROUGH])
+@pytest.mark.parametrize("sigma", [0.0, 1e-5, 1e-2])
+def test_contact_is_never_more_than_full(law, sigma):
+    """λ rises to 1 and no further, and the mean pressure on the spots is no more than the largest."""
+    p = np.geomspace(1e-9, 0.9, 300)
+    found = at(law, p, sigma=sigma)
+    assert (np.diff(found.lam) >= -1e-9).all() and (found.lam <= 1).all() and found.lam[-1] > 0.01
+    assert (found.p_max >= p).all(), "of the real pressure, which is the nominal one in full contact"
+
+
+def test_distributions_of_the_same_heights_have_tables_of_their_own():
+    """Normal and uniform ones, with and without the field of the others, of two cuts, in whichever order they come."""
+    normal = heights.law("free_normal", heights.NORMAL, field=0.0, version="1")
+    even = heights.law("free_even", heights.EVEN, field=0.0, version="1")
+    known = [(heights.LAW, 3.0), (normal, 3.0), (heights.LAW, 3.5), (heights.UNIFORM_LAW, None), (even, None)]
+    p = np.geomspace(1e-6, 1e-2, 7)
+
+    def together(order):
+        heights._TABLES.clear()
+        return {i: at(known[i][0], p, cut=known[i][1]).lam for i in order}
+
+    first, last = together(range(5)), together(reversed(range(5)))
+    alone = {i: together([i])[i] for i in range(5)}
+    for i in range(5):
+        assert_allclose(first[i], alone[i], rtol=1e-13)
+        assert_allclose(last[i], alone[i], rtol=1e-13)
+        for j in range(i):
+            assert (np.abs(alone[i] / alone[j] - 1) > 1e-3).any(), "they are different distributions"

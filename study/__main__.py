@@ -145,9 +145,10 @@ def _attempt(act, options, item, kept: str) -> int:
 
 def own_modules_first() -> None:
     """Look for modules in the working folder last, where `python -m` looks first: a user may have a dask.py there."""
-    first = Path(sys.path[0]).resolve()
-    if not sys.flags.safe_path and first == Path.cwd() != Path(__file__).resolve().parents[1]:
-        sys.path.append(sys.path.pop(0))
+    with suppress(FileNotFoundError):  # the working folder has been deleted: nothing is in it
+        first = Path(sys.path[0]).resolve()
+        if not sys.flags.safe_path and first == Path.cwd() != Path(__file__).resolve().parents[1]:
+            sys.path.append(sys.path.pop(0))
 
 
 def command() -> None:

@@ -25,21 +25,30 @@ from .work.run import dry_run, partial_dataset, run
 
 @dataclass(frozen=True, eq=False)
 class Study:
-    """A study file, checked, and the folder of its results."""
+    """A study file, checked, and the folder of its results.
+
+    home : the folder from which `results` is, if it is relative; None: the working folder of each moment
+    """
 
     definition: Definition
     results: Path
+    home: Path | None = None
 
     def __repr__(self) -> str:
         return f'Study("{self.definition.name}", {self.definition.cases}, {self._store.path.as_posix()})'
 
     @property
     def _store(self) -> Store:
-        return Store(self.definition, self.results)
+        return Store(self.definition, self._folder)
+
+    @property
+    def _folder(self) -> Path:
+        """Folder of the results, short while the program is where it was when the study was loaded."""
+        return self.results if self.home in (None, _working_folder()) else self.home / self.results
 
     def run(self, **options) -> Report:
         """Compute what is missing and write the results file; options as of `study.work.plan.Order`."""
-        return run(self.definition, self.results, command=command_line(), **options)
+        return run(self.definition, self._folder, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
         """What `run` would cost, how many cases it would find computed, and with which error it would end, if any.
@@ -48,7 +57,7 @@ class Study:
 
         Raises StudyError for a very large study of which something is on disk, unless `yes`: looking takes memory.
         """
-        return dry_run(self.definition, self.results, workers=workers, yes=yes, force=force)
+        return dry_run(self.definition, self._folder, workers=workers, yes=yes, force=force)
 
     def status(self, yes: bool = False) -> dict:
         """State, cases, status -> number of cases, path of the results, what is wrong with them.
@@ -106,7 +115,7 @@ class Study:
             return open_lazily(path) if found.unpacked > LAZY else open_results(path)
         if partial:
             with suppress(FileNotFoundError):
-                return partial_dataset(self.definition, self.results)
+                return partial_dataset(self.definition, self._folder)
             return self.open()  # a run has ended meanwhile, and removed its blocks
         if found.good or found.kind == "missing":
             reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
@@ -125,5 +134,14 @@ def load(path, results="results") -> Study:
     """Read and check a study file. Raises StudyError with all that is wrong with it.
 
     path : of the file, or the name of a study in studies/ or of one that comes with roughcoat, such as "dlc_on_steel"
+    results : folder of the results, of the working folder as it is now, wherever the program goes later
     """
-    return Study(read(study_file(path)), Path(os.path.expanduser(results)))
+    return Study(read(study_file(path)), Path(os.path.expanduser(results)), _working_folder())
+
+
+def _working_folder() -> Path | None:
+    """None if it has been deleted."""
+    try:
+        return Path.cwd()
+    except FileNotFoundError:
+        return None

@@ -12,14 +12,14 @@ z = 4), and as exp(-4π p^/J) on the hexagonal one.
 """
 
 import csv
-from pathlib import Path
+from importlib.resources import files
 
 import numpy as np
 
 from . import disc_cell
 from .tabulated import Table, fitted, law_of, t_of
 
-FILE = Path(__file__).with_name("lattices.csv")
+FILE = files(__package__) / "lattices.csv"  # which may be in a zip file
 #: p* and A* in units E = Ra = l = 1; and the radius of an isolated spot over y, for y -> 0.
 P_STAR, A_STAR = 2 / (3 * np.sqrt(np.pi)), 1 / np.pi
 _SPOT = np.cbrt(0.75 * P_STAR)
@@ -31,7 +31,7 @@ ENDS = {
     "square": {"J": 1.0, "relief": 1 / 12, "above": 0.2206356, "rate": 3 * np.pi},
     "hex": {"J": _PITCH, "relief": 5 / (36 * np.sqrt(3)), "above": 0.2177788, "rate": 4 * np.pi / _PITCH},
 }
-#: Largest relative error of A, λ and p_max (tests/laws/lattice/test_lattice.py). It is that of λ; A and p_max have 1e-5.
+#: Largest relative error of A, λ and p_max (tests/laws/lattice/test_lattice.py). It is that of λ; A, p_max have 1e-5.
 ERROR = 2e-4
 #: Degree of the polynomials. They are near enough to the rows: FITTED in tests/laws/lattice/test_lattice.py.
 _DEGREE = 12

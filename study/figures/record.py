@@ -38,6 +38,9 @@ def program() -> str:
     """sha256 of all files of the program, and of the versions of what it draws with."""
     found = hashlib.sha256(json.dumps([NUMERICS_VERSION, *map(package_version, LIBRARIES)]).encode())
     for package in PACKAGES:
+        archive = next((path for path in package.parents if path.is_file()), None)  # a zip file that holds the package
+        if archive:
+            found.update(f"{_digest(archive)}\n".encode())
         for file in sorted(package.rglob("*.*")):
             if file.is_file() and file.parent.name != "__pycache__":
                 found.update(f"{file.relative_to(package).as_posix()} {_digest(file)}\n".encode())

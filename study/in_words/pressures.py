@@ -70,8 +70,9 @@ def _may_have_a_ring(case: xr.Dataset) -> bool:
 def not_checked(case: xr.Dataset, rough: bool) -> str:
     """What nothing looks at. Of contacts with units, unless there is a rubber, also the strengths that they need.
 
-    The strength is that of a half-space under the largest pressure. The body under a layer needs less, or as much. A
-    layer may need far more (docs/model.md, Limits).
+    The strength is that of a half-space under the largest pressure. The body under a layer needs less, or as much. If
+    the layer is thin against the pitch, single spots press on it through the layer: it may need as much as what meets
+    at the asperities. A layer may need far more (docs/model.md, Limits).
     """
     words = "adhesion, and whether the bodies stay elastic"
     moduli = [case[name] for name, _, _ in BODIES.values() if name in case and case[name].attrs.get("units") == "Pa"]
@@ -80,15 +81,17 @@ def not_checked(case: xr.Dataset, rough: bool) -> str:
     top, coated = largest(case), str(case["base"].values) != "half_space"
     if not top.known:
         return f"{words}. {UNKNOWN}"
-    bodies = ["the body below" if coated else "the body"] * (not is_rigid(case, "base"))
+    elastic, apart = not is_rigid(case, "base"), "pitch_not_small_against_h" in decode(case["validity"]).item().split()
+    through = elastic and coated and rough and apart
+    bodies = ["the body below" if coated else "the body"] * (elastic and not through)
     bodies += ["the punch"] * (not is_rigid(case, "punch"))
     parts = []
     if bodies:
         needs = f"{' and '.join(bodies)} {'needs' if len(bodies) == 1 else 'need'}"
         parts.append(f"{needs} a yield strength above some {_strength(top.nominal)}")
     if rough and np.isfinite(top.real):
-        one = "" if bodies else " a yield strength"
-        parts.append(f"what meets at the asperities needs{one} above some {_strength(top.real)}")
+        who = "what meets at the asperities" + (", and the body below so thin a layer, need" if through else " needs")
+        parts.append(f"{who}{'' if bodies else ' a yield strength'} above some {_strength(top.real)}")
     found = [words, *["; ".join(parts)] * bool(parts)]
     if coated:
         found.append(BENDS if not is_rigid(case, "base") else BENDS.partition(":")[0])

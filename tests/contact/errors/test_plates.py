@@ -1,5 +1,7 @@
 """Hard layers that bend as plates: that nearly lift off in the centre, and films with short waves at the edge."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -12,22 +14,20 @@ from solver.contact.start import first_guess
 from solver.numerics.mesh import panel_mesh
 from solver.scaling import as_cases, dimensionless
 
-#: n, h/a, and at a = E1* = 1 P, D and p(0). From a Fredholm equation in long double: P and D to 14 digits, p(0) to
-#: 1e-10.
-PLATES = np.array(
-    [
-        [2e5, 0.15, 1.9470942335584e-03, 3.0433698272027e01, 1.3820584293031e-05],
-        [2e5, 0.1, 7.4994038285071e-04, 1.7216903168328e01, 1.0923631285056e-05],
-        [2e4, 0.15, 3.2029052093922e-03, 1.0280772832505e01, 8.7765951630819e-05],
-    ]
+#: Smooth spheres, of another equation in long double, at a = E1* = 1: P and D to 12 digits or more, p(0) to 2e-12 on
+#: plates and to 4e-11 on films: make_fredholm_reference.py.
+REFERENCE = np.genfromtxt(
+    Path(__file__).parents[2] / "references" / "fredholm_reference.csv", delimiter=",", names=True, dtype=None
 )
+PLATES, FILMS = (REFERENCE[REFERENCE["set"] == name] for name in ("plates", "films"))
 
 
 @pytest.mark.parametrize("control", ["a", "P", "D"])
 def test_rounding_of_a_small_pressure(control):
     """p(0) is 20 to 160 times smaller than the largest pressure. It was up to 12 times as far off as `error` here, a
     hundred times in other cases, and farther than rtol."""
-    n, h, P, D, p0 = PLATES.T
+    n, h, P, D, p0 = (PLATES[name] for name in ("n", "h_a", "P", "D", "p0"))
+    assert len(PLATES) == len(FILMS) == 3
     a = 0.01
     truth = {"a": np.full(3, a), "P": P * n * a**3, "D": D * a**2, "p0": p0 * n * a}
     for rtol in (1e-6, 1e-9, 1e-10):
@@ -43,21 +43,10 @@ def test_a_plate_without_a_small_pressure():
     assert (found.status == Status.CONVERGED).all()
 
 
-#: n, h/a, and at a = E1* = 1 P and D. By Galerkin for the transform of the pressure, p̂ = ∫ φ(t) cos kt dt, with
-#: φ in panels graded towards the edge: right to 2e-12.
-FILMS = np.array(
-    [
-        [3e2, 3e-3, 4.589965304008e-03, 1.021709167190],
-        [3e3, 3e-3, 4.793471119258e-04, 1.051651215487],
-        [3e4, 3e-3, 5.253940836060e-05, 1.117673006698],
-    ]
-)
-
-
 def test_narrow_panels_at_the_edge():
     """Of a smooth punch on films that are plates, on panels down to 1e-4 of s. P was off by up to 1e-7 there: at the
     nodes next to the edge J0(kx) - J0(k) was rounding. 1e-10 leaves room for other kernels of BLAS."""
-    n, h, P, D = FILMS.T
+    n, h, P, D = (FILMS[name] for name in ("n", "h_a", "P", "D"))
     mesh = panel_mesh(12, (0.0, *np.geomspace(1e-4, 1.0, 18)))
     cases = as_cases(dimensionless(Problem.of(a=0.01, h=h * 0.01, n=n, micro="smooth")))
     with np.errstate(divide="ignore"):  # the sparse law of a punch without asperities, at the edge

@@ -105,6 +105,13 @@ def test_blocks_are_nested_and_a_number_set_inside_stays():
     assert counts() == {2}
 
 
+def test_a_number_set_inside_the_only_block_stays():
+    with one_blas_thread():
+        for library in ThreadpoolController().select(user_api="blas").lib_controllers:
+            solver.threads._set(library, 2)
+    assert counts() == {2}
+
+
 def test_overlapping_calls_leave_the_number_of_the_user():
     """The first to enter leaves first: were each to restore what it found, the number would end as 1."""
     second_is_in, first_is_out = threading.Event(), threading.Event()

@@ -172,6 +172,19 @@ def test_doubts_about_yielding_see_the_ring():
             ". What meets at the asperities needs a yield strength above some {s}. The layer is not assessed.",
         ),
         (
+            {"layer": "PTFE", "body": "steel 52100", "Nbar": "6 1/mm^2", "Ra": "20 um"},
+            ". What meets at the asperities, and the body below so thin a layer, need a yield strength above some {s}.",
+        ),
+        (
+            {"layer": "PTFE", "body": "steel 52100", "punch": "steel 52100", "Nbar": "6 1/mm^2", "Ra": "20 um"},
+            ". The punch needs a yield strength above some {p}; what meets at the asperities, and the body below so "
+            "thin a layer, need above some {s}.",
+        ),
+        (
+            {"layer": "PTFE", "body": "rigid", "Nbar": "6 1/mm^2", "Ra": "20 um"},
+            ". What meets at the asperities needs a yield strength above some {s}. The layer is not assessed.",
+        ),
+        (
             ROUGH | {"base": "half_space"},
             ". The body needs a yield strength above some {p}; what meets at the asperities needs above some {s}.",
         ),

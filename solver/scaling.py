@@ -5,8 +5,9 @@ from dataclasses import replace
 import numpy as np
 
 from .body import BODIES
-from .body.springs import STIFF, layer_modulus, local_compliance, thin_layer_coefficients
+from .body.half_space import STIFF, local_compliance
 from .contact.equation import Cases
+from .kernels.two_layers import TwoLayers, layer_modulus, thin_layer_coefficients
 from .laws import LAWS, try_out
 from .parameters import CONTROL, PARAMETERS, allowed
 from .status import Status
@@ -75,13 +76,12 @@ def refused(problem, scaled):
 
 def without_springs(scaled):
     """(B,) bool: thin layers to which Eq. (3) does not apply, because C <= 0."""
-    return (scaled.base == "thin_layer") & ~(local_compliance(*_layer(scaled)[:5]) > 0)
+    return (scaled.base == "thin_layer") & ~(local_compliance(scaled.h, TwoLayers.of(scaled)) > 0)
 
 
 def as_cases(part):
     """:class:`~solver.contact.equation.Cases` of a problem whose cases have one law and one base."""
-    body = BODIES[str(part.base[0])](*_layer(part))
-    return Cases(part.control, law_of(part), body, part.value)
+    return Cases(part.control, law_of(part), BODIES[str(part.base[0])](part), part.value)
 
 
 def law_of(part):
@@ -91,10 +91,6 @@ def law_of(part):
     E, given = layer_modulus(part.n) / (1 + part.m), {name: getattr(part, name) for name in law.parameters}
     try_out(law, E, given)
     return law.bind(E, **given)
-
-
-def _layer(problem):
-    return problem.h, problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded", problem.m
 
 
 def restore(solution, problem):

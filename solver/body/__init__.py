@@ -1,8 +1,12 @@
 """What lies under the punch, one body a file, by its name; the protocol is in :mod:`.operator`."""
 
-from .half_space import half_space
-from .layered import Layered
-from .springs import thin_layer
+from ..kernels.two_layers import TwoLayers
+from .half_space import half_space, thin_layer
+from .hankel import Hankel
 
-#: Name -> body of (h, n, nu1, nu2, bonded, m), (B,) each, in units R = E2* = 1.
-BODIES = {"half_space": half_space, "thin_layer": thin_layer, "layered": Layered}
+#: Name -> ``body(problem)``, of cases of a :class:`~solver.problem.Problem` in units R = E2* = 1.
+BODIES = {
+    "half_space": lambda problem: half_space(problem.m),
+    "thin_layer": lambda problem: thin_layer(problem.h, TwoLayers.of(problem), problem.m),
+    "layered": lambda problem: Hankel(TwoLayers.of(problem), problem.h, problem.m),
+}

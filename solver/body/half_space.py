@@ -1,6 +1,9 @@
 """The half-space, Eq. (4), and the thin layer, Eq. (3): a half-space that carries springs.
 
 K is that of a :class:`~solver.numerics.mesh.Mesh`. What the methods return is said in :mod:`.operator`.
+
+The displacement of a layer's surface under an axisymmetric pressure is (2/E1*) ∫ L(kh) p̂ J0 dk. The thin-layer model
+takes L(u) ≈ A1 + A2 u, Eq. (2): the displacement is then (4 A1/(π E1*)) a H[p] + C p with C = 2 A2 h/E1*, Eq. (3).
 """
 
 from typing import NamedTuple
@@ -15,6 +18,10 @@ from .operator import fitted_nodes
 _FINE, _SECOND = 3e-5, 8
 #: Work of one Newton step of a lone case, in the unit of :meth:`~solver.body.operator.Body.work`.
 _STEP = 150
+#: n of a base that stands for a rigid one under the thin layer: the equation divides by the half-space's part X, which
+#: must not be 0. Then X is below 1e-20 of the springs' part Y for every h and a within the bounds, and n³ is no
+#: underflow.
+STIFF = 1e-50
 
 
 class HalfSpaceOperator(NamedTuple):
@@ -37,6 +44,9 @@ class HalfSpaceOperator(NamedTuple):
     def join(self, operators, places):
         return self
 
+    def at_edge(self, q):
+        return (self.edge * q).sum(axis=1)
+
     def products(self, q):
         return q @ self.mesh.K.T, q @ self.mesh.edge
 
@@ -46,6 +56,12 @@ class HalfSpaceOperator(NamedTuple):
 
     def between(self, q, s, half_space):
         return half_space
+
+    def of_waves(self, waves, half_space):
+        return np.stack([half_space, 0 * half_space])[:, None]
+
+    def of_waves_between(self, waves, s, half_space):
+        return half_space[None]
 
 
 class HalfSpace(NamedTuple):
@@ -94,6 +110,17 @@ class HalfSpace(NamedTuple):
         return np.maximum(nodes, np.where(springs & (rtol < _FINE), _SECOND, 0))
 
 
-def half_space(h, n, nu1, nu2, bonded, m):
-    """The half-space alone, n = 1, under a punch of m = E2*/E3*. There is no layer: the other arguments do nothing."""
-    return HalfSpace(n / (n + m), 0 * n)
+def half_space(m):
+    """The half-space alone, of E2* = 1, under a punch of m (B,) = E2*/E3*."""
+    return HalfSpace(1 / (1 + m), 0 * m)
+
+
+def local_compliance(h, kernel):
+    """C = 2 A2 h/E1* of Eq. (3), (B,) in R/E2*; h (B,) in R, A2 the slope of the :class:`~solver.kernels.kernel.Kernel`
+    of the layer. Where C <= 0 the thin-layer equation does not apply."""
+    return 2 * kernel.slope * h / kernel.E1
+
+
+def thin_layer(h, kernel, m):
+    """The thin layer, Eq. (3): a half-space that carries springs, under a punch of m = E1*/E3*; arrays (B,)."""
+    return HalfSpace(kernel.E1 / np.maximum(kernel.L0 + m, STIFF), local_compliance(h, kernel))

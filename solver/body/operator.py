@@ -30,6 +30,9 @@ class Operator(Protocol):
     def join(self, operators, places):
         """The operator of a batch from the `operators` of its sub-batches, each at its `places` (b,) in the batch."""
 
+    def at_edge(self, q):
+        """edge @ q (B,)."""
+
     def products(self, q):
         """K q (B, n) and edge @ q (B,) for q (B, n)."""
 
@@ -39,6 +42,15 @@ class Operator(Protocol):
     def between(self, q, s, half_space):
         """K q (B, m) at points s = sqrt(1 - x²) (m,) > 0 between the nodes; `half_space` (B, m) is what K of a
         half-space gives there."""
+
+    def of_waves(self, waves, half_space):
+        """K of a pressure that is no polynomial in s, the displacement at the nodes and under it that of the edge, and
+        its derivatives by ln a: (2, B or 1, n + 1). ``waves(k)`` is the Hankel transform ∫₀¹ · J0(kx) x dx of the
+        pressure at k (G,), in 1/a, and `half_space` (n + 1,) what K of a half-space gives. NaN where it is not
+        known."""
+
+    def of_waves_between(self, waves, s, half_space):
+        """The same (B or 1, m) at points s (m,) > 0 between the nodes, for `half_space` (m,) there."""
 
 
 class Body(Protocol):

@@ -1,4 +1,4 @@
-"""The kernel L of a batch of layers at nodes k of the quadrature: a part for each class of stiffness, and for films.
+"""The kernel L of a batch at nodes k of the quadrature: a part for each class of stiffness, and for films.
 
 Classes, octaves of h/a, the few nodes and which layers are films: :mod:`.wave_rule`.
 """
@@ -8,24 +8,26 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..kernels.kernel import Sampler
 from . import film
-from .kernel import decaying_part
 from .tables import table
-from .wave_rule import CUT, FILM, few, place_of, quadrature
+from .wave_rule import CUT, FILM, STIFFEST, few, place_of, quadrature
 
 #: Kernel values are computed in blocks of so many numbers: the arrays in between stay in the cache.
 _BLOCK = 16384
 
 
 class Part(NamedTuple):
-    """The kernel of b cases of one class of stiffness, all of them films or none.
+    """The kernel of b cases of one family and one class of stiffness, all of them films or none; without a `sampler` of
+    the family, all of one octave too.
 
     `index` (b,): their places in the batch; `octave` (b,) of h/a, equal ones next to each other; `radius` (b,): a.
-    L1, uL (b, M): L - 1 and -u dL/du at the few nodes k of the tables. Films have χ (L - n') in place of L - 1, and
-    further their convolution c and its derivative by ln a, `film` and `d_film` (b, T), and n', `level` (b, 1):
-    :mod:`.film` says what these are.
+    L1, uL (b, M): L - 1 and -u dL/du at the few nodes k of the tables, or at all of them. Films have χ (L - n') in
+    place of L - 1, and further their convolution c and its derivative by ln a, `film` and `d_film` (b, T), and n',
+    `level` (b, 1): :mod:`.film` says what these are.
     """
 
+    sampler: Sampler | None
     stiffness: int
     index: np.ndarray
     octave: np.ndarray
@@ -39,7 +41,12 @@ class Part(NamedTuple):
     def tables(self, mesh):
         """Pairs of a :class:`~solver.body.tables.Table` on a mesh and the rows (slice) of the cases that it is for."""
         for octave, rows in runs(self.octave):
-            yield table(mesh, octave, self.stiffness, rows.stop - rows.start >= film.MANY), rows
+            yield table(mesh, self.sampler, octave, self.stiffness, rows.stop - rows.start >= film.MANY), rows
+
+    @property
+    def kind(self):
+        """Parts of one kind can be one part."""
+        return self.stiffness, self.film is None, self.sampler or int(self.octave[0])
 
     @property
     def share(self):
@@ -48,7 +55,7 @@ class Part(NamedTuple):
 
     def take(self, rows, index):
         """The sub-batch at `rows`, at the places `index` in another batch."""
-        return Part(self.stiffness, index, *(None if v is None else v[rows] for v in self[2:]))
+        return Part(self.sampler, self.stiffness, index, *(None if v is None else v[rows] for v in self[3:]))
 
 
 def runs(kinds):
@@ -59,54 +66,59 @@ def runs(kinds):
 
 
 def join(parts):
-    """One part from several of one class."""
-    stiffness, *arrays = zip(*parts, strict=True)
-    whole = Part(stiffness[0], *(None if v[0] is None else np.concatenate(v) for v in arrays))
+    """One part from several of one kind."""
+    _, _, *arrays = zip(*parts, strict=True)
+    whole = Part(*parts[0][:2], *(None if v[0] is None else np.concatenate(v) for v in arrays))
     order = np.argsort(whole.octave, kind="stable")
     return whole.take(order, whole.index[order])
 
 
-def parts_of(layer, a, index):
+def parts_of(body, a, index):
     """The kernel of the cases `index` at radii a (B,): a list of :class:`Part`."""
-    octave, stiffness = place_of(layer.take(index), a[index])
-    order, parts = np.lexsort((octave, stiffness, octave == FILM)), []
+    octave, stiffness = place_of(body.take(index), a[index])
+    order, parts, sampler = np.lexsort((octave, stiffness, octave == FILM)), [], body.kernel.sampler
     index, octave, stiffness = index[order], octave[order], stiffness[order]
-    for kind, rows in runs(2 * stiffness + (octave == FILM)) if len(index) else ():
-        of_class, is_film = divmod(kind, 2)
-        own, make = index[rows], _film_part if is_film else _plain_part
-        kernel = make(layer.take(own), layer.h[own] / a[own], octave[rows], of_class)
-        parts.append(Part(of_class, own, octave[rows], a[own], *kernel))
+    kinds = 2 * stiffness + (octave == FILM)
+    if sampler is None:  # each octave has its own number of nodes
+        kinds += 2 * len(STIFFEST) * (octave - FILM)
+    for _, rows in runs(kinds) if len(index) else ():
+        own, of_class = index[rows], int(stiffness[rows][0])
+        make = _film_part if octave[rows][0] == FILM else _plain_part
+        kernel = make(body.take(own), body.h[own] / a[own], octave[rows], of_class)
+        parts.append(Part(sampler, of_class, own, octave[rows], a[own], *kernel))
     return parts
 
 
-def _plain_part(layer, h_a, octave, stiffness):
-    k = [few(one, stiffness).k for one, _ in runs(octave)]
-    return _kernel(layer, h_a, np.repeat(k, [rows.stop - rows.start for _, rows in runs(octave)], axis=0))
+def _plain_part(body, h_a, octave, stiffness):
+    if body.kernel.sampler is None:
+        return _kernel(body, h_a, quadrature(int(octave[0]), stiffness)[0])
+    k = [few(body.kernel.sampler, one, stiffness).k for one, _ in runs(octave)]
+    return _kernel(body, h_a, np.repeat(k, [rows.stop - rows.start for _, rows in runs(octave)], axis=0))
 
 
-def _film_part(layer, h_a, octave, stiffness):
+def _film_part(body, h_a, octave, stiffness):
     k, _ = quadrature(FILM, stiffness)
-    level = layer.whole(CUT * h_a / 2)[:, None]
+    level = body.whole(CUT * h_a / 2)[:, None]
     kappa, _, _ = film.waves()
-    below = _kernel(layer, h_a, k, level, film.step(k / CUT))
-    beyond, d_beyond = _kernel(layer, h_a, CUT * kappa, level, 1 - film.step(kappa))
+    below = _kernel(body, h_a, k, level, film.step(k / CUT))
+    beyond, d_beyond = _kernel(body, h_a, CUT * kappa, level, 1 - film.step(kappa))
     p, end = CUT * h_a[:, None], level - 1
     return *below, np.pi / 2 * film.transform(beyond, end, p), np.pi / 2 * film.transform(d_beyond, 0 * end, p), level
 
 
-def _kernel(layer, h_a, k, level=None, factor=1.0):
+def _kernel(body, h_a, k, level=None, factor=1.0):
     """L less `level` (b, 1), or less 1 if that is None, and -u dL/du; both (b, M), at the nodes k, (b, M) or (M,), and
     times a `factor` (M,)."""
     size, count = len(h_a), k.shape[-1]
     L1, uL = np.empty((2, size, count))
-    many, yields = max(1, _BLOCK // count), layer.m.any()  # whether a punch yields; few do
-    for of_interface in (np.flatnonzero(layer.bonded), np.flatnonzero(~layer.bonded)):
-        for low in range(0, len(of_interface), many):
-            rows = of_interface[low : low + many]
+    many, yields = max(1, _BLOCK // count), body.m.any()  # whether a punch yields; few do
+    for of_formula in body.kernel.formulas():
+        for low in range(0, len(of_formula), many):
+            rows = of_formula[low : low + many]
             u = (k if k.ndim == 1 else k[rows]) * h_a[rows, None]
-            above, slope = decaying_part(u, *(field[rows, None] for field in layer.material))
+            above, slope = body.kernel.take(rows).decaying_part(u)
             if yields:
-                above, slope = above / (1 + layer.m[rows, None]), slope / (1 + layer.m[rows, None])
+                above, slope = above / (1 + body.m[rows, None]), slope / (1 + body.m[rows, None])
             L1[rows] = factor * (above if level is None else above - (level[rows] - 1))
             uL[rows] = -factor * slope
     return L1, uL

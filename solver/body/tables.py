@@ -1,4 +1,4 @@
-"""Tables of the layered operator: Hankel transforms at the nodes of the quadrature of each octave of h/a."""
+"""Tables of a Hankel body: Hankel transforms at the nodes of the quadrature of each octave of h/a."""
 
 from functools import lru_cache, wraps
 from itertools import pairwise
@@ -51,7 +51,7 @@ class Table(NamedTuple):
     L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
     were too large. The rest is at all G nodes k of the quadrature: `J` (G, n + 1), J0(k x_i) - J0(k), and last J0(k);
     `phi` (G, n); and `spread` (M, G), which makes (π/2) w (L - 1) there, w the weights, from L - 1 at the few nodes;
-    (G,) for films, which have no few nodes. `film` is for these.
+    (G,) for films and kernels without a sampler, which have no few nodes. `film` is for films.
     """
 
     J: np.ndarray
@@ -86,14 +86,16 @@ def _kept(make):
 
 
 @_kept
-def table(mesh, octave, stiffness, many):
-    """The :class:`Table` of a mesh in an octave and a class of stiffness; `many` bool: for many cases, or for few."""
+def table(mesh, sampler, octave, stiffness, many):
+    """The :class:`Table` of a mesh, for the kernels of a :class:`~solver.kernels.kernel.Sampler` or for those without
+    one, in an octave and a class of stiffness; `many` bool: for many cases, or for few."""
     J, phi = _waves(mesh, octave, stiffness % len(STIFFEST))
     product, is_film = None, octave == FILM
-    spread = np.pi / 2 * quadrature(octave, stiffness)[1] if is_film else _spread(octave, stiffness)
-    if is_film and many and J.size * mesh.n <= _KEEP:
+    at_all = is_film or sampler is None
+    spread = np.pi / 2 * quadrature(octave, stiffness)[1] if at_all else _spread(sampler, octave, stiffness)
+    if at_all and many and J.size * mesh.n <= _KEEP:
         product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(J), -1)
-    elif not is_film and (many or mesh.n <= _SMALL):
+    elif not at_all and (many or mesh.n <= _SMALL):
         product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
     return Table(J, phi, spread, product, _film_table(mesh, many) if is_film else None)
 
@@ -106,9 +108,9 @@ def _waves(mesh, octave, stiffness):
 
 
 @_kept
-def _spread(octave, stiffness):
+def _spread(sampler, octave, stiffness):
     """The `spread` of a :class:`Table`, the same for all meshes."""
-    return np.pi / 2 * few(octave, stiffness).spread
+    return np.pi / 2 * few(sampler, octave, stiffness).spread
 
 
 @_kept

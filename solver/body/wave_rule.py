@@ -1,9 +1,9 @@
-"""The quadrature in k of the layered operator, one for each octave of h/a, and the few of its nodes that determine L.
+"""The quadrature in k of a Hankel body, one for each octave of h/a, and the few of its nodes that determine L.
 
 k is in units of 1/a, and an octave is all h/a from a power of two to the next. The panels follow the oscillation of
-J0 J0, whose frequency is 2, and the scale of L: a/h, and for stiff layers n^(-1/3) a/h and a/(nh). So the quadrature is
-as accurate for every h/a and n of an octave. L - 1 itself does not oscillate: for all layers of a class of stiffness
-and an octave, its values at all nodes follow, to rounding, from those at 52 to 104 of them (_FEW).
+J0 J0, whose frequency is 2, and the scale of L: a/h, and where its stiffness n is large n^(-1/3) a/h and a/(nh). So the
+quadrature is as accurate for every h/a and n of an octave. L - 1 itself does not oscillate: for all kernels of a
+family, a class of stiffness and an octave, its values at all nodes follow, to rounding, from those at a few of them.
 """
 
 from functools import lru_cache
@@ -13,7 +13,6 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics.quadrature import gauss_legendre
-from .kernel import decaying_part
 
 #: First and last octave of h/a (as powers of two) with tables of their own. All smaller h/a are films, the octave FILM.
 #: Where h/a is larger, the half-space under the layer is not felt any more.
@@ -21,18 +20,14 @@ OCTAVES = (-8, 40)
 FILM = OCTAVES[0] - 1
 #: Width in k of the widest panel: a wider one would need a Gauss rule that is slow to make.
 _WIDEST = 200.0
-#: Largest n of each class of stiffness, and how many panels its quadrature has towards k = 0, each half as wide as the
-#: one before. A stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and if bonded also a membrane, whose kernel
-#: falls at u ~ 1/n: beyond the first class the first panel ends below 0.15/n.
+#: Largest n of each class of stiffness (:class:`~solver.kernels.kernel.Kernel`), and how many panels its quadrature has
+#: towards k = 0, each half as wide as the one before: beyond the first class the first panel ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: A loose operator is made of L at still fewer nodes, where rtol allows it (:meth:`.layered.Layered.within`). This is
+#: A loose operator is made of L at still fewer nodes, where rtol allows it (:meth:`.hankel.Hankel.within`). This is
 #: what it leaves out, over the largest L, in each class of stiffness; the two stiffest are never loose, for under a
 #: plate the pressure can be a small difference of large terms.
 LOOSE = (1e-10, 1e-11, np.inf, np.inf)
-#: The numbers of few nodes: of each class of stiffness, then of loose operators of the first two. They are the most
-#: that _LEFT_OUT or LOOSE asks for in any octave; tests/body/test_wave_rule.py checks what they leave out.
-_FEW = (52, 90, 104, 104, 36, 61)
-#: The few nodes are chosen by the L - 1 and u dL/du of so many random layers. They are enough when what they leave out
+#: The few nodes are chosen by the L - 1 and u dL/du of so many random kernels. They are enough when what they leave out
 #: of any of these functions is at most this part of the largest of them, which is rounding; or LOOSE.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
@@ -55,16 +50,16 @@ def _end(octave):
 CUT = _end(FILM) * 2.0**-FILM
 
 
-def place_of(layer, a):
+def place_of(body, a):
     """Octave of h/a, or FILM, and class of stiffness, (B,) int each: its place in STIFFEST, plus len(STIFFEST) for a
     loose operator, which films never have."""
-    h_a = layer.h / a
+    h_a, n = body.h / a, body.kernel.stiffness
     octave = np.floor(np.log2(h_a))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     # all films share one quadrature: a film is as stiff in it as a layer of the octave's h/a with the same n h/a
-    stiffness = np.where(octave == FILM, layer.n * h_a * 2.0**-FILM, layer.n)
+    stiffness = np.where(octave == FILM, n * h_a * 2.0**-FILM, n)
     stiffness = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
-    return octave, stiffness if layer.loose is None else stiffness + len(STIFFEST) * (layer.loose & (octave != FILM))
+    return octave, stiffness if body.loose is None else stiffness + len(STIFFEST) * (body.loose & (octave != FILM))
 
 
 @lru_cache(maxsize=256)
@@ -94,19 +89,20 @@ class Few(NamedTuple):
 
 
 @lru_cache(maxsize=256)
-def few(octave, stiffness):
+def few(sampler, octave, stiffness):
     """The :class:`Few` nodes of an octave that is not FILM, by interpolative decomposition of random samples of w (L -
-    1)/(1 + k²). J0 φ falls like 1/k²: so what is left out is small beside the operator (tests/body/test_wave_rule.py).
+    1)/(1 + k²), of the family of a :class:`~solver.kernels.kernel.Sampler`. J0 φ falls like 1/k²: so what is left out
+    is small beside the operator (tests/body/test_wave_rule.py).
 
     The nodes are chosen without BLAS, whose rounding may differ between machines: each would choose other nodes.
     """
     k, weight = quadrature(octave, stiffness)
     loose, of_layers = divmod(stiffness, len(STIFFEST))
     scale, left_out = weight / (1 + k * k), LOOSE[of_layers] if loose else _LEFT_OUT
-    rest, nodes, rows = _samples(octave, of_layers, k, scale), [], []
+    rest, nodes, rows = _samples(sampler, octave, of_layers, k, scale), [], []
     left = np.sum(rest**2, axis=0)
     most = left.max()
-    while left.max() > left_out**2 * most and len(nodes) < _FEW[stiffness]:
+    while left.max() > left_out**2 * most and len(nodes) < sampler.few[stiffness]:
         nodes.append(np.argmax(left))
         direction = rest[:, nodes[-1]] / np.sqrt(left[nodes[-1]])
         rows.append(np.einsum("i,ij->j", direction, rest))
@@ -115,12 +111,12 @@ def few(octave, stiffness):
         left[nodes] = 0.0
     R = np.array(rows)
     spread = np.linalg.solve(np.triu(R[:, nodes]), R) * (1 + k * k)
-    fill = _FEW[stiffness] - len(nodes)  # nodes that do not count are added, so that all octaves have as many
+    fill = sampler.few[stiffness] - len(nodes)  # nodes that do not count are added, so that all octaves have as many
     return Few(np.pad(k[nodes], (0, fill), mode="edge"), np.pad(scale[nodes, None] * spread, ((0, fill), (0, 0))))
 
 
-def _samples(octave, stiffness, k, scale):
-    """L - 1 and u dL/du (2 _SAMPLES, G), times `scale` (G,), of random layers of a class with h/a in an octave. Where
+def _samples(sampler, octave, stiffness, k, scale):
+    """L - 1 and u dL/du (2 _SAMPLES, G), times `scale` (G,), of random kernels of a class with h/a in an octave. Where
     the sum of |L - 1| over the nodes, about the size of the operator, is above 1, both are divided by it."""
     random, size = np.random.default_rng(0), _SAMPLES
     of_n, of_h_a = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
@@ -128,8 +124,7 @@ def _samples(octave, stiffness, k, scale):
     n = np.exp(low + (high - low) * of_n)
     if stiffness == 0:
         n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)
-    h_a, bonded = 2.0 ** (octave + of_h_a), random.random(size) < 0.67
-    nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
-    L1, uL = (scale * v for v in decaying_part(k * h_a[:, None], *(v[:, None] for v in (n, *nu, bonded))))
+    L1, uL = sampler.draw(random, n).decaying_part(k * 2.0 ** (octave + of_h_a)[:, None])
+    L1, uL = scale * L1, scale * uL
     whole = np.maximum(np.abs(L1).sum(axis=1), 1.0)
     return np.concatenate([L1, uL]) / np.tile(whole, 2)[:, None]

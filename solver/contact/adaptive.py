@@ -50,7 +50,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
     found = _together(rungs, size, len(x))
     undecided = ~free & found.unsure  # no finer mesh will judge the tension: its part of the load is an error
     np.maximum(found.solution.error, found.tension, out=found.solution.error, where=undecided)
-    lifted, closed = found.lifted, found.solution.status == Status.CONVERGED
+    lifted, closed = found.lifted(cases.edge), found.solution.status == Status.CONVERGED
     missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET
     unfinished = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol))
     rest = np.flatnonzero(unfinished & free & (limit == 0) & ~spent)
@@ -93,7 +93,7 @@ def _on_panels(case, before, rtol, x, left):
 
     Tension and gaps count only if finer panels show them too: panels that are too coarse show some that are not there.
     """
-    best, lifted, count, at = before.solution, before.lifted, before.solution.iterations, None
+    best, lifted, count, at = before.solution, before.lifted(case.edge), before.solution.iterations, None
     resolved, missed, spent = False, best.status == Status.CONVERGED, False
     for goal in (rtol, _FINER * rtol):
         if left <= 0:
@@ -108,7 +108,7 @@ def _on_panels(case, before, rtol, x, left):
         at = iterated.at
         found = answer(iterated, x, before=0.0)  # so `slow` is True: finer panels hardly lower the error
         left -= case.body.work(found.solution.a, finer_mesh(at.mesh).n)[0][0]
-        lifted = (found.gap | found.lifted) & (not resolved)
+        lifted = (found.gap | found.lifted(case.edge)) & (not resolved)
         if lifted[0]:
             continue
         resolved = True
@@ -119,5 +119,5 @@ def _on_panels(case, before, rtol, x, left):
             spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))
-    lifted |= tensile_centre(best)
+    lifted |= tensile_centre(best, case.edge)
     return _ended(best, missed, lifted, spent)

@@ -29,7 +29,7 @@ _NOISE = 30.0
 class Answer(NamedTuple):
     """The solution of B cases, and what tells whether the punch lifts off and whether a finer mesh is of use.
 
-    tension : (B,), the tensile part of the load over the load
+    tension : (B,), the tensile part of the load over the load; 0 where the edge pulls
     gap : (B,) bool, there is a gap inside the contact. Gap or tension may also mean a mesh that is too coarse
     slow : (B,) bool, the error is hardly smaller than on the mesh before
     floor : (B,), no mesh brings the error below this
@@ -47,10 +47,10 @@ class Answer(NamedTuple):
         finer = None if self.finer is None else self.finer.take(index)
         return Answer(self.solution.take(index), *(values[index] for values in self[1:-1]), finer)
 
-    @property
-    def lifted(self):
-        """(B,) bool: there is tension, in all or in the centre, which is too large to be an error."""
-        return (self.tension > np.fmax(10 * self.solution.error, _TENSION)) | tensile_centre(self.solution)
+    def lifted(self, edge):
+        """(B,) bool: there is tension, in all or in the centre, which is too large to be an error, though the `edge`
+        does not pull."""
+        return (self.tension > np.fmax(10 * self.solution.error, _TENSION)) | tensile_centre(self.solution, edge)
 
     @property
     def unsure(self):
@@ -65,9 +65,9 @@ def _between(mesh):
     return mesh.basis(s).T, w * s
 
 
-def tensile_centre(solution):
-    """(B,) bool: p(0) < 0, and the error is too small to make it so."""
-    return (solution.p0 < 0) & (solution.error < _SURE)
+def tensile_centre(solution, edge):
+    """(B,) bool: p(0) < 0, the error is too small to make it so, and the `edge` does not pull."""
+    return (solution.p0 < 0) & (solution.error < _SURE) & (not edge.pulls)
 
 
 def stuck(error, slow, nodes, rtol):
@@ -112,7 +112,8 @@ def answer(iterated, x, enough=np.inf, before=np.inf):
     rest = {"dP_dD": slope, "p": p, "lam": lam, "status": status, "nodes": ev.mesh.n, "iterations": count}
     solution = Solution.of(len(error), len(x), **own._asdict(), **errors, **rest)
     tension = np.zeros(len(error))
-    if not ev.cases.law.rough:  # there can be tension only where the equation is linear: without asperities
+    # there can be tension only where the equation is linear: without asperities
+    if not ev.cases.law.rough and not ev.cases.edge.pulls:
         basis, w = _between(ev.mesh)
         q = ev.curve.q @ basis
         tension = np.where(finite, np.maximum(-q, 0.0) @ w / np.abs(q @ w), 0.0)

@@ -4,7 +4,8 @@ With p = p* q(y), A = A* g(y), x = r/a and s = sqrt(1 - x²), Eq. (4) divided by
 
     X K[q] + Y q + Z g - s² = 0,    X = 8 p*/(π a E),  Y = 2 C p*/a²,  Z = 2 A*/a²        (R = E2* = 1)
 
-at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`..punches.punch`). The control
+at the nodes of the mesh. Under a punch of another shape its drop stands for s² (:mod:`..punches.punch`). An edge that
+is not free adds a known pressure to q, and what that does to the surface to K[q] (:mod:`..edges.edge`). The control
 (load, radius or depth) is one more equation. The unknowns are y at the nodes and η = ln a. The body has E, the springs
 C and K (:mod:`..body.operator`); the law has p*, A*, q, g (:mod:`..laws.law`).
 """
@@ -16,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 
 from ..body.operator import Body, Operator
+from ..edges import FREE
+from ..edges.edge import Edge
 from ..laws import Bound, Curve
 from ..punches import PARABOLOID
 from ..punches.punch import Punch, largest
@@ -38,18 +41,19 @@ _TINY = np.finfo(float).tiny
 
 
 class Cases(NamedTuple):
-    """A batch of B cases of one body, micro law and punch in units R = 1, E2* = 1: the `control` "P", "a" or "D" of the
-    whole batch, the law, the body and the punch with their numbers, and the controlled `value` (B,)."""
+    """A batch of B cases of one body, micro law, punch and edge in units R = 1, E2* = 1: the `control` "P", "a" or "D"
+    of the whole batch, the law, body, punch and edge with their numbers, and the controlled `value` (B,)."""
 
     control: str
     law: Bound
     body: Body
     value: np.ndarray
     punch: Punch = PARABOLOID
+    edge: Edge = FREE
 
     def take(self, index):
-        own = (part.take(index) for part in (self.law, self.body))
-        return Cases(self.control, *own, self.value[index], self.punch.take(index))
+        law, body, punch, edge = (part.take(index) for part in (self.law, self.body, self.punch, self.edge))
+        return Cases(self.control, law, body, self.value[index], punch, edge)
 
 
 class State(NamedTuple):
@@ -69,7 +73,7 @@ class State(NamedTuple):
 @dataclass(frozen=True, eq=False)
 class Evaluation:
     """The equation of `cases` at a state: the operator of the body and the curve of the law there, the groups X, Y, Z
-    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,)."""
+    (B, 1), K q and the residual F at the nodes (B, n), and edge @ q (B,); in both is what the edge adds."""
 
     cases: Cases
     state: State
@@ -184,7 +188,7 @@ def evaluate(cases, state, mesh, near=None):
     what still holds is used again."""
     X, Y, Z = groups(cases, state.eta)
     curve, a = cases.law.evaluate(state.y), np.exp(state.eta)
-    operator = cases.body.at(a, mesh, near)
+    operator = cases.edge.at(cases.body, a, mesh, near)
     Kq, edge_q = operator.products(curve.q)
     F = X * Kq + Y * curve.q + Z * curve.g - cases.punch.drop(a, mesh.s)
     return Evaluation(cases, state, operator, curve, X, Y, Z, Kq, edge_q, F)
@@ -196,6 +200,7 @@ def control_residual(cases, eta, X, q, edge_q, mesh):
         return eta - np.log(cases.value)
     if cases.control == "P":
         load = np.einsum("bj,j->b", q, mesh.w)  # not BLAS, whose rounding would depend on the number of cases
+        load = load + cases.edge.load(np.exp(eta))[0]
         return np.log(2 * np.pi * cases.law.p_star * load / cases.value) + 2 * eta
     depth = cases.punch.depth(np.exp(eta)) + X[:, 0] * edge_q
     return np.log(depth / (2 * cases.value)) + 2 * eta
@@ -203,12 +208,14 @@ def control_residual(cases, eta, X, q, edge_q, mesh):
 
 def control_gradient(control, ev):
     """Derivatives of the logarithm of `control` by q (B, n) and by η (B,)."""
-    q, X, w = ev.curve.q, ev.X[:, 0], ev.mesh.w
+    q, X, w, a = ev.curve.q, ev.X[:, 0], ev.mesh.w, np.exp(ev.state.eta)
     if control == "P":
-        return w / (q @ w)[:, None], np.full(len(q), 2.0)
+        added, d_added = ev.cases.edge.load(a)
+        load = q @ w + added
+        return w / load[:, None], 2.0 + d_added / load
     if control == "a":
         return np.zeros_like(q), np.ones(len(q))
-    edge, punch, a = X * ev.edge_q, ev.cases.punch, np.exp(ev.state.eta)
+    edge, punch = X * ev.edge_q, ev.cases.punch
     depth, slope = punch.depth(a) + edge, punch.depth_slope(a) + X * ev.slopes[1] - edge
     return ev.X * ev.operator.edge / depth[:, None], 2 + slope / depth
 

@@ -93,7 +93,7 @@ def nearby(ev, state):
     :func:`~solver.contact.results.quantities`, but not for F. The operator and the law are taken to first order."""
     dy, old = state.y - ev.state.y, ev.curve
     curve = old._replace(q=old.q + old.dq * dy, g=old.g + old.dg * dy)
-    edge_q = (ev.operator.edge * curve.q).sum(axis=1) + ev.slopes[1] * (state.eta - ev.state.eta)
+    edge_q = ev.operator.at_edge(curve.q) + ev.slopes[1] * (state.eta - ev.state.eta)
     return replace(ev, state=state, X=groups(ev.cases, state.eta)[0], curve=curve, edge_q=edge_q)
 
 

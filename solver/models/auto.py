@@ -9,9 +9,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..body.kernel import decaying_part, whole
-from ..body.springs import layer_modulus
 from ..contact.start import guess_radius
+from ..kernels.closed_form import decaying_part, whole
+from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS, smooth
 from ..numerics.quadrature import gauss_legendre
 from ..scaling import as_cases, law_of

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from ..body.springs import layer_modulus
+from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS
 
 #: Radii r/a at which the pressure is compared with the range, whatever profile is asked for. They are denser near the

@@ -14,8 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..body.kernel import whole
-from ..body.springs import thin_layer_coefficients
+from ..kernels.closed_form import whole
+from ..kernels.two_layers import thin_layer_coefficients
 from ..threads import one_blas_thread
 
 #: Step of the trapezoidal rule for κ in ln u, and its points u. The integrand decays like e^-|ln u| at both ends. κ is
@@ -52,7 +52,7 @@ def edge_shift(n, nu1, nu2, bonded):
     """κ: by how many thicknesses h the contact of the thin layer is wider than that of the exact layer, for h << a; to
     about 1e-6. Below 0 it is the narrower one. NaN where the thin-layer equation does not apply (A2 <= 0).
 
-    Arguments as those of :func:`~solver.body.kernel.layered_kernel`.
+    Arguments as those of :func:`~solver.kernels.closed_form.layered_kernel`.
 
     >>> print(f"{edge_shift(0.5, 0.3, 0.3, False):.4f} {edge_shift(0.5, 0.3, 0.3, True):.4f}")
     0.2326 0.1447

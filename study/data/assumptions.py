@@ -7,7 +7,7 @@ from importlib.resources import files
 import numpy as np
 import xarray as xr
 
-from solver.body.springs import layer_modulus
+from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
 
 from ..spec.vocabulary import VOCABULARY, attributes

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from solver import Model
-from solver.body.springs import layer_modulus
+from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
 from ..spec.vocabulary import VOCABULARY, attributes

@@ -13,7 +13,7 @@ from benchmark_cases import X, by_turns, coatings, problem, rated, systems
 
 import study
 from solver import Problem, solve
-from solver.body import layered
+from solver.body import hankel
 from solver.contact import newton, start
 
 ROUGH = {"Nbar": 250_000.0, "Ra": 0.004}
@@ -69,7 +69,7 @@ def flops_per_second() -> float:
 @contextmanager
 def counted():
     """A list of the flops, while it is open, of forming layered matrices from the few nodes and of eliminating all."""
-    flops, form, eliminate = [], layered._rows, newton.solve_stack
+    flops, form, eliminate = [], hankel.rows_of, newton.solve_stack
 
     def forming(parts, mesh):
         flops.extend(2 * part.L1.size * mesh.n**2 for part in parts)
@@ -80,11 +80,11 @@ def counted():
         flops.append(size * (2 / 3 * n**3 + 2 * n**2 * columns))
         return eliminate(K, diagonal, rhs)
 
-    layered._rows, newton.solve_stack, start.solve_stack = forming, eliminating, eliminating
+    hankel.rows_of, newton.solve_stack, start.solve_stack = forming, eliminating, eliminating
     try:
         yield flops
     finally:
-        layered._rows, newton.solve_stack, start.solve_stack = form, eliminate, eliminate
+        hankel.rows_of, newton.solve_stack, start.solve_stack = form, eliminate, eliminate
 
 
 def latency() -> list[dict]:

@@ -7,16 +7,16 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.special import gamma, jv
-from solver_cases import JUDGED, MAIN, difference
+from solver_cases import JUDGED, MAIN, difference, layer_of
 
 from solver import Problem, Status, solve
 from solver.body import film, tables, wave_rule
-from solver.body.kernel import decaying_part
-from solver.body.layered import Layered
 from solver.body.wave_rule import CUT, FILM
 from solver.contact.driver import solve_on
 from solver.contact.equation import evaluate
 from solver.contact.start import first_guess
+from solver.kernels.closed_form import decaying_part
+from solver.kernels.two_layers import SAMPLER
 from solver.models.thin_layer_error import edge_shift
 from solver.numerics.mesh import mesh_of, panel_mesh
 from solver.scaling import as_cases, dimensionless
@@ -102,12 +102,12 @@ def test_a_stiff_film_rings_at_the_edge_and_does_not_lift_off(n, h):
 def test_the_convolution_replaces_the_rest_of_the_quadrature(n, nu, bonded):
     """At h/a = 2^-8.5, with the half-space and all k to the end of the kernel: 1e-8 of the displacement."""
     eta, mesh = 2.0**-8.5, mesh_of(16)
-    layer = Layered(*(np.array([v]) for v in (eta, n, nu, 0.3, bonded, 0.0)))
+    layer = layer_of(h=eta, n=n, nu1=nu, bonded=bonded)
     found = layer.at(np.ones(1), mesh)
     assert found.parts[0].octave[0] == FILM
     k, weight = wave_rule.quadrature(FILM, found.parts[0].stiffness)
     W = weight * decaying_part(k * eta, n, nu, 0.3, np.array(bonded))[0]
-    table = tables.table(mesh, FILM, found.parts[0].stiffness, True)
+    table = tables.table(mesh, SAMPLER, FILM, found.parts[0].stiffness, True)
     whole = (table.J[:, :-1] * W[:, None]).T @ table.phi
     assert np.abs(decaying_part(np.array([CUT * eta]), n, nu, 0.3, np.array([bonded]))[0][0]) < 1e-5  # all of L - 1
     K = found.K[0]

@@ -16,8 +16,8 @@ from numpy.testing import assert_allclose
 from solver_cases import MAIN, difference, one
 
 from solver import Problem, Status, solve
-from solver.body.kernel import layered_kernel
-from solver.body.springs import thin_layer_coefficients
+from solver.kernels.closed_form import layered_kernel
+from solver.kernels.two_layers import thin_layer_coefficients
 
 LAW = pytest.mark.parametrize("micro", ["smooth", "disc_cell", "power_law"])
 ROUGH = pytest.mark.parametrize("micro", ["disc_cell", "power_law"])

@@ -1,10 +1,10 @@
 """Loose operators: where they are taken, and that they cost no accuracy that was asked for."""
 
 import numpy as np
-from solver_cases import difference
+from solver_cases import difference, layer_of
 
 from solver import Problem, Status, solve
-from solver.body.layered import _COUNTS, Layered
+from solver.body.hankel import _COUNTS, Hankel
 from solver.numerics.mesh import mesh_of
 
 X = np.linspace(0, 1, 5)
@@ -37,10 +37,10 @@ def test_they_are_right_to_a_hundredth_of_rtol(monkeypatch):
     solutions, and in none more often than the error of the operator says."""
     for micro in ("smooth", "disc_cell"):
         case, one = coatings(micro), np.ones(SIZE)
-        body = Layered(case["h"], case["n"], case["nu1"], 0.3 * one, case["bonding"] == "bonded", 0 * one)
+        body = layer_of(h=case["h"], n=case["n"], nu1=case["nu1"], bonded=case["bonding"] == "bonded")
         loose = solve(Problem.of(**case), X)
         with monkeypatch.context() as tight:
-            tight.setattr(Layered, "within", lambda body, rtol, a: body)
+            tight.setattr(Hankel, "within", lambda body, rtol, a: body)
             exact = solve(Problem.of(**case), X)
         same = (loose.nodes == exact.nodes) & (exact.status == Status.CONVERGED)
         assert np.array_equal(loose.status, exact.status) and same.mean() > 0.99
@@ -50,15 +50,9 @@ def test_they_are_right_to_a_hundredth_of_rtol(monkeypatch):
         assert 1 < counts.max() <= _COUNTS
 
 
-def layer(**given):
-    """One layer of h = 1 unless given."""
-    case = {"h": 1.0, "n": 0.5, "nu1": 0.3, "nu2": 0.3, "bonded": True, "m": 0.0} | given
-    return Layered(*(np.array([value]) for value in case.values()))
-
-
 def is_loose(rtol=RTOL, **given):
     """Whether the operator is at a = 1, and how many values of L it takes."""
-    body = layer(**given).within(np.array([rtol]), np.ones(1))
+    body = layer_of(**given).within(np.array([rtol]), np.ones(1))
     (part,) = body.at(np.ones(1), mesh_of(5)).parts
     return bool(body.loose[0]), part.L1.shape[1]
 
@@ -73,7 +67,7 @@ def test_soft_layers_plates_and_films_do_not():
     assert is_loose(rtol=1e-7) == (True, 36) and is_loose(rtol=1e-7, n=1e-4, h=0.01) == (False, 52)
     assert is_loose(n=900.0) == (False, 90)
     assert is_loose(rtol=0.1, n=1e4) == (False, 104) and is_loose(rtol=0.1, n=1e7) == (False, 104)
-    film, one = layer(h=1e-3, n=1e5), np.ones(1)
+    film, one = layer_of(h=1e-3, n=1e5), np.ones(1)
     assert not film.within(one, one).loose[0]
     # one that has become a film on the way to its radius
     loose = film._replace(loose=one > 0)
@@ -84,6 +78,6 @@ def test_soft_layers_plates_and_films_do_not():
 
 def test_a_stiff_film_that_is_none_at_its_radius():
     """At the radius that is guessed it is a film, of which the class of stiffness is another."""
-    body = layer(h=1e-3, n=1e5).within(np.ones(1), np.ones(1))
+    body = layer_of(h=1e-3, n=1e5).within(np.ones(1), np.ones(1))
     (part,) = body.at(np.full(1, 0.1), mesh_of(5)).parts
     assert part.film is None and part.L1.shape[1] == 104

@@ -13,7 +13,7 @@ from study.in_words import MODELS
 
 @pytest.mark.parametrize("micro", ["disc_cell", "smooth"])
 def test_a_body_of_ones_own(micro, monkeypatch):
-    monkeypatch.setitem(BODIES, "mine", half_space)
+    monkeypatch.setitem(BODIES, "mine", lambda problem: half_space(problem.m))
     monkeypatch.setitem(auto._BY_NAME, "mine", Model.LAYERED)
     monkeypatch.setitem(PARAMETERS, "base", PARAMETERS["base"]._replace(choices=(*BASES, "mine")))
     mine, same = (

@@ -9,8 +9,8 @@ from mpmath import mp
 from numpy.testing import assert_allclose
 
 from solver import Problem, Status, solve
-from solver.body.kernel import layered_kernel
 from solver.closed_forms import thin_layer_on_rigid_base
+from solver.kernels.closed_form import layered_kernel
 from solver.models.thin_layer_error import edge_shift, thin_layer_error
 
 ROUGH = {"Nbar": 250000.0, "Ra": 0.004}

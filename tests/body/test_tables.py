@@ -7,6 +7,7 @@ from solver_cases import difference, one
 
 from solver.body import tables as module
 from solver.body.wave_rule import FILM
+from solver.kernels.two_layers import SAMPLER
 from solver.numerics.kept import Kept
 from solver.numerics.mesh import mesh_of
 from solver.numerics.quadrature import gauss_legendre
@@ -30,7 +31,7 @@ def test_no_more_than_400_megabytes_are_kept():
 def test_what_tables_have_in_common_is_kept_once(tables):
     """J0 and φ, for many cases and for few, loose or not; φ is also that of the waves."""
     kept = tables(4e8)
-    first, *others = (module.table(mesh_of(8), 0, *kind) for kind in ((0, True), (0, False), (4, True)))
+    first, *others = (module.table(mesh_of(8), SAMPLER, 0, *kind) for kind in ((0, True), (0, False), (4, True)))
     assert all(other.J is first.J and other.phi is first.phi for other in others)
     whole = [v for table in (first, *others) for v in (table.product, table.spread) if v is not None]
     distinct = {id(v): v.nbytes for v in (first.J, first.phi, *whole)}
@@ -39,7 +40,7 @@ def test_what_tables_have_in_common_is_kept_once(tables):
 
 def test_a_film_has_the_convolution_of_many_or_of_few(tables):
     tables(4e8)
-    many, few = (module.table(mesh_of(8), FILM, 0, kind).film.rows for kind in (True, False))
+    many, few = (module.table(mesh_of(8), SAMPLER, FILM, 0, kind).film.rows for kind in (True, False))
     c = np.random.default_rng(0).random((2, many.table.shape[0]))
     np.testing.assert_allclose(many.of(c), few.of(c), rtol=0, atol=1e-12 * np.abs(few.of(c)).max())
 

@@ -4,20 +4,21 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 from scipy.special import j0
+from solver_cases import layer_of
 
 from solver.body import tables
-from solver.body.kernel import decaying_part
-from solver.body.layered import Layered
 from solver.body.wave_rule import LOOSE, STIFFEST, few, quadrature
+from solver.kernels.closed_form import decaying_part
+from solver.kernels.two_layers import SAMPLER
 from solver.numerics.mesh import mesh_of
 from solver.numerics.quadrature import gauss_legendre
 
 
 def layers(eta, seed):
     """Materials for h/a (B,): n from 1e-3 to 1e3, both bondings."""
-    random, one = np.random.default_rng(seed), np.ones(len(eta))
+    random = np.random.default_rng(seed)
     n = np.exp(random.uniform(np.log(1e-3), np.log(1e3), len(eta)))
-    return Layered(eta, n, 0.3 * one, 0.3 * one, random.random(len(eta)) < 0.5, 0 * one)
+    return layer_of(h=eta, n=n, bonded=random.random(len(eta)) < 0.5)
 
 
 @pytest.mark.parametrize("n", [16, 32])
@@ -30,13 +31,12 @@ def test_the_rule(octave, n):
     ends = np.unique(np.r_[0.0, end * 2.0 ** -np.arange(40.0), np.arange(0.0, end, 30.0)])
     t, w = gauss_legendre(48)
     k, w = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), (np.diff(ends)[:, None] * w).ravel()
-    material = [v[:, None] for v in layer.material]
-    W = w * decaying_part(k * layer.h[:, None], *material)[0]
+    W = w * layer.kernel.decaying_part(k * layer.h[:, None])[0]
     phi, J = tables.transform(mesh, k), j0(k[:, None] * mesh.x) - j0(k)[:, None]
     q = mesh.s + mesh.s**2
     edge, Kq = np.pi / 2 * (W * j0(k)) @ phi + mesh.edge, np.pi / 2 * (W * (phi @ q)) @ J + mesh.K @ q
     found = layer.at(np.ones(len(layer.h)), mesh)
-    scale = 1e-11 * np.maximum(1.0, layer.n)
+    scale = 1e-11 * np.maximum(1.0, layer.kernel.n)
     assert np.all(np.abs(found.edge - edge).max(axis=1) < scale)
     assert np.all(np.abs(found.products(q + 0 * edge)[0] - Kq).max(axis=1) < scale)
 
@@ -54,7 +54,7 @@ def test_few_nodes_determine_the_operator(octave, stiffness):
     nu1, nu2 = random.choice([0.0, 0.5, 0.3, -0.9, *random.random(5) / 2], (2, size))
     layer = [v[:, None] for v in (n, nu1, nu2, random.random(size) < 0.5)]
     k, weight = quadrature(octave, stiffness)
-    own, eta = few(octave, stiffness), 2.0 ** (octave + np.r_[0.0, 1.0, random.random(size - 2)])
+    own, eta = few(SAMPLER, octave, stiffness), 2.0 ** (octave + np.r_[0.0, 1.0, random.random(size - 2)])
     whole, part = decaying_part(k * eta[:, None], *layer), decaying_part(own.k * eta[:, None], *layer)
     J, phi, J_edge = j0(k[:, None] * mesh.x) - j0(k)[:, None], tables.transform(mesh, k), j0(k)
     scale = np.maximum(np.abs(weight * whole[0] / (1 + k * k)).sum(axis=1), 1.0)
@@ -73,7 +73,7 @@ def test_the_kernel_of_the_same_radii_serves_again():
     known = layer.at(np.ones(40), mesh_of(12))
     found, anew = (layer.at(np.exp(step), mesh_of(8), near) for near in (known, None))
     # in other company: rounding of sums over some 120 nodes, of which BLAS kernels choose the order
-    scale = np.maximum(1.0, layer.n)
+    scale = np.maximum(1.0, layer.kernel.n)
     assert np.all(np.abs((found.K - anew.K) @ mesh_of(8).s).max(axis=1) < 1e-14 * scale)
     for part in found.parts:
         kept = [np.flatnonzero(other.index == part.index[0]) for other in known.parts]
@@ -120,6 +120,6 @@ def test_slopes_are_those_of_the_products():
         layer.at(np.exp([sign * step] * 30), mesh).products(q) for sign in (-1, 1)
     )
     d_Kq, d_edge_q = layer.at(np.ones(30), mesh).slopes(q)
-    scale = np.maximum(1.0, layer.n)
+    scale = np.maximum(1.0, layer.kernel.n)
     assert np.all(np.abs((after - before) / (2 * step) - d_Kq).max(axis=1) < 1e-6 * scale)
     assert np.all(np.abs((at_edge_after - at_edge) / (2 * step) - d_edge_q) < 1e-6 * scale)

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from solver_cases import layer_of
 
 from solver import Problem, Status, solve
-from solver.body import film, layered, tables
-from solver.body.layered import Layered
+from solver.body import film, hankel, tables
 from solver.body.wave_rule import CUT, FILM, quadrature
 from solver.contact.start import smooth_start
 from solver.numerics.kept import Kept
@@ -15,7 +15,7 @@ from solver.scaling import as_cases
 
 #: Panels towards the edge, as a film asks for.
 PANELS = (0.0, *(2.0 ** -np.arange(12, -1, -1)).tolist())
-FILMS = Layered(*(np.array([v]) for v in (1e-4, 1e3, 0.3, 0.3, False, 0.0)))
+FILMS = layer_of(h=1e-4, n=1e3, bonded=False)
 
 
 @pytest.fixture
@@ -92,8 +92,8 @@ def test_the_operator_at_the_same_radius_is_made_once():
 
 def test_a_search_for_the_radius_makes_one_operator_a_radius(monkeypatch):
     """Each began with that of the smooth contact, and threw it away."""
-    made, plain = [], layered._rows
-    monkeypatch.setattr(layered, "_rows", lambda *arguments: made.append(1) or plain(*arguments))
+    made, plain = [], hankel.rows_of
+    monkeypatch.setattr(hankel, "rows_of", lambda *arguments: made.append(1) or plain(*arguments))
     case = Problem.of(a=0.04, h=1e-5, n=1e3, Nbar=250000.0, Ra=0.004)
     ev = smooth_start(as_cases(case), mesh_of(12))
     assert len(made) == 1 and ev.operator.mesh == mesh_of(12)

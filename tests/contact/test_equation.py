@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from solver import Problem
-from solver.body import BODIES
+from solver.body.half_space import half_space
 from solver.contact import newton
 from solver.contact.driver import solve_on
 from solver.contact.equation import _ROUNDING, Cases, Evaluation, State, evaluate
@@ -20,7 +20,7 @@ def evaluation(q, F, G):
     """At two nodes, with X = Y = Z = 1, a law whose g is 1e-3, and ln a beside the given one by G."""
     q, F, one = np.array([q]), np.array([F]), np.ones((1, 1))
     curve = Curve(q=q, g=np.full_like(q, 1e-3), dq=np.ones_like(q), dg=np.ones_like(q))
-    body = BODIES["half_space"](ONE, ONE, ONE, ONE, ONE > 0, 0 * ONE)
+    body = half_space(0 * ONE)
     cases = Cases("a", LAWS["smooth"].bind(ONE), body, ONE)
     return Evaluation(cases, State(q, np.array([G])), body.at(ONE, mesh_of(2)), curve, one, one, one, q, q[:, 0], F)
 

@@ -7,6 +7,7 @@ from solver_cases import JUDGED, difference
 
 from solver import Problem, Status, solve
 from solver.body.tables import between, table
+from solver.kernels.two_layers import SAMPLER
 from solver.numerics.mesh import mesh_of, panel_mesh
 from solver.punches.paraboloid import HERTZ
 
@@ -41,12 +42,12 @@ def test_panels_and_one_polynomial_agree():
 def test_a_mesh_that_is_built_anew_finds_its_tables():
     """The 16 latest meshes of panels are kept, their tables longer: identity is the number of nodes and the panels."""
     first, width, points = panel_mesh(12, BREAKS), BREAKS[1], np.array([0.3, 0.9])
-    kept = table(first, -3, 0, True), between(-3, 0, points)
+    kept = table(first, SAMPLER, -3, 0, True), between(-3, 0, points)
     for i in range(16):
         panel_mesh(4, (0.0, width + (i + 1) / 100, 1.0))
     again = panel_mesh(12, BREAKS)
     assert again is not first and again == first and hash(again) == hash(first)
-    assert table(again, -3, 0, True) is kept[0] and between(-3, 0, points) is kept[1]
+    assert table(again, SAMPLER, -3, 0, True) is kept[0] and between(-3, 0, points) is kept[1]
     moved, fewer = (*BREAKS[:3], 0.29, *BREAKS[4:]), (0.0, *BREAKS[2:])
     others = [panel_mesh(11, BREAKS), panel_mesh(12, moved), panel_mesh(12, fewer), 12]
     assert first not in others and len({first, again, *others}) == 5

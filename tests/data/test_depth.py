@@ -5,7 +5,7 @@ import pytest
 from scipy.special import j0
 
 import study
-from solver.body.kernel import layered_kernel
+from solver.kernels.closed_form import layered_kernel
 from study.data import derived
 
 SMOOTH = {"P": 1e-5, "micro": "smooth"}

@@ -13,7 +13,7 @@ from scipy.integrate import quad
 
 import study
 from solver import Problem, solve
-from solver.body.kernel import layered_kernel
+from solver.kernels.closed_form import layered_kernel
 from study.figures.registry import entry
 from study.studies.literature import compared, formulas
 from study.studies.literature.figures import SHOWN_AT

@@ -9,8 +9,8 @@ from conftest import opened
 from scipy.integrate import quad
 
 from solver import Problem, solve
-from solver.body.kernel import layered_kernel
-from solver.body.springs import thin_layer_coefficients
+from solver.kernels.closed_form import layered_kernel
+from solver.kernels.two_layers import thin_layer_coefficients
 from solver.models.thin_layer_error import edge_shift, thin_layer_error
 from study.studies.evidence.validity_maps import from_layered
 

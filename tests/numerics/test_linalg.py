@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
+from solver_cases import layer_of
 
-from solver.body.layered import Layered
 from solver.numerics.linalg import solve_stack
 from solver.numerics.mesh import mesh_of
 
@@ -17,7 +17,7 @@ def operators(n, base, random):
         return mesh_of(n).K[None]
     h, stiffness = 10.0 ** random.uniform(-1, 1, MANY), 10.0 ** random.uniform(-3, 3, MANY)
     nu1, nu2, bonded = random.uniform(0, 0.49, MANY), np.full(MANY, 0.3), random.random(MANY) < 0.5
-    return Layered(h, stiffness, nu1, nu2, bonded, np.zeros(MANY)).at(np.ones(MANY), mesh_of(n)).K
+    return layer_of(h=h, n=stiffness, nu1=nu1, nu2=nu2, bonded=bonded).at(np.ones(MANY), mesh_of(n)).K
 
 
 @pytest.mark.parametrize("base", ["half_space", "layered"])

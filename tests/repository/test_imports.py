@@ -20,8 +20,8 @@ OURS = {"solver", "study", "studies"}
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
-        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "body", "problem"),
-        *("solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
+        *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
     ),
     "study": (
         *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
@@ -29,7 +29,7 @@ ROOMS = {
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
-APART = {"body": {"laws"}}
+APART = {"body": {"laws"}, "kernels": {"laws", "punches"}, "edges": {"laws", "punches"}}
 
 
 def name(path: Path) -> str:

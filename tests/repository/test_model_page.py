@@ -8,7 +8,7 @@ import pytest
 
 import study
 from solver import Model, Problem, Status, solve
-from solver.body.kernel import layered_kernel
+from solver.kernels.closed_form import layered_kernel
 from study.data import derived
 from study.data.dataset import status_words
 from study.spec.vocabulary import VOCABULARY

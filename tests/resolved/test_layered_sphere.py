@@ -10,7 +10,7 @@ from rough_sphere import Punch, cell_means, resolved
 from scipy.special import j0, spherical_jn
 
 from solver import Problem, solve
-from solver.body.kernel import layered_kernel
+from solver.kernels.closed_form import layered_kernel
 from solver.laws import LAWS
 
 LAYERS = (

@@ -3,6 +3,8 @@
 import numpy as np
 
 from solver import Problem, solve
+from solver.body.hankel import Hankel
+from solver.kernels.two_layers import TwoLayers
 
 #: The paper's main case, a = 0.04 on a thin layer, without its control and its base.
 MAIN = {"h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004, "B": 0.1, "beta": 0.5}
@@ -42,6 +44,13 @@ def random_cases(size, seed, ranges=RANGES):
 def one(x=(0.0, 1.0), **case):
     """Solution of the main case, which is on a thin layer, with changes."""
     return solve(Problem.of(**({"base": "thin_layer"} | MAIN | case)), np.asarray(x))
+
+
+def layer_of(**given):
+    """The exact body of layers, arrays (B,) as broadcast: h = 1 and so on unless `given`."""
+    case = {"h": 1.0, "n": 0.5, "nu1": 0.3, "nu2": 0.3, "bonded": True, "m": 0.0} | given
+    h, n, nu1, nu2, bonded, m = np.broadcast_arrays(np.ones(1), *case.values())[1:]
+    return Hankel(TwoLayers(n, nu1, nu2, bonded), h, m)
 
 
 def difference(first, second, names=JUDGED):

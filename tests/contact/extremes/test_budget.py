@@ -6,11 +6,10 @@ The limits are lowered here, so that cases which take little work reach them.
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from solver_cases import LOAD, MAIN
+from solver_cases import LOAD, MAIN, layer_of
 
 from solver import Problem, Status, solve
 from solver.body.half_space import half_space
-from solver.body.layered import Layered
 from solver.contact import adaptive, driver, panels, picard
 from solver.contact.driver import newton_steps
 from study.spec.definition import from_tables
@@ -165,8 +164,8 @@ def test_the_second_panels_go_on_from_the_first(monkeypatch, meshes):
 
 def test_work_is_more_where_more_is_computed():
     a = np.ones(1)
-    film, thick = (Layered(*(np.array([v]) for v in (h, 1e3, 0.3, 0.3, False, 0.0))).work(a, 96) for h in (1e-6, 0.1))
-    springs = half_space(*(np.array([v]) for v in (0.0, 1.0, 0.3, 0.3, False, 0.0))).work(a, 96)
+    film, thick = (layer_of(h=h, n=1e3, bonded=False).work(a, 96) for h in (1e-6, 0.1))
+    springs = half_space(np.zeros(1)).work(a, 96)
     for of_film, of_layer, of_springs in zip(film, thick, springs, strict=True):
         assert of_film[0] > of_layer[0] > of_springs[0] > 0
 
@@ -176,7 +175,7 @@ def test_a_tolerance_that_no_mesh_meets_takes_no_panels(meshes):
     at the edge that the film moves."""
     film = {"n": 1.41e-5, "nu1": 0.091, "nu2": -0.15, "bonding": "bonded"}
     s = solve(Problem.of(P=132.0, h=1.97e-9, **film, micro="smooth", rtol=1e-10), X)
-    layer = Layered(*(np.array([v]) for v in (1.97e-9, *film.values(), 0.0)))._replace(bonded=np.array([True]))
+    layer = layer_of(h=1.97e-9, **{name: film[name] for name in ("n", "nu1", "nu2")})
     assert s.status[0] == Status.TOLERANCE_NOT_MET and all(panels == 1 for _, panels in meshes)
     assert_allclose(s.error, layer.error(s.a, s.nodes), rtol=1e-9)
     assert np.isfinite(s.p).all() and np.isfinite(s.lam).all()

@@ -1,4 +1,4 @@
-"""The exact layer of E1* on an elastic half-space: the half-space of E1* plus a Hankel integral over L - 1.
+"""A body with a kernel L: the half-space of E1* at its surface, plus a Hankel integral over L - 1.
 
     K q = H[q] + (π/2) Λ[q], both less their values at the edge,
     Λ_ij = ∫₀^∞ (L(kh/a) - 1) J0(k x_i) φ_j(k) dk,   φ_j(k) = ∫₀¹ l_j J0(kx) x dx,
@@ -7,20 +7,19 @@ with k in units of 1/a, and l_j the Lagrange polynomials of the mesh. H carries 
 decays like e^(-2u), so Λ is smooth for every h/a. What depends on k and the mesh alone is tabulated for each octave of
 h/a (:mod:`.tables`); the matrices of a batch are one product with that table, and the derivatives by ln a come from u
 dL/du. Where two octaves meet they agree to the error of the quadrature. Layers below the first octave are films. They
-all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`.
+all share one quadrature, which ends at k = CUT; what lies beyond is in :mod:`.film`. The kernels are in
+:mod:`..kernels`.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..numerics.mesh import Mesh
-from .film import MANY
-from .kernel import whole
+from ..kernels.kernel import Kernel
+from .half_space import thin_layer
+from .hankel_operator import HankelOperator, rows_of
 from .operator import fitted_nodes
-from .part import join, parts_of
-from .springs import layer_modulus, thin_layer
-from .tables import between, felt, film_rows
+from .part import parts_of
 from .wave_rule import CUT, FILM, LOOSE, place_of
 
 #: A layer thinner than this times the radius yields nearly as the thin layer does.
@@ -46,48 +45,44 @@ _PLATE = 3 * np.finfo(float).eps
 _SHORT, _POINTS = 45.0, 64
 
 
-class Layered(NamedTuple):
-    """The :class:`~solver.body.operator.Body` of B layered cases, arrays (B,): thickness h in R, n = E1*/E2*, the
-    Poisson ratios nu1, nu2 of layer and half-space, whether they are bonded, and m = E1*/E3*. `loose`, (B,) bool, or
-    None if no case is: whether the operator is made of fewer values of L (:meth:`within`).
+class Hankel(NamedTuple):
+    """The :class:`~solver.body.operator.Body` of B cases with a kernel; arrays (B,): thickness h of the layer at the
+    surface in R, and m = E1*/E3*. `loose`, (B,) bool, or None if no case is: whether the operator is made of fewer
+    values of L (:meth:`within`).
 
     The punch yields as a half-space of E3* does, so the kernel of both is L + m relative to E1*. Relative to the
     modulus E of both, 1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m): L - 1 becomes (L - 1)/(1 + m).
     """
 
+    kernel: Kernel
     h: np.ndarray
-    n: np.ndarray
-    nu1: np.ndarray
-    nu2: np.ndarray
-    bonded: np.ndarray
     m: np.ndarray
     loose: np.ndarray | None = None
 
     @property
     def E(self):
-        return layer_modulus(self.n) / (1 + self.m)
-
-    @property
-    def material(self):
-        return self[1:5]
+        return self.kernel.E1 / (1 + self.m)
 
     @property
     def L0(self):
         """The kernel (B,) at u = 0."""
-        return (self.n + self.m) / (1 + self.m)
+        return (self.kernel.L0 + self.m) / (1 + self.m)
 
     def whole(self, u):
         """The kernel (L + m)/(1 + m) (B,) at u (B,)."""
-        return (whole(u, *self.material) + self.m) / (1 + self.m)
+        return (self.kernel.whole(u) + self.m) / (1 + self.m)
 
     @property
     def C(self):
-        return 0 * self.n
+        return 0 * self.m
 
     def take(self, index):
-        return Layered(*(None if field is None else field[index] for field in self))
+        loose = None if self.loose is None else self.loose[index]
+        return Hankel(self.kernel.take(index), self.h[index], self.m[index], loose)
 
     def within(self, rtol, a):
+        if self.kernel.sampler is None:
+            return self
         every = self._replace(loose=np.ones(len(a), dtype=bool))
         may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not be: their class may change with the radius
         return self._replace(loose=may_be & (every.error(a, 1) <= _OF_RTOL * rtol))
@@ -103,7 +98,7 @@ class Layered(NamedTuple):
         if near is not None and near.mesh == mesh and not far.any():
             return near
         parts += parts_of(self, a, np.flatnonzero(far))
-        return LayeredOperator(mesh, parts, _rows(parts, mesh))
+        return HankelOperator(mesh, parts, rows_of(parts, mesh))
 
     def softness(self, a):
         """The kernel at the wave number 1.5/a."""
@@ -132,7 +127,7 @@ class Layered(NamedTuple):
         if not len(thin):
             return shift
         u = np.geomspace(h_a[thin] / s1**2, _SHORT, _POINTS, axis=1)
-        level = np.log(whole(u, *(field[thin, None] for field in self.material)) + self.m[thin, None])
+        level = np.log(self.kernel.take(thin).whole(u) + self.m[thin, None])
         f = np.abs(level - level[:, :1]) / u
         shift[thin] = (np.trapezoid(f, np.log(u), axis=1) + f[:, -1]) * h_a[thin] / np.pi
         return shift
@@ -148,112 +143,10 @@ class Layered(NamedTuple):
 
     def alike(self, a):
         """The thin layer, if all cases are much thinner than a and it applies to them."""
-        thin = thin_layer(*self[:6])
+        thin = thin_layer(self.h, self.kernel, self.m)
         return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
 
     def first_nodes(self, rtol, a, rise=None):
         """Under asperities as on a half-space; under a smooth punch, the fewer the thicker the layer."""
         smooth = 0.9 * np.clip(self.h / a, 0.0, 1.0), 2.3
         return fitted_nodes(rtol, *(smooth if rise is None else (rise, 1.1)))
-
-
-class LayeredOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of layers: its mesh; `parts`, the kernel; and `rows` (B, n + 1, n),
-    the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
-
-    mesh: Mesh
-    parts: list
-    rows: np.ndarray
-
-    @property
-    def K(self):
-        return self.rows[:, :-1]
-
-    @property
-    def edge(self):
-        return self.rows[:, -1]
-
-    def take(self, index):
-        """`index` ascends."""
-        place = np.full(len(self.rows), -1)
-        place[index] = np.arange(len(index))
-        at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
-        parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, at, strict=True) if len(r)]
-        rows = np.take(self.rows.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
-        return LayeredOperator(self.mesh, parts, rows)
-
-    def join(self, operators, places):
-        size, n = sum(len(place) for place in places), self.mesh.n
-        rows, groups = np.empty((n + 1, n, size)).transpose(2, 0, 1), {}
-        for operator, place in zip(operators, places, strict=True):
-            rows[place] = operator.rows
-            for part in operator.parts:
-                part = part._replace(index=place[part.index])
-                groups.setdefault((part.stiffness, part.film is None), []).append(part)
-        return LayeredOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
-
-    def products(self, q):
-        found = np.einsum("bij,bj->bi", self.rows, q)
-        return found[:, :-1], found[:, -1]
-
-    def slopes(self, q):
-        out = np.empty((len(q), self.mesh.n + 1))
-        for part in self.parts:
-            for tab, rows in part.tables(self.mesh):
-                index, uL = part.index[rows], part.uL[rows]
-                own = q[index]
-                if tab.is_small:
-                    moved = (uL @ tab.product).reshape(len(own), -1, self.mesh.n)
-                    out[index] = np.einsum("bij,bj->bi", moved, own)
-                else:
-                    out[index] = (tab.weights(uL) * (own @ tab.phi.T)) @ tab.J
-                if part.film is not None:
-                    out[index] += np.matmul(_film(part.d_film[rows], tab, self.mesh.n), own[..., None])[..., 0]
-        return out[:, :-1], out[:, -1]
-
-    def between(self, q, s, half_space):
-        out, x = np.empty(half_space.shape), np.sqrt((1 - s) * (1 + s))
-        for part in self.parts:
-            for tab, rows in part.tables(self.mesh):
-                index = part.index[rows]
-                J = between(int(part.octave[rows][0]), part.stiffness, s)
-                out[index] = (tab.weights(part.L1[rows]) * (q[index] @ tab.phi.T)) @ J
-            if part.film is not None:
-                index, near = part.index, felt(self.mesh, x)
-                away = film_rows(self.mesh, s[near].tobytes(), len(part.film) >= MANY).of(part.film)
-                out[index] -= ((part.film @ tab.film.edge) * q[index]).sum(axis=1)[:, None]
-                out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
-            out[part.index] += part.share * half_space[part.index]
-        return out
-
-
-def _rows(parts, mesh):
-    """K and under it the row of the edge, (B, n + 1, n); in memory the index of the case runs fastest."""
-    order, n, end = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n, 0
-    flat, half_space = np.empty(((n + 1) * n, len(order))), np.vstack([mesh.K, mesh.edge]).reshape(-1, 1)
-    for part in parts:
-        begin = end
-        for tab, rows in part.tables(mesh):
-            low, end = end, end + rows.stop - rows.start
-            own, L1 = flat[:, low:end], part.L1[rows]
-            of_cases = own.reshape(n + 1, n, -1).transpose(2, 0, 1)
-            if tab.product is None:
-                for one, w in zip(of_cases, tab.weights(L1), strict=True):
-                    one[:] = (tab.J * w[:, None]).T @ tab.phi
-            else:
-                np.matmul(tab.product.T, L1.T, out=own)
-            if part.film is not None:
-                of_cases[:] += _film(part.film[rows], tab, n)
-        flat[:, begin:end] += half_space * np.transpose(part.share)
-    if np.any(np.diff(order) < 0):
-        flat = np.take(flat, np.argsort(order), axis=1)
-    return flat.reshape(n + 1, n, -1).transpose(2, 0, 1)
-
-
-def _film(c, tab, n):
-    """What a convolution c (b, T) adds to the matrix and to the row of the edge under it, (b, n + 1, n)."""
-    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ tab.film.edge
-    rows[:, :-1] -= at_edge[:, None]
-    rows[:, tab.film.nodes] += tab.film.rows.of(c)
-    rows[:, -1] = at_edge
-    return rows

@@ -14,7 +14,7 @@ _SERIES = 0.8
 _LEAST = 1e-300
 
 
-class Kernel(NamedTuple):
+class Values(NamedTuple):
     """L(u), L(u) - 1 and u dL/du; arrays of one shape."""
 
     L: np.ndarray
@@ -23,7 +23,7 @@ class Kernel(NamedTuple):
 
 
 def layered_kernel(u, n, nu1, nu2, bonded):
-    """:class:`Kernel` of a layer on a half-space for any Poisson ratios; the arguments broadcast.
+    """:class:`Values` of a layer on a half-space for any Poisson ratios; the arguments broadcast.
 
     L and L - 1 are right to a relative 1e-13 (L - 1 relative to its largest term where it changes sign), u dL/du to
     1e-13 of the larger of |L - 1| and itself.
@@ -38,7 +38,7 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     """
     given = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
     flat = [np.atleast_1d(v) for v in given]
-    return Kernel(*(v.reshape(given[0].shape) for v in (whole(*flat), *decaying_part(*flat))))
+    return Values(*(v.reshape(given[0].shape) for v in (whole(*flat), *decaying_part(*flat))))
 
 
 def whole(u, n, nu1, nu2, bonded):

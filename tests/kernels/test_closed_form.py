@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from solver.body.kernel import layered_kernel
-from solver.body.springs import thin_layer_coefficients
+from solver.kernels.closed_form import layered_kernel
+from solver.kernels.two_layers import thin_layer_coefficients
 
 #: See make_kernel_reference.py beside it.
 TABLE = np.genfromtxt(Path(__file__).parents[1] / "references" / "kernel_reference.csv", delimiter=",", names=True)

@@ -1,0 +1,137 @@
+"""The operator of a body with a kernel on a mesh: its matrix, and what follows from it."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics.mesh import Mesh
+from .film import MANY
+from .part import join
+from .tables import between, felt, film_rows
+from .wave_rule import quadrature
+
+
+class HankelOperator(NamedTuple):
+    """The :class:`~solver.body.operator.Operator` of bodies with a kernel: its mesh; `parts`, the kernel; and `rows`
+    (B, n + 1, n), the matrix K and under it the row of the edge. In memory the index of the case runs fastest."""
+
+    mesh: Mesh
+    parts: list
+    rows: np.ndarray
+
+    @property
+    def K(self):
+        return self.rows[:, :-1]
+
+    @property
+    def edge(self):
+        return self.rows[:, -1]
+
+    def take(self, index):
+        """`index` ascends."""
+        place = np.full(len(self.rows), -1)
+        place[index] = np.arange(len(index))
+        at = [np.flatnonzero(place[part.index] >= 0) for part in self.parts]
+        parts = [part.take(r, place[part.index[r]]) for part, r in zip(self.parts, at, strict=True) if len(r)]
+        rows = np.take(self.rows.transpose(1, 2, 0), index, axis=2).transpose(2, 0, 1)
+        return HankelOperator(self.mesh, parts, rows)
+
+    def join(self, operators, places):
+        size, n = sum(len(place) for place in places), self.mesh.n
+        rows, groups = np.empty((n + 1, n, size)).transpose(2, 0, 1), {}
+        for operator, place in zip(operators, places, strict=True):
+            rows[place] = operator.rows
+            for part in operator.parts:
+                part = part._replace(index=place[part.index])
+                groups.setdefault(part.kind, []).append(part)
+        return HankelOperator(self.mesh, [join(parts) for parts in groups.values()], rows)
+
+    def at_edge(self, q):
+        return (self.edge * q).sum(axis=1)
+
+    def products(self, q):
+        found = np.einsum("bij,bj->bi", self.rows, q)
+        return found[:, :-1], found[:, -1]
+
+    def slopes(self, q):
+        out = np.empty((len(q), self.mesh.n + 1))
+        for part in self.parts:
+            for tab, rows in part.tables(self.mesh):
+                index, uL = part.index[rows], part.uL[rows]
+                own = q[index]
+                if tab.is_small:
+                    moved = (uL @ tab.product).reshape(len(own), -1, self.mesh.n)
+                    out[index] = np.einsum("bij,bj->bi", moved, own)
+                else:
+                    out[index] = (tab.weights(uL) * (own @ tab.phi.T)) @ tab.J
+                if part.film is not None:
+                    out[index] += np.matmul(_film(part.d_film[rows], tab, self.mesh.n), own[..., None])[..., 0]
+        return out[:, :-1], out[:, -1]
+
+    def between(self, q, s, half_space):
+        out, x = np.empty(half_space.shape), np.sqrt((1 - s) * (1 + s))
+        for part in self.parts:
+            for tab, rows in part.tables(self.mesh):
+                index = part.index[rows]
+                J = between(int(part.octave[rows][0]), part.stiffness, s)
+                out[index] = (tab.weights(part.L1[rows]) * (q[index] @ tab.phi.T)) @ J
+            if part.film is not None:
+                index, near = part.index, felt(self.mesh, x)
+                away = film_rows(self.mesh, s[near].tobytes(), len(part.film) >= MANY).of(part.film)
+                out[index] -= ((part.film @ tab.film.edge) * q[index]).sum(axis=1)[:, None]
+                out[np.ix_(index, near)] += np.matmul(away, q[index][:, :, None])[..., 0]
+            out[part.index] += part.share * half_space[part.index]
+        return out
+
+    def of_waves(self, waves, half_space):
+        out = np.full((2, len(self.rows), self.mesh.n + 1), np.nan)  # as films stay
+        for part in self.parts:
+            for tab, rows in part.tables(self.mesh) if part.film is None else ():
+                J = self._waves(waves, part, rows) * tab.J
+                out[0, part.index[rows]] = tab.weights(part.L1[rows]) @ J + half_space
+                out[1, part.index[rows]] = tab.weights(part.uL[rows]) @ J
+        return out
+
+    def of_waves_between(self, waves, s, half_space):
+        out = np.full((len(self.rows), len(s)), np.nan)
+        for part in self.parts:
+            for tab, rows in part.tables(self.mesh) if part.film is None else ():
+                J = self._waves(waves, part, rows) * between(int(part.octave[rows][0]), part.stiffness, s)
+                out[part.index[rows]] = tab.weights(part.L1[rows]) @ J + half_space
+        return out
+
+    def _waves(self, waves, part, rows):
+        """The transform `waves` (G, 1) at all nodes k of the cases `rows` of a part."""
+        return waves(quadrature(int(part.octave[rows][0]), part.stiffness)[0])[:, None]
+
+
+def rows_of(parts, mesh):
+    """K and under it the row of the edge, (B, n + 1, n); in memory the index of the case runs fastest."""
+    order, n, end = np.concatenate([np.arange(0), *(part.index for part in parts)]), mesh.n, 0
+    flat, half_space = np.empty(((n + 1) * n, len(order))), np.vstack([mesh.K, mesh.edge]).reshape(-1, 1)
+    for part in parts:
+        begin = end
+        for tab, rows in part.tables(mesh):
+            low, end = end, end + rows.stop - rows.start
+            own, L1 = flat[:, low:end], part.L1[rows]
+            of_cases = own.reshape(n + 1, n, -1).transpose(2, 0, 1)
+            if tab.product is None:
+                for one, w in zip(of_cases, tab.weights(L1), strict=True):
+                    one[:] = (tab.J * w[:, None]).T @ tab.phi
+            else:
+                np.matmul(tab.product.T, L1.T, out=own)
+            if part.film is not None:
+                of_cases[:] += _film(part.film[rows], tab, n)
+        flat[:, begin:end] += half_space * np.transpose(part.share)
+    if np.any(np.diff(order) < 0):
+        flat = np.take(flat, np.argsort(order), axis=1)
+    return flat.reshape(n + 1, n, -1).transpose(2, 0, 1)
+
+
+def _film(c, tab, n):
+    """What a convolution c (b, T) adds to the matrix and to the row of the edge under it, (b, n + 1, n)."""
+    rows, at_edge = np.zeros((len(c), n + 1, n)), c @ tab.film.edge
+    rows[:, :-1] -= at_edge[:, None]
+    rows[:, tab.film.nodes] += tab.film.rows.of(c)
+    rows[:, -1] = at_edge
+    return rows

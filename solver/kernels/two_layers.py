@@ -1,0 +1,97 @@
+"""A layer on a half-space, frictionless or bonded: its kernel, formed by :mod:`.closed_form`, and A1 + A2 u, which
+is the kernel of a thin one."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from .closed_form import decaying_part, whole
+from .kernel import Sampler
+
+
+class TwoLayers(NamedTuple):
+    """The :class:`~solver.kernels.kernel.Kernel` of B layers on half-spaces, arrays (B,): n = E1*/E2*, the Poisson
+    ratios nu1, nu2 of layer and half-space, and whether they are bonded."""
+
+    n: np.ndarray
+    nu1: np.ndarray
+    nu2: np.ndarray
+    bonded: np.ndarray
+
+    @classmethod
+    def of(cls, problem):
+        """That of the cases of a :class:`~solver.problem.Problem`."""
+        return cls(problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded")
+
+    @property
+    def E1(self):
+        return layer_modulus(self.n)
+
+    @property
+    def L0(self):
+        return self.n
+
+    @property
+    def slope(self):
+        return thin_layer_coefficients(*self)[1]
+
+    @property
+    def stiffness(self):
+        """A stiff layer is a plate, whose kernel falls at u ~ n^(-1/3), and if bonded also a membrane, whose kernel
+        falls at u ~ 1/n."""
+        return self.n
+
+    @property
+    def sampler(self):
+        return SAMPLER
+
+    def take(self, index):
+        return TwoLayers(*(field[index] for field in self))
+
+    def formulas(self):
+        return [np.flatnonzero(self.bonded), np.flatnonzero(~self.bonded)]
+
+    def whole(self, u):
+        return whole(u, *(self if u.ndim == 1 else self._columns()))
+
+    def decaying_part(self, u):
+        return decaying_part(u, *self._columns())
+
+    def _columns(self):
+        return (field[:, None] for field in self)
+
+
+def random_layers(random, n):
+    """:class:`TwoLayers` of n (S,), two thirds of them bonded; one Poisson ratio in five is below 0."""
+    size = len(n)
+    bonded = random.random(size) < 0.67
+    nu = np.where(random.random((2, size)) < 0.8, random.uniform(0, 0.5, (2, size)), random.uniform(-1, 0, (2, size)))
+    return TwoLayers(n, *nu, bonded)
+
+
+#: The numbers of few nodes are the most that any octave of h/a asks for; tests/body/test_wave_rule.py checks what they
+#: leave out.
+SAMPLER = Sampler(random_layers, (52, 90, 104, 104, 36, 61))
+
+
+def thin_layer_coefficients(n, nu1, nu2, bonded):
+    """Coefficients A1 and A2 (B,) of the thin-layer kernel L(u) ≈ A1 + A2 u, Eq. (2), for any Poisson ratios. Arguments
+    as those of :func:`.closed_form.layered_kernel`, (B,) each.
+
+    A1 = n; A2 = 1/2 without friction. Bonded, with alpha = G1/G2 = n (1 - nu1)/(1 - nu2), it is (1 + alpha (1 - 2 nu2))
+    (1 - 2 nu1 - alpha (1 - 2 nu2)) / (2 (1 - nu1)²); for nu1 = nu2 that is the paper's Eq. (2). A2 <= 0 (nu1 = 1/2, or
+    alpha >= (1 - 2 nu1)/(1 - 2 nu2)) means that the thin-layer equation does not apply.
+
+    >>> A1, A2 = thin_layer_coefficients(0.5, 0.3, 0.3, True)
+    >>> print(float(A1), round(float(A2), 12))
+    0.5 0.244897959184
+    """
+    n, nu1, nu2 = (np.asarray(v, dtype=float) for v in (n, nu1, nu2))
+    stiffness = n * (1 - nu1) / (1 - nu2) * (1 - 2 * nu2)
+    A2 = (1 + stiffness) * (1 - 2 * nu1 - stiffness) / (2 * (1 - nu1) ** 2)
+    return n * 1.0, np.where(bonded, A2, 0.5)
+
+
+def layer_modulus(n):
+    """E1* in the unit of moduli. That is E2*, so E1* is n; on a rigid base, n = 0, it is E1* itself, so E1* is 1."""
+    return n + (n == 0)

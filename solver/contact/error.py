@@ -134,7 +134,7 @@ def _moved_edge(refined):
     share = np.clip(refined.start.Z * start.g / refined.start.drop, 0.0, 1.0)
     least = np.maximum(start.q, 0.02 * s2 * start.q.max(axis=1, keepdims=True))
     moved = (1 - share) * np.abs(end.q - start.q) / least + share * np.abs(end.g / start.g - 1)
-    return (s2 * moved).max(axis=1)
+    return (s2 * np.where(moved > _NEAR, moved, 0.0)).max(axis=1)
 
 
 def _missed_ring(ev):

@@ -41,6 +41,10 @@ CASES = {
     ),
     # λ is nearly 1 between the edge and the first node as well: _UNSEEN times λ s²/2 at that node
     "ring": (
+        {"base": "half_space", "micro": "disc_cell", "P": 0.02363835, "Ra": 0.06891573, "Nbar": 1.766974e8},
+        6, 300,
+    ),
+    "ring, saturated": (
         {"base": "thin_layer", "micro": "disc_cell", "P": 9.5121e-9, "Ra": 4.35751e-4, "Nbar": 8.93755e11,
          "h": 3.7334e-8, "n": 2.30066e-6},
         6, 300,
@@ -77,6 +81,11 @@ CASES = {
     ),
     # the displacement is nearly the same wherever there is pressure, and λ rises sharply where that begins: _STEEP
     "steep": (
+        {"base": "thin_layer", "micro": "power_law", "P": 1.417785e-5, "Ra": 9.458536e-5, "Nbar": 7.43441e7,
+         "h": 0.004946116, "n": 1.19274e-5, "B": 0.5886127, "beta": 0.05575066},
+        8, 30,
+    ),
+    "steep, finer": (
         {"base": "thin_layer", "micro": "power_law", "P": 6.751e-5, "Ra": 8.085e-4, "Nbar": 4.1e6, "h": 0.03413,
          "n": 0.5986, "B": 0.0248, "beta": 0.06069},
         12, 30,

@@ -28,6 +28,8 @@ SIZES = {"half_space": 90, "thin_layer": 90, "layered": 10, "auto": 10}
 #: The last two are tables of one's own: rows of a law, and a histogram of heights.
 LAWS = ("smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
         "rows", "histogram")  # fmt: skip
+#: Asperities of a group with a histogram: one table of many classes takes a second.
+MOST_TABLES = 9
 ROUND = len(BASES) * len(LAWS) * len(CONTROL)
 #: Drawn by the logarithm between their bounds; the others are what a study may have.
 LOGARITHMIC = ("h", "n", "Nbar", "Ra", "B", "beta", "sigma", "cut")
@@ -92,6 +94,8 @@ def group(seed, number, folder, share=1):
     case |= {"m": np.where(random.random(size) < 0.5, 0.0, logarithmic(random, "m", size))}
     case |= {"n": np.where(random.random(size) < 0.1, 0.0, case["n"])}
     if law in ("rows", "histogram"):
+        few = random.integers(0, min(size, MOST_TABLES), size)  # a histogram has a table for each Nbar and Ra
+        case |= {name: case[name][few] for name in ("Nbar", "Ra")}
         law = table(random, law, folder / f"{number}.csv")
     scheme = "picard" if law != "smooth" and random.random() < PICARD else "newton"
     return case | {control: logarithmic(random, control, size), "base": base, "micro": law, "scheme": scheme}, control

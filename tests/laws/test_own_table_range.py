@@ -97,7 +97,7 @@ def test_the_range_is_over_the_modulus_of_both_bodies(tmp_path, m):
 
 @pytest.mark.parametrize("base", ["half_space", "layered"])
 def test_the_error_of_the_edge_falls_with_the_first_pressure(tmp_path, base):
-    """As its power 1.5, from table to table: that of the ring in which the pressure is below it."""
+    """As the power of it that encloses every law, from table to table: 1.2, not the 1.5 of the disc cell."""
     given = {"P": 1e-5, "base": base, **CASE}
     true = study.solve(**given, micro="disc_cell", **ASPERITIES)
     top, errors = float(true.p0) / (1.0 if base == "half_space" else CASE["n"]), []
@@ -105,4 +105,4 @@ def test_the_error_of_the_edge_falls_with_the_first_pressure(tmp_path, base):
         found = study.solve(**given, micro=limited(tmp_path, "disc_cell", {}, top / ratio, 30 * top))
         errors.append(float(found.model_error) - own_table.read(f"table:{tmp_path / 'mine.csv'}").error)
     steps = -np.diff(errors)
-    np.testing.assert_allclose(steps[0] / steps[1], 4**1.5, rtol=0.02)
+    np.testing.assert_allclose(steps[0] / steps[1], 4**1.2, rtol=0.02)

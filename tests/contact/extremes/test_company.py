@@ -78,7 +78,7 @@ def test_a_table_of_heights_is_the_same_in_any_company(monkeypatch):
     case = {"E": 1.0, "Nbar": 250_000.0, "Ra": 0.004}
     monkeypatch.setattr(heights, "_TABLES", {})
     together = heights.LAW.at(p[:, None], **case, sigma=sigma, cut=cut)
-    for i in range(0, 40, 2):
+    for i in range(0, 40, 4):
         monkeypatch.setattr(heights, "_TABLES", {})
         alone = heights.LAW.at(p, **case, sigma=sigma[i], cut=cut[i])
         for values, expected in zip(together, alone, strict=True):
@@ -105,7 +105,7 @@ GOOD = MAIN | {
     "cut": 4.0,
 }
 OF_A_LAYER, OF_ASPERITIES, OF_POWER_LAWS = ("h", "n", "nu1", "nu2"), ("Nbar", "Ra"), ("B", "beta")
-KINDS = [*ALL_KINDS, ("auto", "disc_cell"), ("half_space", "normal_heights"), ("layered", "normal_heights")]
+KINDS = [*ALL_KINDS, ("auto", "disc_cell"), ("layered", "normal_heights")]
 #: A number that no case can have, of every parameter: (name, value).
 POISON = [(name, bad) for name in GOOD for bad in (np.nan, np.inf, -np.inf, -1.0, 0.0)
           if (name, bad) not in ((free, 0.0) for free in ("n", "nu1", "nu2", "m", "sigma"))]  # fmt: skip

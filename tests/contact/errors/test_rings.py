@@ -26,7 +26,7 @@ def ratios(exact, problem):
 
 def test_asperities_that_are_springs():
     """With beta = 1 asperities are springs of C = B Ra/E: a smooth punch on a thin layer with A2 h = C E/2. That has a
-    linear equation and a bound of its own. Without this bound and the moved edge these are up to 1.4 times as far off as
+    linear equation and a bound of its own. Without the bound and the moved edge these are up to 1.4 times as far off as
     `error`, and random ones up to 9 times."""
     t = np.geomspace(1e-8, 1e-2, 61)
     a, Ra = 0.05, 0.01
@@ -42,8 +42,8 @@ def test_asperities_that_are_springs():
 
 @pytest.mark.parametrize("beta", [0.95, 0.85, 0.7])
 def test_rings_of_asperities(beta):
-    """Against the same on finer meshes and panels. Without the bound and the moved edge these are up to 5 times as far off as `error`. The
-    tolerance is for the finer answers, whose `error` is an estimate too."""
+    """Against finer meshes and panels. Without the bound and the moved edge these are up to 5 times as far off as
+    `error`. The tolerance is for the finer answers, whose `error` is an estimate too."""
     a, Ra = 0.03, 0.01
     B = np.geomspace(1e-9, 1e-3, 31) * a**2 / 2 / Ra / (2 / np.pi * a) ** beta
     law = {"micro": "power_law", "B": np.maximum(B, 1e-8), "beta": beta, "Ra": Ra, "Nbar": 1e3, "base": "half_space"}

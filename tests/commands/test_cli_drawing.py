@@ -127,7 +127,11 @@ def test_results_that_are_missing_have_a_way_out_each(monkeypatch, tmp_path):
     monkeypatch.setitem(registry.REGISTERS[""], "measured", {"times": None})
     with pytest.raises(StudyError) as caught:
         registry.open_studies("mine", ("tradeoff", "times", "main_case"), tmp_path)
-    ways = ("make it with: python -m study tradeoff", "--run measures it", "make it with: python -m study run main_case")
+    ways = (
+        "make it with: python -m study tradeoff",
+        "--run measures it",
+        "make it with: python -m study run main_case",
+    )
     names = ("tradeoff", "times", "main_case")
     assert caught.value.messages == tuple(
         f"{tmp_path / name}.nc: does not exist, mine needs it; {way}" for name, way in zip(names, ways, strict=True)

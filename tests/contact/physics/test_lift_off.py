@@ -64,7 +64,8 @@ def test_tension_above_the_error_of_the_mesh_is_the_error():
 
 
 def test_a_gap_is_an_error_of_all_of_the_contact():
-    """Asperities in a ring hang over so stiff a plate. The mesh is off by less than a half, and says that nothing is right."""
+    """Asperities in a ring hang over so stiff a plate. The mesh is off by less than a
+    half, and says that nothing is right."""
     rough = {"micro": "power_law", "Nbar": 1e12, "Ra": 1e-6, "B": 1.0, "beta": 0.6, "rtol": 0.9}
     s = plates([7.0403465, 10.7600884], [3888109.0, 30663147.0], "bonded", nodes=48, **rough)
     assert list(s.status) == [Status.TOLERANCE_NOT_MET] * 2 and list(s.error) == [1.0, 1.0]

@@ -130,7 +130,7 @@ def test_a_sample_with_units_and_spreads(tmp_path):
 def test_all_that_the_results_say_is_in_the_digest(tmp_path):
     """Also where the solver's numbers are the same: SI values, names of materials, labels, spreads."""
     rows = '[[cases]]\nlabel = "one"\nP = "1 N"\n[[cases]]\nlabel = "two"\nP = "2 N"\n'
-    text = f'[model]\nR = "5 mm"\nE1 = "100 GPa"\nh = "2 um"\nE2 = "200 GPa"\nE_punch = "rigid"\nmicro = "smooth"\n'
+    text = '[model]\nR = "5 mm"\nE1 = "100 GPa"\nh = "2 um"\nE2 = "200 GPa"\nE_punch = "rigid"\nmicro = "smooth"\n'
     text += rows
 
     def digest(*changes: tuple[str, str]) -> str:

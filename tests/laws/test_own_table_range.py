@@ -63,7 +63,8 @@ def test_the_profiles_are_those_that_are_asked_for(tmp_path):
 
 @pytest.mark.parametrize("x", [(0.0, 1.0), np.linspace(0, 1, 101)])
 def test_a_pressure_in_a_ring_is_beyond_the_table(tmp_path, x):
-    """A hard plate presses most near the edge: there, not in the centre, the rows end. Whatever profile is asked for."""
+    """A hard plate presses most near the edge: there, not in the centre, the rows end. Whatever profile is
+    asked for."""
     plate = {"a": 0.04, "h": 0.01, "n": 300.0, "Nbar": 1e8, "Ra": 1e-3}
     p = solve(Problem.of(**plate), np.linspace(0, 1, 101)).p[0] / plate["n"]
     assert p.max() > 2 * p[0]

@@ -141,6 +141,12 @@ def test_folders_are_small(top):
     assert {folder.name: size for folder, size in sizes.items() if size > 12} == {}
 
 
+@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests"])
+def test_files_are_short(top):
+    sizes = {name(path): path.read_bytes().count(b"\n") for path in (ROOT / top).rglob("*.py")}
+    assert {file: size for file, size in sizes.items() if size > 260} == {}
+
+
 def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}

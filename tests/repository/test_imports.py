@@ -98,6 +98,25 @@ def test_rooms_import_one_way(path):
     assert others <= {*rooms[: mine + 1]} - APART.get(room, set())
 
 
+def test_no_function_is_handed_upward():
+    """What solves whole problems is imported by the rooms that use it. None waits for one of its functions as an
+    argument, which would hide that it needs a room to its right."""
+    rooms = ROOMS["solver"]
+    solving = rooms[rooms.index("schemes") :]
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOLVER}
+    public = {
+        node.name
+        for path, tree in trees.items()
+        if name(path).split("/")[1].removesuffix(".py") in solving
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+    }
+    assert {"solve", "judged", "cheapest", "newton"} <= public
+    for path, tree in trees.items():
+        arguments = {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
+        assert not arguments & public, name(path)
+
+
 @pytest.mark.parametrize("path", BOOK, ids=name)
 def test_the_book_imports_the_face_and_the_figures(path):
     """And the solver. What a chapter needs beyond it is missing to a user as well."""

@@ -18,7 +18,7 @@ _HOME = {
     "load": "api",
     "Study": "api",
     "open_results": "files.results_file",
-    "StudyError": "spec.definition",
+    "StudyError": "inputs.definition",
     "decode": "data.dataset",
     "to_physical": "data.units",
     "from_physical": "data.units",
@@ -32,7 +32,7 @@ _MODULES = {
     "materials": "specimen.materials",
     "roughness": "specimen.roughness",
     "units": "data.units",
-    "vocabulary": "spec.vocabulary",
+    "vocabulary": "inputs.vocabulary",
 }
 __all__ = list(_HOME)
 _BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of both packages

@@ -25,7 +25,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "data", "physical", "in_words", "files", "store", "work"),
-        *("carried", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -221,7 +221,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     from study.physical.bodies import BODIES
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

@@ -12,7 +12,7 @@ from test_cli_options import tree
 from study import api, catalogue
 from study.__main__ import main
 from study.figures import registry
-from study.spec.definition import StudyError
+from study.inputs.definition import StudyError
 from study.work.plan import Report
 
 pytestmark = pytest.mark.usefixtures("studies")

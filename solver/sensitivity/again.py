@@ -2,25 +2,36 @@
 
 import numpy as np
 
-from ..contact.driver import solve_on
+from ..contact.driver import BUDGET, solve_on
 from ..contact.equation import evaluate
-from ..contact.results import difference, quantities
+from ..contact.panels import solve_on_panels
+from ..contact.results import quantities
 from ..contact.start import first_guess
+from ..numerics.ladder import LADDER
 from ..numerics.mesh import mesh_of
 
-#: A solution found again may differ from the first by its rounding and by what a loose operator leaves out, this part
-#: of rtol. Where it differs by more, its mesh was another one, or there are two solutions.
-_SAME = 0.1
+#: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
+_LEAST = LADDER[0]
 
 
-def found_again(cases, solution, nodes, rtol):
-    """:class:`~solver.contact.equation.Evaluation` of cases on `nodes` nodes, and (B,) bool: it is that of `solution`.
+def meshes(solution, problem):
+    """Number of nodes (B,) of the one panel on which each case was solved; 0: on several panels."""
+    nodes = np.maximum(solution.nodes, _LEAST)
+    return np.where((problem.nodes > 0) | np.isin(nodes, LADDER), nodes, 0)
 
-    cases : in units R = E2* = 1, as `solution` is; nodes : int; rtol : (B,)
-    """
+
+def found_again(cases, nodes, a, rtol):
+    """:class:`~solver.contact.driver.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
+    nodes; 0: of one case on panels of its own."""
+    cases = cases._replace(body=cases.body.within(rtol, a))
+    if not nodes:
+        return solve_on_panels(cases, rtol[0], BUDGET)[0]
     mesh = mesh_of(nodes)
-    iterated = solve_on(evaluate(cases, first_guess(cases, mesh, solution.a), mesh))
-    change = difference(quantities(iterated.at), solution)
-    if cases.law.law.corners:  # whose Ar/An is not the sum over the nodes
-        change = np.abs(iterated.at.state.eta - np.log(solution.a))
-    return iterated.at, iterated.closed & (change <= _SAME * rtol)
+    return solve_on(evaluate(cases, first_guess(cases, mesh, a), mesh))
+
+
+def same(ev, solution, rtol):
+    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It is not where there are
+    two solutions, or where it was solved on other panels."""
+    own = quantities(ev)
+    return np.maximum(np.abs(own.a / solution.a - 1), np.abs(own.D / solution.D - 1)) <= rtol

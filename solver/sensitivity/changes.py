@@ -46,6 +46,19 @@ def moved(problem, inputs, step=STEP):
     return type(problem)(problem.control, value, rows.parameters | arrays)
 
 
+def slope_of(values, k, step=STEP):
+    """Derivatives (k, B, ...) from values (2 k B, ...) of the cases of :func:`moved`; 0 where nothing changes, also of
+    what is infinite."""
+    up, down = np.moveaxis(values.reshape(k, 2, len(values) // (2 * k), *values.shape[1:]), 1, 0)
+    return np.where(up == down, 0.0, (up - down) / (2 * step))
+
+
+def moved_along(values, slopes):
+    """Values (2 k B, ...) of the moved cases, from values (B, ...) that have the derivatives `slopes` (k, B, ...)."""
+    both = np.stack([values + STEP * slopes, values - STEP * slopes], axis=1)
+    return both.reshape(-1, *values.shape[1:])
+
+
 class Changes(NamedTuple):
     """Derivatives of the numbers of B cases by k inputs, (k, B) each: of the groups X, Y, Z; of the logarithms of p*,
     A* and the controlled value; of the numbers of the law, `own`; and of ln h of the body, whose operator depends on
@@ -65,22 +78,17 @@ class Changes(NamedTuple):
 
 def changes_of(part, eta, k):
     """:class:`Changes` at η = ln a (B,), from the 2 k B moved cases `part` of :func:`moved`, in units R = E2* = 1."""
-    cases, size = as_cases(part), len(eta)
-
-    def slope(values):
-        up, down = np.moveaxis(np.reshape(values, (k, 2, size)), 1, 0)
-        return np.where(up == down, 0.0, (up - down) / (2 * STEP))
-
-    law, body = cases.law, cases.body
-    X, Y, Z = (slope(v) for v in groups(cases, np.tile(eta, 2 * k)))
-    logs = (slope(np.log(v)) for v in (law.p_star, law.A_star, cases.value))
-    own = tuple(slope(v) for v in law.own)
-    h, acts = np.zeros((k, size)), np.zeros(k, dtype=bool)
-    for name, values in _leaves(body):
+    cases = as_cases(part)
+    law = cases.law
+    X, Y, Z = (slope_of(v[:, 0], k) for v in groups(cases, np.tile(eta, 2 * k)))
+    logs = (slope_of(np.log(v), k) for v in (law.p_star, law.A_star, cases.value))
+    own = tuple(slope_of(v[:, 0], k) for v in law.own)
+    h, acts = np.zeros((k, len(eta))), np.zeros(k, dtype=bool)
+    for name, values in _leaves(cases.body):
         if name == "h":
-            h = slope(np.log(values))
+            h = slope_of(np.log(values), k)
         elif values.dtype.kind == "f":
-            acts |= np.any(slope(values) != 0, axis=1)
+            acts |= np.any(slope_of(values, k) != 0, axis=1)
     return Changes(cases, X, Y, Z, *logs, own, h, np.flatnonzero(acts).tolist())
 
 

@@ -13,10 +13,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact.equation import Evaluation, control_gradient, jacobian
+from ..body.operator import Operator
+from ..contact.equation import control_gradient, jacobian
 from ..contact.results import quantities
 from ..numerics.linalg import solve_stack
-from .changes import STEP, Changes
+from .changes import STEP
 
 
 class OfLaw(NamedTuple):
@@ -64,13 +65,34 @@ class Explicit(NamedTuple):
     D: np.ndarray
 
 
-def products_of(ev, changes):
-    """Input -> derivatives of the operator, moved in `changes`, at the radii of `ev`: a pair of operators, up and
-    down."""
+class OperatorChange(NamedTuple):
+    """Derivative by an input of the operators of B cases, from those `up` and `down` of the moved bodies: linear in q
+    as they are."""
+
+    up: Operator
+    down: Operator
+
+    def products(self, q):
+        """Derivatives of K q (B, n) and edge @ q (B,)."""
+        return self._slope(self.up.products(q), self.down.products(q))
+
+    def slopes(self, q):
+        """Derivatives of those by ln a."""
+        return self._slope(self.up.slopes(q), self.down.slopes(q))
+
+    def _slope(self, up, down):
+        return tuple((high - low) / (2 * STEP) for high, low in zip(up, down, strict=True))
+
+
+def operators_of(ev, changes):
+    """Input -> :class:`OperatorChange` at the radii of `ev`, of the inputs that change the operator otherwise than by
+    h/a."""
     size, mesh, a = len(ev.state.eta), ev.mesh, np.exp(ev.state.eta)
-    rows = np.arange(size)
-    bodies = {i: [changes.cases.body.take(rows + (2 * i + j) * size) for j in (0, 1)] for i in changes.on_body}
-    return {i: [body.at(a, mesh) for body in pair] for i, pair in bodies.items()}
+
+    def at(row):
+        return changes.cases.body.take(np.arange(size) + row * size).at(a, mesh)
+
+    return {i: OperatorChange(at(2 * i), at(2 * i + 1)) for i in changes.on_body}
 
 
 def explicit(ev, changes, moving, operators):
@@ -116,7 +138,8 @@ def moving_numbers(changes):
 
 
 def implicit(ev, changes, operators):
-    """:class:`Implicit` of the solutions `ev`; `operators` as those of :func:`explicit`."""
+    """:class:`Implicit` of the solutions `ev`; `operators`: input -> :class:`OperatorChange`."""
+    operators = {i: change.products(ev.curve.q) for i, change in operators.items()}
     law = of_law(ev.cases.law, ev.state.y, ev.curve, moving_numbers(changes))
     fixed = explicit(ev, changes, {i: own[0] for i, own in law.by_own.items()}, operators)
     diagonal, dF_deta = jacobian(ev)

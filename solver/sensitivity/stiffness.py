@@ -20,7 +20,7 @@ STEP = 3e-4
 
 def of_stiffness(ev, part, found, operators):
     """Derivatives (k, B) of ln dP/dD. `part`: the moved cases; `found`: :class:`.state.Implicit` of the solutions `ev`;
-    `operators`: input -> the operators of the moved bodies at the radius of the solution."""
+    `operators`: input -> :class:`.state.OperatorChange` at the radii of the solutions."""
     by_depth = control_gradient("D", ev)
     D_eta = (by_depth[0] * found.tangent).sum(axis=1) + by_depth[1]
     ends = [_beside(ev, part, found, operators, sign * STEP) for sign in (1, -1)]
@@ -37,7 +37,7 @@ def _beside(ev, part, found, operators, step):
     at = evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
     changes = changes_of(part, at.state.eta, len(found.eta))
     law = of_law(at.cases.law, y, at.curve, moving_numbers(changes))
-    moved = {i: _moved(pair, ev.curve.q, tangent, step) for i, pair in operators.items()}
+    moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
     fixed = explicit(at, changes, {i: own[0] for i, own in law.by_own.items()}, moved)
     diagonal, dF_deta = jacobian(at)
     gradients = [control_gradient(name, at) for name in ("P", "D")]
@@ -50,20 +50,8 @@ def _beside(ev, part, found, operators, step):
     return fixed.P - of_load - S * (fixed.D - of_depth), S
 
 
-def _moved(pair, q, tangent, step):
-    """Derivatives of K q and edge @ q by an input that changes the operator, at the state beside the solution: from the
-    operators of the moved bodies at its radius, and their slopes."""
-    at_q, at_tangent, slopes = (
-        [(up - down) / 2 for up, down in zip(*both, strict=True)]
-        for both in (
-            [operator.products(q) for operator in pair],
-            [operator.products(tangent) for operator in pair],
-            [operator.slopes(q) for operator in pair],
-        )
-    )
-    from .changes import STEP as MOVED_BY
-
-    return [
-        (own + step * (more + slope)) / MOVED_BY
-        for own, more, slope in zip(at_q, at_tangent, slopes, strict=True)
-    ]
+def _beside_products(change, q, tangent, step):
+    """Derivatives of K q and edge @ q by an input that changes the operator, at the state beside the solution; to first
+    order, from the operator at the radius of the solution."""
+    parts = change.products(q), change.products(tangent), change.slopes(q)
+    return tuple(own + step * (along + slope) for own, along, slope in zip(*parts, strict=True))

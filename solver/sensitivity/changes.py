@@ -15,8 +15,8 @@ from ..scaling import as_cases
 #: By how much an input is moved up and down: a part of itself, a Poisson ratio by this. The curvature then adds 1e-8
 #: times a third derivative, and rounding 1e-12.
 STEP = 1e-4
-#: Parameters that are numbers, but say how a case is solved.
-_SETTINGS = {"accuracy", "k", "rtol"}
+#: Parameters that are numbers, but say how a case is solved, or are units: what these do follows from dimensions.
+_NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
 
 def is_ratio(name):
@@ -25,8 +25,8 @@ def is_ratio(name):
 
 
 def inputs_of(control):
-    """Names of all inputs, the control first: what has an interval and is no setting."""
-    numbers = [name for name, own in PARAMETERS.items() if own.interval and not own.whole and name not in _SETTINGS]
+    """Names of all inputs, the control first: numbers that have an interval."""
+    numbers = [name for name, own in PARAMETERS.items() if own.interval and not own.whole and name not in _NO_INPUTS]
     return (control, *numbers)
 
 

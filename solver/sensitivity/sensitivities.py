@@ -4,6 +4,7 @@ The equation of each case is found again on its mesh, from its radius, by a few 
 all derivatives at once. Where that fails, the case is solved with each input moved: :mod:`.differences`.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -65,7 +66,9 @@ def sensitivities(problem, solution, x=(), inputs=None):
     logs = {name: np.where(solved[:, None], 0.0, np.full((size, len(inputs)), np.nan)) for name in QUANTITIES}
     shapes = np.where(solved[:, None, None], 0.0, np.full((2, size, len(inputs), len(x)), np.nan))
     if acting and len(index):
-        by_name, at_x = _of_solved(dimensionless(problem.take(index)), solution.take(index), acting, x)
+        part, ended = problem.take(index), solution.take(index)
+        ended = replace(ended, a=ended.a / part.R, D=ended.D / part.R)
+        by_name, at_x = _of_solved(dimensionless(part), ended, acting, x)
         for name, values in by_name.items():
             logs[name][np.ix_(index, places)] = values.T
         shapes[np.ix_((0, 1), index, places)] = np.moveaxis(at_x, 1, 2)
@@ -78,7 +81,8 @@ def _acts(problem, name):
 
 
 def _of_solved(scaled, solution, inputs, x):
-    """Quantity -> (k, B), and (2, k, B, m), of solutions that have numbers; `scaled` is in units R = E2* = 1."""
+    """Quantity -> (k, B), and (2, k, B, m), of solutions that have numbers; `scaled`, and a and D of the `solution`,
+    are in units R = E2* = 1."""
     k, size = len(inputs), len(scaled)
     logs = {name: np.full((k, size), np.nan) for name in QUANTITIES}
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)

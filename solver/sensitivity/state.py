@@ -21,8 +21,8 @@ from .changes import STEP
 
 
 class OfLaw(NamedTuple):
-    """Derivatives of a law at points (B, m): of g, λ and p_max/p* by q along its curve; and of each at the same q by the
-    logarithms of the law's own numbers that move, lists of (B, m)."""
+    """Derivatives of a law at points (B, m), three of each: of g, λ and p_max/p*. `by_q`: along its curve; `by_own`:
+    index of one of the law's own numbers -> by its logarithm at the same q."""
 
     by_q: tuple
     by_own: dict

@@ -1,5 +1,6 @@
 """Sensitivities against central differences of the solver, of random contacts of every law, base and control."""
 
+from dataclasses import replace
 from itertools import product
 
 import numpy as np
@@ -15,13 +16,13 @@ from solver.sensitivity import QUANTITIES, sensitivities
 #: The contract's bar is max(50 rtol, 1e-6), relative to derivatives above 1.
 BAR = 5e-5
 #: dP/dD is a second derivative: under laws that are tables, it has the error of the curvature of a table.
-TABLES = {"normal_heights": 2e-3, "uniform_heights": 2e-3}
+TABLE = 2e-3
 CONTROLS = ("P", "a", "D")
 IDENTICAL = ("smooth", "disc_cell", "power_law", "square_lattice")
 BASES = ("half_space", "thin_layer", "layered", "auto")
 
 
-def contacts(micro, base, control, size=6, seed=0, **fixed):
+def contacts(micro, base, control, size=4, seed=0, **fixed):
     """Random contacts: a/R from 0.003 to 0.2, layers from far thinner to far thicker, half of them bonded."""
     random = np.random.default_rng([seed, len(micro), len(base), ord(control)])
 
@@ -36,9 +37,8 @@ def contacts(micro, base, control, size=6, seed=0, **fixed):
     case |= {"Nbar": Nbar, "Ra": Ra, "B": of(-1, 1), "beta": random.uniform(0.3, 0.9, size)}
     case |= {"sigma": of(-1, 0.5) / (np.pi * Nbar * Ra)}
     a = of(-2.5, -0.7)
-    value = {"a": a, "D": 0.7 * a**2, "P": 1.3 * a**3}[control]
-    case |= fixed
-    return Problem.of(**{control: value}, **{name: v for name, v in case.items() if name in PARAMETERS})
+    case |= {"a": a, "D": 0.7 * a**2, "P": 1.3 * a**3} | fixed
+    return Problem.of(**{name: v for name, v in case.items() if name in PARAMETERS or name == control})
 
 
 def moved(problem, name, step):
@@ -64,18 +64,18 @@ def differences(problem, name, quantity, x=()):
 def acting(problem):
     """The inputs on which the answer of some case depends."""
     names = [name for name, own in PARAMETERS.items() if own.interval and not own.whole]
-    names = [name for name in names if name not in ("k", "rtol", "accuracy", "R", "E2")]
+    names = [name for name in names if name not in ("k", "rtol", "accuracy", "R", "E2")]  # R = E2 = 1 are units
     return [problem.control, *(name for name in names if np.any(uses(name, lambda key: getattr(problem, key))))]
 
 
-def errors(problem):
+def errors(problem, inputs=None):
     """(input, quantity) -> largest error of the derivative, relative to derivatives above 1, of the cases solved."""
     solution = solve(problem)
     found, right = sensitivities(problem, solution), solution.status == Status.CONVERGED
-    assert right.sum() >= len(problem) / 3
+    assert right.any()
     names = [name for name in QUANTITIES if name != "A0" or problem.rough().all()]
     worst = {}
-    for name in acting(problem):
+    for name in inputs or acting(problem):
         with np.errstate(divide="ignore", invalid="ignore"):
             wanted = differences(problem, name, lambda s: np.log(np.array([getattr(s, own) for own in names])))
         for own, reference in zip(names, wanted, strict=True):
@@ -87,18 +87,23 @@ def errors(problem):
     return worst
 
 
-@pytest.mark.parametrize(("micro", "base", "control"), product(IDENTICAL, BASES, CONTROLS))
+@pytest.mark.parametrize(
+    ("micro", "base", "control"),
+    [(micro, base, CONTROLS[i % 3]) for i, (micro, base) in enumerate(product(IDENTICAL, BASES))],
+)
 def test_random_contacts(micro, base, control):
     worst = errors(contacts(micro, base, control))
     assert max(worst.values()) < BAR, max(worst, key=worst.get)
 
 
-@pytest.mark.parametrize(("micro", "control"), product(TABLES, CONTROLS))
-def test_random_heights(micro, control):
-    base = BASES["PaD".index(control)]
-    worst = errors(contacts(micro, base, control, size=3))
-    for (name, quantity), error in worst.items():
-        assert error < (TABLES[micro] if quantity == "dP_dD" else BAR), (name, quantity)
+@pytest.mark.parametrize(
+    ("micro", "base", "control"), [("normal_heights", "layered", "P"), ("uniform_heights", "half_space", "D")]
+)
+def test_random_heights(micro, base, control):
+    """One contact: each moved case has tables of its own."""
+    problem = contacts(micro, base, control, size=1, m=0.0, bonding="frictionless")
+    for (name, quantity), error in errors(problem, ("sigma", "Nbar")).items():
+        assert error < (TABLE if quantity == "dP_dD" else BAR), (name, quantity)
 
 
 def test_smooth_half_space_is_hertz():
@@ -142,12 +147,14 @@ def test_auto_stays_at_its_model(model, case):
     assert max(worst.values()) < BAR, max(worst, key=worst.get)
 
 
-@pytest.mark.parametrize("micro", ["disc_cell", "smooth", "normal_heights"])
-def test_profiles(micro):
-    problem, x = contacts(micro, "layered", "P", size=3), np.linspace(0, 1, 13)
+@pytest.mark.parametrize(
+    ("micro", "inputs"), [("disc_cell", "P h n Nbar"), ("smooth", "P h n"), ("uniform_heights", "sigma")]
+)
+def test_profiles(micro, inputs):
+    problem, x = contacts(micro, "layered", "P", size=1), np.linspace(0, 1, 13)
     solution = solve(problem, x)
     found = sensitivities(problem, solution, x)
-    for name in ("P", "h", "n", "Nbar" if micro != "smooth" else "m"):
+    for name in inputs.split():
         column = found.inputs.index(name)
         for profile, scale in (("p", solution.p[:, :1]), ("lam", 1.0)):
             wanted = differences(problem, name, lambda s, profile=profile: getattr(s, profile), x)
@@ -178,9 +185,21 @@ def test_law_of_ones_own():
         np.testing.assert_allclose(mine[:, [0, -1]], other[:, [0, -1]], rtol=0, atol=1e-7)  # rounding over STEP
 
 
-def test_panels_and_a_lost_solution():
-    """Cases on panels; and one of another solution than that at hand, which is solved with moved inputs."""
-    problem = Problem.of(P=1e-6, h=1e-4, n=1e-6, Nbar=1e9, Ra=1e-4, bonding="bonded", rtol=1e-9)
-    worst = errors(problem)
+def test_panels():
+    """A case on panels, found again on panels of its own."""
+    problem = Problem.of(P=1.2e-3, h=1.26e-4, n=7.7e-5, Nbar=2240, Ra=5.75e-3, base="thin_layer", rtol=1e-8)
     assert solve(problem).nodes[0] > 96
-    assert max(worst.values()) < 1e-4, max(worst, key=worst.get)
+    worst = errors(problem, ("P", "h", "Ra"))
+    assert max(worst.values()) < BAR, max(worst, key=worst.get)
+
+
+@pytest.mark.parametrize("x", [[], [0.0, 0.5]])
+def test_a_solution_that_is_not_found_again(x):
+    """It is solved with moved inputs, which gives the same to their error, 1e-9/1e-3 and 1e-3²."""
+    problem = contacts("disc_cell", "layered", "P", size=2, bonding="frictionless")
+    solution = solve(problem, x)
+    first, second = (sensitivities(problem, s, x) for s in (solution, replace(solution, D=1.01 * solution.D)))
+    for name in QUANTITIES:
+        np.testing.assert_allclose(first.logs[name], second.logs[name], rtol=0, atol=1e-5)
+        assert (first.logs[name] != second.logs[name]).any()
+    np.testing.assert_allclose(first.p, second.p, rtol=1e-4, atol=1e-5 * solution.p0.max())

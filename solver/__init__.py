@@ -9,6 +9,7 @@ from .laws import disc_cell as micro
 from .laws import register
 from .laws.fit import Fit, fit_power_law
 from .problem import Problem
+from .sensitivity import Sensitivities, sensitivities
 from .solution import Model, Solution
 from .solve import solve
 from .status import Status
@@ -21,11 +22,13 @@ __all__ = [
     "Fit",
     "Model",
     "Problem",
+    "Sensitivities",
     "Solution",
     "Status",
     "closed_forms",
     "fit_power_law",
     "micro",
     "register",
+    "sensitivities",
     "solve",
 ]

@@ -22,6 +22,7 @@ ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
         *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        "sensitivity",
     ),
     "study": (
         *("terminal", "specimen", "inputs", "data", "physical", "in_words", "files", "store", "work"),

@@ -19,6 +19,7 @@ import xarray as xr
 from children import run_forked
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
+from screens import impatient, stderr  # noqa: F401
 
 from solver import laws
 from study import open_results

@@ -90,7 +90,8 @@ def _on_model(model, part, x):
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
         return solve_named(base, x)
     s, _ = area_rule()
-    found = solve_named(base.but(micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, np.sqrt((1 - s) * (1 + s))]))
+    radii = np.concatenate([x, np.sqrt((1 - s) * (1 + s))])
+    found = solve_named(base.but(micro=smooth.LAW.name, scheme="newton"), radii)
     p, p_area = np.split(found.p, [len(x)], axis=1)
     law = law_of(part)
     return replace(found, **spots_under(law, found.p0, p_area), p=p, lam=law.at(p).lam)

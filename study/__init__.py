@@ -2,9 +2,8 @@
 
 `solve` and `load` are the entrance, `summary` says in words what `solve` found, `plot` draws it; `roughcoat`, or
 `python -m study`, is the same from a shell. `import roughcoat as rc` gives all that this package gives, beside a
-study.py in the working folder too. `study.derived`, `study.materials`, `study.roughness`, `study.units` and
-`study.vocabulary` are there without an import of their own. Names are imported when they are first used, so that
-`python -m study --help` and complaints about a study file answer at once.
+study.py in the working folder too. `__all__` says what is public; docs/python.md has a line for each. Names are
+imported when they are first used, so that `roughcoat --help` and complaints about a study file answer at once.
 
 After `import study` the names `solver` and `roughcoat` are those of roughcoat's packages, whatever a user has in the
 working folder.
@@ -17,6 +16,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from . import catalogue
     from .api import Study, load
     from .data import derived, units
     from .data.dataset import decode
@@ -35,6 +35,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Study",
     "StudyError",
+    "catalogue",
     "decode",
     "derived",
     "drawing",
@@ -72,6 +73,7 @@ _HOME = {
     "drawing": "figures.registry",
 }
 _MODULES = {
+    "catalogue": "catalogue",
     "derived": "data.derived",
     "materials": "specimen.materials",
     "roughness": "specimen.roughness",

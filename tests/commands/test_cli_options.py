@@ -136,7 +136,7 @@ def test_work_and_precision_is_measured(options, expected, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", ["/somewhere/study/__main__.py", "tradeoff"])
     assert main(["tradeoff", *options.split()]) == 0
     assert capsys.readouterr().out == f"{expected[0]}/tradeoff.nc\n"
-    assert seen == [(*expected, "python -m roughcoat tradeoff")]
+    assert seen == [(*expected, "python -m study tradeoff")]
 
 
 def test_list_is_of_a_folder_in_order(capsys):

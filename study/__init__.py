@@ -60,7 +60,7 @@ _HOME = {
     "load": "api",
     "Study": "api",
     "open_results": "files.results_file",
-    "StudyError": "spec.definition",
+    "StudyError": "inputs.definition",
     "decode": "data.dataset",
     "to_physical": "data.units",
     "from_physical": "data.units",
@@ -78,7 +78,7 @@ _MODULES = {
     "materials": "specimen.materials",
     "roughness": "specimen.roughness",
     "units": "data.units",
-    "vocabulary": "spec.vocabulary",
+    "vocabulary": "inputs.vocabulary",
 }
 _BESIDE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))  # the folder, or zip file, of both packages
 

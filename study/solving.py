@@ -16,12 +16,12 @@ from solver.laws import Law
 from .carried import with_coordinates
 from .data.dataset import Parts, parts
 from .in_words import FarOutside, doubts, far_outside
+from .inputs.definition import LARGE, POINTS, StudyError, complete
+from .inputs.given import Draft
+from .inputs.vocabulary import NUMERICS, VOCABULARY
 from .physical.reading import read as read_scene
 from .physical.scene import dataset_of
 from .physical.study_file import complete as complete_scene
-from .spec.definition import LARGE, POINTS, StudyError, complete
-from .spec.given import Draft
-from .spec.vocabulary import NUMERICS, VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown

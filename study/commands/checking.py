@@ -2,11 +2,11 @@
 
 import numpy as np
 
+from ..inputs.definition import Definition
+from ..inputs.grid import MOVED
+from ..inputs.places import study_file
+from ..inputs.vocabulary import VOCABULARY
 from ..physical.study_file import read
-from ..spec.definition import Definition
-from ..spec.grid import MOVED
-from ..spec.places import study_file
-from ..spec.vocabulary import VOCABULARY
 from ..terminal import answer
 
 

@@ -8,11 +8,11 @@ import xarray as xr
 from solver import Model, Status
 from solver.status import NO_SOLUTION
 
-from ..spec.definition import Definition
-from ..spec.fitted import COMMENT
-from ..spec.grid import along, unflatten
-from ..spec.identity import law_versions
-from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
+from ..inputs.definition import Definition
+from ..inputs.fitted import COMMENT
+from ..inputs.grid import along, unflatten
+from ..inputs.identity import law_versions
+from ..inputs.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
 from .assumptions import validity_attributes, validity_of
 from .provenance import provenance
 

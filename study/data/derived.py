@@ -14,7 +14,7 @@ from solver import Model
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
-from ..spec.vocabulary import VOCABULARY, attributes
+from ..inputs.vocabulary import VOCABULARY, attributes
 from . import assumptions
 from .assumptions import (  # noqa: F401 - names of study.derived
     ASSUMPTIONS,
@@ -46,7 +46,7 @@ def quantity(name: str) -> Callable:
     Raises ValueError for a name without a row.
     """
     if name not in VOCABULARY:
-        raise ValueError(f"{name} has no row in study/spec/vocabulary.toml: a quantity needs one")
+        raise ValueError(f"{name} has no row in study/inputs/vocabulary.toml: a quantity needs one")
 
     def register(formula: Callable) -> Callable:
         @wraps(formula)

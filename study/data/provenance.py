@@ -15,7 +15,7 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 
-from ..spec.definition import Definition
+from ..inputs.definition import Definition
 
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..spec.vocabulary import PARAMETERS, VOCABULARY, no_parameter
+from ..inputs.vocabulary import PARAMETERS, VOCABULARY, no_parameter
 from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, has_unit, multiple, quantity
 

@@ -15,9 +15,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from ..spec.definition import StudyError
-from ..spec.places import BOOK, STUDIES, chapters, packaged, root_of
-from ..spec.vocabulary import suggest
+from ..inputs.definition import StudyError
+from ..inputs.places import BOOK, STUDIES, chapters, packaged, root_of
+from ..inputs.vocabulary import suggest
 from ..terminal import on_one_line
 
 log = logging.getLogger(__name__)

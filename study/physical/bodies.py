@@ -6,8 +6,8 @@ import numpy as np
 
 from solver import laws
 
-from ..spec.grid import equal_values
-from ..spec.vocabulary import SCENE, VOCABULARY, finite
+from ..inputs.grid import equal_values
+from ..inputs.vocabulary import SCENE, VOCABULARY, finite
 from ..specimen import materials
 from ..specimen.quantities import Quantity
 from ..terminal import shown

@@ -9,8 +9,8 @@ from solver.parameters import allowed as within
 from solver.parameters import ends
 
 from ..data.units import with_unit
-from ..spec.grid import MOVED
-from ..spec.vocabulary import ROWS, SCENE, VOCABULARY, allowed
+from ..inputs.grid import MOVED
+from ..inputs.vocabulary import ROWS, SCENE, VOCABULARY, allowed
 from ..specimen.quantities import multiple, quantity, readable, unit_in
 from ..terminal import on_one_line
 from .bodies import BODIES

@@ -8,10 +8,10 @@ import xarray as xr
 
 from solver.laws.own_table import PREFIX
 
-from ..spec.checks import not_given
-from ..spec.given import one_control
-from ..spec.grid import twins
-from ..spec.vocabulary import VOCABULARY
+from ..inputs.checks import not_given
+from ..inputs.given import one_control
+from ..inputs.grid import twins
+from ..inputs.vocabulary import VOCABULARY
 from ..terminal import shown
 from .bodies import BODIES, layered
 from .scales import over_dimensions

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from xarray.indexes import PandasIndex
 
-from ..spec.vocabulary import ROWS
+from ..inputs.vocabulary import ROWS
 from ..specimen.quantities import has_unit
 from .names import si
 

@@ -5,8 +5,8 @@ import xarray as xr
 
 from solver.laws import LAWS
 
-from ..spec.laws import smooth_laws
-from ..spec.vocabulary import CONTROLS, VOCABULARY, matters, names
+from ..inputs.laws import smooth_laws
+from ..inputs.vocabulary import CONTROLS, VOCABULARY, matters, names
 from .bodies import BODIES
 
 _OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]

@@ -3,7 +3,7 @@
 import math
 from typing import Any, NamedTuple
 
-from ..spec.vocabulary import ROWS
+from ..inputs.vocabulary import ROWS
 from ..specimen.quantities import Quantity, quantity
 
 #: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.

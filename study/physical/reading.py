@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..spec.definition import StudyError
-from ..spec.given import label_slips
-from ..spec.grid import MOVED, equal_values, same_labels
-from ..spec.laws import is_parameter
-from ..spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
+from ..inputs.definition import StudyError
+from ..inputs.given import label_slips
+from ..inputs.grid import MOVED, equal_values, same_labels
+from ..inputs.laws import is_parameter
+from ..inputs.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
 from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
 from ..terminal import on_one_line, shown

@@ -11,9 +11,9 @@ import numpy as np
 import xarray as xr
 
 from ..data.units import reduced_modulus, without_unit
-from ..spec.definition import Definition
-from ..spec.grid import MOVED, Grid
-from ..spec.vocabulary import SCENE, VOCABULARY
+from ..inputs.definition import Definition
+from ..inputs.grid import MOVED, Grid
+from ..inputs.vocabulary import SCENE, VOCABULARY
 from .scene import Scene
 
 Values = dict[str, tuple[tuple[str, ...], np.ndarray]]

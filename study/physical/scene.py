@@ -8,9 +8,9 @@ import xarray as xr
 
 from ..data.dataset import Parts
 from ..data.units import PHYSICAL_SCALE, physical_attributes, with_unit
-from ..spec.definition import Definition
-from ..spec.grid import MOVED
-from ..spec.vocabulary import ROWS, VOCABULARY
+from ..inputs.definition import Definition
+from ..inputs.grid import MOVED
+from ..inputs.vocabulary import ROWS, VOCABULARY
 from .index import searchable
 
 #: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the

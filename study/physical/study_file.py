@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from ..spec import definition
-from ..spec.definition import Definition, StudyError
-from ..spec.given import Draft
-from ..spec.grid import axis_values
-from ..spec.identity import digest_of_array
-from ..spec.laws import is_parameter
-from ..spec.sample import LIMITS, divisor, draw
-from ..spec.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
+from ..inputs import definition
+from ..inputs.definition import Definition, StudyError
+from ..inputs.given import Draft
+from ..inputs.grid import axis_values
+from ..inputs.identity import digest_of_array
+from ..inputs.laws import is_parameter
+from ..inputs.sample import LIMITS, divisor, draw
+from ..inputs.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
 from .bodies import BODIES, with_materials
@@ -78,7 +78,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
 def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options) -> Definition:
     """The definition of a study of a scene. Its dimensions are `case`, the `axes` in their order, and MOVED.
 
-    about, options : the other arguments of `study.spec.definition.complete`
+    about, options : the other arguments of `study.inputs.definition.complete`
     """
     draft.physical = True
     draft.sizes |= scene.sizes(axes)

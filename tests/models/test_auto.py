@@ -11,8 +11,8 @@ import study
 from solver import Model, Problem, Status, solve
 from solver.laws.disc_cell import contact_fraction, largest_pressure
 from solver.models.auto import bounds
+from study.inputs.grid import columns
 from study.physical.study_file import read
-from study.spec.grid import columns
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 EVERY = 29  # prime: meets all materials, n and h

@@ -27,7 +27,7 @@ ROOMS = {
         *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
     ),
     "study": (
-        *("terminal", "specimen", "spec", "data", "physical", "in_words", "files", "store", "work"),
+        *("terminal", "specimen", "inputs", "data", "physical", "in_words", "files", "store", "work"),
         *("carried", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
@@ -117,7 +117,7 @@ def test_nothing_imports_the_book(path):
     """It is found as the studies of a user are, and run when it is asked for."""
     assert not {full for full in imported(path) if full.startswith(("studies", "study.studies"))}
     text = path.read_text(encoding="utf-8")
-    assert "study.studies" not in text or name(path) in ("study/spec/places.py", "study/__init__.py")
+    assert "study.studies" not in text or name(path) in ("study/inputs/places.py", "study/__init__.py")
 
 
 @pytest.mark.parametrize("package", ["solver", "study", "studies"])
@@ -145,6 +145,12 @@ def test_folders_are_small(top):
     assert {folder.name: size for folder, size in sizes.items() if size > 12} == {}
 
 
+@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests"])
+def test_files_are_short(top):
+    sizes = {name(path): path.read_bytes().count(b"\n") for path in (ROOT / top).rglob("*.py")}
+    assert {file: size for file, size in sizes.items() if size > 260} == {}
+
+
 def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
@@ -165,14 +171,17 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 
 def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
-    light = ("spec.vocabulary", "spec.grid", "spec.given", "spec.definition", "commands.arguments", "work.processes")
+    light = (
+        *("inputs.vocabulary", "inputs.grid", "inputs.given", "inputs.definition", "commands.arguments"),
+        "work.processes",
+    )
     alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))
 
 
 def test_rooms_are_there_after_import_of_the_package_alone():
     """And the package itself imports nothing: neither numpy nor a room."""
     alone(
-        "import study; assert not {'numpy', 'xarray', 'study.spec', 'study.data'} & set(sys.modules);"
+        "import study; assert not {'numpy', 'xarray', 'study.inputs', 'study.data'} & set(sys.modules);"
         f"assert study.vocabulary.VOCABULARY; {NOT_HEAVY};"
         "assert study.derived.peak_pressure and study.units.factor; assert 'xarray' in sys.modules"
     )
@@ -205,8 +214,8 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
     from solver.parameters import PARAMETERS as OWN
+    from study.inputs.vocabulary import PARAMETERS, SCENE
     from study.physical.bodies import BODIES
-    from study.spec.vocabulary import PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters
     beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "parameters"}

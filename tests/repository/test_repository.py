@@ -96,7 +96,7 @@ def test_clean_removes_what_the_program_draws_alone(tmp_path):
     kept = ("figures/mine.pdf", "figures/parameter_map_p_max.pdf", "tables/mine.txt", "results/main_case.nc")
     ours = ("figures/fig01.svg", "figures/fig04.pdf", "figures/fig10_layered.csv", "figures/captions.md",
             "figures/.roughcoat.json", "tables/.roughcoat.json",
-            "tables/table1.tex", "bench.json", "study/spec/__pycache__/x.pyc", ".ruff_cache/x")  # fmt: skip
+            "tables/table1.tex", "bench.json", "study/inputs/__pycache__/x.pyc", ".ruff_cache/x")  # fmt: skip
     for name in (*kept, *ours):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()

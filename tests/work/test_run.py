@@ -15,8 +15,8 @@ from same import assert_same_numbers
 
 import study
 from study.data.dataset import Parts
+from study.inputs.definition import from_tables
 from study.solving import settings_apart
-from study.spec.definition import from_tables
 from study.store.blocks import Store
 from study.work import cases
 from study.work import run as running

@@ -5,7 +5,7 @@ import pytest
 from xarray.plot.utils import label_from_attrs
 
 import study
-from study.spec.vocabulary import PARAMETERS, VOCABULARY, attributes, check, names
+from study.inputs.vocabulary import PARAMETERS, VOCABULARY, attributes, check, names
 
 # Dimension in powers of kg, m, s and the printed unit of every quantity that has one.
 FORCE, LENGTH, PRESSURE = (1, 1, -2), (0, 1, 0), (1, -1, -2)

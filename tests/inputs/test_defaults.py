@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose, assert_array_equal
 import study
 from solver import Problem, Status, solve
 from solver.parameters import PARAMETERS
-from study.spec.vocabulary import VOCABULARY
+from study.inputs.vocabulary import VOCABULARY
 
 DEFAULTS = {
     "m": 0.0,

@@ -6,7 +6,7 @@ import study
 from solver.parameters import Parameter
 from study.__main__ import main
 from study.figures import registry
-from study.spec.vocabulary import allowed, check
+from study.inputs.vocabulary import allowed, check
 from study.terminal import counted
 
 

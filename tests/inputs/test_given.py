@@ -11,9 +11,9 @@ import xarray as xr
 import study
 from solver.parameters import Parameter
 from study import StudyError
-from study.spec.definition import Definition, from_tables
-from study.spec.grid import as_array
-from study.spec.vocabulary import VOCABULARY
+from study.inputs.definition import Definition, from_tables
+from study.inputs.grid import as_array
+from study.inputs.vocabulary import VOCABULARY
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
 

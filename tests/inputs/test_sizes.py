@@ -5,8 +5,8 @@ import pytest
 
 import study
 from study import solving
-from study.spec import definition, given, grid, sample
-from study.spec.definition import from_tables
+from study.inputs import definition, given, grid, sample
+from study.inputs.definition import from_tables
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
 

@@ -111,7 +111,7 @@ class Draft:
     def sample(self, table) -> None:
         """Random cases, drawn as the table [sample] says: the dimension `case`."""
         given = table if isinstance(table, dict) else {}
-        known = {name: spec for name, spec in given.items() if name in LIMITS or self._accept(name, "[sample]")}
+        known = {name: drawn for name, drawn in given.items() if name in LIMITS or self._accept(name, "[sample]")}
         if "case" in self.sizes:
             self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
             return

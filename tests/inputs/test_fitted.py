@@ -7,8 +7,8 @@ import xarray as xr
 import study
 from solver import fit_power_law
 from study.__main__ import main
-from study.spec import fitted
-from study.spec.definition import from_tables
+from study.inputs import fitted
+from study.inputs.definition import from_tables
 
 LAYER = {"P": 1e-5, "h": 0.02, "n": 0.5, "micro": "power_law"}
 

@@ -7,7 +7,7 @@ from importlib.resources import files
 import pytest
 
 import study
-from study.spec.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
+from study.inputs.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
 
 BALL = {"R": "5 mm", "E2": "210 GPa", "P": "5 N", "base": "half_space", "micro": "smooth"}
 NONE_HERE = {
@@ -119,7 +119,7 @@ def test_a_name_that_begins_with_another_letter_is_not_near(name):
 
 def test_no_word_of_the_file_is_answered_in_vain():
     """Each word of not_there.toml gives the sentence of its own section, and none is a parameter that may be given."""
-    sections = tomllib.loads(files("study.spec").joinpath("not_there.toml").read_text(encoding="utf-8"))
+    sections = tomllib.loads(files("study.inputs").joinpath("not_there.toml").read_text(encoding="utf-8"))
     alone = [(word, own["says"]) for own in sections.values() for word in own["words"] if word not in ROWS]
     wrong = [word for word, says in alone if says not in no_parameter(word, VOCABULARY)]
     assert len(alone) > 200 and wrong == []

@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 import study
+from study.inputs import identity
+from study.inputs.definition import MOST_VALUES
+from study.inputs.vocabulary import PARAMETERS, VOCABULARY
 from study.physical import study_file
-from study.spec import identity
-from study.spec.definition import MOST_VALUES
-from study.spec.vocabulary import PARAMETERS, VOCABULARY
 
 GOOD = """
 title = "Prüfung"
@@ -162,7 +162,7 @@ def test_digest_changes_with_the_numerics(tmp_path, monkeypatch):
 
 
 def test_defaults_of_the_vocabulary_are_allowed_values():
-    from study.spec.vocabulary import check
+    from study.inputs.vocabulary import check
 
     for name in PARAMETERS:
         entry = VOCABULARY[name]

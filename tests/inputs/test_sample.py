@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from study import StudyError
-from study.spec.definition import from_tables
-from study.spec.sample import uniform
+from study.inputs.definition import from_tables
+from study.inputs.sample import uniform
 
 GOOD = """
 [sample]

@@ -112,7 +112,7 @@ def names(*roles: str) -> tuple[str, ...]:
 CONTROLS = names("control")
 NUMERICS = names("numerics")
 PARAMETERS = list(names("control", "material", "roughness", "numerics"))
-"""Names of parameters; `study.spec.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
+"""Names of parameters; `study.inputs.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
 
 
 def cases_with(name: str, values) -> np.ndarray:

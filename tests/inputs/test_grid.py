@@ -10,7 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import study
-from study.spec.grid import Grid, columns, unflatten
+from study.inputs.grid import Grid, columns, unflatten
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
 
@@ -208,7 +208,7 @@ def chunk(first: int, last: int) -> dict[str, np.ndarray]:
 
 @cache
 def chunked_definition():
-    from study.spec.definition import from_tables
+    from study.inputs.definition import from_tables
 
     tables = {
         "model": {"h": 0.02, "n": 0.5, "Nbar": 250000, "Ra": 0.004, "B": 0.1, "beta": 0.5},

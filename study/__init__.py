@@ -25,9 +25,9 @@ if TYPE_CHECKING:
     from .figures.registry import drawing, figure, table
     from .files.results_file import open_results
     from .in_words import summary
+    from .inputs import vocabulary
+    from .inputs.definition import StudyError
     from .solving import solve
-    from .spec import vocabulary
-    from .spec.definition import StudyError
     from .specimen import materials, roughness
 
     __version__: str

@@ -45,6 +45,16 @@ class Parts(NamedTuple):
         coords = {name: own for name, own in self.coords.items() if name not in NUMERICS} | last
         return without_fill_values(xr.Dataset(self.variables, coords, self.attributes))
 
+    def settings_apart(self) -> "Parts":
+        """The parts with numerical settings that all cases share as attributes, not as coordinates.
+
+        It is done before the dataset is made, since dropping variables of a dataset copies all others.
+        """
+        shared = [name for name in NUMERICS if name in self.coords and not self.coords[name].ndim]
+        coords = {name: own for name, own in self.coords.items() if name not in shared}
+        attributes = {name: self.coords[name].values.item() for name in shared}
+        return Parts(self.variables, coords, self.attributes | attributes)
+
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
     """The parts of the dataset of a grid, from flat arrays (B, ...): dimensions in the order of the study, then `x`."""

@@ -17,9 +17,11 @@ from test_cli import GOOD
 pytest.importorskip("setuptools")
 BUILD = "import sys; from setuptools import build_meta; getattr(build_meta, sys.argv[1])(sys.argv[2])"
 TRAP = "from pathlib import Path\nPath('it-ran').touch()\nraise SystemExit('the wrong one')\n"
-SOLVE = "print(study.solve(P=1e-5, micro='smooth', base='half_space').a.item())"
 MANY = GOOD.replace("[1e-6, 2e-6, 3e-6]", "{ start = 1e-6, stop = 2e-6, num = 8 }")  # enough blocks for processes
-POINT = ("point", "P=1e-5", "micro=smooth", "base=half_space")
+#: The radius of a contact by the `solver` that is imported, and by the one that `study.solve` has: 1 s more of imports.
+CONTACT = "P=1e-5, micro='smooth', base='half_space'"
+SOLVE = f"import solver; print(solver.solve(solver.Problem.of({CONTACT})).a.item())"
+CALL = f"print(study.solve({CONTACT}).a.item())"
 #: What a user may have in the working folder: path -> content. A package hides a module of its name, and both hide a
 #: plain folder, so each of the three is tried where it counts.
 NEIGHBOURS = {
@@ -73,11 +75,11 @@ def beside(tmp_path):
 
 @pytest.mark.parametrize("files", NEIGHBOURS.values(), ids=NEIGHBOURS)
 def test_files_called_like_our_packages_are_left_alone(python, beside, files):
-    folder = beside(files | {"main.py": f"import study\n{SOLVE}\n"})
+    folder = beside(files | {"main.py": f"import study\n{SOLVE}\n", "mine.toml": GOOD})
     done = run(folder, python, "main.py")
     assert (done.returncode, done.stdout) == (0, "0.019574338205844317\n"), done.stderr
-    done = run(folder, python, "-m", "study", *POINT)
-    assert done.returncode == 0 and "= 0.01957" in done.stdout, done.stderr
+    done = run(folder, python, "-m", "study", "check", "mine.toml")
+    assert (done.returncode, done.stdout.split()[:3]) == (0, ["mine.toml:", "3", "cases"]), done.stderr
     assert not (folder / "it-ran").exists()
 
 
@@ -104,16 +106,30 @@ CALLED_STUDY = {
 
 @pytest.mark.parametrize("files", CALLED_STUDY.values(), ids=CALLED_STUDY)
 def test_roughcoat_works_beside_a_study_of_the_user(python, beside, files):
-    """As a command by its name, by `python -m`, and imported; so do the processes that it starts."""
-    folder = beside(files | {"many.toml": MANY})
-    for number, command in enumerate([(python.parent / "roughcoat",), (python, "-m", "roughcoat")]):
-        arguments = ("run", "many.toml", "--workers", "2", "--results", f"results{number}")
-        done = run(folder, *command, *arguments)
-        assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
-    script = "import numpy as np, roughcoat as rc, study\n"
+    """As a command by its name, by `python -m`, and imported."""
+    folder = beside(
+        files | {"many.toml": MANY, "main.py": "import roughcoat as rc, study; print(rc.solve is study.solve)"}
+    )
+    for command in (
+        (python.parent / "roughcoat", "check", "many.toml"),
+        (python, "-m", "roughcoat", "check", "many.toml"),
+    ):
+        done = run(folder, *command)
+        assert done.returncode == 0 and done.stdout.startswith("many.toml: 8 cases"), done.stderr
+    done = run(folder, python, "main.py")
+    assert (done.returncode, done.stdout) == (0, "True\n"), done.stderr
+    assert not (folder / "it-ran").exists()
+
+
+def test_processes_take_our_study_beside_one_of_the_user(python, beside):
+    """Those of a run, and those of a call."""
+    folder = beside(CALLED_STUDY["modules"] | {"many.toml": MANY})
+    done = run(folder, python, "-m", "roughcoat", "run", "many.toml", "--workers", "2")
+    assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
+    script = "import numpy as np, roughcoat as rc\n"
     script += "from study.work import share; share.BLOCK, share.START = 10, 1e-9\n"
     script += "c = rc.solve(P=np.geomspace(1e-6, 1e-5, 40), micro='smooth', base='half_space', workers=2)\n"
-    script += "assert (c.status == 0).all() and rc.solve is study.solve; print(share._pool.count)"
+    script += "assert (c.status == 0).all(); print(share._pool.count)"
     done = run(folder, python, "-c", script)
     assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
     assert not (folder / "it-ran").exists()
@@ -151,12 +167,13 @@ def radius(axes, line):
 
 
 def test_a_figure_of_the_user_and_the_book_in_a_folder_with_nothing_else(python, beside):
-    """Whatever the user has that is called like our packages."""
+    """Whatever the user has that is called like our packages. One figure needs a study of the book, one is a drawing of
+    it, and the table needs no study."""
     folder = beside(NEIGHBOURS["modules"] | {"studies/mine.toml": GOOD, "studies/figures.py": FIGURES})
-    done = run(folder, python, "-m", "study", "plot", "--run", "radius", "fig01", "fig03", "fig09")
+    done = run(folder, python, "-m", "study", "plot", "--run", "radius", "fig01", "fig03")
     assert done.returncode == 0, done.stderr
     names = {path.name for path in (folder / "figures").iterdir()}
-    assert {"radius.csv", "radius.pdf", "radius.png", "fig01.svg", "fig03.pdf", "fig09.csv"} <= names
+    assert {"radius.csv", "radius.pdf", "radius.png", "fig01.svg", "fig03.pdf", "fig03.csv"} <= names
     assert (folder / "figures/radius.csv").read_text().splitlines()[0] == "P,a"
     done = run(folder, python, "-m", "study", "table", "table1")
     assert done.returncode == 0 and (folder / "tables/table1.txt").exists(), done.stderr
@@ -167,7 +184,7 @@ def test_a_figure_of_the_user_and_the_book_in_a_folder_with_nothing_else(python,
 
 
 def test_a_script_may_be_called_solver(python, beside):
-    folder = beside({"solver.py": f"import study\n{SOLVE}\n"})
+    folder = beside({"solver.py": f"import study\n{CALL}\n"})
     done = run(folder, python, "solver.py")
     assert (done.returncode, done.stdout) == (0, "0.019574338205844317\n"), done.stderr
 
@@ -183,7 +200,9 @@ def test_another_solver_that_the_program_has_imported_is_named(python, beside, n
 def test_our_solver_stays_what_it_is(python, beside):
     """Imported before or after, by the name that the pages use, and though the working folder changes."""
     folder = beside({"elsewhere/solver.py": TRAP})
-    for order in ("solver, study", "study, solver"):
-        script = f"import os, sys\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{SOLVE}; print(solver.Problem)"
+    for order, answer in {"solver, study": SOLVE, "study, solver": CALL}.items():
+        script = (
+            f"import os, sys\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{answer}; print(solver.Problem)"
+        )
         done = run(folder, python, "-c", script)
         assert done.returncode == 0 and "solver.problem.Problem" in done.stdout, done.stderr

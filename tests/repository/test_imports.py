@@ -28,7 +28,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "data", "physical", "in_words", "files", "store", "work"),
-        *("carried", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -100,6 +100,25 @@ def test_rooms_import_one_way(path):
     mine = rooms.index(room.removesuffix(".py"))
     others = {full.split(".")[1] for full in imported(path) if full.startswith(f"{package}.")}
     assert others <= {*rooms[: mine + 1]} - APART.get(room, set())
+
+
+def test_no_function_is_handed_upward():
+    """What solves whole problems is imported by the rooms that use it. None waits for one of its functions as an
+    argument, which would hide that it needs a room to its right."""
+    rooms = ROOMS["solver"]
+    solving = rooms[rooms.index("schemes") :]
+    trees = {path: ast.parse(path.read_text(encoding="utf-8")) for path in SOLVER}
+    public = {
+        node.name
+        for path, tree in trees.items()
+        if name(path).split("/")[1].removesuffix(".py") in solving
+        for node in tree.body
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_")
+    }
+    assert {"solve", "judged", "cheapest", "newton"} <= public
+    for path, tree in trees.items():
+        arguments = {node.arg for node in ast.walk(tree) if isinstance(node, ast.arg)}
+        assert not arguments & public, name(path)
 
 
 @pytest.mark.parametrize("path", BOOK, ids=name)
@@ -218,7 +237,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     from study.physical.bodies import BODIES
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

@@ -178,8 +178,8 @@ def microseconds(text: str, head: str, row: str, between: str) -> dict[float, fl
 
 @pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
 def test_times_are_those_of_tradeoff(ours, measured):
-    page = (ROOT / "docs/tradeoff_measured.txt").read_text(encoding="utf-8")
     """To the two digits that are shown."""
+    page = (ROOT / "docs/tradeoff_measured.txt").read_text(encoding="utf-8")
     found = microseconds(TEXT["docs/accuracy.md"], r"\| processor time", rf"\| {ours}", r" \| ")
     known = microseconds(page, "set  ", rf"{measured} +newton, rtol", " {2,}")
     assert found == {error: float(f"{known[error]:.2g}") for error in (1e-3, 1e-6, 1e-9)}

@@ -50,7 +50,7 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     assert unknown.startswith('"fig91" is not known; ')
     study = "reference_load" if command == "table" else "spot_density"
     assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
-    assert missing[0].endswith(f"make it with: python -m study run {study}")
+    assert missing[0].endswith(f"make it with: python -m roughcoat run {study}")
 
 
 def test_a_function_that_fails_does_not_keep_the_next_from_its_turn(results, tmp_path, monkeypatch, capsys):

@@ -45,7 +45,7 @@ def test_the_command_that_is_told_is_one_that_there_is(kind, tmp_path, monkeypat
             registry.open_studies(name, studies, tmp_path)
         told |= {message.partition("make it with: ")[2] for message in caught.value.messages}
     assert told
-    for command in sorted(one.removeprefix("python -m study ").removeprefix("roughcoat ") for one in told):
+    for command in sorted(one.removeprefix("python -m roughcoat ").removeprefix("roughcoat ") for one in told):
         first, *names = command.split()
         with pytest.raises(SystemExit) as ended:
             main([first, "--help"])

@@ -127,7 +127,7 @@ def perform(options, kept: str) -> int:
 
 
 def _attempt(act, options, item, kept: str) -> int:
-    from .spec.definition import StudyError
+    from .inputs.definition import StudyError
 
     try:
         return act(options, item)

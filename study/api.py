@@ -11,10 +11,10 @@ from .data.provenance import command_line
 from .files.access import Unusable
 from .files.examine import Condition
 from .files.results_file import LAZY, open_lazily, open_results
-from .physical.study_file import read
-from .spec.definition import Definition, StudyError
-from .spec.places import study_file
-from .spec.vocabulary import NOT_RUN
+from .inputs.definition import Definition, StudyError
+from .inputs.places import study_file
+from .inputs.reading import read
+from .inputs.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, of_what, statuses
 from .store.tidy import clean

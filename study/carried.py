@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from .physical.bodies import BODIES
-from .spec.vocabulary import ROWS
+from .inputs.scene.bodies import BODIES
+from .inputs.vocabulary import ROWS
 from .specimen.foreign import plain
 
 

@@ -14,7 +14,7 @@ from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, Drawing, code_of, entry, names, open_studies
 from .figures.style import style
-from .spec.definition import StudyError
+from .inputs.definition import StudyError
 
 __all__ = ["FIGURES", "TABLES", "compose", "draw", "tabulate", "usual"]
 ENDINGS = {"figure": ("csv", "pdf", "png"), "table": ("txt", "csv", "tex"), "drawing": ("svg", "pdf", "png")}

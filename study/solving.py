@@ -14,14 +14,14 @@ import xarray as xr
 from solver.laws import Law
 
 from .carried import with_coordinates
-from .data.dataset import Parts, parts
+from .data.dataset import parts
+from .data.si import dataset_of
 from .in_words import FarOutside, doubts, far_outside
-from .physical.reading import read as read_scene
-from .physical.scene import dataset_of
-from .physical.study_file import complete as complete_scene
-from .spec.definition import LARGE, POINTS, StudyError, complete
-from .spec.given import Draft
-from .spec.vocabulary import NUMERICS, VOCABULARY
+from .inputs.definition import LARGE, POINTS, StudyError, complete
+from .inputs.given import Draft
+from .inputs.reading import complete as complete_scene
+from .inputs.scene.reading import read as read_scene
+from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
@@ -89,6 +89,7 @@ def solve(
     workers: int | None = None,
     same_piece: bool = False,
     progress: bool | None = None,
+    chunks: dict | None = None,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -132,6 +133,9 @@ def solve(
         off together; otherwise each is a piece of its own, and their spreads are independent
     progress : whether a call of more than two seconds says how far it is, in a notebook or on stderr; None: in a
         notebook or on a terminal
+    chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
+        are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
+        one chunk
     parameters : of registered laws
 
     Returns
@@ -159,6 +163,8 @@ def solve(
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     stream = screen_of(plain(progress))
+    if chunks is not None and (workers is not None or plain(progress)):
+        raise StudyError(["chunks: dask divides the work and says how far it is: leave out workers and progress"])
     ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
     if ranges:
         hint = "a range stands in study files; here give its values, as of numpy.geomspace"
@@ -183,12 +189,17 @@ def solve(
         definition = complete(draft, *about, LARGE)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
-    arrays = solved(definition, workers, stream, begun)
-    found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
+    if chunks is None:
+        arrays = solved(definition, workers, stream, begun)
+        found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
+    else:
+        from .lazy import lazily  # the arrays of dask take a while to import
+
+        found = lazily(definition, plain(chunks), "study.solve")
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:
         warnings.warn(text, stacklevel=2)
-    beyond = doubts(found) if scene else []
+    beyond = doubts(found) if scene and chunks is None else []
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
@@ -208,14 +219,3 @@ def signature() -> inspect.Signature:
 
 
 solve.__signature__ = signature()
-
-
-def settings_apart(found: Parts) -> Parts:
-    """The parts with numerical settings that all cases share as attributes, not as coordinates.
-
-    It is done before the dataset is made, since dropping variables of a dataset copies all others.
-    """
-    shared = [name for name in NUMERICS if name in found.coords and not found.coords[name].ndim]
-    coords = {name: own for name, own in found.coords.items() if name not in shared}
-    attributes = {name: found.coords[name].values.item() for name in shared}
-    return Parts(found.variables, coords, found.attributes | attributes)

@@ -19,11 +19,12 @@ import xarray as xr
 from children import run_forked
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
+from screens import impatient, stderr  # noqa: F401
 
 from solver import laws
 from study import open_results
 from study.files.lock import held
-from study.spec.laws import update_vocabulary
+from study.inputs.laws import update_vocabulary
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
 ROOT = Path(__file__).resolve().parents[1]
@@ -91,7 +92,7 @@ def compute_results(folder: Path) -> None:
     from study.figures.measured import described
     from study.figures.registry import entry
     from study.files.results_file import write
-    from study.physical.study_file import from_tables
+    from study.inputs.reading import from_tables
     from study.studies.evidence.tradeoff import WAYS, measure
     from study.work.run import run
 

@@ -7,9 +7,9 @@ from ..api import Study, load
 from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition, examine
 from ..in_words import doubts
-from ..spec.definition import Definition, StudyError
-from ..spec.places import STUDIES, files_in, packaged, study_file
-from ..spec.vocabulary import NOT_RUN
+from ..inputs.definition import Definition, StudyError
+from ..inputs.places import STUDIES, files_in, packaged, study_file
+from ..inputs.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
 from ..work.plan import Report, status_values

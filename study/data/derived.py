@@ -14,7 +14,8 @@ from solver import Model
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
-from ..spec.vocabulary import VOCABULARY, attributes
+from ..inputs.scene.scales import without_unit
+from ..inputs.vocabulary import VOCABULARY, attributes
 from . import assumptions
 from .assumptions import (  # noqa: F401 - names of study.derived
     ASSUMPTIONS,
@@ -29,7 +30,7 @@ from .assumptions import (  # noqa: F401 - names of study.derived
     STRETCHED,
     validity,
 )
-from .units import physical_attributes, reduced_modulus, without_unit
+from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12
 """Pressures of a profile that differ by less, relative, are equal: those of a smooth contact differ by rounding."""
@@ -46,7 +47,7 @@ def quantity(name: str) -> Callable:
     Raises ValueError for a name without a row.
     """
     if name not in VOCABULARY:
-        raise ValueError(f"{name} has no row in study/spec/vocabulary.toml: a quantity needs one")
+        raise ValueError(f"{name} has no row in study/inputs/vocabulary.toml: a quantity needs one")
 
     def register(formula: Callable) -> Callable:
         @wraps(formula)

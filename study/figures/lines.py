@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..data.derived import QUANTITIES
-from ..spec.definition import StudyError
-from ..spec.vocabulary import CONTROLS, suggest
+from ..inputs.definition import StudyError
+from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .drawable import check_size, drawable
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped

@@ -13,8 +13,8 @@ import numpy as np
 import xarray as xr
 
 from ..files.results_file import open_results
-from ..spec.definition import StudyError
-from ..spec.places import BOOK
+from ..inputs.definition import StudyError
+from ..inputs.places import BOOK
 from ..terminal import program
 from . import beside
 

@@ -12,8 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..spec.grid import Grid, windows
-from ..spec.vocabulary import names
+from ..inputs.grid import Grid, windows
+from ..inputs.vocabulary import names
 from .access import Unusable
 from .checksums import ATTRIBUTE, DIGITS, CaseDigests, lines_of_head, parsed
 from .child import python_command

@@ -18,9 +18,9 @@ from solver import NUMERICS_VERSION
 from ..data.dataset import not_run
 from ..files.access import Unusable
 from ..files.atomic import remove_temporary
-from ..spec.definition import Definition, StudyError
-from ..spec.identity import case_keys, find
-from ..spec.vocabulary import NOT_RUN
+from ..inputs.definition import Definition, StudyError
+from ..inputs.identity import case_keys, find
+from ..inputs.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
 
 log = logging.getLogger(__name__)

@@ -15,12 +15,12 @@ from ..files.access import Unusable
 from ..files.checksums import ATTRIBUTE, digest_of_cases, parsed
 from ..files.examine import BROKEN, Condition, coordinates_of, runs, stamp
 from ..files.netcdf import File
-from ..physical.scales import grid_of_results, parameters_from_si, result_from_si, scales_of
-from ..spec.definition import Definition, StudyError
-from ..spec.grid import Grid, columns
-from ..spec.identity import case_keys, find
-from ..spec.toml_text import same_tables
-from ..spec.vocabulary import NOT_RUN, PARAMETERS, SCENE
+from ..inputs.definition import Definition, StudyError
+from ..inputs.grid import Grid, columns
+from ..inputs.identity import case_keys, find
+from ..inputs.scene.scales import grid_of_results, parameters_from_si, result_from_si, scales_of
+from ..inputs.toml_text import same_tables
+from ..inputs.vocabulary import NOT_RUN, PARAMETERS, SCENE
 from ..terminal import on_one_line, program
 from .block_file import Damaged
 from .blocks import Store, facts, usable

@@ -4,7 +4,7 @@ from contextlib import suppress
 from pathlib import Path
 
 from ..files.lock import held
-from ..spec.definition import StudyError
+from ..inputs.definition import StudyError
 from ..terminal import counted
 from .blocks import Inventory, Store, inventory, remove_litter
 

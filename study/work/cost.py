@@ -8,7 +8,7 @@ import numpy as np
 from solver.numerics.ladder import LADDER, STACK
 
 from ..data.dataset import not_run
-from ..spec.definition import Definition, StudyError
+from ..inputs.definition import Definition, StudyError
 from ..store.writer import AT_ONCE
 from .cases import compute, parcel
 from .progress import duration

@@ -11,10 +11,10 @@ import numpy as np
 from ..data.dataset import status_words
 from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine
-from ..spec.definition import LARGE, Definition, StudyError
-from ..spec.grid import MOVED
-from ..spec.identity import law_versions
-from ..spec.vocabulary import NOT_RUN, suggest
+from ..inputs.definition import LARGE, Definition, StudyError
+from ..inputs.grid import MOVED
+from ..inputs.identity import law_versions
+from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses
 from ..store.earlier import statuses
 from ..terminal import shown

@@ -22,8 +22,8 @@ from typing import TextIO
 import numpy as np
 
 from ..data.dataset import failed_cases
-from ..spec.definition import Definition
-from ..spec.grid import USUAL, usual_block
+from ..inputs.definition import Definition
+from ..inputs.grid import USUAL, usual_block
 from ..terminal import counted
 from .cases import Failure, can_travel, compute, guarded, parcel
 from .processes import Processes

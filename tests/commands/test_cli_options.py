@@ -12,7 +12,7 @@ from study import api, catalogue
 from study.__main__ import main
 from study.commands.computing import failure_lines
 from study.figures import measured
-from study.spec.definition import StudyError
+from study.inputs.definition import StudyError
 from study.work import plan
 from study.work.plan import Report
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 import study
 from study.files import access, results_file
-from study.spec.vocabulary import NOT_RUN, PARAMETERS, attributes
+from study.inputs.vocabulary import NOT_RUN, PARAMETERS, attributes
 
 CASES = [
     {"label": "smooth", "P": 1e-5, "micro": "smooth", "base": "half_space"},

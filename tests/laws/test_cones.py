@@ -18,9 +18,9 @@ import study
 from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS, Parameter
 from study.figures.labels import stated
-from study.physical.inputs import used_inputs
-from study.spec.definition import from_tables
-from study.spec.identity import case_keys
+from study.in_words.inputs import used_inputs
+from study.inputs.definition import from_tables
+from study.inputs.identity import case_keys
 from study.work.cases import parcel
 
 CASE = {"h": 0.02, "n": 0.5, "Nbar": 250_000.0}

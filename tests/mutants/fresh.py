@@ -24,8 +24,9 @@ from fnmatch import fnmatch
 from importlib import import_module
 from pathlib import Path
 
+from copies import NIGHT, Task, answers, copy
 from mutants import FRESH, ROOT, Batch, Mutant, Verdict, batches, totals, with_figures
-from mutate import LIBRARIES, NIGHT, PATIENCE, SLOWER, Task, _copy, answers, judge, results_in, tested
+from mutate import LIBRARIES, PATIENCE, SLOWER, judge, results_in, tested
 
 #: Audit events of a process that begins. What it runs is not seen: such a test may run any file.
 BEGIN = {"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "socket.connect"}
@@ -84,7 +85,6 @@ class Chosen:
 
 def _tested(folder: Path, paths: list[str], results: Path | None, *options: str, plugins: list) -> dict:
     """`tested`, with the paths of the tests from the root: modules of the project have examples that are tests too."""
-    sys.modules.pop("mutate", None)  # that of this process is another file than the one in the folder
     return tested(folder, [f"../{path}" for path in paths], results, *options, plugins=plugins)
 
 
@@ -203,7 +203,7 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as temporary:
         folders = [Path(temporary) / f"tree{i}" for i in range(options.jobs)]
         for folder in folders:
-            _copy(root, folder)
+            copy(root, folder)
         for verdict in judged(mutants, folders, options.map, options.seconds):
             verdicts.append(verdict)
             print(f"{len(verdicts)} of {len(mutants)}: {verdict.mutant.id} {verdict}", flush=True)

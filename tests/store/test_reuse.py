@@ -9,9 +9,9 @@ from line_study import store_block
 from same import assert_same
 
 import study
-from study.spec import identity
-from study.spec.grid import Grid
-from study.spec.identity import case_keys, find
+from study.inputs import identity
+from study.inputs.grid import Grid
+from study.inputs.identity import case_keys, find
 from study.store import blocks, earlier
 
 BASE = {"micro": '"smooth"', "base": '"thin_layer"', "n": "0.5"}

@@ -14,8 +14,8 @@ from same import assert_same
 import study
 from study.data.dataset import parts
 from study.files.results_file import open_lazily, write
-from study.spec.definition import from_tables
-from study.spec.grid import Grid, box, cut_out, windows
+from study.inputs.definition import from_tables
+from study.inputs.grid import Grid, box, cut_out, windows
 from study.store import writer
 from study.work.cases import compute, parcel
 
@@ -81,7 +81,7 @@ def test_written_by_windows_as_written_whole(tmp_path, monkeypatch, size, output
 def test_a_grid_cut_out_is_the_cases_there(low, length):
     grid = from_tables(tables(), "w", "", "w").grid
     window = {dim: slice(low % size, min(low % size + length, size)) for dim, size in grid.sizes.items()}
-    from study.spec.grid import columns
+    from study.inputs.grid import columns
 
     part, whole = cut_out(grid, window), columns(grid, np.arange(grid.size))
     for name, column in columns(part, np.arange(part.size)).items():

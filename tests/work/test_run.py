@@ -15,8 +15,7 @@ from same import assert_same_numbers
 
 import study
 from study.data.dataset import Parts
-from study.solving import settings_apart
-from study.spec.definition import from_tables
+from study.inputs.definition import from_tables
 from study.store.blocks import Store
 from study.work import cases
 from study.work import run as running
@@ -27,7 +26,7 @@ def as_solved(dataset):
     variables, coords = (
         {name: dataset.variables[name] for name in part} for part in (dataset.data_vars, dataset.coords)
     )
-    return settings_apart(Parts(variables, coords, dataset.attrs)).dataset()
+    return Parts(variables, coords, dataset.attrs).settings_apart().dataset()
 
 
 @pytest.mark.parametrize("workers", [1, 2, 5])

@@ -1,79 +1,20 @@
 """Calls that take more than two seconds say that they go on, where somebody may look; others do not say a word."""
 
 import io
-import os
-import re
-import signal
-import subprocess
 import sys
 import threading
 import time
 import types
-from pathlib import Path
 
 import numpy as np
 import pytest
+from screens import CONTACT, PATIENCE, Screen, as_stderr, lines, nobody_speaks, slowly
 
 import study
 from solver import Status
 from study import solving
 from study.work import progress, run, screen, share
 from study.work.progress import ERASE, Progress
-
-ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 20  # seconds that a test waits for a line at most
-CONTACT = {"P": 1e-5, "micro": "smooth", "base": "half_space"}
-
-
-class Screen(io.StringIO):
-    """A terminal, which knows when something was written."""
-
-    def __init__(self):
-        super().__init__()
-        self.written = threading.Event()
-
-    def isatty(self) -> bool:
-        return True
-
-    def write(self, text: str) -> int:
-        self.written.set()
-        return super().write(text)
-
-
-@pytest.fixture
-def impatient(monkeypatch):
-    """What takes two seconds for people takes a hundredth here."""
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setattr(progress, "SILENT", 0.01)
-    monkeypatch.setattr(progress, "AGAIN", 0.01)
-
-
-@pytest.fixture
-def stderr(monkeypatch, impatient) -> Screen:
-    """A terminal in place of stderr."""
-    return as_stderr(monkeypatch, Screen())
-
-
-def as_stderr(monkeypatch, stream):
-    """Let a stream be stderr for calls, but not for pytest, which replaces it before each test."""
-    monkeypatch.setattr(screen, "sys", types.SimpleNamespace(stderr=stream, modules=sys.modules))
-    return stream
-
-
-def slowly(monkeypatch, wait) -> None:
-    """Every block takes as long as wait() takes."""
-    real = share.compute
-    monkeypatch.setattr(share, "compute", lambda wanted: (wait(), real(wanted))[1])
-
-
-def nobody_speaks() -> bool:
-    """Whether no thread of a call is left that says how far it is; those of other tests may be."""
-    return all(thread.name != progress.SPEAKER for thread in threading.enumerate())
-
-
-def lines(text: str) -> list[str]:
-    """What was on the screen, one after another; a few seconds are "0 s", since reading may take some."""
-    return [re.sub(r": \d s\b", ": 0 s", line) for line in text.split(ERASE) if line]
 
 
 def test_a_call_that_lasts_says_so_and_leaves_the_terminal_as_it_was(monkeypatch, capsys, stderr):
@@ -206,18 +147,6 @@ def test_a_terminal_that_goes_away_does_not_end_the_call(monkeypatch, stderr):
     assert study.solve(**CONTACT).status == 0 and stderr.written.is_set()
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
-def test_an_interrupted_call_leaves_no_line_and_no_thread(monkeypatch, stderr, error):
-    def wait() -> None:
-        stderr.written.wait(PATIENCE)
-        raise error
-
-    slowly(monkeypatch, wait)
-    with pytest.raises(error):
-        study.solve(**CONTACT)
-    assert lines(stderr.getvalue()) and stderr.getvalue().endswith(ERASE) and nobody_speaks()
-
-
 class Handle:
     """What IPython gives for an output that can be changed; `cell` is what stands there now."""
 
@@ -294,55 +223,6 @@ def test_a_run_whose_first_block_lasts_says_that_it_goes_on(impatient):
         going.update(15, failed=0)
     assert lines(shown.getvalue())[0] == "line: 0 s, 5 of 20 cases are there"
     assert lines(shown.getvalue())[-1].startswith("line: 20 of 20 cases, 0 failed") and shown.getvalue().endswith("\n")
-
-
-SLOW_POINT = """
-import sys, time
-from study.work import progress, share
-progress.SILENT = 0.05
-real = share.compute
-share.compute = lambda wanted: (time.sleep({seconds}), real(wanted))[1]
-sys.argv = ["roughcoat", "point", "P=1e-5", "micro=smooth", "base=half_space"]
-from study.__main__ import main
-sys.exit(main())
-"""
-
-
-def point(seconds: float, **streams) -> subprocess.Popen:
-    """`roughcoat point` of a contact that takes so many seconds; two seconds without a word are 0.05 s here."""
-    environment = os.environ | {"TERM": "xterm", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"}
-    code = SLOW_POINT.format(seconds=seconds)
-    return subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, **streams)
-
-
-def test_point_says_nothing_beside_its_answer_in_a_pipe():
-    process = point(0.3, stderr=subprocess.PIPE)
-    answer, said = process.communicate(timeout=100)
-    assert process.returncode == 0 and said == b"" and answer.startswith(b"Given:")
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX terminals")
-@pytest.mark.parametrize("interrupted", [False, True])
-def test_point_says_on_a_terminal_that_it_goes_on(interrupted):
-    inside, outside = os.openpty()
-    process = point(PATIENCE if interrupted else 0.3, stderr=outside)
-    os.close(outside)
-    said = os.read(inside, 10_000)
-    if interrupted:
-        process.send_signal(signal.SIGINT)
-    answer, _ = process.communicate(timeout=100)
-    with pytest.raises(OSError, match="."):  # the other end is closed
-        while True:
-            if not (more := os.read(inside, 10_000)):
-                raise OSError("the end")
-            said += more
-    os.close(inside)
-    text = said.decode()
-    assert text.startswith(ERASE) and lines(text)[0] == "solving 1 contact: 0 s" and ERASE in text[len(ERASE) :]
-    if interrupted:
-        assert process.returncode == 130 and answer == b"" and "Traceback" not in text
-    else:
-        assert process.returncode == 0 and text.endswith(ERASE) and answer.startswith(b"Given:")
 
 
 def test_status_of_a_failed_case_is_counted(monkeypatch, stderr):

@@ -8,8 +8,8 @@ import xarray as xr
 
 import study
 from study.__main__ import main
-from study.physical.study_file import from_tables
-from study.spec.identity import case_keys
+from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.store import writer
 
 pytest.importorskip("pint")

@@ -16,7 +16,7 @@ from study import solving
 from study.data.assumptions import validity_of
 from study.data.dataset import model_attributes
 from study.in_words import FarOutside, early, far_outside
-from study.physical.study_file import read
+from study.inputs.reading import read
 
 BALL = {"R": "5 mm", "punch": "steel 52100", "P": "5 N", "Ra": "2 um", "bonding": "bonded"}
 FILM = BALL | {"layer": "PTFE", "h": "10 nm", "body": "steel 52100", "Nbar": "0.1 1/um^2"}

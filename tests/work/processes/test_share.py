@@ -14,8 +14,8 @@ from children import PATIENCE
 import study
 from solver import laws
 from study.files.child import python_command
-from study.spec.definition import LARGE, StudyError, complete
-from study.spec.given import Draft
+from study.inputs.definition import LARGE, StudyError, complete
+from study.inputs.given import Draft
 from study.work import share
 from study.work.cases import guarded
 

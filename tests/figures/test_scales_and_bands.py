@@ -65,6 +65,6 @@ def test_the_line_above_a_figure_is_broken_where_it_is_full():
     """Texts of four letters and ", ": as many on a line as it holds, and one in any case. Signs of mathtext do not
     count."""
     texts = [f"$R_{i}$=1" for i in range(7)]  # printed as R0=1
-    for most, lines in ((5, 7), (6, 7), (11, 7), (12, 4), (18, 3), (41, 2), (42, 1)):
+    for most, count in ((5, 7), (6, 7), (11, 7), (12, 4), (18, 3), (41, 2), (42, 1)):
         found = wrapped(texts, most)
-        assert found.count("\n") + 1 == lines and found.replace(",\n", ", ").split(", ") == texts
+        assert found.count("\n") + 1 == count and found.replace(",\n", ", ").split(", ") == texts

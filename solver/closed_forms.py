@@ -27,8 +27,8 @@ def hertz(
     a: ArrayLike | None = None,
     D: ArrayLike | None = None,
     p0: ArrayLike | None = None,
-    R: ArrayLike = 1.0,
-    E: ArrayLike = 1.0,
+    R: float | np.ndarray = 1.0,
+    E: float | np.ndarray = 1.0,
 ) -> SmoothContact:
     """Smooth sphere on a homogeneous half-space: P, a, D and p(0) from any one of them.
 
@@ -90,11 +90,11 @@ def thin_layer_on_rigid_base(
     a: ArrayLike | None = None,
     D: ArrayLike | None = None,
     *,
-    h: ArrayLike,
+    h: float | np.ndarray,
     nu1: ArrayLike = 0.3,
     bonded: bool = False,
-    R: ArrayLike = 1.0,
-    E: ArrayLike = 1.0,
+    R: float | np.ndarray = 1.0,
+    E: float | np.ndarray = 1.0,
 ) -> SmoothContact:
     """Smooth sphere on a thin layer on a rigid base: P, a, D and p(0) from any one of the first three.
 

@@ -87,8 +87,8 @@ class Problem:
         Raises
         ------
         TypeError : a parameter does not exist
-        ValueError : not exactly one control, a parameter missing that some case needs, shapes that do not broadcast to (B,),
-            a text outside its choices
+        ValueError : not exactly one control, a parameter missing that some case needs, shapes that do not broadcast to
+            (B,), a text outside its choices
 
         Examples
         --------

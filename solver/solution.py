@@ -117,8 +117,8 @@ class Solution:
         Parameters
         ----------
         size, points : number of cases, B, and of radii of the profiles, m
-        pieces : pairs of an index into the cases and the solution of these. If a case is in two pieces, the last one counts; a
-            case in none has no numbers
+        pieces : pairs of an index into the cases and the solution of these. If a case is in two pieces, the last one
+            counts; a case in none has no numbers
 
         Returns
         -------
@@ -148,14 +148,16 @@ class Solution:
 
         Returns
         -------
-        numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or infinite
+        numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or
+            infinite
         """
         ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
         return ended & ~np.all([_of_all(np.isfinite(getattr(self, name))) for name in _NUMBERS], axis=0)
 
     def out_of_range(self) -> np.ndarray:
-        """Which cases have converged to a number that cannot be. To be asked in units R = E2* = 1: in others a positive number
-        may underflow to 0.
+        """Which cases have converged to a number that cannot be.
+
+        To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
 
         Returns
         -------

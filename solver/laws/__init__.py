@@ -49,8 +49,8 @@ def register(law: Law) -> Law:
 
     Raises
     ------
-    ValueError : the name is not allowed, or is that of a law of this package; there is no version; a parameter is declared
-        wrongly, or has the name of something else, or of one of another law with other bounds
+    ValueError : the name is not allowed, or is that of a law of this package; there is no version; a parameter is
+        declared wrongly, or has the name of something else, or of one of another law with other bounds
 
     Examples
     --------

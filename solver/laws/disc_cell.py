@@ -166,7 +166,7 @@ def contact_fraction(p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra: ArrayLike)
     Examples
     --------
     >>> round(float(contact_fraction(0.01, 0.5, 250000, 0.004)), 6)
-    0.145763
+    0.288467
     """
     return LAW.at(p, E, Nbar=Nbar, Ra=Ra).lam
 
@@ -186,6 +186,6 @@ def largest_pressure(p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra: ArrayLike)
     Examples
     --------
     >>> round(float(largest_pressure(0.01, 0.5, 250000, 0.004)), 6)
-    0.03
+    0.051837
     """
     return LAW.at(p, E, Nbar=Nbar, Ra=Ra).p_max

@@ -34,13 +34,29 @@ class Summary(str):
 def summary(contact: xr.Dataset) -> Summary:
     """What `study.solve` found, in words.
 
-    contact : a dataset of `study.solve`, in physical units or dimensionless; of a grid the first cases are written out
-
     The text has the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
     standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
     inputs make of the quantity (`NAME_spread`). `error` and `model_error` are of the other six quantities; dP/dD is
     taken to be as sure. Where the profile p is larger in a ring than in the centre, the text has the pressure of that
-    ring and its radius. Raises ValueError where the dataset is not one of contacts.
+    ring and its radius.
+
+    Parameters
+    ----------
+    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out
+
+    Returns
+    -------
+    Summary : a text, which a notebook shows with its lines
+
+    Raises
+    ------
+    ValueError : the dataset is not one of contacts
+
+    Examples
+    --------
+    >>> import study
+    >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
+    'Given: a rigid punch'
     """
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:

@@ -32,20 +32,6 @@ from .assumptions import (  # noqa: F401 - names of study.derived
 )
 from .units import physical_attributes, reduced_modulus, without_unit
 
-__all__ = [
-    "QUANTITIES",
-    "depth_of_the_body",
-    "effective_modulus",
-    "largest_nominal_pressure",
-    "mean_pressure",
-    "nominal_area",
-    "nominal_area_ratio",
-    "number_of_spots",
-    "peak_pressure",
-    "quantity",
-    "ring_radius",
-    "spot_radius",
-]
 ROUNDING = 1e-12
 """Pressures of a profile that differ by less, relative, are equal: those of a smooth contact differ by rounding."""
 LEAST_POINTS, LOAD_MISSED = 5, 5e-3
@@ -75,15 +61,11 @@ def quantity(name: str) -> Callable:
 
     Parameters
     ----------
-    name : of a row of the vocabulary
+    name : of a row of the vocabulary; ValueError if there is none
 
     Returns
     -------
     a decorator of a function of a dataset, which is then one of `study.derived` (docs/extending.md)
-
-    Raises
-    ------
-    ValueError : there is no row of this name
     """
     if name not in VOCABULARY:
         raise ValueError(f"{name} has no row in study/inputs/vocabulary.toml: a quantity needs one")
@@ -156,7 +138,6 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
 @quantity("r_ring")
 def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius, a point of the profile, at which the nominal pressure is largest, in R: 0 where that is the centre.
-
     It needs the profile p.
     """
     p = _profile(dataset, "r_ring")
@@ -193,9 +174,8 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     D is the approach of distant points of both bodies. In the centre the punch, a half-space of E3* = E1*/m, yields
     (2/E3*) ∫ p dr and of the asperities' A[p(0)] the part m/(1 + m); the coated body yields the rest. A rigid punch
     yields nothing. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN where that spline
-    misses the load by more than LOAD_MISSED: the profile has too few points.
-
-    It needs the profile p at 5 points or more, and what `peak_pressure` needs.
+    misses the load by more than LOAD_MISSED: the profile has too few points. It needs the profile p at 5 points or
+    more, and what `peak_pressure` needs.
     """
     m = dataset.get("m", xr.DataArray(0.0))
     if (m == 0).all():

@@ -233,6 +233,6 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
             value = _si(name, given, VOCABULARY[name].unit)
             if np.asarray(value).dtype.kind not in "iuf":
                 quantity(name, given, VOCABULARY[name].unit)  # raises: it is no number, nor several
-            array = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
+            array: Any = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
             found[name] = array / factor(name, **scales)
     return found

@@ -20,8 +20,9 @@ from . import beside
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
 COMMANDS = ("tradeoff",)  # what is measured that has a command of its own
-Decorator, Pair = Callable[[Callable], Callable], tuple[float, float]
-USUAL = (ONE_COLUMN, 2.6)
+Decorator = Callable[[Callable], Callable]
+Pair = tuple[float, float]
+Cells = tuple[int, int]
 Columns = dict[str, np.ndarray]
 """The numbers that a figure shows: heading of the CSV -> column."""
 
@@ -81,7 +82,7 @@ FIGURES, TABLES = REGISTERS[""]["figure"], REGISTERS[""]["table"]
 
 
 def figure(
-    name: str, *studies: str, size: Pair = USUAL, panels: Pair = (1, 1), caption: str = "", long: bool = False
+    name: str, *studies: str, size: Pair = (3.35, 2.6), panels: Cells = (1, 1), caption: str = "", long: bool = False
 ) -> Decorator:
     """Register a function that draws a figure: `draw(axes, *datasets)` returns the numbers that it shows.
 
@@ -110,8 +111,7 @@ def drawing(name: str, caption: str = "") -> Decorator:
 
     Parameters
     ----------
-    name : of the drawing
-    caption : by default the first paragraph of the docstring
+    name, caption : of the drawing; the caption is by default the first paragraph of the docstring
 
     Returns
     -------

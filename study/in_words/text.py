@@ -64,7 +64,7 @@ def summary(contact: xr.Dataset) -> Summary:
     bare = [name for name in ("status", "model_used", "validity") if "flag_meanings" not in contact[name].attrs]
     if bare:
         raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
-    dims = list(contact["status"].dims)
+    dims = [str(dim) for dim in contact["status"].dims]
     contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     if not dims:
         return Summary(_summary_of_case(contact))
@@ -115,7 +115,7 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
 
 def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
     """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
-    of_material = {}
+    of_material: dict[str, list[str]] = {}
     for body, (modulus, ratio, _) in BODIES.items():
         if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
             of_material.setdefault(str(case[body].values), []).append(body)

@@ -44,10 +44,10 @@ def measure(
 
     Raises
     ------
-    ValueError : an unknown method, form or rows, a cutoff below three steps or an empty list, a sphere smaller than the
-        scan; fewer than 16 points in a direction, over the larger of two steps; too few points that have all their
-        neighbours; no heights, or no summits; without `huge` of the scan, heights of an rms below 1 pm after the form, and
-        asperities of a radius above 1 km
+    ValueError : an unknown method, form or rows, a cutoff below three steps or an empty list, a sphere smaller than
+        the scan; fewer than 16 points in a direction, over the larger of two steps; too few points with all their
+        neighbours; no heights, or no summits; without `huge` of the scan, heights of an rms below 1 pm after the form,
+        and asperities of a radius above 1 km
 
     Examples
     --------

@@ -4,9 +4,9 @@ import math
 import numbers
 import unicodedata
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .heights.missing import treated
 
@@ -55,9 +55,9 @@ class Scan:
 
 
 def profile(
-    z: ArrayLike,
+    z: Any,
     *,
-    x: ArrayLike | None = None,
+    x: Any = None,
     dx: float | None = None,
     unit: str = "m",
     height_unit: str | None = None,
@@ -92,7 +92,7 @@ def profile(
 
 
 def height_map(
-    z: ArrayLike,
+    z: Any,
     *,
     dx: float,
     dy: float | None = None,
@@ -128,7 +128,7 @@ def height_map(
     dx = number(f"{name}: dx", dx, unit)
     known = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
     own = [abs(float(one[1] - one[0])) for one in known if one.dtype.kind in "iuf" and one.size > 1]
-    if dy is None and len(own) == 2 and not np.isclose(*own, rtol=UNEVEN, atol=0):
+    if dy is None and len(own) == 2 and not np.isclose(own[0], own[1], rtol=UNEVEN, atol=0):
         raise ValueError(f"{name}: the coordinates of z have steps of {own[0]:g} along x, {own[1]:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
     return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)

@@ -14,7 +14,12 @@ from numpy.typing import ArrayLike
 
 
 class SmoothContact(NamedTuple):
-    """Load P, contact radius a, indentation depth D and central pressure p0 = p(0); arrays of one shape."""
+    """A smooth contact; arrays of one shape.
+
+    Attributes
+    ----------
+    P, a, D, p0 : load, contact radius, indentation depth, and central pressure p(0)
+    """
 
     P: np.ndarray
     a: np.ndarray

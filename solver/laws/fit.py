@@ -9,7 +9,13 @@ from .disc_cell import displacement
 
 
 class Fit(NamedTuple):
-    """B (unit Ra/E1*^β), β, and the largest relative error |B p^β/A[p] - 1| over the interval of check."""
+    """A power law A = B p^β fitted to the exact one.
+
+    Attributes
+    ----------
+    B, beta : factor (unit Ra/E1*^β), and exponent β
+    max_error : largest relative error |B p^β/A[p] - 1| over the interval of check
+    """
 
     B: float
     beta: float

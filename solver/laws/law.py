@@ -27,7 +27,13 @@ _LAST, _ROUNDING = 1e-9, 1e-3
 
 
 class Curve(NamedTuple):
-    """A law at some y: q = p/p*, g = A/A* and their derivatives by y; arrays of the shape of y."""
+    """A law at some y.
+
+    Attributes
+    ----------
+    q, g : p/p* and A/A*; arrays of the shape of y
+    dq, dg : their derivatives by y
+    """
 
     q: np.ndarray
     g: np.ndarray

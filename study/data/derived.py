@@ -39,7 +39,7 @@ LEAST_POINTS, LOAD_MISSED = 5, 5e-3
 then less than that times D (tests/data/test_depth.py)."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset, of each formula with the decorator `quantity`. They can be drawn like results."""
-SECTIONS = """
+SECTIONS_OF_QUANTITIES = """
 
 Parameters
 ----------
@@ -53,7 +53,6 @@ Raises
 ------
 ValueError : the dataset is in multiples of SI units, or lacks what the quantity follows from
 """
-"""What the docstrings of all quantities end with."""
 
 
 def quantity(name: str) -> Callable:
@@ -61,11 +60,15 @@ def quantity(name: str) -> Callable:
 
     Parameters
     ----------
-    name : of a row of the vocabulary; ValueError if there is none
+    name : of a row of the vocabulary
 
     Returns
     -------
     a decorator of a function of a dataset, which is then one of `study.derived` (docs/extending.md)
+
+    Raises
+    ------
+    ValueError : there is no row of this name
     """
     if name not in VOCABULARY:
         raise ValueError(f"{name} has no row in study/inputs/vocabulary.toml: a quantity needs one")
@@ -79,7 +82,7 @@ def quantity(name: str) -> Callable:
                     raise ValueError(f"{own} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name, assumptions.has_units(dataset))
 
-        computed.__doc__ = cleandoc(formula.__doc__ or "") + SECTIONS
+        computed.__doc__ = cleandoc(formula.__doc__ or "") + SECTIONS_OF_QUANTITIES
         QUANTITIES[name] = computed
         return computed
 
@@ -97,8 +100,7 @@ def nominal_area_ratio(dataset: xr.Dataset, a0: float | xr.DataArray) -> xr.Data
 
     Parameters
     ----------
-    dataset : of contacts
-    a0 : radius, in the unit of `a`
+    dataset, a0 : of contacts; radius, in the unit of `a`
 
     Returns
     -------
@@ -138,8 +140,7 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
 @quantity("r_ring")
 def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius, a point of the profile, at which the nominal pressure is largest, in R: 0 where that is the centre.
-    It needs the profile p.
-    """
+    It needs the profile p."""
     p = _profile(dataset, "r_ring")
     return dataset["a"] * dataset["x"].where(p >= (1 - ROUNDING) * p.max("x", skipna=False)).min("x")
 

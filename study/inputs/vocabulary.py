@@ -19,7 +19,7 @@ from solver.parameters import allowed as are_within
 
 from ..terminal import shown
 
-__all__ = ["SCENE", "VOCABULARY", "Entry", "names"]
+__all__ = ["SCENE", "VOCABULARY", "names"]
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
 NOT_RUN = 127

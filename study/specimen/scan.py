@@ -35,6 +35,8 @@ UNEVEN = 0.1
 class Scan:
     """Heights of a surface. Made by `profile`, `height_map` and `read`, which check them.
 
+    Attributes
+    ----------
     z : heights in m, shape (x) of a profile or (y, x) of a map; NaN where a point is missing
     steps : distance of the points along each axis of z, m
     name : the file, or what the caller calls it

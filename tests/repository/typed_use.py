@@ -1,4 +1,4 @@
-"""What a user writes, for the type checker (`make lint`): nothing of it is run. The types beside are those that it must find."""
+"""What a user writes, with the types that the type checker must find (`make lint`). Nothing of it is run."""
 
 from typing import TYPE_CHECKING, assert_type
 

@@ -21,6 +21,8 @@ LAWS = {"normal": "normal_heights", "equal": "disc_cell"}
 class Roughness:
     """Asperities of a scan, by one method, after one filter, at one resolution: N̄ and Ra depend on all three.
 
+    Attributes
+    ----------
     Nbar : asperities per unit area, 1/m²
     Ra : radius of an asperity, 1/(mean curvature of the summits), m
     sigma_summits : standard deviation of the heights of the summits, m; also called `sigma`

@@ -10,12 +10,13 @@ from .laws import disc_cell as micro
 from .laws.fit import Fit, fit_power_law
 from .parameters import Parameter
 from .problem import Problem
+from .sensitivity import Sensitivities, sensitivities
 from .solution import Model, Solution
 from .solve import solve
 from .status import Status
 
 #: Changes whenever the numbers may change: part of the digest of every study.
-NUMERICS_VERSION = "24"
+NUMERICS_VERSION = "25"
 
 __all__ = [
     "NUMERICS_VERSION",
@@ -25,11 +26,13 @@ __all__ = [
     "Model",
     "Parameter",
     "Problem",
+    "Sensitivities",
     "Solution",
     "Status",
     "closed_forms",
     "fit_power_law",
     "micro",
     "register",
+    "sensitivities",
     "solve",
 ]

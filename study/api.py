@@ -14,8 +14,8 @@ from .files.examine import Condition
 from .files.results_file import LAZY, open_lazily, open_results
 from .inputs.definition import Definition, StudyError
 from .inputs.places import study_file
+from .inputs.reading import read
 from .inputs.vocabulary import NOT_RUN
-from .physical.study_file import read
 from .store.blocks import Store, count_statuses, inventory
 from .store.earlier import earlier, of_what, statuses
 from .store.tidy import clean

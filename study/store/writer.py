@@ -7,6 +7,7 @@ from functools import partial
 from solver import NUMERICS_VERSION
 
 from ..data.dataset import labelled, parts
+from ..data.si import dataset_of
 from ..files.atomic import replacing
 from ..files.checksums import CaseDigests, digest_of_cases
 from ..files.examine import CHUNK, Condition
@@ -14,7 +15,6 @@ from ..files.netcdf import File
 from ..files.results_file import add_checksums, create, put
 from ..files.seal import seal
 from ..inputs.grid import MOVED, Grid, box, cut_out, windows
-from ..physical.scene import dataset_of
 from .blocks import Inventory, Store, gather
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often

@@ -12,7 +12,7 @@ from test_cli_options import tree
 from study import api, catalogue
 from study.__main__ import main
 from study.figures import registry
-from study.spec.definition import StudyError
+from study.inputs.definition import StudyError
 from study.work.plan import Report
 
 pytestmark = pytest.mark.usefixtures("studies")
@@ -128,9 +128,9 @@ def test_results_that_are_missing_have_a_way_out_each(monkeypatch, tmp_path):
     with pytest.raises(StudyError) as caught:
         registry.open_studies("mine", ("tradeoff", "times", "main_case"), tmp_path)
     ways = (
-        "make it with: python -m study tradeoff",
+        "make it with: python -m roughcoat tradeoff",
         "--run measures it",
-        "make it with: python -m study run main_case",
+        "make it with: python -m roughcoat run main_case",
     )
     names = ("tradeoff", "times", "main_case")
     assert caught.value.messages == tuple(

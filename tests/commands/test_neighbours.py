@@ -201,8 +201,6 @@ def test_our_solver_stays_what_it_is(python, beside):
     """Imported before or after, by the name that the pages use, and though the working folder changes."""
     folder = beside({"elsewhere/solver.py": TRAP})
     for order, answer in {"solver, study": SOLVE, "study, solver": CALL}.items():
-        script = (
-            f"import os, sys\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{answer}; print(solver.Problem)"
-        )
+        script = f"import os\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{answer}; print(solver.Problem)"
         done = run(folder, python, "-c", script)
         assert done.returncode == 0 and "solver.problem.Problem" in done.stdout, done.stderr

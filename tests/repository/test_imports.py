@@ -25,9 +25,10 @@ ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
         *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        "sensitivity",
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "data", "physical", "in_words", "files", "store", "work"),
+        *("terminal", "specimen", "inputs", "data", "in_words", "files", "store", "work"),
         *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
@@ -174,8 +175,8 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     """The seam between solver and study stays narrow: the vocabulary knows the table of parameters alone."""
     users = {path.stem: {full for full in imported(path) if full.split(".")[0] == "solver"} for path in STUDY}
     assert users["vocabulary"] == {"solver.parameters"}
-    own = {"solver.parameters", "solver.laws", "solver.laws.own_table"}
-    assert users["laws"] == own, "those that others have registered, and tables in files"
+    own = {"solver.parameters", "solver.laws", "solver.laws.own_table", "solver.laws.fit"}
+    assert users["laws"] == own, "those that others have registered, tables in files, fits"
     assert not any(users[name] for name in ("grid", "given", "run", "api", "units", "progress"))
 
 
@@ -233,8 +234,8 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
     from solver.parameters import PARAMETERS as OWN
+    from study.inputs.scene.bodies import BODIES
     from study.inputs.vocabulary import PARAMETERS, SCENE
-    from study.physical.bodies import BODIES
 
     known = inspect.signature(study.solve).parameters
     beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks", "parameters"}

@@ -17,7 +17,7 @@ import solver
 import study
 from study import open_results
 from study.__main__ import main, parser
-from study.physical.study_file import from_tables, read
+from study.inputs.reading import from_tables, read
 
 TEXT = {page: pages.read(page) for page in pages.PAGES}
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import study
-from study.physical.study_file import from_tables
+from study.inputs.reading import from_tables
 from study.store import writer
 
 pytest.importorskip("pint")

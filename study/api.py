@@ -9,17 +9,15 @@ import xarray as xr
 
 from .data.provenance import command_line
 from .files.access import Unusable
-from .files.examine import Condition
-from .files.results_file import LAZY, open_lazily, open_results
+from .files.examine import Condition, statuses
+from .files.results_file import LAZY, opened
 from .inputs.definition import Definition, StudyError
 from .inputs.places import study_file
 from .inputs.vocabulary import NOT_RUN
 from .physical.study_file import read
-from .store.blocks import Store, count_statuses, inventory
-from .store.earlier import earlier, of_what, statuses
-from .store.tidy import clean
+from .store.blocks import Store, clean, count_statuses, inventory
 from .work.cost import Estimate
-from .work.plan import Report, belongs, check_countable, look
+from .work.plan import Report, belongs, check_countable, look, of_what
 from .work.run import dry_run, partial_dataset, run
 
 
@@ -65,10 +63,10 @@ class Study:
         With spreads a case counts as often as it is solved; of complete results the statuses are counted once for each.
 
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
-        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. Attributes, coordinates
-        and statuses are compared with their checksums here; `verify` compares all numbers. Cases count as computed if
-        they are in blocks, or in an outdated results file that a run would use. Raises StudyError for a very large
-        study that is neither new nor done, unless `yes`: counting takes memory.
+        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. A file of up to 200 MB in
+        memory is compared with its digest; `verify` compares a larger one too. Cases count as computed if they are in
+        blocks. Raises StudyError for a very large study that is neither new nor done, unless `yes`: counting takes
+        memory.
         """
         with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look again
             return self._status(yes)
@@ -76,7 +74,7 @@ class Study:
 
     def _status(self, yes: bool) -> dict:
         store = self._store
-        found = look(store, ("status",))
+        found = look(store, LAZY)
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
@@ -87,19 +85,19 @@ class Study:
         elif not check_countable(store, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
-            known = inventory(store, earlier(self.definition, found).source)
+            known = inventory(store)
             counts = count_statuses(known.status)
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         cases = self.definition.grid.size
         return {"state": state, "cases": cases, "counts": counts, "path": store.path, "reason": found.reason}
 
     def verify(self) -> Condition:
-        """All of the results file against its checksums, see `study.files.examine.Condition`."""
+        """All of the results file against its digest, see `study.files.examine.Condition`."""
         return look(self._store)
 
     def clean(self) -> list[str]:
-        """Remove blocks that do not serve the study as it is; says which. Never touches results."""
-        return clean(self._store, belongs(self.definition, look(self._store)))
+        """Remove blocks that hold no case of the study as it is; says which. Never touches results."""
+        return clean(self._store)
 
     def open(self, partial: bool = False) -> xr.Dataset:
         """The results. Raises StudyError when there are none, none of this definition, or they are damaged.
@@ -110,17 +108,15 @@ class Study:
 
         partial : give the blocks computed so far instead, with status 127 (not run) for the rest
         """
-        path, found = self._store.path, look(self._store, ())
+        path, found = self._store.path, look(self._store, LAZY)
         if belongs(self.definition, found):
-            return open_lazily(path) if found.unpacked > LAZY else open_results(path)
+            return opened(found)
         if partial:
-            with suppress(FileNotFoundError):
-                return partial_dataset(self.definition, self._folder)
-            return self.open()  # a run has ended meanwhile, and removed its blocks
+            return partial_dataset(self.definition, self._folder)
         if found.good or found.kind == "missing":
             reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
-        again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
+        again = "; run the study, which writes it again" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)
 
     def plot(self, x: str, y: str, hue: str = "", **where):

@@ -17,7 +17,8 @@ import numpy as np
 from ..data.provenance import OF_THE_RUN
 from ..inputs.grid import Grid, windows
 from .access import Unusable
-from .netcdf import File
+from .netcdf import File, check_regular
+from .seal import is_whole
 
 ATTRIBUTE = "contents_digest"
 FORMER = "checksums"  # what an earlier version wrote in place of the digest
@@ -74,18 +75,22 @@ def examine(path, most: float = inf) -> Condition:
     """
     path = Path(path)
     seen = stamp(path)
+    found = Condition(path, "damaged", "is damaged: its bytes are not those that were written")
     try:
-        with File(path) as file:
-            found = _described(file)
-            if found.kind == "sound" and found.unpacked <= most and contents(file) != file.attribute(ATTRIBUTE):
-                found = replace(found, kind="damaged", reason=CHANGED)
+        check_regular(path)
+        if path.stat().st_size > most or is_whole(path) is not False:
+            with File(path) as file:
+                found = _described(file)
+                if found.kind == "sound" and found.unpacked <= most and contents(file) != file.attribute(ATTRIBUTE):
+                    found = replace(found, kind="damaged", reason=CHANGED)
     except FileNotFoundError:
         found = Condition(path, "missing")
     except Unusable as error:
-        found = replace(_if_described(path), kind=error.kind, reason=error.reason)
+        found = replace(found, kind=error.kind, reason=error.reason)
+    except OSError as error:
+        found = Condition(path, "unreadable", f"cannot be read: {error.strerror}")
     except BROKEN as error:
-        reason = f"is damaged: no results are laid out like this ({error})"
-        found = replace(_if_described(path), kind="damaged", reason=reason)
+        found = replace(found, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
     return replace(found, seen=seen)
 
 
@@ -115,15 +120,6 @@ def _described(file: File) -> Condition:
     of_cases = {dim: sizes[dim] for dim in dims}
     kind = "sound" if ATTRIBUTE in there else "unverified"
     return Condition(file.path, kind, "", *about, of_cases, unpacked=file.unpacked)
-
-
-def _if_described(path: Path) -> Condition:
-    """What a damaged file says of itself, if that can be read."""
-    try:
-        with File(path) as file:
-            return _described(file)
-    except (OSError, *BROKEN):
-        return Condition(path, "damaged")
 
 
 class Sums:

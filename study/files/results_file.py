@@ -18,6 +18,7 @@ from .access import Unusable
 from .atomic import replacing
 from .examine import ATTRIBUTE, FORMER, Condition, Sums, examine, stamp
 from .netcdf import File, check_regular, read, read_lazily, read_of_others
+from .seal import seal
 
 #: Bytes of all variables in memory; a larger file is opened lazily. Files are packed by up to a hundred times, so their
 #: own size says little. Reading and verifying so much takes a second or two.
@@ -81,12 +82,14 @@ def stored(array: xr.DataArray) -> np.ndarray:
 def write(dataset: xr.Dataset, path: Path, there: Condition) -> None:
     """Write a small dataset. The file is complete or does not exist; see `put` for `there`."""
     place = partial(put, there, dataset.attrs["study_digest"])
-    with replacing(path, place=place) as temporary, File(temporary, "w", path) as file:
-        sums = create(file, dataset, dataset, {})
-        for name, array in dataset.data_vars.items():
-            file.write(name, stored(array))
-            sums.add(name, stored(array))
-        finish(file, sums)
+    with replacing(path, place=place) as temporary:
+        with File(temporary, "w", path) as file:
+            sums = create(file, dataset, dataset, {})
+            for name, array in dataset.data_vars.items():
+                file.write(name, stored(array))
+                sums.add(name, stored(array))
+            finish(file, sums)
+        seal(temporary)
 
 
 def finish(file: File, sums: Sums) -> None:

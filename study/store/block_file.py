@@ -7,8 +7,6 @@ executes nothing. It is not an archive of `numpy.savez`, which takes twice as lo
 """
 
 import json
-import os
-import zlib
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,10 +14,7 @@ import numpy as np
 
 from ..files.atomic import replacing
 from ..files.netcdf import check_regular
-
-MARK = b"\nroughcoat crc32 "
-LENGTH = len(MARK) + 8  # and the checksum in hexadecimal digits
-PIECE = 1 << 20
+from ..files.seal import is_whole, seal
 
 
 class Damaged(OSError):
@@ -38,51 +33,31 @@ class Block:
 def write_block(path: Path, block: Block) -> None:
     """Write a block: whole, or not at all. May raise OSError."""
     head = np.array(json.dumps({"facts": block.facts, "columns": list(block.arrays)}))
-    with replacing(path) as temporary, open(temporary, "wb+") as file:
-        try:
-            for array in (head, block.keys, *block.arrays.values()):
-                np.save(file, array, allow_pickle=False)
-        except OSError as error:
-            if error.errno is None:  # numpy says how much of an array was written, not why no more
-                raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
-            raise
-        end = file.tell()
-        file.seek(0)
-        checksum = _checksum(file, end)
-        file.seek(end)
-        file.write(MARK + b"%08x" % checksum)
+    with replacing(path) as temporary:
+        with open(temporary, "wb") as file:
+            try:
+                for array in (head, block.keys, *block.arrays.values()):
+                    np.save(file, array, allow_pickle=False)
+            except OSError as error:
+                if error.errno is None:  # numpy says how much of an array was written, not why no more
+                    raise OSError(f"{path} cannot be written ({error}): is the disk full?") from error
+                raise
+        seal(temporary)
 
 
 def read_block(path: Path) -> Block:
     """The block in a file. Raises Damaged, Unusable for a folder or a pipe, or OSError when it cannot be read."""
     check_regular(path)
     again = "the same command computes its cases again"
+    if not is_whole(path):
+        raise Damaged(f"{path}: is no whole block; {again}")
     try:
         with open(path, "rb") as file:
-            if not _is_whole(file):
-                raise ValueError("its checksum is not that of its bytes")
-            file.seek(0)
             head = json.loads(str(np.load(file, allow_pickle=False)))
             keys, *arrays = (np.load(file, allow_pickle=False) for _ in range(1 + len(head["columns"])))
         block = Block(head["facts"], keys, dict(zip(head["columns"], arrays, strict=True)))
         if keys.dtype != np.uint64 or keys.shape[1:] != (2,) or {len(keys), *map(len, arrays)} != {len(keys)}:
             raise ValueError("its columns are not as long as its keys")
         return block
-    except OSError:
-        raise
-    except Exception as error:  # where the checksum fits, the content was not written by us
+    except Exception as error:  # the checksum fits, the content does not: not written by us
         raise Damaged(f"{path}: is no whole block; {again}") from error
-
-
-def _is_whole(file) -> bool:
-    """Whether the checksum behind the arrays is there and right."""
-    size = os.fstat(file.fileno()).st_size - LENGTH
-    return size >= 0 and MARK + b"%08x" % _checksum(file, size) == file.read(LENGTH)
-
-
-def _checksum(file, size: int) -> int:
-    """CRC-32 of the next `size` bytes."""
-    found = 0
-    while piece := file.read(min(size, PIECE)):
-        found, size = zlib.crc32(piece, found), size - len(piece)
-    return found

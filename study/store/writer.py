@@ -8,6 +8,7 @@ from ..files.atomic import replacing
 from ..files.examine import CHUNK, Condition
 from ..files.netcdf import File
 from ..files.results_file import create, finish, put
+from ..files.seal import seal
 from ..inputs.grid import MOVED, Grid, box, cut_out, windows
 from ..physical.scene import dataset_of
 from .blocks import Inventory, Store, exported, gather, note_export
@@ -27,8 +28,10 @@ def export(store: Store, known: Inventory, command: str, there: Condition) -> No
     if digest not in (before := exported(store)):
         note_export(store, before | {digest})
     place = partial(put, there, digest)
-    with replacing(store.path, store.folder, place) as temporary, File(temporary, "w", store.path) as file:
-        _write(file, store, known, command)
+    with replacing(store.path, store.folder, place) as temporary:
+        with File(temporary, "w", store.path) as file:
+            _write(file, store, known, command)
+        seal(temporary)
 
 
 def _write(file: File, store: Store, known: Inventory, command: str) -> None:

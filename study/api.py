@@ -15,7 +15,8 @@ from .inputs.definition import Definition, StudyError
 from .inputs.places import study_file
 from .inputs.vocabulary import NOT_RUN
 from .physical.study_file import read
-from .store.blocks import Store, clean, count_statuses, inventory
+from .store.blocks import Store, count_statuses, inventory
+from .store.clean import clean
 from .work.cost import Estimate
 from .work.plan import Report, belongs, check_countable, look, of_what
 from .work.run import dry_run, partial_dataset, run

@@ -2,13 +2,11 @@
 
 import os
 import shutil
-import subprocess
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 
 # Before numpy is imported. The processors are shared among processes of pytest; a second BLAS thread in each, which
 # waits for work at full speed, took 12 of the 16 s of tests/body/test_layered.py.
@@ -16,7 +14,6 @@ os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")
 
 import pytest
 import xarray as xr
-from children import run_forked
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 from screens import impatient, stderr  # noqa: F401
@@ -61,13 +58,6 @@ def laws_as_they_were() -> Iterator[None]:
         del laws.LAWS[name]
         laws._declare(laws.LAWS)
         update_vocabulary()
-
-
-@pytest.fixture
-def read_in_a_fork(monkeypatch) -> None:
-    """Files without a whole seal are read in a forked process: one that is started takes 1.5 s to import what it needs.
-    That it does is left to tests/files/test_seal.py and some of tests/files/test_verified.py and test_unusable.py."""
-    monkeypatch.setattr("study.files.examine.subprocess", SimpleNamespace(**vars(subprocess) | {"run": run_forked}))
 
 
 @pytest.fixture(scope="session")

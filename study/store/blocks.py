@@ -18,12 +18,10 @@ from solver import NUMERICS_VERSION
 
 from ..data.dataset import not_run
 from ..files.access import Unusable
-from ..files.atomic import remove_temporary, replacing
-from ..files.lock import held
-from ..inputs.definition import Definition, StudyError
+from ..files.atomic import remove_temporary
+from ..inputs.definition import Definition
 from ..inputs.identity import case_keys, find
 from ..inputs.vocabulary import NOT_RUN
-from ..terminal import counted
 from .block_file import Block, Damaged, read_block, write_block
 
 log = logging.getLogger(__name__)
@@ -61,10 +59,9 @@ class Store:
         """Path of the results file."""
         return self.results / f"{self.definition.name}.nc"
 
-    @property
-    def exports(self) -> Path:
-        """A file with the digest of each version of the study that has been exported from these blocks, one a line."""
-        return self.folder / "exports"
+    def record(self, digest: str) -> Path:
+        """A block without columns, of the cases in the results file of a study of this digest."""
+        return self.folder / f"{digest}.cases"
 
     @property
     def lock(self) -> Path:
@@ -204,46 +201,26 @@ def remove_litter(store: Store) -> None:
         path.unlink(missing_ok=True)
 
 
-def exported(store: Store) -> set[str]:
-    """Digests of the versions of the study that have been exported from the blocks: all their cases are there."""
-    try:
-        return set(store.exports.read_text(encoding="ascii", errors="replace").split())
-    except OSError:
-        return set()
+def note_export(store: Store, known: Inventory) -> None:
+    """Write which cases the results file will have, before it is replaced."""
+    write_block(store.record(store.definition.digest), Block(facts(store.definition.x), known.keys, {}))
 
 
-def note_export(store: Store, digests: set[str]) -> None:
-    """Write which versions have been exported."""
-    with replacing(store.exports) as temporary:
-        temporary.write_text("".join(f"{digest}\n" for digest in sorted(digests)), encoding="ascii")
-
-
-def clean(store: Store) -> list[str]:
-    """Remove the blocks that hold no case of the study as it is; says what was removed, and what stays.
-
-    Raises StudyError while a run of the study is going on.
-    """
-    if not store.folder.exists():
-        return [f"{store.folder}: is not there, nothing to remove"]
-    with held(store.lock, wait=False) as alone:
-        if not alone:
-            raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
-        known = inventory(store)
-        used = {known.sources[number].path for number in set(known.source[known.source >= 0].tolist())}
-        gone = [path for path in known.blocks if path not in used and path.is_file()]
-        if gone:  # cases of other versions may be among them
-            note_export(store, exported(store) & {store.definition.digest})
-        for path in gone:
+def forget_other_exports(store: Store) -> None:
+    """Remove the records of results files that have been replaced."""
+    for path in store.folder.glob("*.cases"):
+        if path != store.record(store.definition.digest):
             path.unlink(missing_ok=True)
-        remove_litter(store)
-    kept = f"; the study needs the other {counted(len(used), 'block')}" if used else ""
-    what = f"removed {_counted([known.blocks[path] for path in gone])}" if gone else "nothing to remove"
-    return [f"{store.folder}: {what}{kept}"]
 
 
-def _counted(cases: list[int]) -> str:
-    """ "3 blocks of 15 cases, 1 damaged block"."""
-    whole = [number for number in cases if number >= 0]
-    damaged = len(cases) - len(whole)
-    texts = [f"{counted(len(whole), 'block')} of {counted(sum(whole), 'case')}"] * bool(whole)
-    return ", ".join([*texts, *[counted(damaged, "damaged block")] * bool(damaged)])
+def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
+    """(how many cases of the results of a study of this digest are not in the study as it is, how many it has).
+
+    None if no record says which cases these are.
+    """
+    try:
+        keys = read_block(store.record(digest)).keys
+    except OSError:
+        return None
+    kept = find(keys, case_keys(store.definition.grid), np.zeros(store.definition.grid.size)) >= 0
+    return int(np.count_nonzero(~kept)), len(keys)

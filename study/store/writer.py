@@ -11,7 +11,7 @@ from ..files.results_file import create, finish, put
 from ..files.seal import seal
 from ..inputs.grid import MOVED, Grid, box, cut_out, windows
 from ..physical.scene import dataset_of
-from .blocks import Inventory, Store, exported, gather, note_export
+from .blocks import Inventory, Store, forget_other_exports, gather, note_export
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often
 
@@ -24,14 +24,13 @@ def export(store: Store, known: Inventory, command: str, there: Condition) -> No
     Raises Damaged when a block has been spoiled since the inventory was made, OSError when the file cannot be written,
     StudyError when another file has come to its place.
     """
-    digest = store.definition.digest
-    if digest not in (before := exported(store)):
-        note_export(store, before | {digest})
-    place = partial(put, there, digest)
+    note_export(store, known)
+    place = partial(put, there, store.definition.digest)
     with replacing(store.path, store.folder, place) as temporary:
         with File(temporary, "w", store.path) as file:
             _write(file, store, known, command)
         seal(temporary)
+    forget_other_exports(store)
 
 
 def _write(file: File, store: Store, known: Inventory, command: str) -> None:

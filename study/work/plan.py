@@ -19,7 +19,7 @@ from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
 from ..inputs.toml_text import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
-from ..store.blocks import Inventory, Store, count_statuses, exported
+from ..store.blocks import Inventory, Store, count_statuses, lost_cases
 from ..terminal import on_one_line, program, shown
 from .cost import PER_CASE, describe, estimate
 from .screen import screen_of
@@ -104,10 +104,10 @@ class Order:
     def done(self, found: Condition) -> bool:
         """Whether an examined results file is that of this study, with its title, and holds no case to be tried again.
 
-        One with another title is written anew if the blocks are there to be written.
+        One with another title is written anew, if it was written from the blocks that are there.
         """
         edited = found.title != (self.definition.title or self.definition.name)
-        if not belongs(self.definition, found) or (edited and self.definition.digest in exported(self.store)):
+        if not belongs(self.definition, found) or (edited and self.store.record(found.digest).exists()):
             return False
         return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 
@@ -138,10 +138,9 @@ def of_what(found: Condition) -> str:
 
 
 def check_replaceable(order: Order, found: Condition) -> None:
-    """Raise StudyError when a results file has cases that would be lost if this study replaced it.
+    """Raise StudyError when a results file has cases that are not in the study, which would replace it.
 
-    None are lost if the file was exported from the blocks of the study, or is of this very study. A file that roughcoat
-    has not written is never replaced.
+    A file that roughcoat has not written is never replaced.
     """
     store, definition = order.store, order.definition
     if found.kind in ("foreign", "unreadable"):
@@ -156,11 +155,12 @@ def check_replaceable(order: Order, found: Condition) -> None:
         owner = f"version {found.numerics} of the numerics, this is {NUMERICS_VERSION}"
         choice = f"{way} computes them again, --results DIR elsewhere"
         raise StudyError([f"{found.path}: holds results of {owner}: {choice}{made}"])
-    if found.digest not in exported(store):
+    lost = lost_cases(store, found.digest)
+    if lost is None or lost[0]:
         owner = f"another definition (digest {found.digest[:8]}, here {definition.digest[:8]})"
-        lost = f"and {store.folder} does not hold their cases"
+        what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
         choice = f"{way} replaces them, --results DIR writes elsewhere"
-        raise StudyError([f"{found.path}: holds results of {owner}, {lost}: {choice}{made}"])
+        raise StudyError([f"{found.path}: holds results of {owner}, {what}: {choice}{made}"])
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:

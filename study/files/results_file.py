@@ -102,13 +102,14 @@ def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
 
     Raises StudyError when a file has appeared or changed meanwhile, unless it has the results of the study `digest`.
     """
-    if stamp(path) != there.seen:
-        now = examine(path)
-        if now.kind != "missing" and not (now.good and now.digest == digest):
-            what = "has appeared or changed while its results were computed, and stays"
-            raise StudyError([f"{there.path}: {what}: move it away, and the same command writes them"], code=1)
-    elif there.kind == "damaged":
-        os.replace(path, f"{path}.damaged")
+    if os.path.lexists(path):
+        if there.seen is None or stamp(path) != there.seen:
+            now = examine(path)
+            if not (now.good and now.digest == digest):
+                what = "has appeared or changed while its results were computed, and stays"
+                raise StudyError([f"{there.path}: {what}: move it away, and the same command writes them"], code=1)
+        elif there.kind == "damaged":
+            os.replace(path, f"{path}.damaged")
     os.replace(temporary, path)
 
 

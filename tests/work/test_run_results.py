@@ -42,7 +42,7 @@ def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
         raise FileNotFoundError(path)
 
     monkeypatch.setattr(study.api, "statuses", removed)
-    assert load(file).status()["state"] == "new"
+    assert load(file).status()["state"] == "partial"
 
 
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])

@@ -81,6 +81,7 @@ def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
     from study.figures.measured import described
     from study.figures.registry import entry
+    from study.files.examine import examine
     from study.files.results_file import write
     from study.physical.study_file import from_tables
     from study.studies.evidence.tradeoff import WAYS, measure
@@ -92,7 +93,8 @@ def compute_results(folder: Path) -> None:
     most = {"intervals": 2}  # the paper's way is slow
     ways = {name: replace(way, settings=way.settings[:1], most=most.get(way.varied, 5)) for name, way in WAYS.items()}
     measured = entry("measured", "tradeoff")
-    write(described(measure(10, 0, ways), "tradeoff", measured, ""), folder / "tradeoff.nc")
+    path = folder / "tradeoff.nc"
+    write(described(measure(10, 0, ways), "tradeoff", measured, ""), path, examine(path))
 
 
 @pytest.fixture(scope="session")

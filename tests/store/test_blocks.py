@@ -13,23 +13,11 @@ from study.inputs.definition import Definition, from_tables
 from study.inputs.identity import case_keys
 from study.store import blocks
 from study.store.block_file import Block, Damaged, read_block, write_block
-from study.store.blocks import (
-    Store,
-    add,
-    count_statuses,
-    facts,
-    forget_other_exports,
-    gather,
-    inventory,
-    lost_cases,
-    note_export,
-    put,
-    usable,
-)
+from study.store.blocks import Store, add, count_statuses, facts, gather, inventory, put, usable
 
 
-def line(loads=(1e-6, 2e-6, 3e-6, 4e-6), **output) -> Definition:
-    model, axes = {"micro": "smooth", "base": "half_space"}, {"P": list(loads)}
+def line(**output) -> Definition:
+    model, axes = {"micro": "smooth", "base": "half_space"}, {"P": [1e-6, 2e-6, 3e-6, 4e-6]}
     return from_tables({"model": model, "axes": axes, "output": {"x": 3} | output}, "line", "", "line")
 
 
@@ -214,20 +202,6 @@ def test_blocks_of_other_numerics_are_left_alone(some):
     new = put(some, block(some, [1], [0]))
     assert inventory(some).status.tolist() == [127, 0, 127, 127]
     assert old.exists() and new.exists()
-
-
-def test_the_record_of_an_export_says_which_of_its_cases_would_be_lost(some):
-    """It is written before the results file is replaced, so after a kill there may be two."""
-    digest, two = some.definition.digest, Store(line([1e-6, 2e-6]), some.results)
-    assert lost_cases(some, digest) is None
-    note_export(some, inventory(some))
-    note_export(two, inventory(two))
-    assert lost_cases(some, digest) == (0, 4) and lost_cases(some, two.definition.digest) == (0, 2)
-    assert lost_cases(two, digest) == (2, 4)
-    forget_other_exports(two)
-    assert lost_cases(some, digest) is None and lost_cases(two, two.definition.digest) == (0, 2)
-    some.record(two.definition.digest).write_bytes(b"damaged")
-    assert lost_cases(some, two.definition.digest) is None
 
 
 def test_a_damaged_block_is_said_and_its_cases_are_missing(some, caplog):

@@ -9,7 +9,7 @@ import study
 from study.__main__ import main
 from study.files.lock import held
 from study.store.block_file import Damaged, read_block
-from study.store.blocks import Store, gather, inventory
+from study.store.blocks import Store, forget_other_exports, gather, inventory, lost_cases, note_export
 from study.work import plan
 
 FEWER = {"P = {start = 1e-6, stop = 1e-4, num = 23}": "P = [1e-6, 1e-4]"}
@@ -108,3 +108,20 @@ def test_a_block_that_becomes_another_is_noticed_when_it_is_read(file):
     assert len(read_block(first).keys) == 5
     with pytest.raises(Damaged, match="has become a block of other cases"):
         gather(store, known, 0, 5)
+
+
+def test_the_record_of_an_export_says_which_of_its_cases_would_be_lost(file):
+    """It is written before the results file is replaced, so after a kill there may be two."""
+    two = load(file, **{"P = {start = 1e-6, stop = 1e-4, num = 23}": "P = [1e-6, 1e-4, 3e-4]"})
+    some, two = (Store(opened.definition, opened.results) for opened in (load(file), two))
+    some.folder.mkdir(parents=True)
+    (first, second), known = (store.definition.digest for store in (some, two)), inventory(some)
+    assert lost_cases(some, first) is None
+    note_export(some, known)
+    note_export(two, inventory(two))
+    assert lost_cases(some, first) == (0, 23) and lost_cases(some, second) == (1, 3)
+    assert lost_cases(two, first) == (21, 23)
+    forget_other_exports(two)
+    assert lost_cases(some, first) is None and lost_cases(two, second) == (0, 3)
+    two.record(second).write_bytes(b"damaged")
+    assert lost_cases(two, second) is None

@@ -202,8 +202,9 @@ def remove_litter(store: Store) -> None:
 
 
 def note_export(store: Store, known: Inventory) -> None:
-    """Write which cases the results file will have, before it is replaced."""
-    write_block(store.record(store.definition.digest), Block(facts(store.definition.x), known.keys, {}))
+    """Write which cases the results file will have, as they are given, before it is replaced."""
+    keys = known.keys.reshape(-1, store.definition.times, 2)[:, 0]
+    write_block(store.record(store.definition.digest), Block(facts(store.definition.x), keys, {}))
 
 
 def forget_other_exports(store: Store) -> None:

@@ -13,8 +13,8 @@ from .files.examine import Condition, statuses
 from .files.results_file import LAZY, opened
 from .inputs.definition import Definition, StudyError
 from .inputs.places import study_file
+from .inputs.reading import read
 from .inputs.vocabulary import NOT_RUN
-from .physical.study_file import read
 from .store.blocks import Store, count_statuses, inventory
 from .store.clean import clean
 from .work.cost import Estimate

@@ -5,8 +5,8 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from .inputs.scene.bodies import BODIES
 from .inputs.vocabulary import ROWS
-from .physical.bodies import BODIES
 from .specimen.foreign import plain
 
 

@@ -13,9 +13,9 @@ from solver import laws
 from solver.laws import Law
 
 from .data.dataset import labelled, not_run, parts
+from .data.si import dataset_of
 from .inputs.definition import Definition, StudyError
 from .inputs.grid import MOVED, cut_out
-from .physical.scene import dataset_of
 from .terminal import shown
 from .work.cases import compute, own_laws, parcel
 from .work.share import blocks_of_grid

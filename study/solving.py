@@ -15,13 +15,13 @@ from solver.laws import Law
 
 from .carried import with_coordinates
 from .data.dataset import parts
+from .data.si import dataset_of
 from .in_words import FarOutside, doubts, far_outside
 from .inputs.definition import LARGE, POINTS, StudyError, complete
 from .inputs.given import Draft
+from .inputs.reading import complete as complete_scene
+from .inputs.scene.reading import read as read_scene
 from .inputs.vocabulary import VOCABULARY
-from .physical.reading import read as read_scene
-from .physical.scene import dataset_of
-from .physical.study_file import complete as complete_scene
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown

@@ -83,7 +83,7 @@ def compute_results(folder: Path) -> None:
     from study.figures.registry import entry
     from study.files.examine import examine
     from study.files.results_file import write
-    from study.physical.study_file import from_tables
+    from study.inputs.reading import from_tables
     from study.studies.evidence.tradeoff import WAYS, measure
     from study.work.run import run
 

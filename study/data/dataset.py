@@ -9,9 +9,9 @@ from solver import Model, Status
 from solver.status import NO_SOLUTION
 
 from ..inputs.definition import Definition
-from ..inputs.fitted import COMMENT
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
+from ..inputs.laws import COMMENT
 from ..inputs.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
 from .assumptions import validity_attributes, validity_of
 from .provenance import provenance

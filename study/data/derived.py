@@ -14,6 +14,7 @@ from solver import Model
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
+from ..inputs.scene.scales import without_unit
 from ..inputs.vocabulary import VOCABULARY, attributes
 from . import assumptions
 from .assumptions import (  # noqa: F401 - names of study.derived
@@ -29,7 +30,7 @@ from .assumptions import (  # noqa: F401 - names of study.derived
     STRETCHED,
     validity,
 )
-from .units import physical_attributes, reduced_modulus, without_unit
+from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12
 """Pressures of a profile that differ by less, relative, are equal: those of a smooth contact differ by rounding."""

@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from ..inputs.scene.scales import reduced, with_unit
 from ..inputs.vocabulary import PARAMETERS, VOCABULARY, no_parameter
 from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, has_unit, multiple, quantity
@@ -15,10 +16,7 @@ PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical unit
 def reduced_modulus(E, nu):
     """E* = E/(1 - ν²), in the unit of E; in Pa of a text such as "210 GPa". E and nu broadcast. ValueError where nu is
     outside (-1, 0.5]."""
-    if np.any((nu <= -1) | (nu > 0.5)):
-        raise ValueError("nu must be in (-1, 0.5], and comes after E")
-    E = _si("E", E, "Pa") if isinstance(E, str) else E
-    return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
+    return reduced(_si("E", E, "Pa") if isinstance(E, str) else E, nu)
 
 
 def factor(name: str, R: float, E2_star: float) -> float:
@@ -57,19 +55,6 @@ def _scales(R: Any, E2_star: Any) -> dict[str, float]:
         one_number = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf"
         found[name] = float(value) if one_number else quantity(name, given, unit).value
     return found
-
-
-def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
-    """An SI value over unit^i R^j, (i, j) = `powers`."""
-    return with_unit(value, (-powers[0], -powers[1]), unit, R)
-
-
-def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
-    """A dimensionless value times unit^i R^j."""
-    for factor, power in ((unit, powers[0]), (R, powers[1])):
-        for _ in range(abs(power)):
-            value = value * factor if power > 0 else value / factor
-    return value
 
 
 def physical_attributes(name: str, given: dict) -> dict:

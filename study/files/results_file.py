@@ -10,9 +10,9 @@ import xarray as xr
 from xarray.conventions import encode_dataset_coordinates
 
 from ..data.dataset import without_fill_values
+from ..data.index import searchable
 from ..inputs.definition import StudyError
 from ..inputs.laws import recall
-from ..physical.index import searchable
 from ..terminal import on_one_line
 from .access import Unusable
 from .atomic import replacing

@@ -3,9 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from ..data.si import ASSUMED
+from ..inputs.scene.bodies import BODIES
 from ..inputs.vocabulary import CONTROLS
-from ..physical.bodies import BODIES
-from ..physical.scene import ASSUMED
 from ..specimen.quantities import READABLE, readable
 
 

@@ -5,9 +5,9 @@ import xarray as xr
 from solver import Status
 
 from ..data.dataset import decode
+from ..data.si import ASSUMED
+from ..inputs.scene.bodies import BODIES
 from ..inputs.vocabulary import VOCABULARY
-from ..physical.bodies import BODIES
-from ..physical.scene import ASSUMED
 from .beyond import doubts
 from .pressures import RUBBER, not_checked
 

@@ -3,11 +3,11 @@
 import numpy as np
 import xarray as xr
 
+from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
+from ..inputs.scene.bodies import BODIES
 from ..inputs.vocabulary import CONTROLS, VOCABULARY
-from ..physical.bodies import BODIES
-from ..physical.inputs import is_rigid, used_inputs
-from ..physical.scene import SAME_PIECE
+from .inputs import is_rigid, used_inputs
 from .numbers import given_text, in_its_unit, result_text, ring_text, spread_of
 from .pressures import largest
 from .sentences import sentences

@@ -50,7 +50,7 @@ class Definition:
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
     laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
-    scene : of a study with units, a `study.physical.scene.Scene`; its grid is dimensionless, its results are in SI
+    scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
     """
 
     name: str

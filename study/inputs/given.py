@@ -7,9 +7,8 @@ import numpy as np
 
 from ..specimen.foreign import plain
 from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing, slips_of_laws
-from .fitted import fitted, wants_a_fit
 from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, same_labels, twins
-from .laws import is_parameter, law_names, update_vocabulary
+from .laws import fitted, is_parameter, law_names, update_vocabulary, wants_a_fit
 from .sample import LIMITS, draw
 from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, no_parameter
 

@@ -4,13 +4,13 @@ from dataclasses import replace
 from functools import partial
 
 from ..data.dataset import labelled, parts
+from ..data.si import dataset_of
 from ..files.atomic import replacing
 from ..files.examine import CHUNK, Condition
 from ..files.netcdf import File
 from ..files.results_file import create, finish, put
 from ..files.seal import seal
 from ..inputs.grid import MOVED, Grid, box, cut_out, windows
-from ..physical.scene import dataset_of
 from .blocks import Inventory, Store, forget_other_exports, gather, note_export
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often

@@ -7,11 +7,11 @@ from pathlib import Path
 import xarray as xr
 
 from ..data.dataset import failed_cases, parts, status_words
+from ..data.si import dataset_of
 from ..files.atomic import target
 from ..files.examine import Condition, stamp
 from ..files.lock import held
 from ..inputs.definition import Definition, StudyError
-from ..physical.scene import dataset_of
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.writer import export
 from ..terminal import say

@@ -14,7 +14,7 @@ from test_cli import GOOD, studies  # noqa: F401
 import study
 from study.__main__ import main
 from study.inputs import definition, toml_text
-from study.physical.study_file import read
+from study.inputs.reading import read
 
 pytestmark = [
     pytest.mark.usefixtures("studies"),

@@ -4,8 +4,8 @@ import pytest
 from test_definition import GOOD, messages, read
 
 import study
+from study.inputs import reading as study_file
 from study.inputs.definition import MOST_MESSAGES, refusal
-from study.physical import study_file
 
 # what is replaced in GOOD, by what, and the message that must appear
 BAD = [

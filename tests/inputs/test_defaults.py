@@ -7,6 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import study
 from solver import Problem, Status, solve
 from solver.parameters import PARAMETERS
+from study.inputs.definition import from_tables
+from study.inputs.identity import case_keys
 from study.inputs.vocabulary import VOCABULARY
 
 DEFAULTS = {
@@ -85,6 +87,29 @@ def test_both_fronts_have_the_same_default(name, case, other, changed):
     assert_allclose(found, found[0], rtol=1e-11)  # the same cases, solved four times
     another = getattr(solve(Problem.of(**case | {name: other})), changed)[0]
     assert abs(another / found[0] - 1) > 1e-9, "else the parameter does not count"
+
+
+@pytest.mark.parametrize(("name", "case", "other"), [row[:3] for row in COUNTS if row[0] in VOCABULARY])
+def test_a_value_counts_in_the_case_that_has_it(name, case, other):
+    """Of two cases one has the default. Exchanged, they are another study, whose results are other ones; and each case
+    is found again by its key."""
+    rows = [case | {name: DEFAULTS[name]}, case | {name: other}]
+    first, second = (from_tables({"cases": cases}, "s", "", "s") for cases in (rows, rows[::-1]))
+    assert first.digest != second.digest and first.digest == from_tables({"cases": rows}, "t", "", "t").digest
+    keys = case_keys(first.grid).tolist()
+    assert keys[0] != keys[1] and keys[::-1] == case_keys(second.grid).tolist()
+
+
+@pytest.mark.parametrize("name", ["n", "m", "nu1", "k", "nodes", "max_iterations"])
+def test_nought_is_a_value(name):
+    """Of a case, or of all: it is no gap, in whose place a default would stand."""
+    case = {key: value for key, value in CASE.items() if key != name}
+    of_cases = from_tables({"cases": [case | {name: 0}, case | {name: 0, "P": 2e-5}]}, "s", "", "s").grid
+    assert of_cases.values[name][1].tolist() == [0, 0]
+    section = "numerics" if name in ("k", "nodes", "max_iterations") else "model"
+    tables = {"model": dict(case), "numerics": {}}
+    tables[section][name] = 0
+    assert from_tables(tables, "s", "", "s").grid.values[name][1] == 0
 
 
 MISSING = [

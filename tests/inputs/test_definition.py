@@ -5,9 +5,9 @@ import pytest
 
 import study
 from study.inputs import identity
+from study.inputs import reading as study_file
 from study.inputs.definition import MOST_VALUES
 from study.inputs.vocabulary import PARAMETERS, VOCABULARY
-from study.physical import study_file
 
 GOOD = """
 title = "Prüfung"

@@ -7,7 +7,7 @@ import xarray as xr
 import study
 from solver import fit_power_law
 from study.__main__ import main
-from study.inputs import fitted
+from study.inputs import laws
 from study.inputs.definition import from_tables
 
 LAYER = {"P": 1e-5, "h": 0.02, "n": 0.5, "micro": "power_law"}
@@ -23,7 +23,7 @@ def test_a_law_for_each_roughness():
         given = study.solve(**LAYER, Nbar=N, Ra=Ra, B=one.B.item(), beta=one.beta.item(), x=2)
         assert one.a.item() == pytest.approx(given.a.item(), rel=1e-11)  # another batch
         assert "comment" not in given.B.attrs
-    assert found.B.attrs["comment"] == found.beta.attrs["comment"] == fitted.COMMENT
+    assert found.B.attrs["comment"] == found.beta.attrs["comment"] == laws.COMMENT
 
 
 def test_only_where_the_power_law_is_and_for_cases():
@@ -70,7 +70,7 @@ def test_one_of_the_two_is_not_fitted():
 
 
 def test_too_many_and_too_extreme(monkeypatch):
-    monkeypatch.setattr(fitted, "MOST_FITS", 3)
+    monkeypatch.setattr(laws, "MOST_FITS", 3)
     with pytest.raises(study.StudyError, match=r"at most 3 values of Nbar Ra\^2 are fitted, not 4"):
         study.solve(**LAYER, Nbar=xr.DataArray([1e5, 2e5, 3e5, 4e5], dims="i"), Ra=0.004)
     with pytest.raises(study.StudyError, match=r"B fitted to Nbar Ra\^2 = 1e-10 is .*: must be in \[1e-8, 1e4\]"):
@@ -86,7 +86,7 @@ def test_study_files_and_what_check_says(tmp_path, monkeypatch, capsys):
     assert capsys.readouterr().out.splitlines()[1] == told
     assert main(["run", "mine.toml"]) == 0
     found = study.load("mine.toml").open()
-    assert found.B.attrs["comment"] == fitted.COMMENT and found.B.dims == ("Nbar",)
+    assert found.B.attrs["comment"] == laws.COMMENT and found.B.dims == ("Nbar",)
     tables = {"model": {**LAYER, "Nbar": 250000, "Ra": 0.004}}
     given = from_tables(tables, "s", "", "s").grid.values
     same = {"model": tables["model"] | {name: given[name][1].item() for name in ("B", "beta")}}

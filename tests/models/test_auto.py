@@ -12,7 +12,7 @@ from solver import Model, Problem, Status, solve
 from solver.laws.disc_cell import contact_fraction, largest_pressure
 from solver.models.auto import bounds
 from study.inputs.grid import columns
-from study.physical.study_file import read
+from study.inputs.reading import read
 
 JUDGED = ("a", "P", "D", "p0", "p_max", "Ar_An")
 EVERY = 29  # prime: meets all materials, n and h

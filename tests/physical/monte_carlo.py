@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 import study
+from study.inputs.scene.names import si
 from study.inputs.vocabulary import ROWS
-from study.physical.names import si
 
 DRAWS = 10_000
 NAMES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")

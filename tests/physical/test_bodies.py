@@ -8,7 +8,7 @@ import xarray as xr
 
 import study
 from study import materials
-from study.physical.study_file import from_tables
+from study.inputs.reading import from_tables
 
 pytest.importorskip("pint")
 pytestmark = pytest.mark.filterwarnings("ignore:this contact is beyond")

@@ -10,7 +10,7 @@ import xarray as xr
 import study
 from study.__main__ import main
 from study.inputs.identity import case_keys
-from study.physical.study_file import from_tables
+from study.inputs.reading import from_tables
 from study.store import writer
 
 pytest.importorskip("pint")

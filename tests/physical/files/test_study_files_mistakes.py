@@ -4,7 +4,7 @@ import pytest
 from test_study_files import DRAWN, TEXT, of
 
 import study
-from study.physical.study_file import from_tables
+from study.inputs.reading import from_tables
 
 pytest.importorskip("pint")
 

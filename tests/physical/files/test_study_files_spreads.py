@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import study
-from study.physical.study_file import from_tables
+from study.inputs.reading import from_tables
 from study.store import writer
 
 pytest.importorskip("pint")
@@ -116,3 +116,29 @@ def test_a_sample_with_units_and_spreads(tmp_path):
     same_as(case, alone)
     plain = of(SAMPLE.replace('"10 um"', '"0.01 mm"'), tmp_path).definition
     assert plain.digest == made.definition.digest
+
+
+def test_all_that_the_results_say_is_in_the_digest(tmp_path):
+    """Also where the solver's numbers are the same: SI values, names of materials, labels, spreads."""
+    rows = '[[cases]]\nlabel = "one"\nP = "1 N"\n[[cases]]\nlabel = "two"\nP = "2 N"\n'
+    text = '[model]\nR = "5 mm"\nE1 = "100 GPa"\nh = "2 um"\nE2 = "200 GPa"\nE_punch = "rigid"\nmicro = "smooth"\n'
+    text += rows
+
+    def digest(*changes: tuple[str, str]) -> str:
+        changed = text
+        for old, new in changes:
+            assert changed.count(old) == 1
+            changed = changed.replace(old, new)
+        return of(changed, tmp_path).definition.digest
+
+    same = [(), [('"2 um"', '"0.002 mm"')], [("[model]", 'title = "t"\n[model]')]]
+    assert {digest(*changes) for changes in same} == {digest()}
+    other = [
+        [('E_punch = "rigid"', 'punch = "rigid"')],
+        [('"5 mm"', '"10 mm"'), ('"2 um"', '"4 um"'), ('P = "1 N"', 'P = "4 N"'), ('P = "2 N"', 'P = "8 N"')],
+        [('"100 GPa"', '"50 GPa"'), ('"200 GPa"', '"100 GPa"'), ('"1 N"', '"0.5 N"'), ('P = "2 N"', 'P = "1 N"')],
+        [('"two"', '"both"')],
+        [('"2 um"', '"2.0 ± 0.1 um"')],
+        [('"2 um"', '"2.0 ± 0.2 um"')],
+    ]
+    assert len({digest(), *(digest(*changes) for changes in other)}) == 1 + len(other)

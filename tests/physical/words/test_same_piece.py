@@ -9,7 +9,7 @@ import pytest
 
 import study
 from study.__main__ import main
-from study.physical.study_file import from_tables
+from study.inputs.reading import from_tables
 
 pytest.importorskip("pint")
 BALL = {"R": "5 mm", "punch": "PMMA", "body": "PMMA", "base": "half_space", "micro": "smooth", "P": "10 N", "x": 3}

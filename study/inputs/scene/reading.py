@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..inputs.definition import StudyError
-from ..inputs.given import label_slips
-from ..inputs.grid import MOVED, equal_values, same_labels
-from ..inputs.laws import is_parameter
-from ..inputs.vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
-from ..specimen.foreign import plain
-from ..specimen.quantities import READABLE, Quantity, has_unit, quantity
-from ..terminal import on_one_line, shown
+from ...specimen.foreign import plain
+from ...specimen.quantities import READABLE, Quantity, has_unit, quantity
+from ...terminal import on_one_line, shown
+from ..definition import StudyError
+from ..given import label_slips
+from ..grid import MOVED, equal_values, same_labels
+from ..laws import is_parameter
+from ..vocabulary import PARAMETERS, ROWS, SCENE, VOCABULARY, no_parameter
 from .bodies import BODIES, assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import equal_cases, impossible, missing, moving_tables

@@ -11,18 +11,18 @@ from typing import Any
 
 import numpy as np
 
-from ..inputs import definition
-from ..inputs.definition import Definition, StudyError
-from ..inputs.given import Draft
-from ..inputs.grid import axis_values
-from ..inputs.identity import digest_of_array
-from ..inputs.laws import is_parameter
-from ..inputs.sample import LIMITS, divisor, draw
-from ..inputs.vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
 from ..specimen.quantities import Quantity, has_unit, quantity
 from ..terminal import shown
-from .bodies import BODIES, with_materials
-from .names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
+from . import definition
+from .definition import Definition, StudyError
+from .given import Draft
+from .grid import axis_values
+from .identity import digest_of_array
+from .laws import is_parameter
+from .sample import LIMITS, divisor, draw
+from .scene.bodies import BODIES, with_materials
+from .scene.names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
+from .vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
 
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
 """Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
@@ -45,7 +45,9 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
         if "same_piece" in model:
             raise definition.refusal(where, [f"[model] same_piece: {NEEDS_NAMES}"])
         return definition.from_tables(tables, name, text, where)
-    from .reading import read as read_scene  # here: it imports xarray, for which a study without units need not wait
+    from .scene.reading import (
+        read as read_scene,  # here: it imports xarray, for which a study without units need not wait
+    )
 
     draft, given = definition.new_draft(tables, where)
     before = len(draft.errors)

@@ -6,9 +6,9 @@ import numpy as np
 import xarray as xr
 from xarray.indexes import PandasIndex
 
+from ..inputs.scene.names import si
 from ..inputs.vocabulary import ROWS
 from ..specimen.quantities import has_unit
-from .names import si
 
 
 class _AsPandasIndex(type):

@@ -5,7 +5,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..inputs.grid import MOVED
+from ..grid import MOVED
 from .bodies import BODIES
 from .scene import STEP, Scene
 

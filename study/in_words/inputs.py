@@ -6,8 +6,8 @@ import xarray as xr
 from solver.laws import LAWS
 
 from ..inputs.laws import smooth_laws
+from ..inputs.scene.bodies import BODIES
 from ..inputs.vocabulary import CONTROLS, VOCABULARY, matters, names
-from .bodies import BODIES
 
 _OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
 

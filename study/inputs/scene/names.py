@@ -3,8 +3,8 @@
 import math
 from typing import Any, NamedTuple
 
-from ..inputs.vocabulary import ROWS
-from ..specimen.quantities import Quantity, quantity
+from ...specimen.quantities import Quantity, quantity
+from ..vocabulary import ROWS
 
 #: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
 RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")

@@ -6,11 +6,11 @@ import numpy as np
 
 from solver import laws
 
-from ..inputs.grid import equal_values
-from ..inputs.vocabulary import SCENE, VOCABULARY, finite
-from ..specimen import materials
-from ..specimen.quantities import Quantity
-from ..terminal import shown
+from ...specimen import materials
+from ...specimen.quantities import Quantity
+from ...terminal import shown
+from ..grid import equal_values
+from ..vocabulary import SCENE, VOCABULARY, finite
 from .names import RIGID_TEXTS, CaseValues, QuantityList
 
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.

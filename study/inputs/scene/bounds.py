@@ -8,13 +8,13 @@ import xarray as xr
 from solver.parameters import allowed as within
 from solver.parameters import ends
 
-from ..data.units import with_unit
-from ..inputs.grid import MOVED
-from ..inputs.vocabulary import ROWS, SCENE, VOCABULARY, allowed
-from ..specimen.quantities import multiple, quantity, readable, unit_in
-from ..terminal import on_one_line
+from ...specimen.quantities import multiple, quantity, readable, unit_in
+from ...terminal import on_one_line
+from ..grid import MOVED
+from ..vocabulary import ROWS, SCENE, VOCABULARY, allowed
 from .bodies import BODIES
 from .names import QuantityList
+from .scales import with_unit
 from .scene import Scene
 
 #: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some

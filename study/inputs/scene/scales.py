@@ -10,10 +10,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..data.units import reduced_modulus, without_unit
-from ..inputs.definition import Definition
-from ..inputs.grid import MOVED, Grid
-from ..inputs.vocabulary import SCENE, VOCABULARY
+from ..definition import Definition
+from ..grid import MOVED, Grid
+from ..vocabulary import SCENE, VOCABULARY
 from .scene import Scene
 
 Values = dict[str, tuple[tuple[str, ...], np.ndarray]]
@@ -54,7 +53,27 @@ def _where(condition: Any, yes: Any, no: Any) -> Any:
 
 
 def _reduced(given: dict, name: str, nu: str) -> Any:
-    return reduced_modulus(given[name], given.get(nu, _POISSON))
+    return reduced(given[name], given.get(nu, _POISSON))
+
+
+def reduced(E: Any, nu: Any) -> Any:
+    """E* = E/(1 - ν²). Raises ValueError where nu is outside (-1, 0.5]."""
+    if np.any((nu <= -1) | (nu > 0.5)):
+        raise ValueError("nu must be in (-1, 0.5], and comes after E")
+    return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
+
+
+def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """An SI value over unit^i R^j, (i, j) = `powers`."""
+    return with_unit(value, (-powers[0], -powers[1]), unit, R)
+
+
+def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """A dimensionless value times unit^i R^j."""
+    for factor, power in ((unit, powers[0]), (R, powers[1])):
+        for _ in range(abs(power)):
+            value = value * factor if power > 0 else value / factor
+    return value
 
 
 def over_dimensions(given: Any, name: str) -> Any:

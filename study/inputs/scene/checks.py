@@ -8,11 +8,11 @@ import xarray as xr
 
 from solver.laws.own_table import PREFIX
 
-from ..inputs.checks import not_given
-from ..inputs.given import one_control
-from ..inputs.grid import twins
-from ..inputs.vocabulary import VOCABULARY
-from ..terminal import shown
+from ...terminal import shown
+from ..checks import not_given
+from ..given import one_control
+from ..grid import twins
+from ..vocabulary import VOCABULARY
 from .bodies import BODIES, layered
 from .scales import over_dimensions
 from .scene import STEP, Scene

@@ -4,6 +4,7 @@ import logging
 import threading
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 
@@ -168,6 +169,13 @@ def computed_there(
 
     Raises StudyError when no scheduler answers, Lost when it is gone.
     """
+    with cluster_at(scheduler, workers) as (submit, width):
+        yield from as_they_come(submit, width, function, tasks)
+
+
+@contextmanager
+def cluster_at(scheduler: str, workers: int | None) -> Iterator[tuple[Callable[..., Future], Callable[[], int]]]:
+    """What `as_they_come` needs of a cluster, which is left at the end."""
     cluster = Cluster(connected(scheduler, CONNECT, ANSWER))
 
     def width() -> int:
@@ -175,7 +183,7 @@ def computed_there(
         return AHEAD * max(1, min(threads, workers or threads))
 
     try:
-        yield from as_they_come(cluster.submit, width, function, tasks)
+        yield cluster.submit, width
     finally:
         cluster.leave(CONNECT)
 

@@ -40,6 +40,7 @@ SLOW_BLOCK = 2000  # the same where a case may take some milliseconds
 #: Seconds of work that must be left for each process that is started. It answers after up to 2 s (`processes.py`), and
 #: meanwhile the calling thread goes on.
 START = 1.0
+MANY = 8  # blocks of a run from which on processes compute all of them
 #: Results of each process that may wait until the calling thread takes them: it has a block of its own to solve.
 AHEAD = 4
 
@@ -77,13 +78,19 @@ atexit.register(_pool.end)
 
 
 def computed(
-    definition: Definition, blocks: list[np.ndarray], workers: int | None = None, scheduler: str | None = None
+    definition: Definition,
+    blocks: list[np.ndarray],
+    workers: int | None = None,
+    scheduler: str | None = None,
+    storing: bool = False,
 ) -> Iterator[tuple[int, dict[str, np.ndarray] | Failure]]:
     """(number of a block, its columns or why it failed) for each block, in the order in which they end.
 
     workers : most processors to be used, or threads of a cluster; 1: the calling thread alone; None: all, or one, see
-        `_processes_allowed`
+        `_processors_allowed`
     scheduler : the address of the scheduler of a dask cluster, whose workers compute in place of this machine
+    storing : the calling thread stores each block, so that if there are MANY, processes compute all of them from the
+        beginning, and none waits to be stored until it has solved one itself
 
     When the iterator is closed, what waits is not computed, and processes end. Raises StudyError when no scheduler
     answers, `cluster.Lost` when it is gone.
@@ -91,13 +98,15 @@ def computed(
     if scheduler is not None:
         yield from computed_there(scheduler, workers, guarded, (parcel(definition, index) for index in blocks))
         return
-    most = _processes_allowed(definition, workers, len(blocks))
+    allowed = 1 if len(blocks) == 1 else _processors_allowed(definition, workers)
+    here = not (storing and len(blocks) >= MANY and allowed > 1)
+    most = processes_for(allowed, len(blocks), here)
     if not most or not _in_use.acquire(blocking=False):  # another thread is using the processes
         for number, index in enumerate(blocks):
             yield number, guarded(parcel(definition, index))
         return
     try:
-        yield from _shared(definition, blocks, most)
+        yield from _shared(definition, blocks, most, here)
     except BaseException:
         _pool.end()
         raise
@@ -105,8 +114,11 @@ def computed(
         _in_use.release()
 
 
-def _shared(definition: Definition, blocks: list[np.ndarray], most: int) -> Iterator[tuple[int, dict | Failure]]:
-    """`computed` in this thread and in at most `most` processes. More are started only if much work is left."""
+def _shared(
+    definition: Definition, blocks: list[np.ndarray], most: int, here: bool
+) -> Iterator[tuple[int, dict | Failure]]:
+    """`computed` in at most `most` processes and, if `here`, in this thread: then processes are started only if much
+    work is left."""
     waiting, ended, room = deque(enumerate(blocks)), SimpleQueue(), threading.Semaphore(AHEAD * most)
 
     def feeder(call: Callable) -> None:
@@ -119,11 +131,11 @@ def _shared(definition: Definition, blocks: list[np.ndarray], most: int) -> Iter
             ended.put((number, result))
 
     begun, feeders = time.perf_counter(), 0
-    if ready := _pool.reuse(most):
+    if ready := _pool.reuse(most) if here else most:
         feeders = len(_pool.feed(feeder, ready))
     try:
         for _ in blocks:
-            block = None if not ended.empty() else _next(waiting)
+            block = _next(waiting) if here and ended.empty() else None
             if block is None:  # results of processes are there, or all blocks that are left are in work there
                 result = ended.get()
                 room.release()
@@ -160,8 +172,6 @@ def solved(
     name = f"solving {counted(size // times, 'contact')}{moved}"
     begun = time.monotonic() if begun is None else begun
     with Progress(name, size, stream, begun=begun, passing=True) as shown:
-        if len(blocks) == 1:
-            return compute(parcel(definition, blocks[0]))
         columns = {}
         with closing(computed(definition, blocks, workers)) as results:
             for number, result in results:
@@ -183,22 +193,20 @@ def blocks_of_grid(definition: Definition) -> list[np.ndarray]:
     return np.array_split(np.arange(size), max(1, round(size / (SLOW_BLOCK if slow else BLOCK))))
 
 
-def processes_for(workers: int, blocks: int) -> int:
-    """How many processes may compute beside the calling thread."""
-    return max(0, min(workers, blocks) - 1)
+def processes_for(workers: int, blocks: int, here: bool) -> int:
+    """How many processes compute so many blocks; `here`: beside the calling thread."""
+    return max(0, min(workers, blocks) - here)
 
 
-def _processes_allowed(definition: Definition, workers: int | None, blocks: int) -> int:
-    """How many processes may compute beside the calling thread.
+def _processors_allowed(definition: Definition, workers: int | None) -> int:
+    """How many processors may be used.
 
-    It is 0 where Python cannot start another Python, and for a micro law that it cannot have. If the user does
-    not say `workers`, it is 0 in threads and processes of programs that divide work themselves, such as dask.
+    It is 1 where Python cannot start another Python, and for a micro law that it cannot have. If the user does
+    not say `workers`, it is 1 in threads and processes of programs that divide work themselves, such as dask.
     """
     # a program that has Python inside would start itself anew
     python = "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
     if not python or not can_travel(definition):
-        return 0
+        return 1
     divided = multiprocessing.parent_process() or threading.current_thread() is not threading.main_thread()
-    if workers is None:
-        workers = 1 if divided else available_workers()
-    return processes_for(workers, blocks)
+    return workers or (1 if divided else available_workers())

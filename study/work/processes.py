@@ -1,7 +1,7 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
-`dask.distributed.LocalCluster` is not used because it starts 2.5 s later; two starts and a run of 100,000 thin rough
-cases took 11.5 s of processor time, with dask 18.1 s (`python tests/bench/benchmark_engine.py 3 100`). Dask's process
+`dask.distributed.LocalCluster` is not used because two starts and a run of 100,000 thin rough cases took 11.5 s of
+processor time, with dask 18.1 s (`python tests/bench/benchmark_engine.py 3 100`). Dask's process
 scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed process ends it.
 """
 

@@ -96,7 +96,8 @@ def compute_blocks(order: Order, known: Inventory) -> dict[int, str]:
     size = order.definition.grid.size
     stream, passing = order.stream or screen_of(order.progress), order.stream is None
     shown = Progress(order.definition.name, size, stream, size - len(known.missing), passing=passing)
-    with shown as progress, closing(computed(order.definition, blocks, order.workers, order.scheduler)) as results:
+    results = computed(order.definition, blocks, order.workers, order.scheduler, storing=True)
+    with shown as progress, closing(results):
         for number, result in results:
             if isinstance(result, Failure):
                 failures[number] = result.message

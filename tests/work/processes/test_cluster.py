@@ -15,7 +15,7 @@ from same import assert_same_numbers
 
 import study
 from study.work import cases, run
-from study.work import workers as engines
+from study.work import cluster as engines
 
 
 @pytest.fixture
@@ -227,5 +227,5 @@ def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch
 
         monkeypatch.setattr(client, "_gather", lost)
         monkeypatch.setattr(engines, "connected", lambda *_: client)
-        with engines.engine(None, "any") as found:
-            assert list(engines.as_they_come(found, str.split, ["one two"])) == [(0, ["one", "two"])]
+        found = engines.computed_there("any", None, str.split, ["one two"])
+        assert list(found) == [(0, ["one", "two"])]

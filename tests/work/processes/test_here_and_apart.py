@@ -101,14 +101,15 @@ def test_what_no_process_can_compute_is_computed_here(threads, call):
 def test_results_do_not_wait_in_great_number(monkeypatch):
     """The calling thread is in its first block; the process has solved AHEAD others, and then waits too."""
     monkeypatch.setattr(engine, "BLOCK", 1)
-    solved, go, apart, real = [], threading.Event(), ThreadPoolExecutor(1), guarded
+    solved, begun, go, apart, real = [], threading.Event(), threading.Event(), ThreadPoolExecutor(1), guarded
 
     def here(wanted):
-        if threading.current_thread() is threading.main_thread():
-            go.wait(PATIENCE)
+        begun.set()
+        go.wait(PATIENCE)
         return real(wanted)
 
     def call(function, wanted):
+        begun.wait(PATIENCE)
         solved.append(wanted.first)
         if len(solved) == engine.AHEAD:
             go.set()

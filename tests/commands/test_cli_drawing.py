@@ -128,9 +128,9 @@ def test_results_that_are_missing_have_a_way_out_each(monkeypatch, tmp_path):
     with pytest.raises(StudyError) as caught:
         registry.open_studies("mine", ("tradeoff", "times", "main_case"), tmp_path)
     ways = (
-        "make it with: python -m study tradeoff",
+        "make it with: python -m roughcoat tradeoff",
         "--run measures it",
-        "make it with: python -m study run main_case",
+        "make it with: python -m roughcoat run main_case",
     )
     names = ("tradeoff", "times", "main_case")
     assert caught.value.messages == tuple(

@@ -116,7 +116,7 @@ def test_damaged_results_of_another_study_stay(name, capsys):
     spoil(RESULTS, name)
     before = RESULTS.read_bytes()
     assert main(["plot", "--run", "one"]) == 2
-    assert "39 of its 40 cases are not in this one: python -m study run --force" in capsys.readouterr().err
+    assert "39 of its 40 cases are not in this one: python -m roughcoat run --force" in capsys.readouterr().err
     assert RESULTS.read_bytes() == before
 
 

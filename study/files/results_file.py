@@ -125,13 +125,24 @@ def numbers_digest(path: Path) -> str:
     return hashlib.sha256(path.read_bytes()).hexdigest()
 
 
-def open_results(path) -> xr.Dataset:
+def open_results(path: str | os.PathLike) -> xr.Dataset:
     """A results file, read into memory and closed, when nothing in it is damaged. A large one is opened lazily.
 
     Any thread may open, and read, while others run studies. A file without a digest, of an earlier version, is read
     unverified. A netCDF file of another program is read as it is.
 
-    Raises FileNotFoundError: there is none; StudyError: it is damaged, or cannot be read; also an OSError.
+    Parameters
+    ----------
+    path : of the file, such as "results/mine.nc"
+
+    Returns
+    -------
+    xarray.Dataset : as `study.solve` gives it
+
+    Raises
+    ------
+    FileNotFoundError : there is none
+    StudyError : it is damaged, or cannot be read; also an OSError
     """
     path = Path(os.path.expanduser(path))
     found = examine(path, most=LAZY)

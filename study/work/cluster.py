@@ -8,8 +8,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 
-from roughcoat.elsewhere import packed
-
 from .cases import NUMERICS_VERSION, Failure
 from .scheduler import connected
 
@@ -92,6 +90,8 @@ class Cluster:
         return {address: threads for address, threads in self._there().items() if address not in self._left_out}
 
     def _place(self, block: Block) -> None:
+        from roughcoat.elsewhere import packed  # no other call needs it
+
         where = {"workers": list(block.workers)} if block.workers else {}
         future = self._client.submit(*packed(block.function, block.task), pure=False, **where)
         self._under_way[block] = future

@@ -14,7 +14,7 @@ from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_dis
 from same import assert_same_numbers
 
 import study
-from study.work import cases, run
+from study.work import cases, engine
 from study.work import cluster as engines
 
 
@@ -153,13 +153,13 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
 def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):
     cluster.worker()
     opened = written(tmp_path)
-    real = run.parcel
+    real = engine.parcel
 
     def parcel(definition, index):
         found = real(definition, index)
         return found if found.first != 50 else replace(found, numerics="another")
 
-    monkeypatch.setattr(run, "parcel", parcel)
+    monkeypatch.setattr(engine, "parcel", parcel)
     report = opened.run(scheduler=cluster.address)
     monkeypatch.undo()
     ((_, reason),) = report.failures.items()

@@ -13,7 +13,7 @@ from screens import CONTACT, PATIENCE, Screen, as_stderr, lines, nobody_speaks, 
 import study
 from solver import Status
 from study import solving
-from study.work import cases, engine, progress, run, screen
+from study.work import cases, engine, progress, screen
 from study.work.progress import ERASE, Progress
 
 
@@ -205,9 +205,9 @@ LINE = '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = [1e-6, 2e-6,
 @pytest.mark.parametrize(("value", "said"), [(None, True), (True, True), (False, False)])
 def test_runs_from_python_say_it_as_calls_do(tmp_path, monkeypatch, stderr, value, said):
     (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
-    real = run.guarded
+    real = engine.guarded
     monkeypatch.setattr(
-        run, "guarded", lambda wanted: (stderr.written.wait(PATIENCE if said else 0.1), real(wanted))[1]
+        engine, "guarded", lambda wanted: (stderr.written.wait(PATIENCE if said else 0.1), real(wanted))[1]
     )
     report = study.load(tmp_path / "line.toml", tmp_path / "results").run(workers=1, progress=value)
     assert report.complete and bool(lines(stderr.getvalue())) == said

@@ -27,7 +27,8 @@ from ..data.dataset import failed_cases
 from ..inputs.definition import Definition
 from ..inputs.grid import USUAL, usual_block
 from ..terminal import counted
-from .cases import Failure, can_travel, compute, guarded, parcel
+from . import cases
+from .cases import Failure, can_travel, guarded, parcel
 from .cluster import computed_there
 from .processes import Processes
 from .progress import Progress
@@ -178,7 +179,7 @@ def solved(
                 index = blocks[number]
                 if isinstance(result, Failure):  # of a process that was killed, or of the solver: then it is raised
                     log.debug("cases %d to %d: %s", index[0], index[-1], result.message)
-                    result = compute(parcel(definition, index))
+                    result = cases.compute(parcel(definition, index))
                 for column, array in result.items():
                     whole = columns.setdefault(column, np.empty((size, *array.shape[1:]), array.dtype))
                     whole[index[0] : index[-1] + 1] = array

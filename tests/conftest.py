@@ -25,6 +25,8 @@ from study.inputs.laws import update_vocabulary
 from study.work import engine
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
+# What a test puts in the place of the solver is not known to worker processes. Tests of these start them.
+engine.START = engine.MANY = float("inf")
 ROOT = Path(__file__).resolve().parents[1]
 STUDIES = sorted((ROOT / "studies").glob("*/*.toml"))
 
@@ -49,13 +51,6 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     computes the results while others have other things to do, and no other draws the same figures again."""
     asking = {item.path for item in items if "results" in getattr(item, "fixturenames", ())}
     items.sort(key=lambda item: item.path not in asking)
-
-
-@pytest.fixture(autouse=True)
-def no_processes(monkeypatch) -> None:
-    """What a test puts in the place of the solver is not known to worker processes. Tests of these start them."""
-    for name in ("START", "MANY"):
-        monkeypatch.setattr(engine, name, float("inf"))
 
 
 @pytest.fixture(autouse=True)

@@ -84,6 +84,10 @@ def test_study_files_and_what_check_says(tmp_path, monkeypatch, capsys):
     assert main(["check", "mine.toml"]) == 0
     told = "    power law fitted to Nbar and Ra: B = 0.09192 to 0.3157 (in Ra/E1*^beta), beta = 0.4908 to 0.5342"
     assert capsys.readouterr().out.splitlines()[1] == told
+    (tmp_path / "one.toml").write_text(text.replace("[62500, 250000]", "[250000]"), encoding="utf-8")
+    assert main(["check", "one.toml"]) == 0
+    told = "    power law fitted to Nbar and Ra: B = 0.09192 (in Ra/E1*^beta), beta = 0.4908"
+    assert capsys.readouterr().out.splitlines()[1] == told
     assert main(["run", "mine.toml"]) == 0
     found = study.load("mine.toml").open()
     assert found.B.attrs["comment"] == laws.COMMENT and found.B.dims == ("Nbar",)

@@ -52,6 +52,18 @@ def test_the_place_that_stands_twice_or_is_missing_is_named(tmp_path, row, colum
     assert f"are infinite, the first in row {row + 1}, column {column + 1};" in said
 
 
+@pytest.mark.parametrize("heading", [[], ["x z"], ["# a", "", "x z", "um nm"]])
+@pytest.mark.parametrize("row", [2, 5, 19])
+def test_the_line_that_is_no_row_is_named(tmp_path, heading, row):
+    """Its number in the file, with the heading and empty lines."""
+    for wrong, words in (("1 2 3", "3 number(s) after lines of 2"), ("5 x", "'5 x' has something else than numbers")):
+        lines = [*heading, *(f"{i} {z}" for i, z in enumerate(Z[0, :20]))]
+        lines[len(heading) + row] = wrong
+        (tmp_path / "a.txt").write_text("\n".join(lines), encoding="utf-8")
+        said = message(roughness.read, tmp_path / "a.txt", unit="um", height_unit="um")
+        assert said.startswith(f"a.txt, line {len(heading) + row + 1}: {words}")
+
+
 def test_each_axis_has_its_step():
     scan = roughness.height_map(Z, dx=0.5, dy=2.0, **MAP)
     assert scan.steps == pytest.approx((2e-6, 0.5e-6)) and scan.sizes == pytest.approx((46e-6, 19.5e-6))

@@ -75,7 +75,11 @@ def untried(law):
 
 
 def try_out(law, E, given):
-    """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`."""
+    """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`.
+
+    That takes a seventh of a millisecond, once a process. Without it a law with a wrong derivative gave a dP/dD that
+    was 2 % off, as converged (tests/laws/test_trial.py).
+    """
     if untried(law):
         trial.tried(law, E, given)
         _TRIED.add(law)

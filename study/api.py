@@ -10,17 +10,16 @@ import xarray as xr
 
 from .data.provenance import command_line
 from .files.access import Unusable
-from .files.examine import Condition
-from .files.results_file import LAZY, open_lazily, open_results
+from .files.examine import Condition, statuses
+from .files.results_file import LAZY, opened
 from .inputs.definition import Definition, StudyError
 from .inputs.places import study_file
 from .inputs.reading import read
 from .inputs.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
-from .store.earlier import earlier, of_what, statuses
-from .store.tidy import clean
+from .store.clean import clean
 from .work.cost import Estimate
-from .work.plan import Report, belongs, check_countable, look
+from .work.plan import Report, belongs, check_countable, look, of_what
 from .work.run import dry_run, partial_dataset, run
 
 if TYPE_CHECKING:
@@ -99,10 +98,10 @@ class Study:
         """What has been computed.
 
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
-        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. Attributes, coordinates
-        and statuses are compared with their checksums here; `verify` compares all numbers. Cases count as computed if
-        they are in blocks, or in an outdated results file that a run would use. With spreads a case counts as often as
-        it is solved; of complete results the statuses are counted once for each.
+        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. A file of up to 200 MB in
+        memory is compared with its digest; `verify` compares a larger one too. Cases count as computed if they are in
+        blocks. With spreads a case counts as often as it is solved; of complete results the statuses are counted once
+        for each.
 
         Parameters
         ----------
@@ -122,7 +121,7 @@ class Study:
 
     def _status(self, yes: bool) -> dict:
         store = self._store
-        found = look(store, ("status",))
+        found = look(store, LAZY)
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
@@ -133,14 +132,14 @@ class Study:
         elif not check_countable(store, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
-            known = inventory(store, earlier(self.definition, found).source)
+            known = inventory(store)
             counts = count_statuses(known.status)
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         cases = self.definition.grid.size
         return {"state": state, "cases": cases, "counts": counts, "path": store.path, "reason": found.reason}
 
     def verify(self) -> Condition:
-        """Compare all of the results file with its checksums.
+        """Compare all of the results file with its digest.
 
         Returns
         -------
@@ -149,13 +148,13 @@ class Study:
         return look(self._store)
 
     def clean(self) -> list[str]:
-        """Remove blocks that do not serve the study as it is. Never touches results.
+        """Remove blocks that hold no case of the study as it is. Never touches results.
 
         Returns
         -------
-        list of str : the files that are removed
+        list of str : lines that say what was removed, and what stays
         """
-        return clean(self._store, belongs(self.definition, look(self._store)))
+        return clean(self._store)
 
     def open(self, partial: bool = False) -> xr.Dataset:
         """The results.
@@ -175,17 +174,15 @@ class Study:
         ------
         StudyError : there are none, none of this definition, or they are damaged
         """
-        path, found = self._store.path, look(self._store, ())
+        path, found = self._store.path, look(self._store, LAZY)
         if belongs(self.definition, found):
-            return open_lazily(path) if found.unpacked > LAZY else open_results(path)
+            return opened(found)
         if partial:
-            with suppress(FileNotFoundError):
-                return partial_dataset(self.definition, self._folder)
-            return self.open()  # a run has ended meanwhile, and removed its blocks
+            return partial_dataset(self.definition, self._folder)
         if found.good or found.kind == "missing":
             reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
-        again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
+        again = "; run the study, which writes it again" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)
 
     def plot(self, x: str, y: str, hue: str = "", **where: Any) -> "Figure":

@@ -1,7 +1,6 @@
 """Quantities that follow from a dataset: validity of the model's assumptions, areas, mean pressure, number of spots.
 
-Every function takes an opened dimensionless dataset and returns a DataArray whose attributes come whole from the
-vocabulary.
+Every function takes an opened dataset. The attributes of what it returns come from the vocabulary.
 """
 
 from collections.abc import Callable

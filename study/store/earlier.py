@@ -18,8 +18,8 @@ from ..files.netcdf import File
 from ..inputs.definition import Definition, StudyError
 from ..inputs.grid import Grid, columns
 from ..inputs.identity import case_keys, find
+from ..inputs.reading import same_tables
 from ..inputs.scene.scales import grid_of_results, parameters_from_si, result_from_si, scales_of
-from ..inputs.toml_text import same_tables
 from ..inputs.vocabulary import NOT_RUN, PARAMETERS, SCENE
 from ..terminal import on_one_line, program
 from .block_file import Damaged

@@ -19,7 +19,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 from benchmark_study import STUDY, WORKERS
 
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.work import cases, run, workers
 
 

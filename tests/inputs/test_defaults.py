@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import study
 from solver import Problem, Status, solve
 from solver.parameters import PARAMETERS
-from study.inputs.definition import from_tables
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.inputs.vocabulary import VOCABULARY
 
 DEFAULTS = {

@@ -19,7 +19,8 @@ LENGTHS = r"which is \[1e-12, 1e6\] R"
 def refusal(**change) -> str:
     with pytest.raises(study.StudyError) as caught:
         study.solve(**GIVEN | {"P": "1 N"} | change)
-    return str(caught.value)
+    assert all(message.startswith("solve: ") for message in caught.value.messages)
+    return str(caught.value).replace("solve: ", "")
 
 
 @pytest.mark.parametrize(
@@ -56,7 +57,7 @@ def test_quantities_of_pint():
 
 
 def test_rows_ranges_and_the_command_line(tmp_path, capsys):
-    with pytest.raises(study.StudyError, match=r"^P\[1\] = -2 N: must be in"):
+    with pytest.raises(study.StudyError, match=r"^solve: P\[1\] = -2 N: must be in"):
         study.solve(**GIVEN, cases=[{"P": "1 N"}, {"P": "-2 N"}])
     path = tmp_path / "slip.toml"
     path.write_text(
@@ -78,7 +79,9 @@ def test_a_table_whose_lengths_would_follow_the_spread_of_a_radius(radius, tmp_p
     given = GIVEN | {"P": "50 mN", "Nbar": "5 1/um^2", "Ra": "20 um", "h": "99 um", "micro": f"table:{file}"}
     change = {name: value for name, value in (given | radius).items() if value}
     word = next(name for name, value in radius.items() if value and "±" in value)
-    message = rf"^{word} has a spread: the lengths in .*mine.csv are in R and would change with it; give {word} none$"
+    message = (
+        rf"^solve: {word} has a spread: the lengths in .*mine.csv are in R and would change with it; give {word} none$"
+    )
     with pytest.raises(study.StudyError, match=message):
         study.solve(**change)
     assert study.solve(**given).status == 0

@@ -10,8 +10,9 @@ import xarray as xr
 import study
 from solver import NUMERICS_VERSION
 from study.files.examine import Condition, examine
-from study.inputs.definition import Definition, from_tables
+from study.inputs.definition import Definition
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.store import earlier as module
 from study.store.block_file import Damaged
 from study.store.blocks import Store, gather, inventory

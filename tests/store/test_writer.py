@@ -14,8 +14,8 @@ from same import assert_same
 import study
 from study.data.dataset import parts
 from study.files.results_file import open_lazily, write
-from study.inputs.definition import from_tables
 from study.inputs.grid import Grid, box, cut_out, windows
+from study.inputs.reading import from_tables
 from study.store import writer
 from study.work.cases import compute, parcel
 

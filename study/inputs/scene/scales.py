@@ -31,7 +31,7 @@ def make_dimensionless(scene: Scene) -> None:
         scene.parameters["n"] = layer / body
     if "E_punch" in given:
         given.setdefault("nu_punch", _POISSON)  # results say which it was
-        base = over_dimensions(scene.parameters.get("base", "layered"), "base")
+        base = scene.parameters.get("base", "layered")
         surface = _where(base == "half_space", body, layer)
         scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
     for name, value in given.items():
@@ -42,7 +42,7 @@ def make_dimensionless(scene: Scene) -> None:
 def moduli(given: dict, parameters: dict) -> tuple:
     """The unit of moduli, E1* and E2*, in Pa. Without E1 and n, on a half-space, E1* is E2*."""
     body = _reduced(given, "E2", "nu2")
-    n = over_dimensions(given["n"] if "n" in given else parameters.get("n", 1.0), "n")
+    n = given["n"] if "n" in given else parameters.get("n", 1.0)
     layer = _reduced(given, "E1", "nu1") if "E1" in given else n * body
     return _where(np.isinf(body), layer, body), layer, body
 
@@ -74,11 +74,6 @@ def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
         for _ in range(abs(power)):
             value = value * factor if power > 0 else value / factor
     return value
-
-
-def over_dimensions(given: Any, name: str) -> Any:
-    """Values of a parameter without a unit, as an array over the dimension of its name where they are several."""
-    return xr.DataArray(list(given), dims=name) if isinstance(given, (list, tuple, range)) else given
 
 
 def parameters_from_si(given: Values) -> tuple[Values, Values]:

@@ -37,7 +37,7 @@ def refusal(**change) -> str:
         ({"P": "1 ± 10 N"}, f"^P = 1 ± 10 N: with its spread it {LOADS}$"),
         ({"P": "-10 N ± 5 %"}, f"^P = -10 N ± 5 %: {LOADS}$"),
         ({"Nbar": "-1 µm⁻²", "Ra": "1 um"}, r"^Nbar = -1 µm⁻²: must be in \[4e-12, 4e\+10\] 1/µm², which is"),
-        ({"P": xr.DataArray([2.0, -1.0], dims="q", attrs={"units": "N"})}, rf"^P\[1\] = -1.0 N: {LOADS}$"),
+        ({"P": xr.DataArray([2.0, -1.0], dims="q", attrs={"units": "N"})}, rf"^P\[1\] = -1 N: {LOADS}$"),
         ({"P": "-1 N", "h": "-1 um"}, "(?s)^h = -1 um.*\nP = -1 N"),
         ({"P": "-1 N", "E2": "rigid"}, r"which is \[1e-24, 1e3\] E1\* R\^2, E1\* = 230.77 GPa and R = 5 mm$"),
         ({"E1": "200 mPa"}, "^E1 = 0.2 Pa: ratio of .* layer and half-space: n = 9.524e-13: must be 0 or in"),

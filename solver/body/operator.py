@@ -66,10 +66,6 @@ class Body(Protocol):
     def take(self, index):
         """The body of the sub-batch at `index`."""
 
-    def within(self, rtol, a):
-        """The body for contacts of about the radius a, with a cheaper operator if there is one that is right to a
-        hundredth of rtol (B,)."""
-
     def at(self, a, mesh, near=None):
         """The :class:`Operator` at the radii a (B,). `near`: an operator of the same cases, perhaps at other radii or
         on another mesh; what of it still holds is used again."""
@@ -93,9 +89,6 @@ class Body(Protocol):
 
     def order(self, a):
         """Permutation (B,) that puts cases that share work next to each other; None: the order does not matter."""
-
-    def alike(self, a):
-        """A body that yields nearly as this one under contacts of radius a, and is much cheaper to solve; or None."""
 
     def first_nodes(self, rtol, a, rise=None):
         """Number of nodes (B,) that just about meet rtol (B,) for contacts of radius a. `rise` (B,), from 0 to about 1,

@@ -7,6 +7,8 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from functools import partial
 
+from roughcoat.elsewhere import packed
+
 from .cases import NUMERICS_VERSION, Failure
 
 log = logging.getLogger(__name__)
@@ -85,7 +87,7 @@ class Cluster:
 
     def _place(self, block: Block) -> None:
         where = {"workers": list(block.workers)} if block.workers else {}
-        future = self._client.submit(block.function, block.task, pure=False, **where)
+        future = self._client.submit(*packed(block.function, block.task), pure=False, **where)
         self._under_way[block] = future
         future.add_done_callback(partial(self._hand_over, block))
 
@@ -144,6 +146,7 @@ def _question() -> Callable[[], str]:
     """
 
     def version() -> str:
+        import roughcoat  # noqa: F401, so that `study` is ours
         from study.work import cases
 
         return cases.NUMERICS_VERSION

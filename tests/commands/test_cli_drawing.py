@@ -50,7 +50,7 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     assert unknown.startswith('"fig91" is not known; ')
     study = "reference_load" if command == "table" else "spot_density"
     assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
-    assert missing[0].endswith(f"make it with: python -m study run {study}")
+    assert missing[0].endswith(f"make it with: python -m roughcoat run {study}")
 
 
 def test_a_function_that_fails_does_not_keep_the_next_from_its_turn(results, tmp_path, monkeypatch, capsys):
@@ -128,9 +128,9 @@ def test_results_that_are_missing_have_a_way_out_each(monkeypatch, tmp_path):
     with pytest.raises(StudyError) as caught:
         registry.open_studies("mine", ("tradeoff", "times", "main_case"), tmp_path)
     ways = (
-        "make it with: python -m study tradeoff",
+        "make it with: python -m roughcoat tradeoff",
         "--run measures it",
-        "make it with: python -m study run main_case",
+        "make it with: python -m roughcoat run main_case",
     )
     names = ("tradeoff", "times", "main_case")
     assert caught.value.messages == tuple(

@@ -100,6 +100,18 @@ def test_a_value_counts_in_the_case_that_has_it(name, case, other):
     assert keys[0] != keys[1] and keys[::-1] == case_keys(second.grid).tolist()
 
 
+@pytest.mark.parametrize("name", ["n", "m", "nu1", "k", "nodes", "max_iterations"])
+def test_nought_is_a_value(name):
+    """Of a case, or of all: it is no gap, in whose place a default would stand."""
+    case = {key: value for key, value in CASE.items() if key != name}
+    of_cases = from_tables({"cases": [case | {name: 0}, case | {name: 0, "P": 2e-5}]}, "s", "", "s").grid
+    assert of_cases.values[name][1].tolist() == [0, 0]
+    section = "numerics" if name in ("k", "nodes", "max_iterations") else "model"
+    tables = {"model": dict(case), "numerics": {}}
+    tables[section][name] = 0
+    assert from_tables(tables, "s", "", "s").grid.values[name][1] == 0
+
+
 MISSING = [
     ({"base": "layered"}, ("n", "Nbar", "Ra"), 'h is missing: base = "layered" needs it'),
     ({"base": "thin_layer"}, ("h", "Nbar", "Ra"), 'n is missing: base = "thin_layer" needs it'),

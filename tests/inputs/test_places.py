@@ -110,7 +110,12 @@ if __name__ == "__main__":
 @pytest.mark.parametrize("studies_in", ["studies", "study/studies"], ids=["clone", "wheel"])
 def test_packages_in_a_zip_file(studies_in, tmp_path):
     with zipfile.ZipFile(tmp_path / "roughcoat.zip", "w") as archive:
-        for name, place in (("solver", "solver"), ("study", "study"), ("studies", studies_in)):
+        for name, place in (
+            ("solver", "solver"),
+            ("study", "study"),
+            ("roughcoat", "roughcoat"),
+            ("studies", studies_in),
+        ):
             for file in sorted((ROOT / name).rglob("*.*")):
                 if file.is_file() and file.parent.name != "__pycache__":
                     archive.write(file, f"{place}/{file.relative_to(ROOT / name).as_posix()}")

@@ -6,22 +6,26 @@ import inspect
 import re
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 
 import pytest
+
+import roughcoat
 
 ROOT = Path(__file__).resolve().parents[2]
 SOLVER = sorted((ROOT / "solver").rglob("*.py"))
 STUDY = sorted((ROOT / "study").rglob("*.py"))
 BOOK = sorted((ROOT / "studies").rglob("*.py"))
 
-OURS = {"solver", "study", "studies"}
+OURS = {"roughcoat", "solver", "study", "studies"}
 
 #: The rooms of each package; a file beside them is a room of its own.
 ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
         *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
+        "sensitivity",
     ),
     "study": (
         *("terminal", "specimen", "inputs", "data", "in_words", "files", "store", "work"),
@@ -83,6 +87,7 @@ def test_study_imports_what_is_declared(path):
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
     allowed |= {"argcomplete"} if path.name == "__main__.py" else set()
+    allowed |= {"roughcoat"} if path.name == "cluster.py" else set()  # so that a worker takes our packages
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
 
 
@@ -208,9 +213,21 @@ def test_public_names():
     assert {"derived", "materials", "roughness", "units", "vocabulary"} <= set(dir(study))
 
     assert {"solve", "load", "open_results", "Study", "StudyError", "to_physical", "from_physical"} <= set(dir(study))
-    assert all(callable(getattr(study, name)) for name in study.__all__)
-    with pytest.raises(AttributeError, match="no attribute 'sovle'"):
-        study.sovle  # noqa: B018
+    assert all(getattr(study, name) for name in study.__all__)
+    assert (
+        study.__version__ == tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    )
+    for package in (study, roughcoat):
+        with pytest.raises(AttributeError, match=f"module '{package.__name__}' has no attribute 'sovle'"):
+            package.sovle  # noqa: B018
+
+
+def test_roughcoat_gives_what_study_gives():
+    import study
+
+    assert roughcoat.__all__ == study.__all__ and set(dir(study)) <= set(dir(roughcoat))
+    assert all(getattr(roughcoat, name) == getattr(study, name) for name in (*study.__all__, "__version__"))
+    assert {*study.__all__} == {*study._HOME, *study._MODULES}, "what is imported when it is asked for"
 
 
 def test_solve_names_every_parameter_with_its_default_and_its_choices():

@@ -2,6 +2,7 @@
 
 import io
 import os
+import pickle
 import socket
 import sys
 import threading
@@ -123,8 +124,9 @@ def test_a_container_uses_no_more_processors_than_its_limit(monkeypatch):
 class Computed:
     """A future of dask that ends at once; None for a task: the scheduler is gone."""
 
-    def __init__(self, function, task):
-        self.function, self.task = function, task
+    def __init__(self, function, call):
+        self.function, self.call = function, call
+        _, (self.task,) = pickle.loads(call)  # as roughcoat.elsewhere packs it
 
     def add_done_callback(self, called):
         called(self)
@@ -135,7 +137,7 @@ class Computed:
     def result(self):
         if self.cancelled():
             raise CancelledError("the scheduler is gone")
-        return self.function(self.task)
+        return self.function(self.call)
 
 
 @pytest.fixture

@@ -1,0 +1,5 @@
+"""Derivatives of the answers by the inputs, from one more linear system for each solution."""
+
+from .sensitivities import QUANTITIES, Sensitivities, sensitivities
+
+__all__ = ["QUANTITIES", "Sensitivities", "sensitivities"]

@@ -16,6 +16,8 @@ EVERY = ("", ())
 class Parameter(NamedTuple):
     """One parameter of a case.
 
+    Attributes
+    ----------
     default : its value where it is not given; None: it has none, and must be given if a case needs it.
     choices : the words that a text may be; () for a number.
     whole : whether the number is an integer.

@@ -100,7 +100,7 @@ def _take_own_solver() -> None:
     own, other = _OwnPackages.find_spec("solver"), sys.modules.get("solver")
     if own and other:
         folders = list(getattr(other, "__path__", ()))  # none of a module that is a file
-        if [os.path.realpath(folder) for folder in folders] != [os.path.realpath(os.path.dirname(own.origin))]:
+        if [os.path.realpath(folder) for folder in folders] != [os.path.realpath(os.path.dirname(own.origin or ""))]:
             file = getattr(other, "__file__", None) or folders[0]
             wrong = "has been imported as solver, which is a package of roughcoat as well: give it another name"
             raise ImportError(f"{file}: {wrong}", name="solver", path=file)

@@ -96,6 +96,9 @@ class HalfSpace(NamedTuple):
     def order(self, a):
         return None
 
+    def alike(self, a):
+        return None
+
     def first_nodes(self, rtol, a, rise=None):
         """On springs the pressure begins more gently at the edge than on a half-space."""
         springs = self.C > 0

@@ -16,11 +16,14 @@ from typing import NamedTuple
 import numpy as np
 
 from ..kernels.kernel import Kernel
+from .half_space import thin_layer
 from .hankel_operator import HankelOperator, rows_of
 from .operator import fitted_nodes
 from .part import parts_of
 from .wave_rule import CUT, FILM, place_of
 
+#: A layer thinner than this times the radius yields nearly as the thin layer does.
+_THIN = 0.02
 #: Work of a lone case in the unit of :meth:`.operator.Body.work`, for films and for thicker layers. _MESH: of a new
 #: mesh, for each node of a film, for each entry of the matrix of a thicker layer. _STEP and _ENTRY: of a Newton step,
 #: and more for each entry. They are ratios of processor times to a factor of two: BUDGET needs no more.
@@ -124,6 +127,11 @@ class Hankel(NamedTuple):
     def order(self, a):
         """Cases with the same table are together: fewer and larger matrix products."""
         return np.lexsort(place_of(self, a))
+
+    def alike(self, a):
+        """The thin layer, if all cases are much thinner than a and it applies to them."""
+        thin = thin_layer(self.h, self.kernel, self.m)
+        return thin if np.all((self.h < _THIN * a) & (thin.C > 0)) else None
 
     def first_nodes(self, rtol, a, rise=None):
         """Under asperities as on a half-space; under a smooth punch, the fewer the thicker the layer."""

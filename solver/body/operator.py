@@ -90,6 +90,9 @@ class Body(Protocol):
     def order(self, a):
         """Permutation (B,) that puts cases that share work next to each other; None: the order does not matter."""
 
+    def alike(self, a):
+        """A body that yields nearly as this one under contacts of radius a, and is much cheaper to solve; or None."""
+
     def first_nodes(self, rtol, a, rise=None):
         """Number of nodes (B,) that just about meet rtol (B,) for contacts of radius a. `rise` (B,), from 0 to about 1,
         says how gently asperities let the pressure begin at the edge (:class:`~solver.laws.Law`); None: a smooth punch.

@@ -23,7 +23,6 @@ def meshes(solution, problem):
 def found_again(cases, nodes, a, rtol):
     """:class:`~solver.contact.driver.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
     nodes; 0: of one case on panels of its own."""
-    cases = cases._replace(body=cases.body.within(rtol, a))
     if not nodes:
         return solve_on_panels(cases, rtol[0], BUDGET)[0]
     mesh = mesh_of(nodes)

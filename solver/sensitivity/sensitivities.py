@@ -4,14 +4,18 @@ The equation of each case is found again on its mesh, from its radius, by a few 
 all derivatives at once. Where that fails, the case is solved with each input moved: :mod:`.differences`.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..numerics.ladder import STACK
 from ..parameters import uses
+from ..problem import Problem
 from ..scaling import as_cases, dimensionless
+from ..solution import Solution
 from ..status import Status
 from ..threads import one_blas_thread
 from .added import of_added
@@ -34,6 +38,8 @@ _STACK = STACK // 4
 class Sensitivities(NamedTuple):
     """Derivatives of B solutions by k inputs.
 
+    Attributes
+    ----------
     inputs : their names, the control first
     logs : quantity -> (B, k), d ln quantity/d ln input; by a Poisson ratio d ln quantity/d ratio. 0 where an input does
         not act, or is 0; NaN of a case without numbers. A smooth punch has 0 for A0, which is 0
@@ -48,12 +54,23 @@ class Sensitivities(NamedTuple):
 
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
-def sensitivities(problem, solution, x=(), inputs=None):
-    """:class:`Sensitivities` of the `solution` of a problem.
+def sensitivities(
+    problem: Problem, solution: Solution, x: ArrayLike = (), inputs: Sequence[str] | None = None
+) -> Sensitivities:
+    """Derivatives of solved cases by their inputs.
 
-    x : (m,), radii r/a in [0, 1] of the profiles; inputs : some names of parameters that are numbers, and of the
-    control; None: all
+    Parameters
+    ----------
+    problem, solution : the cases, and what `solve` has made of them
+    x : (m,), radii r/a in [0, 1] of the profiles
+    inputs : some names of parameters that are numbers, and of the control; None: all
 
+    Returns
+    -------
+    Sensitivities
+
+    Examples
+    --------
     >>> from solver import Problem, solve
     >>> problem = Problem.of(P=[1e-5, 2e-5], micro="smooth", base="half_space")
     >>> print(sensitivities(problem, solve(problem), inputs=("P",)).logs["a"].round(6).ravel())

@@ -117,15 +117,27 @@ def model_attributes() -> dict:
 
 
 def decode(flags: xr.DataArray) -> xr.DataArray:
-    """The names of `status`, `model_used` or `validity`, in an array of texts over the same dimensions.
+    """The names of `status`, `model_used` or `validity`.
 
     Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
     a name stays a number. Where `where`, `reindex` or `concat` of xarray have left no case, NaN, status and
     validity are "not_run", and the model is "none".
 
-    Raises ValueError: it is no array, or one that has none of these names, and no attribute `flag_meanings`; its
-    numbers are of no case, such as the mean of several.
+    Parameters
+    ----------
+    flags : one of these three arrays of a dataset of contacts
 
+    Returns
+    -------
+    xarray.DataArray : texts, over the same dimensions
+
+    Raises
+    ------
+    ValueError : it is no array, or one that has none of these names, and no attribute `flag_meanings`; its numbers are
+        of no case, such as the mean of several
+
+    Examples
+    --------
     >>> import study
     >>> found = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
     >>> study.decode(found.model_used).values.tolist()

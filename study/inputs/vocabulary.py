@@ -19,6 +19,7 @@ from solver.parameters import allowed as are_within
 
 from ..terminal import shown
 
+__all__ = ["SCENE", "VOCABULARY", "names"]
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
 NOT_RUN = 127
@@ -73,7 +74,8 @@ def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = (
 
     powers : (i, j); scales : how E2* and R are written; gap : what is written between two factors
     """
-    over, times = [], []
+    over: list[str] = []
+    times: list[str] = []
     for word, power in zip(scales, powers, strict=True):
         if power:
             (over if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
@@ -107,7 +109,21 @@ _RESULT = _NOT_THERE["results"]["says"]
 
 
 def names(*roles: str) -> tuple[str, ...]:
-    """Names that have one of the roles, in the order of the table; without the parameters of registered laws."""
+    """Names that have one of the roles, in the order of the table; without the parameters of registered laws.
+
+    Parameters
+    ----------
+    roles : "control", "material", "roughness", "numerics", "result", "derived", "coordinate"
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> names("control")
+    ('P', 'a', 'D')
+    """
     return tuple(name for role, table in _TABLES.items() if role in roles for name in table)
 
 

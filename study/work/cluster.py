@@ -7,8 +7,6 @@ from concurrent.futures import Future
 from dataclasses import dataclass, replace
 from functools import partial
 
-from roughcoat.elsewhere import packed
-
 from .cases import NUMERICS_VERSION, Failure
 
 log = logging.getLogger(__name__)
@@ -86,6 +84,8 @@ class Cluster:
         return {address: threads for address, threads in self._there().items() if address not in self._left_out}
 
     def _place(self, block: Block) -> None:
+        from roughcoat.elsewhere import packed  # no other call needs it
+
         where = {"workers": list(block.workers)} if block.workers else {}
         future = self._client.submit(*packed(block.function, block.task), pure=False, **where)
         self._under_way[block] = future

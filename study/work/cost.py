@@ -22,7 +22,7 @@ WORKING = 5  # while a block is solved, its arrays (B, m) take so many times the
 # Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time. Measured: peaks of runs on 17 to
 # 256 nodes, and of 300 cases of the study extremes_layered, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
-KEY = 16  # bytes of the key of a case in a block
+KEY = 16  # bytes of the key of a case, in a block and in the record of the results file
 # A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at
 # the edges of a grid. Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
@@ -35,7 +35,7 @@ class Estimate:
 
     cases : of the study; present : those on disk; seconds : for the others
     memory : bytes at most; size : bytes of the results
-    disk : bytes at most of the results and the blocks together, before a run removes its blocks
+    disk : bytes at most of the results and of the blocks that are added
     refused : the error with which `run` would end, because of the results file that is there
     """
 
@@ -66,8 +66,8 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
     memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes or 1) * TABLES * exact
-    # the results file and the blocks of the missing cases: both are on disk when the file is complete
-    stored = missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
+    # the blocks of the missing cases, and the record of the cases in the results file
+    stored = KEY * cases + missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
     return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + stored if missing else 0.0)
 
 

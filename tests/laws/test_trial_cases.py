@@ -47,8 +47,9 @@ def test_a_slip_counts_among_the_points_that_the_law_knows():
 
 
 def test_a_law_may_be_given_in_cases_and_beside_others():
-    """An object is known by its parameters there too; of what is no dictionary the whole list is refused."""
-    rows = [{"micro": cones.CONES, "alpha": 1.3}, {"micro": "smooth"}]
+    """An object is known by its parameters there too, before it itself is read; of what is no dictionary the
+    whole list is refused."""
+    rows = [{"alpha": 1.3, "micro": cones.CONES}, {"micro": "smooth"}]
     common = {"P": 1e-5, "base": "half_space", "Nbar": 250_000.0, "x": 2}
     found = study.solve(cases=rows, **common)
     alone = study.solve(micro=cones.CONES, alpha=1.3, **common)

@@ -17,10 +17,8 @@ from .carried import with_coordinates
 from .data.dataset import parts
 from .data.si import dataset_of
 from .in_words import FarOutside, doubts, far_outside
-from .inputs.definition import LARGE, POINTS, StudyError, complete
-from .inputs.given import Draft
-from .inputs.reading import complete as complete_scene
-from .inputs.scene.reading import read as read_scene
+from .inputs.definition import POINTS, StudyError
+from .inputs.reading import from_call
 from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
@@ -173,20 +171,8 @@ def solve(
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
-    if not isinstance(same_piece, (bool, np.bool_)):
-        raise StudyError([f"same_piece = {shown(same_piece)}: must be true or false"])
-    draft = Draft()
-    draft.laws([given.get("micro") for given in (parameters, *rows)])
-    scene = read_scene(parameters, cases, same_piece=bool(same_piece))
-    about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
-    if scene:
-        definition = complete_scene(draft, scene, [], about, most=LARGE)
-    else:
-        if cases is not None:
-            draft.cases(cases)
-        for name, given in parameters.items():
-            draft.of_any_form(name, given)
-        definition = complete(draft, *about, LARGE)
+    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
+    definition = from_call(parameters, rows, same_piece, tables)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     if chunks is None:
@@ -199,7 +185,7 @@ def solve(
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:
         warnings.warn(text, stacklevel=2)
-    beyond = doubts(found) if scene and chunks is None else []
+    beyond = doubts(found) if definition.scene and chunks is None else []
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found

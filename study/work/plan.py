@@ -17,7 +17,7 @@ from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine, statuses
 from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
-from ..inputs.toml_text import same_tables
+from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses, lost_cases
 from ..terminal import on_one_line, program, shown

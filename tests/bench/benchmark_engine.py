@@ -17,7 +17,7 @@ from tempfile import TemporaryDirectory
 
 from benchmark_study import STUDY, WORKERS
 
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.work import run
 
 

@@ -10,7 +10,7 @@ from line_study import load, store_block
 import study
 from solver.body import tables as operator_tables
 from study.__main__ import main
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.store import blocks, writer
 from study.work import cost as estimates
 from study.work import plan

@@ -13,8 +13,8 @@ from children import PATIENCE
 
 import study
 from solver import laws
-from study.inputs.definition import LARGE, StudyError, complete
-from study.inputs.given import Draft
+from study.inputs.definition import StudyError
+from study.inputs.reading import from_call
 from study.work import engine
 from study.work.cases import guarded
 from study.work.processes import python_command
@@ -24,11 +24,8 @@ SMOOTH = {"micro": "smooth", "base": "half_space"}
 
 def definition(size=30, **parameters):
     """A grid of so many loads."""
-    draft = Draft()
-    draft.laws([parameters.get("micro")])
-    for name, value in ({"P": np.geomspace(1e-6, 1e-4, size).tolist()} | parameters).items():
-        draft.of_any_form(name, value)
-    return complete(draft, {"title": "", "output": {"x": 3, "profiles": True}}, "solve", "", "solve", LARGE)
+    loads = {"P": np.geomspace(1e-6, 1e-4, size).tolist()}
+    return from_call(loads | parameters, [], False, {"title": "", "output": {"x": 3, "profiles": True}})
 
 
 @pytest.mark.parametrize(

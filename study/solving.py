@@ -16,6 +16,7 @@ from solver.laws import Law
 from .carried import with_coordinates
 from .data.dataset import parts
 from .data.si import dataset_of
+from .derivatives import with_sensitivities
 from .in_words import FarOutside, doubts, far_outside
 from .inputs.definition import LARGE, POINTS, StudyError, complete
 from .inputs.given import Draft
@@ -90,6 +91,7 @@ def solve(
     same_piece: bool = False,
     progress: bool | None = None,
     chunks: dict | None = None,
+    sensitivities: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -136,6 +138,8 @@ def solve(
     chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
         are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
         one chunk
+    sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
+        that is a number; by a Poisson ratio d ln a/d ratio. B and beta that are fitted to Nbar and Ra stay as they are
     parameters : of registered laws
 
     Returns
@@ -175,6 +179,8 @@ def solve(
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
     if not isinstance(same_piece, (bool, np.bool_)):
         raise StudyError([f"same_piece = {shown(same_piece)}: must be true or false"])
+    if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
+        raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     draft = Draft()
     draft.laws([given.get("micro") for given in (parameters, *rows)])
     scene = read_scene(parameters, cases, same_piece=bool(same_piece))
@@ -192,6 +198,7 @@ def solve(
     if chunks is None:
         arrays = solved(definition, workers, stream, begun)
         found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
+        found = with_sensitivities(definition, found) if sensitivities else found
     else:
         from .lazy import lazily  # the arrays of dask take a while to import
 

@@ -16,6 +16,7 @@ from solver.laws import Law
 from .carried import with_coordinates
 from .data.dataset import parts
 from .data.si import dataset_of
+from .derivatives import with_sensitivities
 from .in_words import FarOutside, doubts, far_outside
 from .inputs.definition import POINTS, StudyError
 from .inputs.reading import from_call
@@ -88,6 +89,7 @@ def solve(
     same_piece: bool = False,
     progress: bool | None = None,
     chunks: dict | None = None,
+    sensitivities: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -134,6 +136,8 @@ def solve(
     chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
         are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
         one chunk
+    sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
+        that is a number; by a Poisson ratio d ln a/d ratio. B and beta that are fitted to Nbar and Ra stay as they are
     parameters : of registered laws
 
     Returns
@@ -171,6 +175,8 @@ def solve(
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
+    if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
+        raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
     definition = from_call(parameters, rows, same_piece, tables)
     if far := far_outside(definition):
@@ -178,6 +184,7 @@ def solve(
     if chunks is None:
         arrays = solved(definition, workers, stream, begun)
         found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
+        found = with_sensitivities(definition, found) if sensitivities else found
     else:
         from .lazy import lazily  # the arrays of dask take a while to import
 

@@ -29,7 +29,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "data", "in_words", "files", "store", "work"),
-        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -237,7 +237,8 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     from study.inputs.vocabulary import BODIES, PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks"}
+    beside |= {"sensitivities", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

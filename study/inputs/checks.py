@@ -92,7 +92,10 @@ def _taken(given: Given, name: str) -> list[str]:
     found = []
     for dim in given.inputs[name].dims:
         owner = given.inputs.get(dim)
-        parameter = dim in PARAMETERS or dim in SCENE or dim in BODIES
+        of_scene = dim in SCENE or dim in BODIES
+        if of_scene and not given.physical:  # a study without units has no such parameter
+            continue
+        parameter = dim in PARAMETERS or of_scene
         of_units = given.physical and dim in ROWS and ROWS[dim].unit != "1"
         if dim == MOVED:
             found.append(f'{name}: a dimension cannot be called "{dim}" here')

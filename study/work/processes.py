@@ -56,7 +56,12 @@ class Processes:
                 pickle.dump(task, process.stdin)
                 process.stdin.flush()
                 return pickle.load(process.stdout)
-            except (EOFError, OSError, pickle.UnpicklingError):  # the process has ended, perhaps in the middle
+            except (
+                EOFError,
+                OSError,
+                ValueError,
+                pickle.UnpicklingError,
+            ):  # it has ended, or `end` has closed its pipe
                 self._mine.process = None
         return Failure(KILLED, "")
 

@@ -237,29 +237,3 @@ def test_a_process_that_nobody_asks_ends():
 def test_workers_are_counted(workers):
     with pytest.raises(StudyError, match=r"^workers = .*: must be a whole number, 1 or more$"):
         study.solve(P=1e-5, **SMOOTH, workers=workers)
-
-
-class Recorder:
-    """In place of threads or processes of a pool: whether they were ended."""
-
-    def __init__(self):
-        self.ended = False
-
-    def shutdown(self, **_):
-        self.ended = True
-
-    end = shutdown
-
-
-def test_a_forked_process_has_no_workers_and_leaves_those_of_its_parent_alone(monkeypatch):
-    """It would write into the pipes of its parent's workers, or kill them when it ends."""
-    pool, mine = engine._Pool(), engine.os.getpid()
-    pool.count, pool._owner, pool._threads, pool._processes = 3, mine, Recorder(), Recorder()
-    assert [pool.reuse(most) for most in (2, 5)] == [2, 3]
-    with monkeypatch.context() as forked:
-        forked.setattr(engine.os, "getpid", lambda: mine + 1)
-        pool.end()
-        assert not (pool._threads.ended or pool._processes.ended) and pool.reuse(5) == 0
-    pool.count = 3
-    pool.end()
-    assert pool._threads.ended and pool._processes.ended and pool.reuse(5) == 0

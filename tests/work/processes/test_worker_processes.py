@@ -13,6 +13,7 @@ from line_study import load, present
 from same import assert_same
 from tasks import note_and_die, note_and_wait
 
+from study.work import engine
 from study.work.cases import Failure
 from study.work.engine import processes_for
 from study.work.processes import ATTEMPTS, KILLED, Processes
@@ -164,3 +165,29 @@ def test_an_interrupt_of_all_processes_is_the_runs_alone(opened, moment):
     assert text in ("", "interrupted; finished blocks are kept, the same command goes on from there\n"), "or it began"
     wait_for(lambda: not workers_of(process))
     assert_ends_well(opened, BEFORE if moment == "at work" else present(opened))
+
+
+class Recorder:
+    """In place of threads or processes of a pool: whether they were ended."""
+
+    def __init__(self):
+        self.ended = False
+
+    def shutdown(self, **_):
+        self.ended = True
+
+    end = shutdown
+
+
+def test_a_forked_process_has_no_workers_and_leaves_those_of_its_parent_alone(monkeypatch):
+    """It would write into the pipes of its parent's workers, or kill them when it ends."""
+    pool, mine = engine._Pool(), engine.os.getpid()
+    pool.count, pool._owner, pool._threads, pool._processes = 3, mine, Recorder(), Recorder()
+    assert [pool.reuse(most) for most in (2, 5)] == [2, 3]
+    with monkeypatch.context() as forked:
+        forked.setattr(engine.os, "getpid", lambda: mine + 1)
+        pool.end()
+        assert not (pool._threads.ended or pool._processes.ended) and pool.reuse(5) == 0
+    pool.count = 3
+    pool.end()
+    assert pool._threads.ended and pool._processes.ended and pool.reuse(5) == 0

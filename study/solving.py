@@ -26,8 +26,8 @@ from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
+from .work.engine import solved
 from .work.screen import screen_of
-from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
 """Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""

@@ -46,8 +46,7 @@ class Report:
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `workers.engine`
-    processes : workers may be processes, which do not know what the calling program itself defines
+    workers, scheduler : see `engine.computed`
     part : (i, n), compute the i-th of n parts only; the part that ends last writes the results
     retry : compute cases of these statuses again
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
@@ -63,7 +62,6 @@ class Order:
     results: Path
     workers: int | None = None
     scheduler: str | None = None
-    processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()
     fail_fast: bool = False

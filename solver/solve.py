@@ -3,11 +3,13 @@
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from .models.auto import cheapest
 from .models.model_error import judged
 from .models.named import model_of, solve_named
 from .models.range_of_law import RADII, has_range
+from .problem import Problem
 from .scaling import dimensionless, refused
 from .solution import Solution
 from .status import Status
@@ -16,18 +18,29 @@ from .threads import one_blas_thread
 
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN and a status
-def solve(problem, x=(0.0, 1.0)):
-    """:class:`~solver.solution.Solution` of a batch of cases: one row a case, in the order of the problem and in its
-    units. A case that cannot be solved is a status and NaN.
-
-    problem : :class:`~solver.problem.Problem`, cases of any mixture of bases, micro laws, bondings and schemes
-    x : (m,), radii r/a in [0, 1] at which the profiles p and λ are wanted (else ValueError)
+def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
+    """Solve a batch of cases. One that cannot be solved is a status and NaN.
 
     Smooth on a half-space is Hertz's closed form; smooth on a thin layer one linear solve; rough cases, and all on the
     exact layer, iterate by their scheme. Successive approximations are for asperities: a smooth case with the scheme
     "picard" is ``Status.INVALID_INPUT``. The base "auto" is the cheapest model that meets `accuracy`. That may be a
     smooth punch, to which the asperities are added afterwards: then `scheme` has no effect.
 
+    Parameters
+    ----------
+    problem : :class:`~solver.problem.Problem`, cases of any mixture of bases, micro laws, bondings and schemes
+    x : (m,), radii r/a in [0, 1] at which the profiles p and λ are wanted
+
+    Returns
+    -------
+    Solution : one row a case, in the order of the problem and in its units; the equations are in docs/model.md
+
+    Raises
+    ------
+    ValueError : x is not one-dimensional, or not within [0, 1]
+
+    Examples
+    --------
     >>> from solver import Problem
     >>> layer, asperities = {"h": 0.02, "n": 0.5, "base": "thin_layer"}, {"Nbar": 250000, "Ra": 0.004}
     >>> case = Problem.of(a=0.04, **layer, **asperities, micro="power_law", B=0.1, beta=0.5)

@@ -40,10 +40,11 @@ def test_asperities_that_are_springs():
     assert (ratios(exact, problem) < 1).all()
 
 
-@pytest.mark.parametrize("beta", [0.95, 0.85, 0.7])
+@pytest.mark.parametrize("beta", [0.98, 0.85, 0.7])
 def test_rings_of_asperities(beta):
-    """Against finer meshes and panels. Without the bound and the moved edge these are up to 5 times as far off as
-    `error`. The tolerance is for the finer answers, whose `error` is an estimate too."""
+    """Against finer meshes and panels. Without the bound those of beta = 0.98 are up to 1.4 times as far off as
+    `error`, without the moved edge too these are up to 5 times. The tolerance is for the finer answers, whose `error`
+    is an estimate too."""
     a, Ra = 0.03, 0.01
     B = np.geomspace(1e-9, 1e-3, 31) * a**2 / 2 / Ra / (2 / np.pi * a) ** beta
     law = {"micro": "power_law", "B": np.maximum(B, 1e-8), "beta": beta, "Ra": Ra, "Nbar": 1e3, "base": "half_space"}

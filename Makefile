@@ -57,7 +57,7 @@ test: $(READY) ## all tests
 
 # Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
 # the shrunken results of all studies, which are twenty seconds of computing.
-check: $(READY) lint ## for the inner loop: ruff, and the tests in tests/quick.txt, which take half a minute
+check: $(READY) lint ## for the inner loop: lint, and the tests in tests/quick.txt, which take half a minute
 	$(PYTEST) @tests/quick.txt
 
 # The rooms that compute, without files that take long because they make the same sums for more cases, or start processes.
@@ -82,6 +82,7 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800
 	$(VENV)/bin/python tests/fuzz/fuzz_studies.py 2000
 	$(VENV)/bin/python tests/fuzz/fuzz_files.py 400
+	$(VENV)/bin/python tests/fuzz/kill_runs.py 10
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/bench/benchmark.py bench.json
@@ -89,8 +90,9 @@ bench: $(READY) ## speed of the solver: bench.json
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
 	$(VENV)/bin/python tests/bench/benchmark.py --page docs/speed.md
 
-lint: $(READY) ## ruff
+lint: $(READY) ## ruff, and mypy for the public names
 	$(VENV)/bin/ruff check .
+	$(VENV)/bin/mypy
 
 clean: ## remove figures and tables that the program draws, and caches; results and .venv stay
 	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tests/repository/clean.py; fi

@@ -14,4 +14,6 @@ from setuptools import find_packages, setup
 
 STUDIES = {} if "editable_wheel" in sys.argv else {"study.studies": "studies"}
 
-setup(packages=[*find_packages(include=["solver*", "study*"]), *STUDIES], package_dir={"": ".", **STUDIES})
+PACKAGES = find_packages(include=["roughcoat*", "solver*", "study*"])
+
+setup(packages=[*PACKAGES, *STUDIES], package_dir={"": ".", **STUDIES})

@@ -5,10 +5,12 @@ limits are in docs/model.md. It needs numpy, scipy, and threadpoolctl, which kee
 """
 
 from . import closed_forms
+from .laws import Curve, Law, register
 from .laws import disc_cell as micro
-from .laws import register
 from .laws.fit import Fit, fit_power_law
+from .parameters import Parameter
 from .problem import Problem
+from .sensitivity import Sensitivities, sensitivities
 from .solution import Model, Solution
 from .solve import solve
 from .status import Status
@@ -18,14 +20,19 @@ NUMERICS_VERSION = "25"
 
 __all__ = [
     "NUMERICS_VERSION",
+    "Curve",
     "Fit",
+    "Law",
     "Model",
+    "Parameter",
     "Problem",
+    "Sensitivities",
     "Solution",
     "Status",
     "closed_forms",
     "fit_power_law",
     "micro",
     "register",
+    "sensitivities",
     "solve",
 ]

@@ -10,10 +10,16 @@ Mechanics (2019).
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 
 class SmoothContact(NamedTuple):
-    """Load P, contact radius a, indentation depth D and central pressure p0 = p(0); arrays of one shape."""
+    """A smooth contact; arrays of one shape.
+
+    Attributes
+    ----------
+    P, a, D, p0 : load, contact radius, indentation depth, and central pressure p(0)
+    """
 
     P: np.ndarray
     a: np.ndarray
@@ -21,14 +27,33 @@ class SmoothContact(NamedTuple):
     p0: np.ndarray
 
 
-def hertz(P=None, a=None, D=None, p0=None, R=1.0, E=1.0):
+def hertz(
+    P: ArrayLike | None = None,
+    a: ArrayLike | None = None,
+    D: ArrayLike | None = None,
+    p0: ArrayLike | None = None,
+    R: float | np.ndarray = 1.0,
+    E: float | np.ndarray = 1.0,
+) -> SmoothContact:
     """Smooth sphere on a homogeneous half-space: P, a, D and p(0) from any one of them.
 
-    :class:`SmoothContact`: P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R).
+    P = 4 E a³/(3 R), D = a²/R, p0 = 2 E a/(pi R): Johnson (1985), Eqs (4.22) to (4.24).
 
-    P, a, D, p0 : load, contact radius, indentation depth, pressure in the centre, > 0; exactly one (else ValueError)
+    Parameters
+    ----------
+    P, a, D, p0 : load, contact radius, indentation depth, pressure in the centre, > 0; exactly one
     R, E : radius of the sphere, and reduced modulus E* of the half-space, > 0
 
+    Returns
+    -------
+    SmoothContact : arrays of the shape to which the arguments broadcast
+
+    Raises
+    ------
+    ValueError : not exactly one of P, a, D, p0
+
+    Examples
+    --------
     >>> print(f"{hertz(P=2.70408e-5).D:.5e}")
     7.43681e-04
     """
@@ -44,27 +69,67 @@ def hertz(P=None, a=None, D=None, p0=None, R=1.0, E=1.0):
     return SmoothContact(P=4 / 3 * E * a**3 / R, a=a, D=a * a / R, p0=2 / np.pi * E * a / R)
 
 
-def hertz_pressure(x, p0):
-    """Hertz's pressure p0 sqrt(1 - x²) at the radii x = r/a in [0, 1], in the unit of p0; x and p0 broadcast."""
+def hertz_pressure(x: ArrayLike, p0: float | np.ndarray) -> np.ndarray:
+    """Hertz's pressure p0 sqrt(1 - x²), Johnson (1985), Eq. (3.39).
+
+    Parameters
+    ----------
+    x : radii r/a in [0, 1]
+    p0 : pressure in the centre
+
+    Returns
+    -------
+    numpy.ndarray : in the unit of p0; x and p0 broadcast
+
+    Examples
+    --------
+    >>> hertz_pressure([0, 0.6, 1], 2.0).round(12).tolist()
+    [2.0, 1.6, 0.0]
+    """
     x = np.asarray(x, dtype=float)
     return p0 * np.sqrt((1 - x) * (1 + x))
 
 
-def thin_layer_on_rigid_base(P=None, a=None, D=None, *, h, nu1=0.3, bonded=False, R=1.0, E=1.0):
+def thin_layer_on_rigid_base(
+    P: ArrayLike | None = None,
+    a: ArrayLike | None = None,
+    D: ArrayLike | None = None,
+    *,
+    h: float | np.ndarray,
+    nu1: ArrayLike = 0.3,
+    bonded: bool = False,
+    R: float | np.ndarray = 1.0,
+    E: float | np.ndarray = 1.0,
+) -> SmoothContact:
     """Smooth sphere on a thin layer on a rigid base: P, a, D and p(0) from any one of the first three.
 
     The layer is a foundation of springs: each place gives way by C p(r) under its own pressure. That is the leading
     order for a layer much thinner than the contact, h << a, and Eq. (3) of the model for n -> 0.
 
-    :class:`SmoothContact`: P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²).
+    P = pi a⁴/(4 R C), D = a²/(2 R), p0 = a²/(2 R C); the pressure is p0 (1 - (r/a)²): Johnson (1985), 5.8.
     C = 2 A2 h/E, with A2 of Eq. (2) at n = 0: 1/2 without friction, (1 - 2 nu1)/(2 (1 - nu1)²) bonded.
 
-    P, a, D : load, contact radius, indentation depth, > 0; exactly one of them (else ValueError)
+    Parameters
+    ----------
+    P, a, D : load, contact radius, indentation depth, > 0; exactly one of them
     h : thickness of the layer, > 0
     nu1 : Poisson ratio of the layer in (-1, 0.5), used when bonded. At 0.5 a bonded layer is no foundation of springs:
         P and p0 are infinite at given a or D, and NaN at given P
     bonded : perfect bond of layer and base, or a frictionless interface
     R, E : radius of the sphere, and reduced modulus E1* of the layer, > 0
+
+    Returns
+    -------
+    SmoothContact : arrays of the shape to which the arguments broadcast
+
+    Raises
+    ------
+    ValueError : not exactly one of P, a, D
+
+    Examples
+    --------
+    >>> print(f"{thin_layer_on_rigid_base(a=0.1, h=0.01).P:.5e}")
+    7.85398e-03
     """
     if sum(v is not None for v in (P, a, D)) != 1:
         raise ValueError("thin_layer_on_rigid_base: give exactly one of P, a, D")

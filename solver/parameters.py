@@ -16,6 +16,8 @@ EVERY = ("", ())
 class Parameter(NamedTuple):
     """One parameter of a case.
 
+    Attributes
+    ----------
     default : its value where it is not given; None: it has none, and must be given if a case needs it.
     choices : the words that a text may be; () for a number.
     whole : whether the number is an integer.
@@ -54,7 +56,7 @@ CONTROL = {
 
 #: All other parameters; their meanings and units are in :class:`~solver.problem.Problem`. A law declares its own:
 #: `laws.register` adds them here, and the name of the law to the choices of `micro`. `schemes` adds those of `scheme`.
-#: Keys of cases leave defaults out (study/spec/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
+#: Keys of cases leave defaults out (study/inputs/identity.py): whoever changes a default changes `NUMERICS_VERSION`.
 PARAMETERS = {
     "h": Parameter(interval="[1e-12, 1e6]", needed_by=LAYERED, powers=(0, 1)),
     "n": Parameter(interval="[1e-9, 1e9]", also=(0,), needed_by=LAYERED),  # 0: a rigid base

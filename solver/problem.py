@@ -1,8 +1,10 @@
 """What is asked: arrays over a batch of cases."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from . import laws
 from .parameters import CONTROL, PARAMETERS, Parameter, allowed, among
@@ -15,8 +17,10 @@ class Problem:
 
     Lengths are in the unit of `R`, moduli in that of `E2`, loads in that of E2 R², `Nbar` in that of R⁻²; with R = E2 =
     1 these are the units of the paper. The bounds are in solver/parameters.py. What has a default below may be left
-    out; the rest must be given where a case needs it.
+    out; the rest must be given where a case needs it. Registered laws have parameters besides.
 
+    Attributes
+    ----------
     control, value : the quantity that is given, "P", "a" or "D", and its value: load, radius of the nominal contact
         area or indentation depth
     h, n : thickness of the layer, and ratio of the reduced moduli E1*/E2*; needed by every base but "half_space".
@@ -45,8 +49,6 @@ class Problem:
     nodes = 0 : number of nodes; 0: chosen by `rtol`
     max_iterations = 0 : most steps on a mesh, or approximations at one radius; 0: the limit of the scheme
     R, E2 = 1 : radius of the punch, and reduced modulus E2* of the half-space, both > 0, in any units
-
-    Registered laws have others besides.
     """
 
     control: str
@@ -65,15 +67,31 @@ class Problem:
         return self.parameters[name] if name in self.parameters else np.full(len(self), np.nan)
 
     @classmethod
-    def of(cls, *, P=None, a=None, D=None, **parameters):
+    def of(
+        cls, *, P: ArrayLike | None = None, a: ArrayLike | None = None, D: ArrayLike | None = None, **parameters: Any
+    ) -> "Problem":
         """Broadcast scalars and (B,) arrays to a batch.
 
-        Exactly one of P, a, D is given. What else is not given has its default, or is NaN where no case needs it.
+        What is not given has its default, or is NaN where no case needs it. A number out of bounds, NaN, and the scheme
+        "picard" of a smooth case are no errors: that case gets ``Status.INVALID_INPUT``.
 
-        Raises TypeError for a parameter that does not exist; ValueError: not exactly one control, a parameter missing
-        that some case needs, shapes that do not broadcast to (B,), a text outside its choices. A number out of bounds,
-        NaN, and the scheme "picard" of a smooth case are no errors: that case gets ``Status.INVALID_INPUT``.
+        Parameters
+        ----------
+        P, a, D : load, radius of the nominal contact area, indentation depth; exactly one of them
+        parameters : as in the docstring of the class
 
+        Returns
+        -------
+        Problem
+
+        Raises
+        ------
+        TypeError : a parameter does not exist
+        ValueError : not exactly one control, a parameter missing that some case needs, shapes that do not broadcast to
+            (B,), a text outside its choices
+
+        Examples
+        --------
         >>> Problem.of(P=[1e-5, 2e-5], Nbar=250000, Ra=0.004, base="half_space").h
         array([nan, nan])
         >>> Problem.of(P=1e-5, n=0.5, Nbar=250000, Ra=0.004)
@@ -102,25 +120,58 @@ class Problem:
     def __len__(self):
         return len(self.value)
 
-    def take(self, index):
+    def take(self, index: Any) -> "Problem":
+        """Some of the cases.
+
+        Parameters
+        ----------
+        index : whole numbers, a slice, or bool (B,)
+
+        Returns
+        -------
+        Problem
+        """
         return Problem(self.control, self.value[index], {name: own[index] for name, own in self.parameters.items()})
 
-    def but(self, **parameters):
-        """The batch with other values of some parameters, (B,) or one for all cases."""
+    def but(self, **parameters: Any) -> "Problem":
+        """The batch with other values of some parameters.
+
+        Parameters
+        ----------
+        parameters : (B,) each, or one value for all cases
+
+        Returns
+        -------
+        Problem
+        """
         new = {name: np.broadcast_to(own, len(self)) for name, own in parameters.items()}
         return Problem(self.control, self.value, self.parameters | new)
 
-    def rough(self):
-        """(B,) bool: the case has asperities."""
+    def rough(self) -> np.ndarray:
+        """Which cases are rough.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: the case has asperities
+        """
         return np.all([self.micro != name for name, law in laws.LAWS.items() if not law.rough], axis=0)
 
-    def without_scheme(self):
-        """(B,) bool: the case is smooth and asks for successive approximations, which are for asperities."""
+    def without_scheme(self) -> np.ndarray:
+        """Which cases ask for a scheme that they cannot have.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: the case is smooth and asks for successive approximations, which are for asperities
+        """
         return (self.scheme == "picard") & ~self.rough()
 
-    def invalid(self):
-        """(B,) bool: a number that the case needs is not finite or out of bounds. The bounds are those of a problem in
-        units R = E2* = 1."""
+    def invalid(self) -> np.ndarray:
+        """Which cases have a number that they cannot have. The bounds are those of a problem in units R = E2* = 1.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds
+        """
         bad = ~allowed(CONTROL[self.control], self.value)
         having = {}
         for name, own in PARAMETERS.items():

@@ -13,26 +13,26 @@ from .parameters import PARAMETERS
 from .scaling import as_cases
 from .solution import Solution
 
-#: Name -> ``solve(part, x)``.
+#: Name -> ``function(part, x)``.
 SCHEMES = {}
 
 
-def scheme(solve):
+def scheme(function):
     """Decorator: make a function a scheme of its name, and the name a choice of the parameter `scheme`.
 
-    ``solve(part, x) -> Solution`` gets a :class:`~solver.problem.Problem` of one micro law, one body and one
+    ``function(part, x) -> Solution`` gets a :class:`~solver.problem.Problem` of one micro law, one body and one
     `max_iterations`, in units R = E2* = 1, and the radii x (m,); docs/extending.md shows one. A case whose error is
     above its rtol is ``Status.TOLERANCE_NOT_MET``, whatever the scheme says.
 
     Raises ValueError for the name of a scheme of another module: its results on disk would be taken for those of this
     one.
     """
-    other = SCHEMES.get(solve.__name__, solve)
-    if other.__module__ != solve.__module__:
-        raise ValueError(f"scheme {solve.__name__}: {other.__module__} has one of this name: take another name")
-    SCHEMES[solve.__name__] = solve
+    other = SCHEMES.get(function.__name__, function)
+    if other.__module__ != function.__module__:
+        raise ValueError(f"scheme {function.__name__}: {other.__module__} has one of this name: take another name")
+    SCHEMES[function.__name__] = function
     PARAMETERS["scheme"] = PARAMETERS["scheme"]._replace(choices=tuple(SCHEMES))
-    return solve
+    return function
 
 
 @scheme

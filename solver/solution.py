@@ -1,7 +1,9 @@
 """What is answered: arrays over a batch of cases."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass, fields
 from enum import IntEnum
+from typing import Any
 
 import numpy as np
 
@@ -43,6 +45,8 @@ class Solution:
     A case that fails raises nothing: `status` says why, and whether the last numbers are kept. A case without numbers
     has NaN everywhere but in the quantity that was given. The bounds below are those of a converged case.
 
+    Attributes
+    ----------
     a, P, D : > 0; radius of the nominal contact area (unit R), load (E2 R²), indentation depth (14) (R)
     p0, p_max : > 0; nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a
         smooth punch (E2)
@@ -86,8 +90,18 @@ class Solution:
         return f"Solution({len(self.a)} cases: {ended or 'none'}; profiles at {self.p.shape[1]} radii)"
 
     @classmethod
-    def of(cls, size, points, **values):
-        """`size` cases with profiles at `points` radii and the arrays `values`; what is not given is NaN, counts 0."""
+    def of(cls, size: int, points: int, **values: Any) -> "Solution":
+        """Cases with the same values, or with arrays of them.
+
+        Parameters
+        ----------
+        size, points : number of cases, B, and of radii of the profiles, m
+        values : arrays (B,), profiles (B, m), or one value for all; what is not given is NaN, counts are 0
+
+        Returns
+        -------
+        Solution
+        """
 
         def array(name):
             shape = (size, points) if name in _PROFILES else (size,)
@@ -97,27 +111,57 @@ class Solution:
         return cls(**{f.name: array(f.name) for f in fields(cls)})
 
     @classmethod
-    def join(cls, size, points, pieces):
-        """`size` cases with profiles at `points` radii, put together from ``pieces`` (index, Solution). If a case is in
-        two pieces, the last one counts; a case in none has no numbers."""
+    def join(cls, size: int, points: int, pieces: Iterable[tuple[Any, "Solution"]]) -> "Solution":
+        """Put pieces together.
+
+        Parameters
+        ----------
+        size, points : number of cases, B, and of radii of the profiles, m
+        pieces : pairs of an index into the cases and the solution of these. If a case is in two pieces, the last one
+            counts; a case in none has no numbers
+
+        Returns
+        -------
+        Solution
+        """
         whole = vars(cls.of(size, points))
         for index, piece in pieces:
             for name, values in vars(piece).items():
                 whole[name][index] = values
         return cls(**whole)
 
-    def take(self, index):
+    def take(self, index: Any) -> "Solution":
+        """Some of the cases.
+
+        Parameters
+        ----------
+        index : whole numbers, a slice, or bool (B,)
+
+        Returns
+        -------
+        Solution
+        """
         return Solution(**{name: values[index] for name, values in vars(self).items()})
 
-    def not_finite(self):
-        """(B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or infinite."""
+    def not_finite(self) -> np.ndarray:
+        """Which cases lack a number that they should have.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: by its status the case has numbers, but one of them, not `model_error`, is NaN or
+            infinite
+        """
         ended = np.isin(self.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
         return ended & ~np.all([_of_all(np.isfinite(getattr(self, name))) for name in _NUMBERS], axis=0)
 
-    def out_of_range(self):
-        """(B,) bool: the case has converged to a number that is negative, 0 or above 1 where it cannot be.
+    def out_of_range(self) -> np.ndarray:
+        """Which cases have converged to a number that cannot be.
 
         To be asked in units R = E2* = 1: in others a positive number may underflow to 0.
+
+        Returns
+        -------
+        numpy.ndarray : (B,) bool: a number is negative, 0 or above 1 where it cannot be
         """
         ended = self.status == Status.CONVERGED
         right = ended.copy()
@@ -128,8 +172,18 @@ class Solution:
                 right &= _of_all(~(values > 1 + _ROUNDING))
         return ended & ~right
 
-    def refused(self, mask, status):
-        """The solution without the numbers of the cases in `mask`, (B,) bool; they get this status."""
+    def refused(self, mask: np.ndarray, status: Status) -> "Solution":
+        """The solution without the numbers of some cases.
+
+        Parameters
+        ----------
+        mask : (B,) bool, these cases
+        status : that they get
+
+        Returns
+        -------
+        Solution
+        """
         if not mask.any():
             return self
         arrays = {name: np.array(values) for name, values in vars(self).items()}

@@ -18,7 +18,9 @@ class Status(IntEnum):
     BUDGET_SPENT = 9, "the work that one case may take is spent; last numbers, if any, kept"
     OUTSIDE_LAW = 10, "the nominal pressures are not in the range that the micro law knows; no numbers"
 
-    def __new__(cls, value, meaning):
+    meaning: str
+
+    def __new__(cls, value: int, meaning: str) -> "Status":
         """The member of a value, an int, with its meaning."""
         found = int.__new__(cls, value)
         found._value_, found.meaning = value, meaning

@@ -66,7 +66,7 @@ def parser() -> argparse.ArgumentParser:
     again.completer = partial(proposed, "--status")
     sub = command("computing", "status", "say what has been computed", "FILE")
     sub.add_argument("--yes", action="store_true", help="count however many cases there are")
-    text = "compare results with their checksums: exit code 1 for what is damaged or has none"
+    text = "compare results with their digest: exit code 1 for what is damaged or has none"
     command("computing", "verify", text, "FILE")
     text = "remove blocks that do not serve a study as it is now, say which; never results"
     command("computing", "clean", text, "FILE")
@@ -127,7 +127,7 @@ def perform(options, kept: str) -> int:
 
 
 def _attempt(act, options, item, kept: str) -> int:
-    from .spec.definition import StudyError
+    from .inputs.definition import StudyError
 
     try:
         return act(options, item)

@@ -4,29 +4,36 @@ import os
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import xarray as xr
 
 from .data.provenance import command_line
 from .files.access import Unusable
-from .files.examine import Condition
-from .files.results_file import LAZY, open_lazily, open_results
-from .physical.study_file import read
-from .spec.definition import Definition, StudyError
-from .spec.places import study_file
-from .spec.vocabulary import NOT_RUN
+from .files.examine import Condition, statuses
+from .files.results_file import LAZY, opened
+from .inputs.definition import Definition, StudyError
+from .inputs.places import study_file
+from .inputs.reading import read
+from .inputs.vocabulary import NOT_RUN
 from .store.blocks import Store, count_statuses, inventory
-from .store.earlier import earlier, of_what, statuses
-from .store.tidy import clean
+from .store.clean import clean
 from .work.cost import Estimate
-from .work.plan import Report, belongs, check_countable, look
+from .work.plan import Report, belongs, check_countable, look, of_what
 from .work.run import dry_run, partial_dataset, run
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True, eq=False)
 class Study:
     """A study file, checked, and the folder of its results.
 
+    Attributes
+    ----------
+    definition : what the study computes
+    results : folder of the results
     home : the folder from which `results` is, if it is relative; None: the working folder of each moment
     """
 
@@ -46,8 +53,26 @@ class Study:
         """Folder of the results, short while the program is where it was when the study was loaded."""
         return self.results if self.home in (None, _working_folder()) else self.home / self.results
 
-    def run(self, **options) -> Report:
-        """Compute what is missing and write the results file; options as of `study.work.plan.Order`."""
+    def run(self, **options: Any) -> Report:
+        """Compute what is missing and write the results file.
+
+        Parameters
+        ----------
+        options : workers, scheduler, part, retry, fail_fast, force, yes, progress: as of `study.work.plan.Order`
+
+        Returns
+        -------
+        Report : how many cases there are, how many were computed now and how they ended, and where the results are
+
+        Raises
+        ------
+        StudyError : an option is wrong, or the results file that is there must not be replaced
+        OSError : something cannot be written. Blocks that are finished are kept, and the next run goes on from there
+
+        Examples
+        --------
+        `rc.load("studies/mine.toml").run(workers=4)`: docs/studies.md.
+        """
         return run(self.definition, self._folder, command=command_line(), **options)
 
     def dry_run(self, workers: int | None = None, yes: bool = False, force: bool = False) -> Estimate:
@@ -55,20 +80,40 @@ class Study:
 
         Computes a sample, writes nothing.
 
-        Raises StudyError for a very large study of which something is on disk, unless `yes`: looking takes memory.
+        Parameters
+        ----------
+        workers, yes, force : as of `run`
+
+        Returns
+        -------
+        Estimate : cases, seconds, bytes in memory and on disk
+
+        Raises
+        ------
+        StudyError : a very large study of which something is on disk, unless `yes`: looking takes memory
         """
         return dry_run(self.definition, self._folder, workers=workers, yes=yes, force=force)
 
     def status(self, yes: bool = False) -> dict:
-        """State, cases, status -> number of cases, path of the results, what is wrong with them.
-
-        With spreads a case counts as often as it is solved; of complete results the statuses are counted once for each.
+        """What has been computed.
 
         The state is "done", "outdated", "partial" or "new". For a results file that cannot be used it is "damaged",
-        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. Attributes, coordinates
-        and statuses are compared with their checksums here; `verify` compares all numbers. Cases count as computed if
-        they are in blocks, or in an outdated results file that a run would use. Raises StudyError for a very large
-        study that is neither new nor done, unless `yes`: counting takes memory.
+        "foreign" (not written by roughcoat) or "unreadable", and `reason` says what is wrong. A file of up to 200 MB in
+        memory is compared with its digest; `verify` compares a larger one too. Cases count as computed if they are in
+        blocks. With spreads a case counts as often as it is solved; of complete results the statuses are counted once
+        for each.
+
+        Parameters
+        ----------
+        yes : count however many cases there are
+
+        Returns
+        -------
+        dict : "state", "cases", "counts" (status -> number of cases), "path" of the results, "reason"
+
+        Raises
+        ------
+        StudyError : a very large study that is neither new nor done, unless `yes`: counting takes memory
         """
         with suppress(FileNotFoundError):  # somebody removed the results meanwhile: look again
             return self._status(yes)
@@ -76,7 +121,7 @@ class Study:
 
     def _status(self, yes: bool) -> dict:
         store = self._store
-        found = look(store, ("status",))
+        found = look(store, LAZY)
         state = "outdated" if found.good else {"missing": "new"}.get(found.kind, found.kind)
         state = "done" if belongs(self.definition, found) else state
         counts = {}
@@ -87,54 +132,99 @@ class Study:
         elif not check_countable(store, yes):
             counts = {NOT_RUN: self.definition.grid.size}
         else:
-            known = inventory(store, earlier(self.definition, found).source)
+            known = inventory(store)
             counts = count_statuses(known.status)
             state = "partial" if state == "new" and len(known.missing) < len(known.keys) else state
         cases = self.definition.grid.size
         return {"state": state, "cases": cases, "counts": counts, "path": store.path, "reason": found.reason}
 
     def verify(self) -> Condition:
-        """All of the results file against its checksums, see `study.files.examine.Condition`."""
+        """Compare all of the results file with its digest.
+
+        Returns
+        -------
+        Condition : its `kind` is "sound" where nothing is wrong, else `reason` says what is: `study.files.examine`
+        """
         return look(self._store)
 
     def clean(self) -> list[str]:
-        """Remove blocks that do not serve the study as it is; says which. Never touches results."""
-        return clean(self._store, belongs(self.definition, look(self._store)))
+        """Remove blocks that hold no case of the study as it is. Never touches results.
+
+        Returns
+        -------
+        list of str : lines that say what was removed, and what stays
+        """
+        return clean(self._store)
 
     def open(self, partial: bool = False) -> xr.Dataset:
-        """The results. Raises StudyError when there are none, none of this definition, or they are damaged.
+        """The results.
 
-        Any thread may open results, and read them, while others run studies.
+        Any thread may open results, and read them, while others run studies. Results of more than 200 MB in memory are
+        opened lazily, as dask arrays in chunks of some thousand cases.
 
-        Results of more than 200 MB in memory are opened lazily, as dask arrays in chunks of some thousand cases.
-
+        Parameters
+        ----------
         partial : give the blocks computed so far instead, with status 127 (not run) for the rest
+
+        Returns
+        -------
+        xarray.Dataset : as `study.solve` gives it
+
+        Raises
+        ------
+        StudyError : there are none, none of this definition, or they are damaged
         """
-        path, found = self._store.path, look(self._store, ())
+        path, found = self._store.path, look(self._store, LAZY)
         if belongs(self.definition, found):
-            return open_lazily(path) if found.unpacked > LAZY else open_results(path)
+            return opened(found)
         if partial:
-            with suppress(FileNotFoundError):
-                return partial_dataset(self.definition, self._folder)
-            return self.open()  # a run has ended meanwhile, and removed its blocks
+            return partial_dataset(self.definition, self._folder)
         if found.good or found.kind == "missing":
             reason = f"holds results of {of_what(found)}" if found.good else "does not exist"
             raise StudyError([f"{path}: {reason}; run the study first"])
-        again = "; run the study, which computes again what is damaged" if found.kind == "damaged" else ""
+        again = "; run the study, which writes it again" if found.kind == "damaged" else ""
         raise Unusable(path, found.kind, found.reason + again)
 
-    def plot(self, x: str, y: str, hue: str = "", **where):
-        """A figure of the results, `y` against `x` with a curve for each `hue`: see `study.plot`."""
+    def plot(self, x: str, y: str, hue: str = "", **where: Any) -> "Figure":
+        """A figure of the results: see `study.plot`.
+
+        Parameters
+        ----------
+        x, y, hue, where : as of `study.plot`
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        StudyError : there are no results, or what `study.plot` raises
+        """
         from .figures.lines import plot  # matplotlib takes a while
 
         return plot(self.open(), x, y, hue, **where)
 
 
-def load(path, results="results") -> Study:
-    """Read and check a study file. Raises StudyError with all that is wrong with it.
+def load(path: str | os.PathLike, results: str | os.PathLike = "results") -> Study:
+    """Read and check a study file.
 
+    Parameters
+    ----------
     path : of the file, or the name of a study in studies/ or of one that comes with roughcoat, such as "dlc_on_steel"
     results : folder of the results, of the working folder as it is now, wherever the program goes later
+
+    Returns
+    -------
+    Study
+
+    Raises
+    ------
+    StudyError : the file is not there, or has mistakes: all of them, a line each
+
+    Examples
+    --------
+    >>> load("main_case")
+    Study("main_case", 6 cases (case 6), results/main_case.nc)
     """
     return Study(read(study_file(path)), Path(os.path.expanduser(results)), _working_folder())
 

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from .physical.bodies import BODIES
-from .spec.vocabulary import ROWS
+from .inputs.vocabulary import BODIES, ROWS
 from .specimen.foreign import plain
 
 

@@ -4,6 +4,7 @@ Those beside studies are run when they are asked for; a list of names runs none 
 """
 
 import io
+import os
 from pathlib import Path
 
 import numpy as np
@@ -14,9 +15,10 @@ from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, Drawing, code_of, entry, names, open_studies
 from .figures.style import style
-from .spec.definition import StudyError
+from .inputs.definition import StudyError
 
-__all__ = ["FIGURES", "TABLES", "compose", "draw", "tabulate", "usual"]
+__all__ = ["FIGURES", "TABLES", "captions", "compose", "draw", "tabulate"]
+Folder = str | os.PathLike
 ENDINGS = {"figure": ("csv", "pdf", "png"), "table": ("txt", "csv", "tex"), "drawing": ("svg", "pdf", "png")}
 CAPTIONS = "captions"  # name among the figures of the file that holds all captions
 LETTERS = 21  # letters on an inch of the line above a figure that states its parameters
@@ -74,11 +76,21 @@ def renewed(kind: str, name: str, results="results", folder="figures") -> list[P
     return paths
 
 
-def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
-    """A figure as it will be written, the columns of numbers that it shows, and the title that its files carry.
+def compose(name: str, results: Folder = "results") -> tuple[Figure, Columns, str]:
+    """A figure as it will be written.
 
-    Raises StudyError when there is no such figure, a study it needs has no results, or its function does not return
-    columns.
+    Parameters
+    ----------
+    name : of the figure
+    results : folder of the results
+
+    Returns
+    -------
+    tuple : the figure, the columns of numbers that it shows, and the title that its files carry
+
+    Raises
+    ------
+    StudyError : there is no such figure, a study it needs has no results, or its function does not return columns
     """
     recipe = entry("figure", name)
     datasets = open_studies(name, recipe.studies, results)
@@ -95,11 +107,24 @@ def compose(name: str, results="results") -> tuple[Figure, Columns, str]:
     return figure, columns, f"{stem(name)}, studies {' '.join(digests)}".removesuffix(", studies ")
 
 
-def draw(name: str, results="results", folder="figures") -> list[Path]:
-    """Write a figure as FOLDER/NAME.csv, its numbers, .pdf and .png; returns the three paths.
+def draw(name: str, results: Folder = "results", folder: Folder = "figures") -> list[Path]:
+    """Write a figure as FOLDER/NAME.csv, its numbers, .pdf and .png.
 
     A drawing is copied as .svg, .pdf and .png; "captions" is FOLDER/captions.md. The same datasets give the same bytes:
-    no file carries a date. Raises what `compose` raises.
+    no file carries a date.
+
+    Parameters
+    ----------
+    name : of the figure
+    results, folder : folders of the results, and of the files that are written
+
+    Returns
+    -------
+    list of pathlib.Path : the files
+
+    Raises
+    ------
+    StudyError : as `compose`
     """
     if name == CAPTIONS:
         return [write(Path(folder) / "captions.md", captions(results))]
@@ -114,8 +139,17 @@ def copies(made: Drawing) -> list[Path]:
     return [made.stem().with_suffix(f".{ending}") for ending in ENDINGS["drawing"]]
 
 
-def captions(results="results") -> str:
-    """A paragraph for each figure whose studies have results: what it shows, and the parameters of its studies."""
+def captions(results: Folder = "results") -> str:
+    """A paragraph for each figure whose studies have results: what it shows, and the parameters of its studies.
+
+    Parameters
+    ----------
+    results : folder of the results
+
+    Returns
+    -------
+    str : in Markdown
+    """
     lines = ["# Captions", "", "Lengths are in R, pressures in E2*, loads in E2* R² unless an axis says otherwise.", ""]
     recipes = {name: entry("figure", name) for name in sorted(names("figure"))}
     for name, recipe in sorted(recipes.items(), key=lambda item: not isinstance(item[1], Drawing)):  # drawings first
@@ -128,7 +162,7 @@ def captions(results="results") -> str:
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
     """Write what `compose` gives as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-    contents = {"csv": csv_text(columns, rows)}
+    contents: dict[str, str | bytes] = {"csv": csv_text(columns, rows)}
     for ending, dated in (("png", {}), ("pdf", {"CreationDate": None})):
         page = io.BytesIO()
         with style():
@@ -138,8 +172,22 @@ def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]
     return [write(stem.with_suffix(f".{ending}"), contents[ending]) for ending in ENDINGS["figure"]]
 
 
-def tabulate(name: str, results="results", folder="tables") -> list[Path]:
-    """Write a table as FOLDER/NAME.txt, .csv and .tex; returns the three paths. Raises as `compose` does."""
+def tabulate(name: str, results: Folder = "results", folder: Folder = "tables") -> list[Path]:
+    """Write a table as FOLDER/NAME.txt, .csv and .tex.
+
+    Parameters
+    ----------
+    name : of the table
+    results, folder : folders of the results, and of the files that are written
+
+    Returns
+    -------
+    list of pathlib.Path : the three files
+
+    Raises
+    ------
+    StudyError : there is no such table, a study it needs has no results, or its function returns other rows
+    """
     table = entry("table", name)
     rows = table.rows(*open_studies(name, table.studies, results))
     if not isinstance(rows, list) or any(len(row) != len(table.columns) for row in rows):

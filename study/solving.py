@@ -14,19 +14,18 @@ import xarray as xr
 from solver.laws import Law
 
 from .carried import with_coordinates
-from .data.dataset import Parts, parts
+from .data.dataset import parts
+from .data.si import dataset_of
+from .derivatives import with_sensitivities
 from .in_words import FarOutside, doubts, far_outside
-from .physical.reading import read as read_scene
-from .physical.scene import dataset_of
-from .physical.study_file import complete as complete_scene
-from .spec.definition import LARGE, POINTS, StudyError, complete
-from .spec.given import Draft
-from .spec.vocabulary import NUMERICS, VOCABULARY
+from .inputs.definition import POINTS, StudyError
+from .inputs.reading import from_call
+from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
+from .work.engine import solved
 from .work.screen import screen_of
-from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
 """Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
@@ -89,6 +88,8 @@ def solve(
     workers: int | None = None,
     same_piece: bool = False,
     progress: bool | None = None,
+    chunks: dict | None = None,
+    sensitivities: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -132,6 +133,11 @@ def solve(
         off together; otherwise each is a piece of its own, and their spreads are independent
     progress : whether a call of more than two seconds says how far it is, in a notebook or on stderr; None: in a
         notebook or on a terminal
+    chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
+        are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
+        one chunk
+    sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
+        that is a number; by a Poisson ratio d ln a/d ratio. B and beta that are fitted to Nbar and Ra stay as they are
     parameters : of registered laws
 
     Returns
@@ -159,6 +165,8 @@ def solve(
     if workers is not None and (type(workers) is not int or workers < 1):
         raise StudyError([f"workers = {shown(workers)}: must be a whole number, 1 or more"])
     stream = screen_of(plain(progress))
+    if chunks is not None and (workers is not None or plain(progress)):
+        raise StudyError(["chunks: dask divides the work and says how far it is: leave out workers and progress"])
     ranges = [name for name, given in parameters.items() if isinstance(given, dict) and {"start", "stop"} <= {*given}]
     if ranges:
         hint = "a range stands in study files; here give its values, as of numpy.geomspace"
@@ -167,28 +175,24 @@ def solve(
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
-    if not isinstance(same_piece, (bool, np.bool_)):
-        raise StudyError([f"same_piece = {shown(same_piece)}: must be true or false"])
-    draft = Draft()
-    draft.laws([given.get("micro") for given in (parameters, *rows)])
-    scene = read_scene(parameters, cases, same_piece=bool(same_piece))
-    about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
-    if scene:
-        definition = complete_scene(draft, scene, [], about, most=LARGE)
-    else:
-        if cases is not None:
-            draft.cases(cases)
-        for name, given in parameters.items():
-            draft.of_any_form(name, given)
-        definition = complete(draft, *about, LARGE)
+    if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
+        raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
+    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
+    definition = from_call(parameters, rows, same_piece, tables)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
-    arrays = solved(definition, workers, stream, begun)
-    found = dataset_of(definition, settings_apart(parts(definition, arrays, "study.solve")))
+    if chunks is None:
+        arrays = solved(definition, workers, stream, begun)
+        found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
+        found = with_sensitivities(definition, found) if sensitivities else found
+    else:
+        from .lazy import lazily  # the arrays of dask take a while to import
+
+        found = lazily(definition, plain(chunks), "study.solve")
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:
         warnings.warn(text, stacklevel=2)
-    beyond = doubts(found) if scene else []
+    beyond = doubts(found) if definition.scene and chunks is None else []
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
@@ -208,14 +212,3 @@ def signature() -> inspect.Signature:
 
 
 solve.__signature__ = signature()
-
-
-def settings_apart(found: Parts) -> Parts:
-    """The parts with numerical settings that all cases share as attributes, not as coordinates.
-
-    It is done before the dataset is made, since dropping variables of a dataset copies all others.
-    """
-    shared = [name for name in NUMERICS if name in found.coords and not found.coords[name].ndim]
-    coords = {name: own for name, own in found.coords.items() if name not in shared}
-    attributes = {name: found.coords[name].values.item() for name in shared}
-    return Parts(found.variables, coords, found.attributes | attributes)

@@ -35,8 +35,10 @@ def counted(number: int, what: str) -> str:
 
 
 def program() -> str:
-    """What a user types to start this program: "roughcoat" if it was started so."""
-    return "roughcoat" if os.path.basename(sys.argv[0]).startswith("roughcoat") else "python -m study"
+    """What a user types to start this program: "roughcoat", or "python -m roughcoat" if it was not started so."""
+    folder, name = os.path.split(sys.argv[0])
+    package = "study" if (os.path.basename(folder), name) == ("study", "__main__.py") else "roughcoat"
+    return "roughcoat" if name.startswith("roughcoat") else f"python -m {package}"
 
 
 def say(text: str, stream: TextIO | None) -> OSError | None:

@@ -2,13 +2,11 @@
 
 import os
 import shutil
-import subprocess
 import tomllib
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from types import SimpleNamespace
 
 # Before numpy is imported. The processors are shared among processes of pytest; a second BLAS thread in each, which
 # waits for work at full speed, took 12 of the 16 s of tests/body/test_layered.py.
@@ -16,16 +14,19 @@ os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")
 
 import pytest
 import xarray as xr
-from children import run_forked
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
+from screens import impatient, stderr  # noqa: F401
 
 from solver import laws
 from study import open_results
 from study.files.lock import held
-from study.spec.laws import update_vocabulary
+from study.inputs.laws import update_vocabulary
+from study.work import engine
 
 collect_ignore = ["shared/hold.py"]  # importing it changes `study`: it is for processes of their own
+# What a test puts in the place of the solver is not known to worker processes. Tests of these start them.
+engine.START = engine.MANY = float("inf")
 ROOT = Path(__file__).resolve().parents[1]
 STUDIES = sorted((ROOT / "studies").glob("*/*.toml"))
 
@@ -62,13 +63,6 @@ def laws_as_they_were() -> Iterator[None]:
         update_vocabulary()
 
 
-@pytest.fixture
-def read_in_a_fork(monkeypatch) -> None:
-    """Files without a whole seal are read in a forked process: one that is started takes 1.5 s to import what it needs.
-    That it does is left to tests/files/test_seal.py and some of tests/files/test_verified.py and test_unusable.py."""
-    monkeypatch.setattr("study.files.examine.subprocess", SimpleNamespace(**vars(subprocess) | {"run": run_forked}))
-
-
 @pytest.fixture(scope="session")
 def results(tmp_path_factory) -> Path:
     """Folder with the results of every study, shrunken, and of the measurement of work and precision; nobody changes
@@ -90,8 +84,9 @@ def compute_results(folder: Path) -> None:
     """Write what the fixture `results` promises."""
     from study.figures.measured import described
     from study.figures.registry import entry
+    from study.files.examine import examine
     from study.files.results_file import write
-    from study.physical.study_file import from_tables
+    from study.inputs.reading import from_tables
     from study.studies.evidence.tradeoff import WAYS, measure
     from study.work.run import run
 
@@ -101,7 +96,8 @@ def compute_results(folder: Path) -> None:
     most = {"intervals": 2}  # the paper's way is slow
     ways = {name: replace(way, settings=way.settings[:1], most=most.get(way.varied, 5)) for name, way in WAYS.items()}
     measured = entry("measured", "tradeoff")
-    write(described(measure(10, 0, ways), "tradeoff", measured, ""), folder / "tradeoff.nc")
+    path = folder / "tradeoff.nc"
+    write(described(measure(10, 0, ways), "tradeoff", measured, ""), path, examine(path))
 
 
 @pytest.fixture(scope="session")

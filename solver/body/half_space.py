@@ -66,16 +66,13 @@ class HalfSpaceOperator(NamedTuple):
 
 class HalfSpace(NamedTuple):
     """The :class:`~solver.body.operator.Body` of modulus E (B,), in E2*, with springs of compliance C (B,), or 0. Its
-    operator is exact to rounding, and there is no cheaper one."""
+    operator is exact to rounding."""
 
     E: np.ndarray
     C: np.ndarray
 
     def take(self, index):
         return HalfSpace(self.E[index], self.C[index])
-
-    def within(self, rtol, a):
-        return self
 
     def at(self, a, mesh, near=None):
         return HalfSpaceOperator(mesh)

@@ -20,7 +20,7 @@ from .half_space import thin_layer
 from .hankel_operator import HankelOperator, rows_of
 from .operator import fitted_nodes
 from .part import parts_of
-from .wave_rule import CUT, FILM, LOOSE, place_of
+from .wave_rule import CUT, FILM, place_of
 
 #: A layer thinner than this times the radius yields nearly as the thin layer does.
 _THIN = 0.02
@@ -28,13 +28,10 @@ _THIN = 0.02
 #: mesh, for each node of a film, for each entry of the matrix of a thicker layer. _STEP and _ENTRY: of a Newton step,
 #: and more for each entry. They are ratios of processor times to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
-#: A loose operator is right to this part of rtol. A solution may change by more than what the operator leaves out: in
-#: random cases by more than once and less than _COUNTS times that (tests/body/test_loose.py).
-_OF_RTOL, _COUNTS = 0.01, 3.0
-#: Rounding, 1e-14 for each node, and what a loose operator leaves out are divided by L at this k, of films and of
-#: thicker layers: waves that a rigid base hardly lets yield are small differences of large terms, and in films of more
-#: of them. With k = 10 the depth of a film of nu1 = 1/2 on a rigid base was 30 times as far off as its error bar
-#: (test_rounding of tests/body/test_rigid_base.py).
+#: Rounding, 1e-14 for each node, is divided by L at this k, of films and of thicker layers: waves that a rigid base
+#: hardly lets yield are small differences of large terms, and in films of more of them. With k = 10 the depth of a film
+#: of nu1 = 1/2 on a rigid base was 30 times as far off as its error bar (test_rounding of
+#: tests/body/test_rigid_base.py).
 _ROUNDED = (2.5, 4.0)
 #: The kernel is rounded to _PLATE parts of its largest value, n. Short waves yield n times less, and so the pressure is
 #: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure, which
@@ -47,8 +44,7 @@ _SHORT, _POINTS = 45.0, 64
 
 class Hankel(NamedTuple):
     """The :class:`~solver.body.operator.Body` of B cases with a kernel; arrays (B,): thickness h of the layer at the
-    surface in R, and m = E1*/E3*. `loose`, (B,) bool, or None if no case is: whether the operator is made of fewer
-    values of L (:meth:`within`).
+    surface in R, and m = E1*/E3*.
 
     The punch yields as a half-space of E3* does, so the kernel of both is L + m relative to E1*. Relative to the
     modulus E of both, 1/E = 1/E1* + 1/E3*, it is (L + m)/(1 + m): L - 1 becomes (L - 1)/(1 + m).
@@ -57,7 +53,6 @@ class Hankel(NamedTuple):
     kernel: Kernel
     h: np.ndarray
     m: np.ndarray
-    loose: np.ndarray | None = None
 
     @property
     def E(self):
@@ -77,15 +72,7 @@ class Hankel(NamedTuple):
         return 0 * self.m
 
     def take(self, index):
-        loose = None if self.loose is None else self.loose[index]
-        return Hankel(self.kernel.take(index), self.h[index], self.m[index], loose)
-
-    def within(self, rtol, a):
-        if self.kernel.sampler is None:
-            return self
-        every = self._replace(loose=np.ones(len(a), dtype=bool))
-        may_be = place_of(every, a)[1] >= len(LOOSE)  # films may not be: their class may change with the radius
-        return self._replace(loose=may_be & (every.error(a, 1) <= _OF_RTOL * rtol))
+        return Hankel(self.kernel.take(index), self.h[index], self.m[index])
 
     def at(self, a, mesh, near=None):
         """Cases whose radius is that of `near` have its kernel."""
@@ -105,13 +92,13 @@ class Hankel(NamedTuple):
         return self.whole(1.5 * self.h / a)
 
     def error(self, a, nodes):
-        """Rounding, what a loose operator leaves out, and for films the error of the convolution."""
-        (octave, stiffness), L0 = place_of(self, a), self.L0
+        """Rounding, and for films the error of the convolution."""
+        octave, _ = place_of(self, a)
         L = self.whole(np.where(octave == FILM, *_ROUNDED) * self.h / a)
-        left_out = np.append(np.zeros(len(LOOSE)), LOOSE)[stiffness] * np.maximum(L0, 1.0)
-        error, film = (1e-14 * nodes + _COUNTS * left_out) / np.minimum(L, 1.0), np.flatnonzero(octave == FILM)
+        error, film = 1e-14 * nodes / np.minimum(L, 1.0), np.flatnonzero(octave == FILM)
         if len(film):
-            L, L0 = self.take(film).whole(10 * self.h[film] / a[film]), L0[film]
+            thin = self.take(film)
+            L, L0 = thin.whole(10 * thin.h / a[film]), thin.L0
             error[film] += np.abs(L - L0) / np.maximum(L, L0) / CUT**2
         return error
 

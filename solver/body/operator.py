@@ -66,10 +66,6 @@ class Body(Protocol):
     def take(self, index):
         """The body of the sub-batch at `index`."""
 
-    def within(self, rtol, a):
-        """The body for contacts of about the radius a, with a cheaper operator if there is one that is right to a
-        hundredth of rtol (B,)."""
-
     def at(self, a, mesh, near=None):
         """The :class:`Operator` at the radii a (B,). `near`: an operator of the same cases, perhaps at other radii or
         on another mesh; what of it still holds is used again."""

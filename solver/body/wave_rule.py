@@ -23,12 +23,8 @@ _WIDEST = 200.0
 #: Largest n of each class of stiffness (:class:`~solver.kernels.kernel.Kernel`), and how many panels its quadrature has
 #: towards k = 0, each half as wide as the one before: beyond the first class the first panel ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: A loose operator is made of L at still fewer nodes, where rtol allows it (:meth:`.hankel.Hankel.within`). This is
-#: what it leaves out, over the largest L, in each class of stiffness; the two stiffest are never loose, for under a
-#: plate the pressure can be a small difference of large terms.
-LOOSE = (1e-10, 1e-11, np.inf, np.inf)
 #: The few nodes are chosen by the L - 1 and u dL/du of so many random kernels. They are enough when what they leave out
-#: of any of these functions is at most this part of the largest of them, which is rounding; or LOOSE.
+#: of any of these functions is at most this part of the largest of them, which is rounding.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
 #: u = 1/2, the second above, with u = kh/a at the lower end of the octave. For each digit by which L - 1 has decayed
@@ -51,21 +47,19 @@ CUT = _end(FILM) * 2.0**-FILM
 
 
 def place_of(body, a):
-    """Octave of h/a, or FILM, and class of stiffness, (B,) int each: its place in STIFFEST, plus len(STIFFEST) for a
-    loose operator, which films never have."""
+    """Octave of h/a, or FILM, and class of stiffness, its place in STIFFEST, (B,) int each."""
     h_a, n = body.h / a, body.kernel.stiffness
     octave = np.floor(np.log2(h_a))
     octave = np.clip(np.where(np.isnan(octave), 0.0, octave), FILM, OCTAVES[1]).astype(int)
     # all films share one quadrature: a film is as stiff in it as a layer of the octave's h/a with the same n h/a
     stiffness = np.where(octave == FILM, n * h_a * 2.0**-FILM, n)
-    stiffness = np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
-    return octave, stiffness if body.loose is None else stiffness + len(STIFFEST) * (body.loose & (octave != FILM))
+    return octave, np.minimum(np.searchsorted(STIFFEST, stiffness), len(STIFFEST) - 1)
 
 
 @lru_cache(maxsize=256)
 def quadrature(octave, stiffness):
-    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness, loose or not."""
-    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness % len(STIFFEST)]
+    """Nodes k and weights (G,) for h/a in [2^octave, 2^(octave+1)] and a class of stiffness."""
+    scale, cut, depth = 2.0**-octave, _end(octave), _DEPTH[stiffness]
     ends = [0.0, *(0.5 * 2.0 ** -np.arange(depth, -1, -1)), 1.0, 2.0, 4.0, *([8.0] if cut > 9 else []), cut]
     k, weight = [], []
     for low, high in pairwise(ends):
@@ -97,12 +91,11 @@ def few(sampler, octave, stiffness):
     The nodes are chosen without BLAS, whose rounding may differ between machines: each would choose other nodes.
     """
     k, weight = quadrature(octave, stiffness)
-    loose, of_layers = divmod(stiffness, len(STIFFEST))
-    scale, left_out = weight / (1 + k * k), LOOSE[of_layers] if loose else _LEFT_OUT
-    rest, nodes, rows = _samples(sampler, octave, of_layers, k, scale), [], []
+    scale = weight / (1 + k * k)
+    rest, nodes, rows = _samples(sampler, octave, stiffness, k, scale), [], []
     left = np.sum(rest**2, axis=0)
     most = left.max()
-    while left.max() > left_out**2 * most and len(nodes) < sampler.few[stiffness]:
+    while left.max() > _LEFT_OUT**2 * most and len(nodes) < sampler.few[stiffness]:
         nodes.append(np.argmax(left))
         direction = rest[:, nodes[-1]] / np.sqrt(left[nodes[-1]])
         rows.append(np.einsum("i,ij->j", direction, rest))

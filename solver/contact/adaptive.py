@@ -31,7 +31,6 @@ def solve_newton(cases, rtol, nodes, limit, x):
     """
     size, free = len(rtol), nodes == 0
     work, before, a = np.zeros(size), np.full(size, np.inf), guess_radius(cases)
-    cases = cases._replace(body=cases.body.within(np.where(free, rtol, 0.0), a))
 
     def on_mesh(index, n, start):
         part, mesh = cases.take(index), mesh_of(n)

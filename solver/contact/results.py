@@ -24,8 +24,8 @@ Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
 def quantities(ev):
     """:class:`Quantities` of an :class:`~solver.contact.equation.Evaluation`. D is that of Eq. (3) at r = a; it equals
     Eq. (14) and needs p at no point."""
-    law, y, q, a, w = ev.cases.law, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
-    centre, edge = q[:, -1:] + ev.cases.edge.pressure(a, np.ones(1)), ev.cases.edge
+    law, edge, y, q, a, w = ev.cases.law, ev.cases.edge, ev.state.y, ev.curve.q, np.exp(ev.state.eta), ev.mesh.w
+    centre = q[:, -1:] + edge.pressure(a, np.ones(1))
     return Quantities(
         a=a,
         P=2 * np.pi * a**2 * law.p_star * (q @ w + edge.load(a)[0]),  # (5)

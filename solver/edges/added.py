@@ -80,9 +80,10 @@ class WithAdded(NamedTuple):
         moved = self.growth[:, None] * self.column + self.strength[:, None] * self.d_column
         return self._plus(self.plain.slopes(q), moved)
 
-    def _plus(self, found, added):
-        return found[0] + added[:, :-1], found[1] + added[:, -1]
+    def _plus(self, products, column):
+        """`products` at the nodes and at the edge, (B, n) and (B,), with a column (B, n + 1) added."""
+        return products[0] + column[:, :-1], products[1] + column[:, -1]
 
     def between(self, q, s, half_space):
-        added = self.plain.of_waves_between(self.shape.waves, s, self.shape.half_space(s))
-        return self.plain.between(q, s, half_space) + self.strength[:, None] * added
+        column = self.plain.of_waves_between(self.shape.waves, s, self.shape.half_space(s))
+        return self.plain.between(q, s, half_space) + self.strength[:, None] * column

@@ -17,8 +17,8 @@ class Sampler(NamedTuple):
 
     draw : ``draw(random, stiffness)`` gives the kernel of S cases of about the `stiffness` (S,), and else as different
         as the cases of users are; `random` is a numpy Generator
-    few : numbers of few nodes, of each class of stiffness of :mod:`~solver.body.wave_rule`, then of the loose operators
-        of the first two. A test finds them: with so many nodes, the others leave out no more than rounding
+    few : number of few nodes of each class of stiffness of :mod:`~solver.body.wave_rule`. A test finds them: with so
+        many nodes, the others leave out no more than rounding
     """
 
     draw: Callable

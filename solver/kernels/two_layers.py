@@ -71,7 +71,7 @@ def random_layers(random, n):
 
 #: The numbers of few nodes are the most that any octave of h/a asks for; tests/body/test_wave_rule.py checks what they
 #: leave out.
-SAMPLER = Sampler(random_layers, (52, 90, 104, 104, 36, 61))
+SAMPLER = Sampler(random_layers, (52, 90, 104, 104))
 
 
 def thin_layer_coefficients(n, nu1, nu2, bonded):

@@ -31,17 +31,30 @@ GROUP = "roughcoat.laws"
 #: `study` adds those of results, and of what else it is told.
 RESERVED = {*CONTROL, "E", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
 #: Laws whose functions have been tried.
-_TRIED = WeakSet()
+_TRIED: WeakSet[Law] = WeakSet()
 
 
-def register(law):
-    """Make a :class:`Law` known by its name, in place of one registered before, and its parameters like any other.
-    Returns it.
+def register(law: Law) -> Law:
+    """Make a law known by its name, in place of one registered before, and its parameters like any other.
 
     To travel to worker processes with the cases, its functions must have a name in a module that can be imported there.
 
-    Raises ValueError: the name is not allowed, or is that of a law of this package; there is no version; a parameter is
-    declared wrongly, or has the name of something else, or of one of another law with other bounds.
+    Parameters
+    ----------
+    law : :class:`Law`
+
+    Returns
+    -------
+    Law : the same
+
+    Raises
+    ------
+    ValueError : the name is not allowed, or is that of a law of this package; there is no version; a parameter is
+        declared wrongly, or has the name of something else, or of one of another law with other bounds
+
+    Examples
+    --------
+    docs/extending.md has a law in one file.
     """
     if LAWS.get(law.name) is law:
         return law
@@ -62,7 +75,11 @@ def untried(law):
 
 
 def try_out(law, E, given):
-    """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`."""
+    """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`.
+
+    That takes a seventh of a millisecond, once a process. Without it a law with a wrong derivative gave a dP/dD that
+    was 2 % off, as converged (tests/laws/test_trial.py).
+    """
     if untried(law):
         trial.tried(law, E, given)
         _TRIED.add(law)

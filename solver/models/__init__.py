@@ -1,1 +1,1 @@
-"""How far a cheap model is from the exact one, and the base "auto", which chooses by that."""
+"""Cases by the name of their base; how far a cheap model is from the exact one; the base "auto", chosen by that."""

@@ -14,10 +14,10 @@ from ..kernels.closed_form import decaying_part, whole
 from ..kernels.two_layers import layer_modulus
 from ..laws import LAWS, smooth
 from ..numerics.quadrature import gauss_legendre
-from ..scaling import as_cases, law_of
+from ..scaling import as_cases, dimensionless, law_of, restore
 from ..solution import Model, Solution
 from ..status import Status
-from .model_error import closed_form
+from .named import closed_form, solve_named, with_model_error
 
 #: In random cases the true error is at most 0.86 of each bound that follows (`python tests/models/margins.py 3000 2`).
 #: The error of the thin layer is at most _THIN times its closed form, which is that of a smooth punch.
@@ -35,42 +35,30 @@ _TRUSTED = 0.3
 _U = np.exp(np.linspace(np.log(1e-3), np.log(25.0), 14))
 _WEIGHTS = _U * np.log(_U[1] / _U[0])
 
-_BY_NAME = {"half_space": Model.HALF_SPACE, "thin_layer": Model.THIN_LAYER, "layered": Model.LAYERED}
 _SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
 
 
-def model_of(problem):
-    """:class:`Model` (B,) int8 of cases whose base is named; NONE of "auto"."""
-    used, rough = np.zeros(len(problem), dtype=np.int8), problem.rough()
-    for base, model in _BY_NAME.items():
-        of_base = problem.base == base
-        used[of_base] = np.where(rough[of_base], model, model + 1)
-    return used
-
-
-def cheapest(problem, x, solve):
-    """:class:`Solution` of cases of the base "auto" in units R = E2* = 1, each on the cheapest model whose bound is
-    within its accuracy. Where that model fails, the exact layer is solved.
-
-    x : (m,) radii; solve : ``solve(problem, x)`` for the bases with a name
-    """
+def cheapest(problem, x):
+    """:class:`Solution` of cases of the base "auto", in the units of the problem, each on the cheapest model whose
+    bound is within its accuracy. Where that model fails, the exact layer is solved. x : (m,) radii."""
+    scaled = dimensionless(problem).but(model_check="closed_form")
     pieces, left = [], np.ones(len(problem), dtype=bool)
     for micro in np.unique(problem.micro):
         index = np.flatnonzero(problem.micro == micro)
-        part = problem.take(index)
+        part = scaled.take(index)
         for model, bound in bounds(part).items():
             chosen = np.flatnonzero(left[index] & (bound <= np.minimum(part.accuracy, _TRUSTED)))
             if len(chosen):
-                found = _on_model(model, part.take(chosen), x, solve)
-                good = np.flatnonzero(found.status == Status.CONVERGED)
+                cheap = _on_model(model, part.take(chosen), x)
+                good = np.flatnonzero(cheap.status == Status.CONVERGED)
                 used = np.full(len(good), model, dtype=np.int8)
-                found = replace(found.take(good), model_error=bound[chosen[good]], model_used=used)
-                pieces.append((index[chosen[good]], found))
+                cheap = replace(cheap.take(good), model_error=bound[chosen[good]], model_used=used)
+                pieces.append((index[chosen[good]], cheap))
                 left[index[chosen[good]]] = False
     rest = np.flatnonzero(left)
     if len(rest):
-        pieces.append((rest, solve(problem.take(rest).but(base="layered"), x)))
-    return Solution.join(len(problem), len(x), pieces)
+        pieces.append((rest, solve_named(scaled.take(rest).but(base="layered"), x)))
+    return with_model_error(problem, restore(Solution.join(len(problem), len(x), pieces), problem))
 
 
 def bounds(part):
@@ -95,18 +83,28 @@ def bounds(part):
     return {Model(model + 1): bound + asperities for model, bound in found.items()} | found
 
 
-def _on_model(model, part, x, solve):
+def _on_model(model, part, x):
     """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
     base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n))
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
-        return solve(base, x)
-    t, weight = gauss_legendre(24)
-    s, weight = t**3, 3 * weight * t**5  # of ∫₀¹ λ s ds: λ of a smooth punch rises like s^(2/3) from the edge
-    at_area = np.sqrt((1 - s) * (1 + s))
-    found = solve(base.but(micro=smooth.LAW.name, scheme="newton"), np.concatenate([x, at_area]))
+        return solve_named(base, x)
+    s, _ = area_rule()
+    radii = np.concatenate([x, np.sqrt((1 - s) * (1 + s))])
+    found = solve_named(base.but(micro=smooth.LAW.name, scheme="newton"), radii)
     p, p_area = np.split(found.p, [len(x)], axis=1)
     law = law_of(part)
-    centre = law.at(found.p0[:, None])
-    spots = {"A0": centre.A[:, 0], "p_max": centre.p_max[:, 0], "Ar_An": 2 * law.at(p_area).lam @ weight}
-    return replace(found, **spots, p=p, lam=law.at(p).lam)
+    return replace(found, **spots_under(law, found.p0, p_area), p=p, lam=law.at(p).lam)
+
+
+def area_rule():
+    """Points in s and weights of 2 ∫₀¹ λ s ds, Ar/An: λ of a smooth punch rises like s^(2/3) from the edge."""
+    t, weight = gauss_legendre(24)
+    return t**3, 6 * weight * t**5
+
+
+def spots_under(law, p0, p_area):
+    """What asperities of a :class:`~solver.laws.Bound` add to a smooth solution with the pressures `p0` (B,) in the
+    centre and `p_area` (B, m) at the points of :func:`area_rule`: quantity -> (B,)."""
+    centre, (_, weights) = law.at(p0[:, None]), area_rule()
+    return {"A0": centre.A[:, 0], "p_max": centre.p_max[:, 0], "Ar_An": law.at(p_area).lam @ weights}

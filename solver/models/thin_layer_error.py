@@ -31,7 +31,7 @@ _LEAST_LENGTH = 0.3
 #: The least |κ| of :func:`largest_error`, under a smooth punch and under asperities, over the integral of the absolute
 #: value: in some bonded materials long waves and short ones cancel in κ, but not in the terms of second order.
 #: Asperities weigh the waves differently. With it, and the factor that the base "auto" has, bounds are larger than the
-#: errors (test_kappa_of_waves_that_cancel in tests/models/test_auto.py).
+#: errors (test_kappa_of_waves_that_cancel in tests/models/test_waves_that_cancel.py).
 _UNCANCELLED, _UNDER_ASPERITIES = 0.1, 0.25
 #: A bonded layer that is nearly incompressible is softer than its springs, for it is squeezed out sideways. Then the
 #: error is at least (L/(A1 + A2 u))^power - 1, at u = wave h/a: wave and power of each control, fitted to random layers

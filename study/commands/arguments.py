@@ -7,7 +7,7 @@ import sys
 from functools import partial
 from pathlib import Path
 
-from ..spec.places import STUDIES, files_in, known_studies
+from ..inputs.places import STUDIES, files_in, known_studies
 from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
@@ -68,8 +68,7 @@ def assignment(text: str) -> tuple[str, float | str]:
 def proposed(command: str, prefix: str, **_) -> list[str]:
     """Completions of a word of a command or option: names of studies, figures ... that begin with `prefix`."""
     if command == "point":
-        from ..physical.bodies import BODIES
-        from ..spec.vocabulary import CONTROLS, SCENE, names
+        from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, names
 
         known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
     elif command in ("plot", "table"):
@@ -79,7 +78,7 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
         known += known_studies() if command == "plot" else []
     elif command == "--x":
         from ..data.derived import QUANTITIES
-        from ..spec.vocabulary import SCENE, VOCABULARY
+        from ..inputs.vocabulary import SCENE, VOCABULARY
 
         known = [*VOCABULARY, *SCENE, *QUANTITIES]
     elif command == "--status":

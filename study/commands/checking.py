@@ -2,11 +2,11 @@
 
 import numpy as np
 
-from ..physical.study_file import read
-from ..spec.definition import Definition
-from ..spec.grid import MOVED
-from ..spec.places import study_file
-from ..spec.vocabulary import VOCABULARY
+from ..inputs.definition import Definition
+from ..inputs.grid import MOVED
+from ..inputs.places import study_file
+from ..inputs.reading import read
+from ..inputs.vocabulary import VOCABULARY
 from ..terminal import answer
 
 
@@ -31,7 +31,7 @@ def doubtful_lines(definition: Definition) -> list[str]:
     if not definition.scene:
         return []
     from ..in_words.early import far_outside
-    from ..physical.bounds import INPUTS, absurd  # here: it imports xarray
+    from ..inputs.scene.bounds import INPUTS, absurd  # here: it imports xarray
 
     given = {name: value for name, value in definition.scene.given.items() if name in INPUTS}
     given = {name: v.isel({MOVED: 0}) if MOVED in getattr(v, "dims", ()) else v for name, v in given.items()}

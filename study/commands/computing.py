@@ -7,9 +7,9 @@ from ..api import Study, load
 from ..data.dataset import NO_SOLUTION, status_words
 from ..files.examine import Condition, examine
 from ..in_words import doubts
-from ..spec.definition import Definition, StudyError
-from ..spec.places import STUDIES, files_in, packaged, study_file
-from ..spec.vocabulary import NOT_RUN
+from ..inputs.definition import Definition, StudyError
+from ..inputs.places import STUDIES, files_in, packaged, study_file
+from ..inputs.vocabulary import NOT_RUN
 from ..terminal import answer, counted, on_one_line, say
 from ..work.cost import Estimate, describe
 from ..work.plan import Report, status_values
@@ -69,14 +69,14 @@ def retry(options, file: str) -> int:
 
 
 def verify(options, file: str) -> int:
-    """Compare results with their checksums."""
+    """Compare results with their digest."""
     found = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
     say(verified_line(found.path, found), sys.stdout if found.good else sys.stderr)
     return 0 if found.kind == "sound" else 2 if found.kind == "missing" else 1
 
 
 def clean(options, file: str) -> int:
-    """Remove blocks that serve nothing, and say which."""
+    """Remove blocks that hold no case of a study, and say which."""
     answer(*_opened(options, file).clean())
     return 0
 
@@ -92,7 +92,7 @@ def _compute(study: Study, options, **more) -> int:
 
 def completed(study: Study, **options) -> int:
     """Run a study and say what came of it; returns the exit code."""
-    name, report = study.definition.name, study.run(**options, processes=True, stream=sys.stderr)
+    name, report = study.definition.name, study.run(**options, stream=sys.stderr)
     if report.failures:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1
@@ -123,7 +123,7 @@ def verified_line(name: str, found: Condition) -> str:
     """What `verify` found."""
     said = {
         "sound": "verified, every number is the one that was written",
-        "unverified": "xarray or an earlier version wrote it, without checksums to compare; nothing wrong was seen",
+        "unverified": "xarray or an earlier version wrote it, without a digest to compare; nothing wrong was seen",
         "missing": "does not exist",
     }
     return f"{name}: {said.get(found.kind, found.reason)}"
@@ -140,9 +140,8 @@ def failure_lines(report: Report, name: str) -> list[str]:
 
 def report_line(report: Report, name: str) -> str:
     """What a run without failed blocks did."""
-    kept = f"\n{report.kept}" if report.kept else ""
     if not report.counts and not report.computed:
-        return f"{report.path} is up to date ({counted(report.cases, 'case')}), nothing to do{kept}"
+        return f"{report.path} is up to date ({counted(report.cases, 'case')}), nothing to do"
     if not report.complete:
         missing = report.counts.get(NOT_RUN, 0)
         now = counted(report.computed, "case")
@@ -154,7 +153,7 @@ def report_line(report: Report, name: str) -> str:
         remarks.append(f"{by_status(refused)}: no solution exists, which is no failure")
     if failed:
         remarks.append(f"{sum(failed.values())} of them not converged ({by_status(failed)}): see `status` in the file")
-    return ", ".join(remarks) + kept
+    return ", ".join(remarks)
 
 
 def by_status(counts: dict[int, int]) -> str:

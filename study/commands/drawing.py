@@ -18,9 +18,9 @@ from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
 from ..files.access import Unusable
 from ..files.results_file import open_results
-from ..spec.definition import StudyError
-from ..spec.grid import twins
-from ..spec.places import known_studies, study_file
+from ..inputs.definition import StudyError
+from ..inputs.grid import twins
+from ..inputs.places import known_studies, study_file
 from ..terminal import answer, on_one_line, say
 from .computing import completed
 

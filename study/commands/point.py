@@ -12,10 +12,10 @@ import xarray as xr
 from ..data.dataset import decode
 from ..data.derived import QUANTITIES
 from ..in_words import SHOWN, FarOutside, doubts, summary
-from ..physical.inputs import all_inputs
-from ..physical.names import INFINITE
+from ..in_words.inputs import all_inputs
+from ..inputs.definition import StudyError
+from ..inputs.scene.names import INFINITE
 from ..solving import solve
-from ..spec.definition import StudyError
 from ..terminal import answer, say
 from .arguments import assignment
 

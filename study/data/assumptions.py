@@ -10,7 +10,7 @@ import xarray as xr
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS
 
-from ..spec.vocabulary import VOCABULARY, attributes
+from ..inputs.vocabulary import VOCABULARY, attributes
 
 FEW_SPOTS = 100.0
 """Fewest asperities in touch: the model spreads them evenly, so they must be many. Of equal heights N̄πa² touch."""

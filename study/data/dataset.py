@@ -8,11 +8,11 @@ import xarray as xr
 from solver import Model, Status
 from solver.status import NO_SOLUTION
 
-from ..spec.definition import Definition
-from ..spec.fitted import COMMENT
-from ..spec.grid import along, unflatten
-from ..spec.identity import law_versions
-from ..spec.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
+from ..inputs.definition import Definition
+from ..inputs.grid import along, unflatten
+from ..inputs.identity import law_versions
+from ..inputs.laws import COMMENT
+from ..inputs.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
 from .assumptions import validity_attributes, validity_of
 from .provenance import provenance
 
@@ -44,6 +44,16 @@ class Parts(NamedTuple):
         last = {name: own for name, own in self.coords.items() if name in NUMERICS}
         coords = {name: own for name, own in self.coords.items() if name not in NUMERICS} | last
         return without_fill_values(xr.Dataset(self.variables, coords, self.attributes))
+
+    def settings_apart(self) -> "Parts":
+        """The parts with numerical settings that all cases share as attributes, not as coordinates.
+
+        It is done before the dataset is made, since dropping variables of a dataset copies all others.
+        """
+        shared = [name for name in NUMERICS if name in self.coords and not self.coords[name].ndim]
+        coords = {name: own for name, own in self.coords.items() if name not in shared}
+        attributes = {name: self.coords[name].values.item() for name in shared}
+        return Parts(self.variables, coords, self.attributes | attributes)
 
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
@@ -107,15 +117,27 @@ def model_attributes() -> dict:
 
 
 def decode(flags: xr.DataArray) -> xr.DataArray:
-    """The names of `status`, `model_used` or `validity`, in an array of texts over the same dimensions.
+    """The names of `status`, `model_used` or `validity`.
 
     Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
     a name stays a number. Where `where`, `reindex` or `concat` of xarray have left no case, NaN, status and
     validity are "not_run", and the model is "none".
 
-    Raises ValueError: it is no array, or one that has none of these names, and no attribute `flag_meanings`; its
-    numbers are of no case, such as the mean of several.
+    Parameters
+    ----------
+    flags : one of these three arrays of a dataset of contacts
 
+    Returns
+    -------
+    xarray.DataArray : texts, over the same dimensions
+
+    Raises
+    ------
+    ValueError : it is no array, or one that has none of these names, and no attribute `flag_meanings`; its numbers are
+        of no case, such as the mean of several
+
+    Examples
+    --------
     >>> import study
     >>> found = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
     >>> study.decode(found.model_used).values.tolist()

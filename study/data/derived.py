@@ -1,11 +1,11 @@
 """Quantities that follow from a dataset: validity of the model's assumptions, areas, mean pressure, number of spots.
 
-Every function takes an opened dimensionless dataset and returns a DataArray whose attributes come whole from the
-vocabulary.
+Every function takes an opened dataset. The attributes of what it returns come from the vocabulary.
 """
 
 from collections.abc import Callable
 from functools import wraps
+from inspect import cleandoc
 
 import numpy as np
 import xarray as xr
@@ -14,7 +14,8 @@ from solver import Model
 from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
-from ..spec.vocabulary import VOCABULARY, attributes
+from ..inputs.scene.scales import without_unit
+from ..inputs.vocabulary import VOCABULARY, attributes
 from . import assumptions
 from .assumptions import (  # noqa: F401 - names of study.derived
     ASSUMPTIONS,
@@ -29,7 +30,7 @@ from .assumptions import (  # noqa: F401 - names of study.derived
     STRETCHED,
     validity,
 )
-from .units import physical_attributes, reduced_modulus, without_unit
+from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12
 """Pressures of a profile that differ by less, relative, are equal: those of a smooth contact differ by rounding."""
@@ -38,15 +39,39 @@ LEAST_POINTS, LOAD_MISSED = 5, 5e-3
 then less than that times D (tests/data/test_depth.py)."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
 """Name -> function of a dataset, of each formula with the decorator `quantity`. They can be drawn like results."""
+SECTIONS_OF_QUANTITIES = """
+
+Parameters
+----------
+dataset : of contacts, dimensionless, or in SI units as `study.solve` gives it
+
+Returns
+-------
+xarray.DataArray : over the dimensions of the contacts, with the name, the unit and the words of the vocabulary
+
+Raises
+------
+ValueError : the dataset is in multiples of SI units, or lacks what the quantity follows from
+"""
 
 
 def quantity(name: str) -> Callable:
     """Decorator of a formula: its result has the name and attributes of the vocabulary, and QUANTITIES holds it.
 
-    Raises ValueError for a name without a row.
+    Parameters
+    ----------
+    name : of a row of the vocabulary
+
+    Returns
+    -------
+    a decorator of a function of a dataset, which is then one of `study.derived` (docs/extending.md)
+
+    Raises
+    ------
+    ValueError : there is no row of this name
     """
     if name not in VOCABULARY:
-        raise ValueError(f"{name} has no row in study/spec/vocabulary.toml: a quantity needs one")
+        raise ValueError(f"{name} has no row in study/inputs/vocabulary.toml: a quantity needs one")
 
     def register(formula: Callable) -> Callable:
         @wraps(formula)
@@ -57,6 +82,7 @@ def quantity(name: str) -> Callable:
                     raise ValueError(f"{own} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name, assumptions.has_units(dataset))
 
+        computed.__doc__ = cleandoc(formula.__doc__ or "") + SECTIONS_OF_QUANTITIES
         QUANTITIES[name] = computed
         return computed
 
@@ -69,8 +95,17 @@ def nominal_area(dataset: xr.Dataset) -> xr.DataArray:
     return np.pi * dataset["a"] ** 2
 
 
-def nominal_area_ratio(dataset: xr.Dataset, a0) -> xr.DataArray:
-    """Nominal contact area over that of the radius a0, An/(π a0²)."""
+def nominal_area_ratio(dataset: xr.Dataset, a0: float | xr.DataArray) -> xr.DataArray:
+    """Nominal contact area over that of the radius a0, An/(π a0²).
+
+    Parameters
+    ----------
+    dataset, a0 : of contacts; radius, in the unit of `a`
+
+    Returns
+    -------
+    xarray.DataArray : over the dimensions of the contacts
+    """
     return named((dataset["a"] / a0) ** 2, "An_ratio")
 
 
@@ -97,7 +132,7 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest nominal pressure over the points of the profile, in E2*: p(0), or more in a ring.
 
     A hard coating with a > h bends like a plate and presses most in a ring near the edge. 33 points miss up to 3 % of
-    it, 17 up to 6 % (tests/physical/words/test_largest_pressure.py). Raises ValueError without the profile p.
+    it, 17 up to 6 % (tests/physical/words/test_largest_pressure.py). It needs the profile p.
     """
     return _profile(dataset, "p_ring").max("x", skipna=False)
 
@@ -105,9 +140,7 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
 @quantity("r_ring")
 def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius, a point of the profile, at which the nominal pressure is largest, in R: 0 where that is the centre.
-
-    Raises ValueError without the profile p.
-    """
+    It needs the profile p."""
     p = _profile(dataset, "r_ring")
     return dataset["a"] * dataset["x"].where(p >= (1 - ROUNDING) * p.max("x", skipna=False)).min("x")
 
@@ -117,8 +150,8 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     """Largest real pressure over the points of the profile, Eq. (13) at each, in E2*; `p_max` is that of the centre.
 
     The two differ where p peaks in a ring (`p_ring`). Needs the profile p; NaN for a law that is not registered in the
-    version of the results. Raises ValueError for results with units that have not R and E2 in SI units: the laws take
-    their parameters in R and E2*.
+    version of the results. Of results with units it needs R and E2 in SI units: the laws take their parameters in R and
+    E2*.
     """
     pressures = _profile(dataset, "p_peak")
     unit, R = _scales(dataset, "p_peak")
@@ -142,9 +175,8 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     D is the approach of distant points of both bodies. In the centre the punch, a half-space of E3* = E1*/m, yields
     (2/E3*) ∫ p dr and of the asperities' A[p(0)] the part m/(1 + m); the coated body yields the rest. A rigid punch
     yields nothing. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN where that spline
-    misses the load by more than LOAD_MISSED: the profile has too few points.
-
-    Raises ValueError without the profile p, with fewer than 5 points, and as `peak_pressure` does.
+    misses the load by more than LOAD_MISSED: the profile has too few points. It needs the profile p at 5 points or
+    more, and what `peak_pressure` needs.
     """
     m = dataset.get("m", xr.DataArray(0.0))
     if (m == 0).all():
@@ -188,7 +220,7 @@ def _surface_modulus(dataset: xr.Dataset):
 
 def _rough_model(used: xr.DataArray) -> xr.DataArray:
     """Where the model that was used has asperities, so that D has their A[p(0)]."""
-    return sum(used == model for model in Model if not model.name.startswith(("SMOOTH", "NONE"))) > 0
+    return used.isin([int(model) for model in Model if not model.name.startswith(("SMOOTH", "NONE"))])
 
 
 def _scales(dataset: xr.Dataset, name: str) -> tuple:

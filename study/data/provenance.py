@@ -15,7 +15,7 @@ import numpy as np
 
 from solver import NUMERICS_VERSION
 
-from ..spec.definition import Definition
+from ..inputs.definition import Definition
 
 REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lubricants12030068"
 
@@ -59,7 +59,8 @@ def machine() -> dict:
 def command_line() -> str:
     """The command that is running, without the folder of the interpreter."""
     program = Path(sys.argv[0])
-    first = "python -m study" if program.name == "__main__.py" and program.parent.name == "study" else program.name
+    ours = program.name == "__main__.py" and program.parent.name in ("roughcoat", "study")
+    first = f"python -m {program.parent.name}" if ours else program.name
     text = f"{first} {shlex.join(sys.argv[1:])}".strip()
     # a path may have bytes that are not UTF-8, an attribute may not
     return text.encode("utf-8", "backslashreplace").decode()

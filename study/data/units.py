@@ -5,24 +5,61 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..spec.vocabulary import PARAMETERS, VOCABULARY, no_parameter
+from ..inputs.scene.scales import reduced, with_unit
+from ..inputs.vocabulary import PARAMETERS, VOCABULARY, no_parameter
 from ..specimen.foreign import plain
 from ..specimen.quantities import READABLE, has_unit, multiple, quantity
 
+__all__ = ["factor", "from_physical", "readable", "reduced_modulus", "to_physical"]
 PHYSICAL_SCALE = "physical_scale"  # attribute of every dataset in physical units
 
 
-def reduced_modulus(E, nu):
-    """E* = E/(1 - ν²), in the unit of E; in Pa of a text such as "210 GPa". E and nu broadcast. ValueError where nu is
-    outside (-1, 0.5]."""
-    if np.any((nu <= -1) | (nu > 0.5)):
-        raise ValueError("nu must be in (-1, 0.5], and comes after E")
-    E = _si("E", E, "Pa") if isinstance(E, str) else E
-    return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
+def reduced_modulus(E: Any, nu: Any) -> Any:
+    """The reduced modulus E* = E/(1 - ν²).
+
+    Parameters
+    ----------
+    E : Young's modulus, numbers or a text such as "210 GPa"
+    nu : Poisson ratio in (-1, 0.5]
+
+    Returns
+    -------
+    float, numpy.ndarray or xarray.DataArray : in the unit of E; in Pa of a text. E and nu broadcast
+
+    Raises
+    ------
+    ValueError : nu outside (-1, 0.5]; a text that is no modulus
+
+    Examples
+    --------
+    >>> reduced_modulus("210 GPa", 0.3) / 1e9
+    230.76923076923077
+    """
+    return reduced(_si("E", E, "Pa") if isinstance(E, str) else E, nu)
 
 
 def factor(name: str, R: float, E2_star: float) -> float:
-    """What a dimensionless number is multiplied by to be in SI units: R m, E2* Pa."""
+    """What a dimensionless number is multiplied by to be in SI units.
+
+    Parameters
+    ----------
+    name : of a parameter or result
+    R : radius of the punch, m
+    E2_star : reduced modulus E2* of the half-space, Pa; E1* on a rigid base
+
+    Returns
+    -------
+    float : the number E2*^i R^j of the powers (i, j) of its unit
+
+    Raises
+    ------
+    ValueError : R or E2_star is not > 0 and finite
+
+    Examples
+    --------
+    >>> factor("P", R=0.01, E2_star=2e11)
+    20000000.0
+    """
     for word, value in (("R", R), ("E2_star", E2_star)):
         if not (np.isfinite(value) and value > 0):
             raise ValueError(f"{word} = {value}: must be > 0 and finite")
@@ -59,19 +96,6 @@ def _scales(R: Any, E2_star: Any) -> dict[str, float]:
     return found
 
 
-def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
-    """An SI value over unit^i R^j, (i, j) = `powers`."""
-    return with_unit(value, (-powers[0], -powers[1]), unit, R)
-
-
-def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
-    """A dimensionless value times unit^i R^j."""
-    for factor, power in ((unit, powers[0]), (R, powers[1])):
-        for _ in range(abs(power)):
-            value = value * factor if power > 0 else value / factor
-    return value
-
-
 def physical_attributes(name: str, given: dict) -> dict:
     """The attributes of a dimensionless variable when its numbers are in SI units."""
     entry = VOCABULARY[name]
@@ -82,10 +106,26 @@ def physical_attributes(name: str, given: dict) -> dict:
 def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
     """The dataset in SI units, each named by the attribute `units`; `study.readable` gives µm, mN, MPa.
 
+    Parameters
+    ----------
+    dataset : of dimensionless contacts
     R : radius of the punch: m, or a text such as "5 mm", or a quantity of pint
     E2_star : reduced modulus E2/(1 - ν2²) of the half-space, E1* on a rigid base: Pa, or "230 GPa"
 
-    Raises ValueError: the dataset is physical already; R is no length, or E2_star no pressure.
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    ValueError : the dataset is physical already; R is no length, or E2_star no pressure
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, micro="smooth", base="half_space")
+    >>> to_physical(contact, R="10 mm", E2_star="230 GPa").P.item()
+    230.0
     """
     scales = _scales(R, E2_star)
     if PHYSICAL_SCALE in dataset.attrs:
@@ -109,7 +149,24 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
     Coordinates have it too: a thickness of 2e-6 m is found by sel(h=2.0), in the µm of its attribute `units`. A spread
     has the multiple of its quantity.
 
-    Raises ValueError for a dataset without physical units.
+    Parameters
+    ----------
+    dataset : with physical units
+
+    Returns
+    -------
+    xarray.Dataset
+
+    Raises
+    ------
+    ValueError : a dataset without physical units
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(R="10 mm", E2="210 GPa", P="10 N", micro="smooth", base="half_space")
+    >>> readable(contact).a.attrs["units"]
+    'µm'
     """
     if not isinstance(dataset, xr.Dataset):
         raise ValueError("readable takes the dataset, not an array of it: study.readable(contact).a")
@@ -128,13 +185,28 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
     return dataset.assign(found).assign_attrs({PHYSICAL_SCALE: scale})
 
 
-def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:
+def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
     """Dimensionless parameters for `study.solve` from physical ones, in the units that `to_physical` gives.
 
-    R : m; E2_star : Pa; P : N; a, D, h, Ra : m; Nbar : 1/m²; or texts with a unit, such as "5 mm", or quantities of
-        pint. Everything else is a pure number or text and passes unchanged
+    Parameters
+    ----------
+    R : radius of the punch: m, or a text such as "5 mm", or a quantity of pint
+    E2_star : reduced modulus E2* of the half-space, E1* on a rigid base: Pa, or "230 GPa"
+    parameters : P in N; a, D, h, Ra in m; Nbar in 1/m²; or texts with a unit, or quantities of pint. Everything else
+        is a pure number or text and passes unchanged
 
-    The dict has the same names, with scalars, arrays or DataArrays as given.
+    Returns
+    -------
+    dict : the same names, with scalars, arrays or DataArrays as given
+
+    Raises
+    ------
+    ValueError : no parameter has this name; a unit of something else
+
+    Examples
+    --------
+    >>> from_physical(R="10 mm", E2_star="230 GPa", h="20 um", bonding="bonded")
+    {'h': 0.002, 'bonding': 'bonded'}
     """
     found, scales = {}, _scales(R, E2_star)
     for name, given in parameters.items():
@@ -146,6 +218,6 @@ def from_physical(*, R: Any, E2_star: Any, **parameters) -> dict:
             value = _si(name, given, VOCABULARY[name].unit)
             if np.asarray(value).dtype.kind not in "iuf":
                 quantity(name, given, VOCABULARY[name].unit)  # raises: it is no number, nor several
-            array = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
+            array: Any = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
             found[name] = array / factor(name, **scales)
     return found

@@ -15,9 +15,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
-from ..spec.definition import StudyError
-from ..spec.places import BOOK, STUDIES, chapters, packaged, root_of
-from ..spec.vocabulary import suggest
+from ..inputs.definition import StudyError
+from ..inputs.places import BOOK, STUDIES, chapters, packaged, root_of
+from ..inputs.vocabulary import suggest
 from ..terminal import on_one_line
 
 log = logging.getLogger(__name__)
@@ -27,7 +27,7 @@ KINDS = {"figure": "figure", "drawing": "figure", "table": "table", "measured": 
 LARGEST = 1_000_000  # bytes of a file beside `figures.py` that counts as its data; of ours the largest has 6,000
 
 
-def own() -> list[Path]:
+def users() -> list[Path]:
     """Each `figures.py` of the user: in the working folder, in `studies`, and in its chapters."""
     book = packaged().resolve()
     files = [folder / FILE for folder in (Path(), *chapters(STUDIES))]
@@ -40,10 +40,13 @@ def of_the_book() -> list[Path]:
 
 
 class Text(NamedTuple):
-    """What stands in one file. modules : those beside it that it imports; found : (kind, name) -> whether it is long"""
+    """What stands in one file.
+
+    modules : those beside it that it imports; entries : (kind, name) -> whether it is `long`
+    """
 
     modules: tuple[str, ...]
-    found: dict[tuple[str, str], bool]
+    entries: dict[tuple[str, str], bool]
 
 
 def names_in(file: Path) -> dict[tuple[str, str], bool]:
@@ -51,16 +54,16 @@ def names_in(file: Path) -> dict[tuple[str, str], bool]:
 
     Raises StudyError for a file that is no Python.
     """
-    found, wanted, seen = {}, [file], set()
+    entries, wanted, seen = {}, [file], set()
     while wanted:
         path = wanted.pop()
         seen.add(path)
-        about = path.stat()
-        text = read(path, (about.st_ino, about.st_size, about.st_mtime_ns))
-        found |= text.found
+        state = path.stat()
+        text = read(path, (state.st_ino, state.st_size, state.st_mtime_ns))
+        entries |= text.entries
         paths = {file.parent / f"{module.replace('.', '/')}.py" for module in text.modules}
         wanted += sorted(path for path in paths - {*seen, *wanted} if path.is_file())
-    return found
+    return entries
 
 
 @lru_cache(maxsize=256)  # every command asks several times for each figure; a file is read in a millisecond
@@ -96,14 +99,14 @@ def names(kind: str, *, long: bool = True) -> list[str]:
 
     In place of a file that cannot be read its path is given: `place_of` says what is wrong with it.
     """
-    found = []
-    for file in (*own(), *of_the_book()):
+    listed = []
+    for file in (*users(), *of_the_book()):
         try:
-            here = names_in(file).items()
-            found += sorted(name for (one, name), takes in here if one == kind and (long or not takes))
+            entries = names_in(file).items()
+            listed += sorted(name for (its, name), is_long in entries if its == kind and (long or not is_long))
         except StudyError:
-            found.append(file.as_posix())
-    return list(dict.fromkeys(found))
+            listed.append(file.as_posix())
+    return list(dict.fromkeys(listed))
 
 
 def place_of(kind: str, name: str) -> tuple[Path, str] | None:
@@ -114,14 +117,14 @@ def place_of(kind: str, name: str) -> tuple[Path, str] | None:
     folder, _, last = name.rpartition("/")
     if folder:
         file = Path(folder, FILE)
-        found = [file] if file.is_file() and (kind, last) in names_in(file) else []
+        files = [file] if file.is_file() and (kind, last) in names_in(file) else []
     else:
-        found = [file for file in own() if (kind, name) in _readable(file)]
-        found = found or [file for file in of_the_book() if (kind, name) in _readable(file)]
-    if len(found) > 1:
-        paths = " and ".join(file.as_posix() for file in found)
-        raise StudyError([f"{name}: is in {paths}: say which, such as {found[0].parent.as_posix()}/{name}"])
-    return (found[0], last) if found else None
+        files = [file for file in users() if (kind, name) in _readable(file)]
+        files = files or [file for file in of_the_book() if (kind, name) in _readable(file)]
+    if len(files) > 1:
+        paths = " and ".join(file.as_posix() for file in files)
+        raise StudyError([f"{name}: is in {paths}: say which, such as {files[0].parent.as_posix()}/{name}"])
+    return (files[0], last) if files else None
 
 
 def _readable(file: Path) -> dict:
@@ -137,7 +140,7 @@ def unknown(kind: str, name: str, others: list[str]) -> StudyError:
     A file that cannot be read is told too: the name may stand there.
     """
     lines = [f'"{name}" is not known{suggest(name, [*others, *names(kind)])}']
-    for file in (*own(), *of_the_book()):
+    for file in (*users(), *of_the_book()):
         try:
             names_in(file)
         except StudyError as error:

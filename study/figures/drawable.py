@@ -5,7 +5,7 @@ from numbers import Real
 
 import xarray as xr
 
-from ..spec.definition import StudyError
+from ..inputs.definition import StudyError
 
 MOST_POINTS = 20_000_000  # numbers of a quantity, whose curves matplotlib draws in some seconds: more is a mistake
 #: Kinds of types of numpy whose values are neither real numbers nor texts.

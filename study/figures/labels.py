@@ -6,8 +6,8 @@ from collections.abc import Iterable
 import numpy as np
 import xarray as xr
 
-from ..physical.inputs import all_inputs, is_rigid, used_inputs
-from ..spec.vocabulary import ROWS, VOCABULARY, over_scale
+from ..in_words.inputs import all_inputs, is_rigid, used_inputs
+from ..inputs.vocabulary import ROWS, VOCABULARY, over_scale
 from ..specimen import quantities
 from ..specimen.quantities import READABLE, readable
 

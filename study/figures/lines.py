@@ -13,8 +13,8 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 
 from ..data.derived import QUANTITIES
-from ..spec.definition import StudyError
-from ..spec.vocabulary import CONTROLS, suggest
+from ..inputs.definition import StudyError
+from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .drawable import check_size, drawable
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
@@ -27,20 +27,27 @@ BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
 NOT_VALID = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
-def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where) -> Figure:
+def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where: Any) -> Figure:
     """A figure of `y` against `x`, a curve for each value of `hue`, a panel for each combination of the other axes.
 
+    A notebook shows it where it is the last value of a cell; `savefig` writes it. It is none of pyplot, and looks the
+    same whatever the settings of matplotlib are. Stretches where `validity` is not 0 are dotted, and called "not
+    valid"; failed cases are gaps. Where the dataset has the spread of `y`, a band shows ± one standard deviation.
+
+    Parameters
+    ----------
     dataset : of `study.solve`, or the results of a study
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
-    hue : name of a dimension, or "label" of the cases; **where : values to be drawn alone, such as bonding="bonded"
+    hue : name of a dimension, or "label" of the cases
+    where : values to be drawn alone, such as bonding="bonded"
 
-    A notebook shows it where it is the last value of a cell; `savefig` writes it. It is none of pyplot, and looks the
-    same whatever the settings of matplotlib are.
+    Returns
+    -------
+    matplotlib.figure.Figure
 
-    Stretches where `validity` is not 0 are dotted, and called "not valid"; failed cases are gaps. Where the dataset has
-    the spread of `y`, a band shows ± one standard deviation.
-
-    Raises StudyError: no dataset, or a stacked one, a name is not there, a value neither, or more than 12 panels.
+    Raises
+    ------
+    StudyError : no dataset, or a stacked one, a name is not there, a value neither, or more than 12 panels
     """
     with style():
         return drawn(dataset, x, y, hue, where, StyledFigure)[0]

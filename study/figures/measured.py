@@ -11,7 +11,7 @@ from solver import NUMERICS_VERSION
 from ..data.provenance import provenance
 from ..files.examine import examine
 from ..files.results_file import open_results, write
-from ..spec.definition import StudyError
+from ..inputs.definition import StudyError
 from .registry import Measured, entry
 
 

@@ -7,19 +7,22 @@ import re
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
 
 from ..files.results_file import open_results
-from ..spec.definition import StudyError
-from ..spec.places import BOOK
+from ..inputs.definition import StudyError
+from ..inputs.places import BOOK
 from ..terminal import program
 from . import beside
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
 COMMANDS = ("tradeoff",)  # what is measured that has a command of its own
+Decorator = Callable[[Callable], Callable]
+Pair = tuple[float, float]
+Cells = tuple[int, int]
 Columns = dict[str, np.ndarray]
 """The numbers that a figure shows: heading of the CSV -> column."""
 
@@ -78,15 +81,22 @@ FIGURES, TABLES = REGISTERS[""]["figure"], REGISTERS[""]["table"]
 """The figures, and tables, of the program that runs, which go before those beside studies."""
 
 
-def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), caption: str = "", long: bool = False):
-    """Register `draw(axes, *datasets)`, which draws the figure NAME and returns the numbers that it shows.
+def figure(
+    name: str, *studies: str, size: Pair = (3.35, 2.6), panels: Cells = (1, 1), caption: str = "", long: bool = False
+) -> Decorator:
+    """Register a function that draws a figure: `draw(axes, *datasets)` returns the numbers that it shows.
 
+    Parameters
+    ----------
+    name : of the figure
     studies : names of the studies whose datasets `draw` takes, in this order
-    size : width and height in inches
-    panels : rows and columns; several make `axes` an array
-    caption : what the figure shows; by default the first paragraph of the docstring. The parameters that the studies
-        share are added by themselves, and stand above the figure
+    size, panels : width and height in inches; rows and columns, of which several make `axes` an array
+    caption : by default the first paragraph of the docstring. The parameters that the studies share are added to it
     long : whether a study takes minutes to compute; `plot all` goes without the figure
+
+    Returns
+    -------
+    a decorator, which returns the function
     """
 
     def register(draw: Callable[..., Columns]) -> Callable[..., Columns]:
@@ -96,10 +106,16 @@ def figure(name: str, *studies: str, size=(ONE_COLUMN, 2.6), panels=(1, 1), capt
     return register
 
 
-def drawing(name: str, caption: str = ""):
-    """Register `stem()`, the path, without its ending, of a drawing that is copied as it is: .svg, .pdf and .png.
+def drawing(name: str, caption: str = "") -> Decorator:
+    """Register a function that returns the path, without its ending, of a drawing: .svg, .pdf and .png are copied.
 
-    caption : by default the first paragraph of the docstring
+    Parameters
+    ----------
+    name, caption : of the drawing; the caption is by default the first paragraph of the docstring
+
+    Returns
+    -------
+    a decorator, which returns the function
     """
 
     def register(stem: Callable[[], Path]) -> Callable[[], Path]:
@@ -109,14 +125,20 @@ def drawing(name: str, caption: str = ""):
     return register
 
 
-def table(name: str, *studies: str, columns: str, caption: str = "", long: bool = False):
-    """Register `rows(*datasets)`, which gives the table NAME as a list of tuples, one value per column.
+def table(name: str, *studies: str, columns: str, caption: str = "", long: bool = False) -> Decorator:
+    """Register a function that makes a table: `rows(*datasets)` returns a list of tuples, one value per column.
 
+    Parameters
+    ----------
+    name : of the table
     studies : names of the studies whose datasets `rows` takes, in this order
     columns : "heading | format of its numbers | heading in LaTeX" of each, on lines or separated by "; "; without a
         format the cells are text, without a heading in LaTeX it is the plain one
-    caption : by default the first paragraph of the docstring
-    long : whether a study takes minutes to compute; `table all` goes without the table
+    caption, long : as of `figure`
+
+    Returns
+    -------
+    a decorator, which returns the function
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
@@ -172,7 +194,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
     return list(dict.fromkeys([*REGISTERS[""][kind], *beside.names(kind, long=long)]))
 
 
-def entry(kind: str, name: str) -> NamedTuple:
+def entry(kind: str, name: str) -> Any:
     """What is registered of a name: of the program itself, or beside studies, where it is run now.
 
     Raises StudyError, which suggests another name, if there is none.

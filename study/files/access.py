@@ -15,7 +15,7 @@ from pathlib import Path
 
 from xarray.backends.netCDF4_ import NETCDF4_PYTHON_LOCK
 
-from ..spec.definition import StudyError
+from ..inputs.definition import StudyError
 
 
 class Unusable(StudyError, OSError):

@@ -1,46 +1,45 @@
-"""The condition of a results file: sound, damaged and where, of an earlier version, or of another program."""
+"""The condition of a results file: sound, damaged, of an earlier version, of another program.
 
-import math
+A results file is an export of the blocks of a study. It carries one digest, in the attribute `contents_digest`: over
+names, dimensions, types, numbers, coordinates and attributes. So it is right as a whole or not at all.
+"""
+
+import hashlib
+import json
 import os
-import pickle
-import subprocess
 from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
-from functools import lru_cache
 from math import inf
 from pathlib import Path
 
 import numpy as np
 
-from ..spec.grid import Grid, windows
-from ..spec.vocabulary import names
+from ..data.provenance import OF_THE_RUN
+from ..inputs.grid import Grid, windows
 from .access import Unusable
-from .checksums import ATTRIBUTE, DIGITS, CaseDigests, lines_of_head, parsed
-from .child import python_command
 from .netcdf import File, check_regular
-from .seal import LARGE, is_whole
+from .seal import is_whole
 
+ATTRIBUTE = "contents_digest"
+FORMER = "checksums"  # what an earlier version wrote in place of the digest
 CHUNK = 8192  # cases in a chunk of the file: 2 MB of a profile
 BROKEN = (KeyError, IndexError, ValueError, TypeError, AttributeError, OverflowError, MemoryError)
 """Exceptions while a file is read that is not laid out like our results."""
-OURS = ("study_digest", "numerics_version", ATTRIBUTE)
-"""Attributes by which our results are known. Every results file has the first two."""
-SHOWN = 3  # most damaged things that a message names
-PATIENCE, SLOWEST = 60.0, 5e6  # seconds, and bytes per second, that reading may take: of a damaged file it may not end
-CHANGED = "is damaged, or another program has changed it: "
+OURS = ("study_digest", "numerics_version")
+"""Attributes by which our results are known. Every results file has them."""
+CHANGED = "is damaged, or another program has changed it: its numbers are not those that were written"
 
 
 @dataclass(frozen=True, eq=False)
 class Condition:
     """The condition of a results file.
 
-    kind : "sound"; "unverified": it seems right, but has no checksums, since an earlier version wrote it; "damaged";
-        "foreign": not written by roughcoat; "unreadable"; "missing"
+    kind : "sound"; "unverified": it seems right, but has no digest, since an earlier version or another program wrote
+        it; "damaged"; "foreign": not written by roughcoat; "unreadable"; "missing"
     reason : what is wrong; it follows the path in a message
-    digest, numerics, title : of the study, of the solver, and of the study, as the file says
-    sizes : of the dimensions of the cases, in order
-    damage : names of the checksums that do not fit, see `checksums`
-    intact : (N,) whether the numbers of each case can be trusted; None if not all variables were examined
+    digest, numerics : of the study and of the solver, as the file says; "" where it does not
+    title, text, command : of the study, of its file, and how it was run
+    sizes : of the dimensions of the cases, in order; {} of a file without cases
     seen : its `stamp` before it was examined, None where there was no file
     unpacked : bytes of its variables in memory
     """
@@ -51,9 +50,9 @@ class Condition:
     digest: str = ""
     numerics: str = ""
     title: str = ""
+    text: str = ""
+    command: str = ""
     sizes: dict[str, int] = field(default_factory=dict)
-    damage: tuple[str, ...] = ()
-    intact: np.ndarray | None = None
     seen: tuple | None = None
     unpacked: int = 0
 
@@ -69,27 +68,30 @@ class Condition:
             raise Unusable(self.path, self.kind, self.reason)
 
 
-def examine(path, columns: tuple[str, ...] | None = None, most: float = inf) -> Condition:
-    """The condition of a results file.
+def examine(path, most: float = inf) -> Condition:
+    """The condition of a results file. All of it is read, and compared with its digest.
 
-    columns : the variables over the cases to be examined; None: all. Attributes, coordinates and one column take
-        milliseconds, all of the file as long as reading and summing it twice
-    most : of a file of more unpacked bytes attributes and coordinates alone are examined
-
-    A file whose seal is broken or missing (see `seal`) is examined in a child process, which takes a second more.
+    most : of a file of more bytes in memory the attributes alone are read
     """
     path = Path(path)
     seen = stamp(path)
+    found = Condition(path, "damaged", "is damaged: its bytes are not those that were written")
     try:
         check_regular(path)
-        columns = () if path.stat().st_size > most else columns
-        if not is_whole(path, LARGE if columns is not None else inf):
-            return replace(examined_in_child(path, columns, most, seen), seen=seen)
-    except (FileNotFoundError, Unusable):
-        pass  # `examined` finds the same, and says it
+        if path.stat().st_size > most or is_whole(path) is not False:
+            with File(path) as file:
+                found = _described(file)
+                if found.kind == "sound" and found.unpacked <= most and contents(file) != file.attribute(ATTRIBUTE):
+                    found = replace(found, kind="damaged", reason=CHANGED)
+    except FileNotFoundError:
+        found = Condition(path, "missing")
+    except Unusable as error:
+        found = replace(found, kind=error.kind, reason=error.reason)
     except OSError as error:
-        return Condition(path, "unreadable", f"cannot be read: {error.strerror}", seen=seen)
-    return replace(examined(path, columns, most), seen=seen)
+        found = Condition(path, "unreadable", f"cannot be read: {error.strerror}")
+    except BROKEN as error:
+        found = replace(found, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
+    return replace(found, seen=seen)
 
 
 def stamp(path: Path) -> tuple | None:
@@ -98,133 +100,80 @@ def stamp(path: Path) -> tuple | None:
         found = path.stat()
     except OSError:
         return None
-    return found.st_ino, found.st_size, found.st_mtime_ns, found.st_ctime_ns
+    return found.st_ino, found.st_size, found.st_mtime_ns
 
 
-@lru_cache(maxsize=16)
-def examined_in_child(path: Path, columns: tuple[str, ...] | None, most: float, _) -> Condition:
-    """`examine` in a child process: a file with a broken seal may crash the interpreter that reads it."""
-    statement = "import pickle, sys; from study.files import examine; given = pickle.load(sys.stdin.buffer)\n"
-    statement += "sys.stdout.buffer.write(pickle.dumps(examine.examined(*given)))"
-    command, environment = python_command(statement)
-    options = {"input": pickle.dumps((path, columns, most)), "env": environment, "capture_output": True}
-    patience = PATIENCE + path.stat().st_size / SLOWEST
-    try:
-        child = subprocess.run(command, **options, timeout=patience)
-        return pickle.loads(child.stdout)
-    except (subprocess.TimeoutExpired, EOFError, pickle.UnpicklingError):
-        return Condition(path, "damaged", "is damaged: a program that reads it breaks down")
+def statuses(path: Path) -> np.ndarray:
+    """The statuses in a results file of a contact study, an array over its grid."""
+    with File(path) as file:
+        return file.read("status")
 
 
-def examined(path: Path, columns: tuple[str, ...] | None = None, most: float = inf) -> Condition:
-    """`examine` in this process."""
-    try:
-        with File(path) as file:
-            unpacked = file.unpacked
-            return replace(_examined(file, () if unpacked > most else columns), unpacked=unpacked)
-    except FileNotFoundError:
-        return Condition(path, "missing")
-    except Unusable as error:
-        return Condition(path, error.kind, error.reason)
-    except BROKEN as error:
-        return Condition(path, "damaged", f"is damaged: no results are laid out like this ({error})")
+def _described(file: File) -> Condition:
+    """What a file says of itself."""
+    there = file.attributes()
+    if not {*OURS} & {*there}:
+        return Condition(file.path, "foreign", "is a netCDF file of another program", unpacked=file.unpacked)
+    names = (*OURS, "title", "study", "command")
+    about = [str(file.attribute(name)) if name in there else "" for name in names]
+    dims, sizes = file.variables.get("status", ()), file.sizes
+    of_cases = {dim: sizes[dim] for dim in dims}
+    kind = "sound" if ATTRIBUTE in there else "unverified"
+    return Condition(file.path, kind, "", *about, of_cases, unpacked=file.unpacked)
 
 
-def _examined(file: File, columns: tuple[str, ...] | None) -> Condition:
-    about = {name: str(file.attribute(name)) for name in file.attributes() if name in OURS}
-    lines = parsed(about.pop(ATTRIBUTE)) if ATTRIBUTE in about else {}
-    if not lines and len(about) < 2:
-        return Condition(file.path, "foreign", "is a netCDF file of another program")
-    whole, over = _split(file, lines)
-    dims = file.variables
-    sizes = {dim: file.sizes[dim] for dim in dims["status"]} if over else {}
-    places = tuple(sizes), (*sizes, "x")
-    strange = [] if lines else [name for name in over if dims[name] not in places]
-    if strange:
-        reason = f"another program has changed it: its dimensions are {dims[strange[0]]} in {strange[0]}"
-        return Condition(file.path, "foreign", reason)
-    found = lines_of_head(file, whole, over, [line[1:] for line in lines if line.startswith("@")])
-    rows, lost = _read(file, [name for name in over if columns is None or name in columns], sizes)
-    damage = [f"#{name}" for name in lost]
-    if lines:
-        found |= rows.lines(runs=columns is None)
-        damage = [name for name in [*found, "=checksums"] if lines.get(name) != found.get(name, "right")]
-    intact = _intact(rows, lines, lost) if columns is None and over else None
-    kind = "damaged" if damage else "sound" if lines else "unverified"
-    reason = CHANGED + _in_words(damage, intact) if damage else ""
-    title = str(file.attribute("title")) if "title" in file.attributes() else ""
-    about = [*(about.get(name, "") for name in OURS[:2]), title]
-    return Condition(file.path, kind, reason, *about, sizes, tuple(damage), intact)
+class Sums:
+    """Checksums of the variables of a file while they are written or read, each from its first number to its last."""
+
+    def __init__(self):
+        self._sums: dict[str, hashlib._Hash] = {}
+
+    def add(self, name: str, piece: np.ndarray) -> None:
+        """Add the next numbers of a variable."""
+        if name not in self._sums:
+            self._sums[name] = hashlib.sha256()
+        self._sums[name].update(_as_bytes(piece))
+
+    def digest(self, file: File) -> str:
+        """The digest of a file whose variables have all been added."""
+        sums = {name: found.hexdigest() for name, found in sorted(self._sums.items())}
+        return hashlib.sha256(json.dumps([_head(file), sums], sort_keys=True).encode()).hexdigest()
 
 
-def _split(file: File, lines: dict[str, str]) -> tuple[list[str], list[str]]:
-    """Names of the variables that are read whole, and of those over the cases."""
-    if lines:
-        over = [line[1:] for line in lines if line.startswith("#")]
-        return [line for line in lines if line[0] not in "#@="], over
-    there = file.variables
-    if "status" not in there:
-        return list(there), []
-    coordinates = coordinates_of(file)
-    known = names("control", "result", "profile", "flag", "count")
-    over = [name for name in known if name in there and name not in coordinates]
-    return [name for name in coordinates if name in there], over
+def contents(file: File) -> str:
+    """The digest of all that an open file holds; it is in memory part by part."""
+    sums, sizes = Sums(), file.sizes
+    for name, dims in file.variables.items():
+        for window in _pieces({dim: sizes[dim] for dim in dims}):
+            sums.add(name, file.read(name, window, characters=True))
+    return sums.digest(file)
 
 
-def coordinates_of(file: File) -> set[str]:
-    """Names of the dimensions and coordinates of the cases."""
-    named = str(file.attribute("coordinates", "status")) if "coordinates" in file.attributes("status") else ""
-    return {*file.variables["status"], *named.split()}
+def _pieces(sizes: dict[str, int]) -> Iterator[dict[str, slice]]:
+    """Windows that together are a variable of these dimensions, one behind the other; in each are whole chunks."""
+    of_cases = Grid({dim: size for dim, size in sizes.items() if dim != "x"}, {})
+    return windows(of_cases, 8 * CHUNK, CHUNK) if 0 not in sizes.values() else iter([{}])
 
 
-def _read(file: File, over: list[str], sizes: dict[str, int]) -> tuple[CaseDigests, dict]:
-    """Digests of the variables `over` the cases, and name -> [(start, stop)] of the cases that cannot be read."""
-    grid, lost = Grid(sizes, {}), {}
-    rows = CaseDigests(grid.size)
-    for name in over:
-        for start, stop, window in runs(grid):
-            try:
-                piece = file.read(name, window).reshape(stop - start, -1)
-            except (Unusable, *BROKEN):
-                lost.setdefault(name, []).append((start, stop))
-                # random numbers in place of the lost ones: their checksum is wrong
-                piece = np.frombuffer(os.urandom(stop - start), np.uint8)
-            rows.add(name, piece)
-    return rows, lost
+def _head(file: File) -> list:
+    """Dimensions, types and attributes of all variables, and attributes of the file but those of the run."""
+    found, sizes = {}, file.sizes
+    for name, dims in file.variables.items():
+        kind = "str" if file.dtype(name) is str else file.dtype(name).str
+        attributes = {key: _typed(file.attribute(key, name)) for key in file.attributes(name)}
+        found[name] = [kind, dims, [sizes[dim] for dim in dims], attributes]
+    kept = [name for name in file.attributes() if name not in (ATTRIBUTE, *OF_THE_RUN)]
+    return [found, {name: _typed(file.attribute(name)) for name in kept}]
 
 
-def runs(grid: Grid) -> Iterator[tuple[int, int, dict[str, slice]]]:
-    """(start, stop, window) of consecutive cases that are read together. If reading fails, all of them are lost."""
-    start = 0
-    for window in windows(grid, CHUNK, CHUNK):
-        stop = start + math.prod(part.stop - part.start for part in window.values())
-        yield start, stop, window
-        start = stop
+def _typed(value) -> list:
+    """The type and the values of an attribute for JSON, which has no NaN: floats are texts."""
+    array = np.atleast_1d(value)
+    return [array.dtype.kind, [repr(part) if array.dtype.kind == "f" else part for part in array.tolist()]]
 
 
-def _intact(rows: CaseDigests, lines: dict[str, str], lost: dict) -> np.ndarray:
-    """(N,) whether the numbers of a case can be read and, if there are checksums, are those that were written."""
-    found = np.ones(rows.size, dtype=bool)
-    for start, stop in (part for parts in lost.values() for part in parts):
-        found[start:stop] = False
-    if lines:
-        given, there = lines.get("=runs", ""), rows.lines()["=runs"]
-        for number, start in enumerate(range(0, len(there), DIGITS)):
-            if given[start : start + DIGITS] != there[start : start + DIGITS]:
-                found[number * rows.run : (number + 1) * rows.run] = False
-    return found
-
-
-def _in_words(damage: list[str], intact: np.ndarray | None) -> str:
-    """What is damaged, and in which cases, in words."""
-    words = {
-        "=structure": "types, dimensions or attributes of its variables",
-        "=runs": "",
-        "=checksums": "its checksums",
-    }
-    found = [words.get(name, f"the attribute {name[1:]}" if name[0] == "@" else name.lstrip("#")) for name in damage]
-    shown = [word for word in found if word] or ["its checksums"]
-    more = f" and {len(shown) - SHOWN} more" if len(shown) > SHOWN else ""
-    bad = np.flatnonzero(~intact) if intact is not None else ()
-    where = f" in {len(bad)} of {len(intact)} cases, {bad[0]} to {bad[-1]}" if len(bad) else ""
-    return ", ".join(shown[:SHOWN]) + more + where
+def _as_bytes(array: np.ndarray):
+    """The bytes of an array: numbers in little-endian order, texts separated by null characters."""
+    if array.dtype.kind in "OU":
+        return "\0".join(map(str, array.ravel().tolist())).encode("utf-8", "surrogatepass")
+    return np.ascontiguousarray(array, dtype=array.dtype.newbyteorder("<")).reshape(-1).view(np.uint8)

@@ -1,8 +1,7 @@
-"""The seal: a checksum of a whole results file, behind the end of its HDF5 data.
+"""The seal: a checksum of all bytes of a block or a results file, behind their end.
 
-HDF5 trusts what a file says of itself, so a flipped bit may crash the interpreter. A file whose seal is broken or
-missing is therefore examined in a child process first (`examine`). If that survives, this process reads the intact
-cases.
+HDF5 trusts what a file says of itself, so of a flipped bit it may crash the interpreter, or never come back. It is not
+asked about a results file whose seal is broken.
 """
 
 import os
@@ -12,7 +11,6 @@ from pathlib import Path
 MARK = b"\nroughcoat crc32 "
 LENGTH = len(MARK) + 8  # and the checksum in hexadecimal digits
 PIECE = 1 << 20
-LARGE = 256_000_000  # bytes, summed in some tenths of a second; larger files are summed only with all their numbers
 
 
 def seal(path: Path) -> None:
@@ -22,16 +20,16 @@ def seal(path: Path) -> None:
         file.write(MARK + b"%08x" % found)
 
 
-def is_whole(path: Path, most: float = float("inf")) -> bool:
-    """Whether the seal of a file is there and right. In a file of more than `most` bytes, whether it is there."""
+def is_whole(path: Path) -> bool | None:
+    """Whether the seal of a file is right; None where there is none, such as behind a file that was written anew."""
     with open(path, "rb") as file:
         size = os.fstat(file.fileno()).st_size - LENGTH
         if size < 0:
-            return False
+            return None
         file.seek(size)
         end = file.read(LENGTH)
-        if size > most:
-            return end.startswith(MARK)
+        if not end.startswith(MARK):
+            return None
         file.seek(0)
         return end == MARK + b"%08x" % _checksum(file, size)
 

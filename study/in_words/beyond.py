@@ -6,10 +6,9 @@ import xarray as xr
 from ..data import derived
 from ..data.assumptions import assumption_texts
 from ..data.dataset import broken
-from ..physical.bodies import BODIES
-from ..physical.bounds import INPUTS, absurd
-from ..spec.laws import smooth_laws
-from ..spec.vocabulary import ROWS
+from ..inputs.laws import smooth_laws
+from ..inputs.scene.bounds import INPUTS, absurd
+from ..inputs.vocabulary import BODIES, ROWS
 from ..specimen.roughness import looks_like_iso_ra
 from .pressures import RING
 

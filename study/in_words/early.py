@@ -8,8 +8,8 @@ from solver.estimate import estimate
 
 from ..data.assumptions import have, validity_of
 from ..data.dataset import broken, model_attributes
-from ..spec.definition import Definition
-from ..spec.grid import MOVED, along, columns
+from ..inputs.definition import Definition
+from ..inputs.grid import MOVED, along, columns
 from .beyond import BROKEN
 
 #: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about

@@ -3,9 +3,8 @@
 import numpy as np
 import xarray as xr
 
-from ..physical.bodies import BODIES
-from ..physical.scene import ASSUMED
-from ..spec.vocabulary import CONTROLS
+from ..data.si import ASSUMED
+from ..inputs.vocabulary import BODIES, CONTROLS
 from ..specimen.quantities import READABLE, readable
 
 

@@ -7,9 +7,9 @@ import xarray as xr
 
 from ..data import derived
 from ..data.dataset import decode
-from ..physical.bodies import BODIES
-from ..physical.inputs import is_rigid
+from ..inputs.vocabulary import BODIES
 from ..specimen.quantities import readable
+from .inputs import is_rigid
 
 #: A half-space under a sphere yields where p(0) exceeds this times its yield strength (Johnson, Contact Mechanics,
 #: 1985), with ν = 0.3. Under a uniform pressure it is 1.5, under a narrow ring of pressure 1.7.

@@ -5,9 +5,8 @@ import xarray as xr
 from solver import Status
 
 from ..data.dataset import decode
-from ..physical.bodies import BODIES
-from ..physical.scene import ASSUMED
-from ..spec.vocabulary import VOCABULARY
+from ..data.si import ASSUMED
+from ..inputs.vocabulary import BODIES, VOCABULARY
 from .beyond import doubts
 from .pressures import RUBBER, not_checked
 

@@ -3,11 +3,10 @@
 import numpy as np
 import xarray as xr
 
-from ..physical.bodies import BODIES
-from ..physical.inputs import is_rigid, used_inputs
-from ..physical.scene import SAME_PIECE
-from ..spec.laws import smooth_laws
-from ..spec.vocabulary import CONTROLS, VOCABULARY
+from ..data.si import SAME_PIECE
+from ..inputs.laws import smooth_laws
+from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
+from .inputs import is_rigid, used_inputs
 from .numbers import given_text, in_its_unit, result_text, ring_text, spread_of
 from .pressures import largest
 from .sentences import sentences
@@ -34,13 +33,29 @@ class Summary(str):
 def summary(contact: xr.Dataset) -> Summary:
     """What `study.solve` found, in words.
 
-    contact : a dataset of `study.solve`, in physical units or dimensionless; of a grid the first cases are written out
-
     The text has the inputs; each quantity with its unit and ±; status, model used and validity as sentences. ± is one
     standard deviation: the root of the sum of the squares of `error`, of `model_error` and of what the spreads of the
     inputs make of the quantity (`NAME_spread`). `error` and `model_error` are of the other six quantities; dP/dD is
     taken to be as sure. Where the profile p is larger in a ring than in the centre, the text has the pressure of that
-    ring and its radius. Raises ValueError where the dataset is not one of contacts.
+    ring and its radius.
+
+    Parameters
+    ----------
+    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out
+
+    Returns
+    -------
+    Summary : a text, which a notebook shows with its lines
+
+    Raises
+    ------
+    ValueError : the dataset is not one of contacts
+
+    Examples
+    --------
+    >>> import study
+    >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
+    'Given: a rigid punch'
     """
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:
@@ -48,7 +63,7 @@ def summary(contact: xr.Dataset) -> Summary:
     bare = [name for name in ("status", "model_used", "validity") if "flag_meanings" not in contact[name].attrs]
     if bare:
         raise ValueError(f"{bare[0]} has lost its attributes, which say what its numbers mean: keep them (keep_attrs)")
-    dims = list(contact["status"].dims)
+    dims = [str(dim) for dim in contact["status"].dims]
     contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     if not dims:
         return Summary(_summary_of_case(contact))
@@ -99,7 +114,7 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
 
 def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
     """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
-    of_material = {}
+    of_material: dict[str, list[str]] = {}
     for body, (modulus, ratio, _) in BODIES.items():
         if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
             of_material.setdefault(str(case[body].values), []).append(body)

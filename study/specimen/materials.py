@@ -9,6 +9,7 @@
 
 import difflib
 import math
+import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -19,6 +20,7 @@ from pathlib import Path
 from ..terminal import shown
 from .quantities import multiple
 
+__all__ = ["Material", "get", "names", "read", "table"]
 SOFTEST, STIFFEST = 1e3, 2e12
 """Bounds of E in Pa. Each E of the table, 8.6 kPa to 1143 GPa, is between them; one in GPa by mistake is below."""
 LEAST_SPREAD = 1e-6
@@ -39,6 +41,8 @@ OTHERS = {"condition": "a text", "source": "a text", "also": "a list of texts", 
 class Material:
     """An isotropic elastic material; what `get` and `read` return has passed their checks.
 
+    Attributes
+    ----------
     name : as in the table
     E, nu : Young's modulus, Pa, and Poisson's ratio
     E_spread, nu_spread : one standard deviation of each, Pa and 1, among the pieces that bear the name
@@ -76,9 +80,23 @@ class Material:
 def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     """The material of this name, or of this other name; capitals, hyphens and spaces do not matter.
 
+    Parameters
+    ----------
+    name : such as "steel 52100" or "100Cr6"
     among : where to look, as `read` returns it; without it the table of this package
 
-    Raises LookupError if there is none; names like it are suggested.
+    Returns
+    -------
+    Material
+
+    Raises
+    ------
+    LookupError : there is none; names like it are suggested
+
+    Examples
+    --------
+    >>> get("ptfe").nu
+    0.46
     """
     known = _built_in() if among is None else among
     spelled = {_plain(word): entry for entry in known.values() for word in entry.also}
@@ -93,12 +111,22 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
 
 
 def names() -> tuple[str, ...]:
-    """The names of the materials of this package, in the order of its table."""
+    """The names of the materials of this package, in the order of its table.
+
+    Returns
+    -------
+    tuple of str
+    """
     return tuple(_built_in())
 
 
 def table() -> str:
-    """Every material in aligned columns, for a terminal: name, E, nu, E* = E/(1 - nu²), each with its spread."""
+    """Every material in aligned columns, for a terminal: name, E, nu, E* = E/(1 - nu²), each with its spread.
+
+    Returns
+    -------
+    str
+    """
     rows = [("material", "E", "nu", "E/(1 - nu²)"), *(_numbers(entry) for entry in _built_in().values())]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     return "\n".join(
@@ -117,14 +145,24 @@ def markdown() -> str:
     return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in row)} |" for row in rows)
 
 
-def read(path) -> dict[str, Material]:
-    """The materials of a TOML file of the user's own, by name; `get(name, among)` finds them by their other names too.
+def read(path: str | os.PathLike) -> dict[str, Material]:
+    """The materials of a TOML file of the user's own; `get(name, among)` finds them by their other names too.
 
     Each is a section `["my steel"]` with the numbers E (Pa), nu, E_spread (Pa), nu_spread, and if wanted the texts
     condition and source, the list `also` of other names, and checked = true.
 
-    Raises OSError: the file cannot be read; ValueError: it is no TOML, or a value is missing or not allowed: a line for
-    each, with file, section, key, value.
+    Parameters
+    ----------
+    path : of the file
+
+    Returns
+    -------
+    dict : name -> Material
+
+    Raises
+    ------
+    OSError : the file cannot be read
+    ValueError : it is no TOML, or a value is missing or not allowed: a line for each, with file, section, key, value
     """
     path = Path(path)
     try:
@@ -147,7 +185,8 @@ def _materials(sections: dict, file: str) -> dict[str, Material]:
     errors = [f"{file}: [{_shown(name)}] {error}" for name, given in sections.items() for error in _errors(given)]
     if errors:
         raise ValueError("\n".join(errors))
-    found, owners = {}, {}
+    found: dict[str, Material] = {}
+    owners: dict[str, str] = {}
     for name, given in sections.items():
         numbers = {key: float(given[key]) for key in NUMBERS}
         found[name] = Material(name, **(given | numbers | {"also": tuple(given.get("also", ()))}))

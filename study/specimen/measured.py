@@ -1,7 +1,9 @@
 """From a scan to the density and the radius of its asperities, and the spread of their heights."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
@@ -13,9 +15,18 @@ from .heights.rows import aligned
 from .scan import BLUNTEST, FEWEST, FLATTEST, Scan, number
 
 
-def measure(scan: Scan, *, method="moments", form="plane", rows=None, cutoff=None) -> Roughness:
+def measure(
+    scan: Scan,
+    *,
+    method: Literal["moments", "summits"] = "moments",
+    form: str | float = "plane",
+    rows: Literal["median"] | None = None,
+    cutoff: float | Sequence[float] | None = None,
+) -> Roughness:
     """Asperities of a scan: density, radius, spread of their heights.
 
+    Parameters
+    ----------
     scan : of `read`, `profile` or `height_map`
     method : "moments", the summits that an isotropic Gaussian surface of the same m0, m2, m4 has (Nayak 1971,
         McCool 1987); "summits", the points higher than their eight neighbours, or two on a profile. On a random surface
@@ -27,10 +38,20 @@ def measure(scan: Scan, *, method="moments", form="plane", rows=None, cutoff=Non
     cutoff : wavelength, m, of a Gaussian low-pass (ISO 16610-21, -61); None: none; a list: the numbers of the answer
         are arrays over it
 
-    Raises ValueError: an unknown method, form or rows, a cutoff below three steps or an empty list, a sphere smaller
-    than the scan; fewer than 16 points in a direction, over the larger of two steps; too few points that have all their
-    neighbours; no heights, or no summits; without `huge` of the scan, heights of an rms below 1 pm after the form, and
-    asperities of a radius above 1 km.
+    Returns
+    -------
+    Roughness : in m
+
+    Raises
+    ------
+    ValueError : an unknown method, form or rows, a cutoff below three steps or an empty list, a sphere smaller than
+        the scan; fewer than 16 points in a direction, over the larger of two steps; too few points with all their
+        neighbours; no heights, or no summits; without `huge` of the scan, heights of an rms below 1 pm after the form,
+        and asperities of a radius above 1 km
+
+    Examples
+    --------
+    docs/roughness.md
     """
     if not isinstance(scan, Scan):
         raise ValueError("give a scan: that of study.roughness.read, or of height_map or profile, which take arrays")

@@ -6,6 +6,7 @@ Ra of ISO 21920 (formerly ISO 4287), which is a mean height: `looks_like_iso_ra`
 """
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -37,23 +38,72 @@ DENSEST = math.pi / (2 * math.sqrt(3))
 SHARPEST = 0.1
 
 
-def square_lattice(pitch):
-    """Asperities per unit area of a square lattice, Nbar = 1/pitch², in 1/[pitch]². Geometry."""
+def square_lattice(pitch: Any) -> Any:
+    """Asperities per unit area of a square lattice, Nbar = 1/pitch². Geometry.
+
+    Parameters
+    ----------
+    pitch : distance of nearest neighbours, > 0
+
+    Returns
+    -------
+    float or array : in 1/[pitch]²
+
+    Raises
+    ------
+    ValueError : a pitch that is no positive number, or has a unit as an attribute
+
+    Examples
+    --------
+    >>> square_lattice(2.0)
+    0.25
+    """
     return 1 / _positive("pitch", pitch) ** 2
 
 
-def hexagonal_lattice(pitch):
-    """Asperities per unit area of a hexagonal lattice, Nbar = 2/(√3 pitch²), in 1/[pitch]².
+def hexagonal_lattice(pitch: Any) -> Any:
+    """Asperities per unit area of a hexagonal lattice, Nbar = 2/(√3 pitch²). Geometry: each has a cell of √3/2 pitch².
 
-    pitch is the distance of nearest neighbours; each has a cell of √3/2 pitch². Geometry.
+    Parameters
+    ----------
+    pitch : distance of nearest neighbours, > 0
+
+    Returns
+    -------
+    float or array : in 1/[pitch]²
+
+    Raises
+    ------
+    ValueError : a pitch that is no positive number, or has a unit as an attribute
+
+    Examples
+    --------
+    >>> round(hexagonal_lattice(2.0), 6)
+    0.288675
     """
     return 2 / (math.sqrt(3) * _positive("pitch", pitch) ** 2)
 
 
-def area_fraction(fraction, base_radius):
-    """Asperities per unit area whose circular bases cover a fraction of it, Nbar = fraction/(π base_radius²).
+def area_fraction(fraction: Any, base_radius: Any) -> Any:
+    """Asperities per unit area whose circular bases cover a fraction of it, Nbar = fraction/(π base_radius²). Geometry.
 
-    In 1/[base_radius]². Geometry. Circles cover at most π/(2√3) = 0.907 without overlap; more is refused.
+    Parameters
+    ----------
+    fraction : covered, > 0. Circles cover at most π/(2√3) = 0.907 without overlap; more is refused
+    base_radius : of the circles, > 0
+
+    Returns
+    -------
+    float or array : in 1/[base_radius]²
+
+    Raises
+    ------
+    ValueError : a number out of these bounds, or with a unit as an attribute
+
+    Examples
+    --------
+    >>> round(area_fraction(0.5, 1.0), 6)
+    0.159155
     """
     fraction, base_radius = _positive("fraction", fraction), _positive("base_radius", base_radius)
     if not np.all(fraction <= DENSEST):
@@ -61,11 +111,28 @@ def area_fraction(fraction, base_radius):
     return fraction / (math.pi * base_radius**2)
 
 
-def cap_radius(height, width):
-    """Radius Ra of an asperity that is a spherical cap, Ra = (width²/4 + height²)/(2 height), in the unit of both.
+def cap_radius(height: Any, width: Any) -> Any:
+    """Radius Ra of an asperity that is a spherical cap, Ra = (width²/4 + height²)/(2 height).
 
-    width is the diameter of its base. Geometry: Pythagoras on Ra, Ra - height and width/2. A cap is at most a
-    half-sphere, so height may be at most width/2; a taller bump has sides that no cap has, and is refused.
+    Geometry: Pythagoras on Ra, Ra - height and width/2.
+
+    Parameters
+    ----------
+    height, width : of the cap, and diameter of its base, > 0. A cap is at most a half-sphere, so height may be at most
+        width/2; a taller bump has sides that no cap has, and is refused
+
+    Returns
+    -------
+    float or array : in the unit of both
+
+    Raises
+    ------
+    ValueError : a number out of these bounds, or with a unit as an attribute
+
+    Examples
+    --------
+    >>> cap_radius(1.0, 4.0)
+    2.5
     """
     height, width = _positive("height", height), _positive("width", width)
     if not np.all(height <= width / 2):
@@ -90,13 +157,24 @@ def _positive(name: str, value):
     return value
 
 
-def looks_like_iso_ra(Ra, Nbar, *, si=False) -> str | None:
-    """A warning if Ra is too small to be the radius of asperities so dense, perhaps an ISO roughness; None otherwise.
+def looks_like_iso_ra(Ra: Any, Nbar: Any, *, si: bool = False) -> str | None:
+    """A warning if Ra is too small to be the radius of asperities so dense, perhaps an ISO roughness.
 
+    The test is Ra √Nbar < 0.1 (see `SHARPEST`). A sparse design of small half-spheres may have it and be right.
+
+    Parameters
+    ----------
     Ra, Nbar : in units of one length, or in R; arrays are compared with each other, the sharpest is named
     si : whether they are in m and 1/m², so that the warning has readable units
 
-    The test is Ra √Nbar < 0.1 (see `SHARPEST`). A sparse design of small half-spheres may have it and be right.
+    Returns
+    -------
+    str or None : None if they may be right
+
+    Examples
+    --------
+    >>> looks_like_iso_ra(0.004, 250_000) is None
+    True
     """
     sharpness = np.asarray(Ra * np.sqrt(Nbar), dtype=float)
     if not np.any(sharpness < SHARPEST):

@@ -4,6 +4,7 @@ import math
 import numbers
 import unicodedata
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -34,6 +35,8 @@ UNEVEN = 0.1
 class Scan:
     """Heights of a surface. Made by `profile`, `height_map` and `read`, which check them.
 
+    Attributes
+    ----------
     z : heights in m, shape (x) of a profile or (y, x) of a map; NaN where a point is missing
     steps : distance of the points along each axis of z, m
     name : the file, or what the caller calls it
@@ -54,25 +57,34 @@ class Scan:
 
 
 def profile(
-    z,
+    z: Any,
     *,
-    x=None,
-    dx=None,
-    unit="m",
-    height_unit=None,
-    name="the profile",
+    x: Any = None,
+    dx: float | None = None,
+    unit: str = "m",
+    height_unit: str | None = None,
+    name: str = "the profile",
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
 ) -> Scan:
     """A profile, from its heights and either their positions or their distance.
 
+    Parameters
+    ----------
     z : heights, in height_unit (None: as `unit`)
     x, dx : positions on a uniform grid, rising or falling, or the distance of two points; in unit
     unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
+    name : of the scan, in messages
     missing, steep, huge : as of `height_map`
 
-    Raises ValueError: neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them.
+    Returns
+    -------
+    Scan : in m
+
+    Raises
+    ------
+    ValueError : neither or both of x and dx, positions not uniform, or heights as `height_map` refuses them
     """
     if (x is None) == (dx is None):
         raise ValueError(f"{name}: give either the positions of the points, x, or their distance, dx")
@@ -82,33 +94,43 @@ def profile(
 
 
 def height_map(
-    z,
+    z: Any,
     *,
-    dx,
-    dy=None,
-    unit="m",
-    height_unit=None,
-    name="the map",
+    dx: float,
+    dy: float | None = None,
+    unit: str = "m",
+    height_unit: str | None = None,
+    name: str = "the map",
     missing: str = "fill",
     steep: bool = False,
     huge: bool = False,
 ) -> Scan:
-    """A map of heights z, shape (y, x), in height_unit (None: as `unit`).
+    """A map of heights.
 
+    Parameters
+    ----------
+    z : heights, shape (y, x), in height_unit (None: as `unit`)
     dx, dy : distance of two columns and of two rows, in unit; dy is dx if it is not given
     unit, height_unit : one of m, mm, um, nm, pm, angstrom, or as it is spelt otherwise
+    name : of the scan, in messages
     missing : what is done with heights that are NaN or under a mask: "fill" interpolates up to 1 % of the points;
         "skip" leaves them, and every statistic takes the points whose neighbours are all there; "refuse"
     steep : take slopes that no instrument measures (rms above 3), and heights that span more than the scan is long
     huge : take a scan longer than 1 m, heights of an rms below 1 pm, and asperities of a radius above 1 km
 
-    Raises ValueError: fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is
-    not positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another.
+    Returns
+    -------
+    Scan : in m
+
+    Raises
+    ------
+    ValueError : fewer than 16 points in a direction, heights that are no numbers or all equal, a distance that is not
+        positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another
     """
     dx = number(f"{name}: dx", dx, unit)
     known = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
     own = [abs(float(one[1] - one[0])) for one in known if one.dtype.kind in "iuf" and one.size > 1]
-    if dy is None and len(own) == 2 and not np.isclose(*own, rtol=UNEVEN, atol=0):
+    if dy is None and len(own) == 2 and not np.isclose(own[0], own[1], rtol=UNEVEN, atol=0):
         raise ValueError(f"{name}: the coordinates of z have steps of {own[0]:g} along x, {own[1]:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
     return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)

@@ -5,6 +5,8 @@ import gzip
 import io
 import re
 import warnings
+from collections.abc import Sequence
+from os import PathLike
 from pathlib import Path
 
 import numpy as np
@@ -22,18 +24,18 @@ _NO_FORMAT = "none of the formats that it knows fits the content"
 
 
 def read(
-    path,
+    path: str | PathLike,
     *,
-    unit=None,
-    height_unit=None,
-    dx=None,
-    dy=None,
-    columns=None,
-    channel=None,
-    crop=None,
-    missing="fill",
-    steep=False,
-    huge=False,
+    unit: str | None = None,
+    height_unit: str | None = None,
+    dx: float | None = None,
+    dy: float | None = None,
+    columns: Sequence[int] | None = None,
+    channel: str | None = None,
+    crop: Sequence | None = None,
+    missing: str = "fill",
+    steep: bool = False,
+    huge: bool = False,
 ) -> Scan:
     """A profile or a map of heights from a file.
 
@@ -46,6 +48,9 @@ def read(
     SDF, SMD and PRF in text, and every other ending (.sur, .opd, .x3p, .gwy, …), have their lengths in the file. The
     package SurfaceTopography reads the formats of instruments: pip install 'roughcoat[topography]'.
 
+    Parameters
+    ----------
+    path : of the file
     unit : unit of x, y, dx, dy and crop: m, mm, um, nm, pm or angstrom. Text and .npy have none, so it must be given.
     height_unit : unit of z; None: as `unit`
     dx, dy : distance of the points, in unit; dy is dx if it is not given
@@ -55,8 +60,14 @@ def read(
         those of the file, or begin with 0 at the first point
     missing, steep, huge : as of `height_map`
 
-    Raises ValueError: the file cannot be read as a scan; the message names the file, what was read, and what is
-    allowed; ImportError: the format of an instrument, and SurfaceTopography is not installed.
+    Returns
+    -------
+    Scan : in m
+
+    Raises
+    ------
+    ValueError : the file cannot be read as a scan; the message says what was read, and what is allowed
+    ImportError : the format of an instrument, and SurfaceTopography is not installed
     """
     path = Path(path)
     if path.exists() and not path.is_file() and not path.is_dir():  # which would be waited for, or has no end

@@ -1,13 +1,14 @@
 """The blocks of a study on disk, and which of its cases they hold. There is no other record of the progress.
 
 Cases are found by their keys. So it does not matter from which version of the study they are, in which order they were
-computed, or how large the blocks are. The cases of an earlier results file are found and read in the same way.
+computed, or how large the blocks are. Blocks are added and stay, until `clean` is asked to remove those that no case of
+the study needs; the results file is an export of them.
 """
 
 import hashlib
 import json
 import logging
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from itertools import count
 from pathlib import Path
 
@@ -18,9 +19,9 @@ from solver import NUMERICS_VERSION
 from ..data.dataset import not_run
 from ..files.access import Unusable
 from ..files.atomic import remove_temporary
-from ..spec.definition import Definition, StudyError
-from ..spec.identity import case_keys, find
-from ..spec.vocabulary import NOT_RUN
+from ..inputs.definition import Definition
+from ..inputs.identity import case_keys, find
+from ..inputs.vocabulary import NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
 
 log = logging.getLogger(__name__)
@@ -28,10 +29,7 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """Where numbers of cases are: the file of a block. An earlier results file is such a source too (`earlier.py`).
-
-    keys : (N, 2), of its cases; status : (N,) int8, NOT_RUN for a case whose numbers cannot be trusted
-    """
+    """The file of a block. keys : (N, 2), of its cases; status : (N,) int8."""
 
     path: Path
     keys: np.ndarray
@@ -61,6 +59,10 @@ class Store:
         """Path of the results file."""
         return self.results / f"{self.definition.name}.nc"
 
+    def record(self, digest: str) -> Path:
+        """A block without columns, of the cases in the results file of a study of this digest."""
+        return self.folder / f"{digest}.cases"
+
     @property
     def lock(self) -> Path:
         return self.folder / "lock"
@@ -71,11 +73,10 @@ class Inventory:
     """Where each of the B cases is.
 
     keys : (B, 2)
-    sources : the blocks, and the earlier results file, that hold usable cases
+    sources : the blocks that hold usable cases
     source, row : (B,) int32, index of the source of each case (-1: missing), and the row of the case there
     status : (B,) int8, NOT_RUN for a missing case
     blocks : path of every block -> number of its cases, -1 for a damaged one
-    covered : paths of the blocks of which all numbers will be in the results file
     """
 
     keys: np.ndarray
@@ -83,8 +84,7 @@ class Inventory:
     source: np.ndarray
     row: np.ndarray
     status: np.ndarray
-    blocks: dict[Path, int] = field(default_factory=dict)
-    covered: set[Path] = field(default_factory=set)
+    blocks: dict[Path, int]
 
     @property
     def missing(self) -> np.ndarray:
@@ -103,51 +103,32 @@ def facts(x: np.ndarray) -> dict:
     return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
 
 
-def covers(there: dict, arrays: dict[str, np.ndarray], wanted: dict, columns: dict[str, np.ndarray]) -> bool:
-    """Whether `arrays` under the facts `there` hold all `columns` under the facts `wanted`, with no fewer digits."""
-    here = all(name in arrays and arrays[name].dtype.itemsize >= own.dtype.itemsize for name, own in columns.items())
-    same_points = there.get("x") == wanted.get("x") or all(own.ndim == 1 for own in columns.values())
-    return here and same_points and there.get("numerics_version") == wanted.get("numerics_version")
+def usable(definition: Definition, block: Block) -> bool:
+    """Whether a block holds all that the study wants, with no fewer digits."""
+    columns, wanted = not_run(definition, 0), facts(definition.x)
+    here = {name: array.dtype.itemsize for name, array in block.arrays.items()}
+    enough = all(here.get(name, 0) >= own.dtype.itemsize for name, own in columns.items())
+    same_points = block.facts.get("x") == wanted["x"] or all(own.ndim == 1 for own in columns.values())
+    return enough and same_points and block.facts.get("numerics_version") == wanted["numerics_version"]
 
 
-def usable(definition: Definition, given: dict, arrays: dict[str, np.ndarray]) -> bool:
-    """Whether arrays computed under the facts `given` hold all that the study wants."""
-    return covers(given, arrays, facts(definition.x), not_run(definition, 0))
-
-
-def inventory(store: Store, earlier: Source | None = None, retry: tuple = (), force: bool = False) -> Inventory:
-    """What is on disk of a study: in its blocks, and in an earlier results file if there is one.
-
-    retry : cases of these statuses count as missing; force : ignore blocks of another version of the numerics
-
-    Raises StudyError when there are blocks of another version of the numerics, and no `force`.
-    """
-    sources, blocks, covered = [], {}, set()
-    keys, results = case_keys(store.definition.grid), (facts(store.definition.x), not_run(store.definition, 0))
-    first = np.sort(keys[:, 0])
+def inventory(store: Store, retry: tuple = ()) -> Inventory:
+    """Which cases of a study are in its blocks. Those of the statuses `retry` count as missing."""
+    sources, blocks = [], {}
     for path in sorted(store.folder.glob("*.block")):
         try:
             block = read_block(path)
-        except FileNotFoundError:  # removed just now by the run to which it belongs
+        except FileNotFoundError:  # removed just now
             continue
         except OSError as error:  # its cases are computed again
             log.warning("%s", error)
             blocks[path] = -1
             continue
         blocks[path] = len(block.keys)
-        near = np.minimum(np.searchsorted(first, block.keys[:, 0]), len(first) - 1)
-        # all its cases are of the study, and the results will hold its columns
-        if (first[near] == block.keys[:, 0]).all() and covers(*results, block.facts, block.arrays):
-            covered.add(path)
-        if block.facts["numerics_version"] != NUMERICS_VERSION:
-            if not force:
-                version = f"version {block.facts['numerics_version']} of the numerics, this is {NUMERICS_VERSION}"
-                choice = "--force computes it again, --results DIR writes elsewhere"
-                raise StudyError([f"{store.folder}: holds unfinished work of {version}: {choice}"])
-        elif usable(store.definition, block.facts, block.arrays):
+        if usable(store.definition, block):
             sources.append(Source(path, block.keys, block.arrays["status"]))
-    sources += [earlier] if earlier else []
-    return Inventory(keys, sources, *_places(keys, sources, retry), blocks, covered)
+    keys = case_keys(store.definition.grid)
+    return Inventory(keys, sources, *_places(keys, sources, retry), blocks)
 
 
 def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> tuple[np.ndarray, ...]:
@@ -172,7 +153,6 @@ def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.
     known.status[index] = arrays["status"]
     known.sources.append(Source(path, known.keys[index], arrays["status"]))
     known.blocks[path] = len(index)
-    known.covered.add(path)
 
 
 def put(store: Store, block: Block) -> Path:
@@ -219,3 +199,29 @@ def remove_litter(store: Store) -> None:
     remove_temporary(store.path)
     for path in store.folder.glob(".*.tmp"):
         path.unlink(missing_ok=True)
+
+
+def note_export(store: Store, known: Inventory) -> None:
+    """Write which cases the results file will have, as they are given, before it is replaced."""
+    keys = known.keys.reshape(-1, store.definition.times, 2)[:, 0]
+    write_block(store.record(store.definition.digest), Block(facts(store.definition.x), keys, {}))
+
+
+def forget_other_exports(store: Store) -> None:
+    """Remove the records of results files that have been replaced."""
+    for path in store.folder.glob("*.cases"):
+        if path != store.record(store.definition.digest):
+            path.unlink(missing_ok=True)
+
+
+def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
+    """(how many cases of the results of a study of this digest are not in the study as it is, how many it has).
+
+    None if no record says which cases these are.
+    """
+    try:
+        keys = read_block(store.record(digest)).keys
+    except OSError:
+        return None
+    kept = find(keys, case_keys(store.definition.grid), np.zeros(store.definition.grid.size)) >= 0
+    return int(np.count_nonzero(~kept)), len(keys)

@@ -14,9 +14,9 @@ from solver import NUMERICS_VERSION, Problem, Solution, laws, solve
 from solver.laws import Law
 from solver.laws.trial import going_on
 
-from ..spec.definition import Definition
-from ..spec.grid import columns
-from ..spec.vocabulary import CONTROLS, INTEGERS, names
+from ..inputs.definition import Definition
+from ..inputs.grid import columns
+from ..inputs.vocabulary import CONTROLS, INTEGERS, names
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,11 +8,11 @@ import numpy as np
 from solver.numerics.ladder import LADDER, STACK
 
 from ..data.dataset import not_run
-from ..spec.definition import Definition, StudyError
+from ..inputs.definition import Definition, StudyError
 from ..store.writer import AT_ONCE
 from .cases import compute, parcel
+from .engine import AHEAD, MANY, available_workers, processes_for
 from .progress import duration
-from .workers import AHEAD, available_workers, processes_for
 
 SAMPLE = 256  # cases whose time is measured
 PROCESS = 250_000_000  # bytes of this process, Python and the packages
@@ -22,7 +22,7 @@ WORKING = 5  # while a block is solved, its arrays (B, m) take so many times the
 # Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time. Measured: peaks of runs on 17 to
 # 256 nodes, and of 300 cases of the study extremes_layered, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
-KEY = 16  # bytes of the key of a case in a block
+KEY = 16  # bytes of the key of a case, in a block and in the record of the results file
 # A results file takes HEAD bytes besides its numbers, and these take ROOM times their size: chunks are stored whole at
 # the edges of a grid. Measured on files of 3000 and of 1e6 cases.
 HEAD, ROOM = 300_000, 1.05
@@ -35,7 +35,7 @@ class Estimate:
 
     cases : of the study; present : those on disk; seconds : for the others
     memory : bytes at most; size : bytes of the results
-    disk : bytes at most of the results and the blocks together, before a run removes its blocks
+    disk : bytes at most of the results and of the blocks that are added
     refused : the error with which `run` would end, because of the results file that is there
     """
 
@@ -57,7 +57,8 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    processes = processes_for(count, blocks)
+    here = blocks < MANY or count == 1  # whether the calling thread computes too
+    processes = processes_for(count, blocks, here)
     memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
@@ -65,9 +66,9 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     exact = np.isin(base, ("layered", "auto")).any() or (base == "thin_layer").any() and (judged == "first_order").any()
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
-    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes or 1) * TABLES * exact
-    # the results file and the blocks of the missing cases: both are on disk when the file is complete
-    stored = missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
+    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + here) * TABLES * exact
+    # the blocks of the missing cases, and the record of the cases in the results file
+    stored = KEY * cases + missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
     return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + stored if missing else 0.0)
 
 

@@ -2,22 +2,25 @@
 
 import tempfile
 from dataclasses import dataclass, replace
+from math import inf
 from numbers import Integral
 from pathlib import Path
 from typing import TextIO
 
 import numpy as np
 
+from solver import NUMERICS_VERSION
+
 from ..data.dataset import status_words
+from ..files.access import Unusable
 from ..files.atomic import make_folder, target
-from ..files.examine import Condition, examine
-from ..spec.definition import LARGE, Definition, StudyError
-from ..spec.grid import MOVED
-from ..spec.identity import law_versions
-from ..spec.vocabulary import NOT_RUN, suggest
-from ..store.blocks import Inventory, Store, count_statuses
-from ..store.earlier import statuses
-from ..terminal import shown
+from ..files.examine import Condition, examine, statuses
+from ..inputs.definition import LARGE, Definition, StudyError
+from ..inputs.identity import law_versions
+from ..inputs.reading import same_tables
+from ..inputs.vocabulary import NOT_RUN, suggest
+from ..store.blocks import Inventory, Store, count_statuses, lost_cases
+from ..terminal import on_one_line, program, shown
 from .cost import PER_CASE, describe, estimate
 from .screen import screen_of
 
@@ -29,7 +32,6 @@ class Report:
     path : of the results; complete : whether it is written; if not, blocks failed or other parts are missing
     cases : of the study; computed : those computed now; failures : number of a block -> why it failed
     counts : status -> number of cases; {} when there was nothing to do
-    kept : what is still in the folder of the blocks, in words
     """
 
     path: Path
@@ -38,15 +40,13 @@ class Report:
     failures: dict[int, str]
     counts: dict[int, int]
     complete: bool
-    kept: str = ""
 
 
 @dataclass(frozen=True, eq=False)
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `workers.engine`
-    processes : workers may be processes, which do not know what the calling program itself defines
+    workers, scheduler : see `engine.computed`
     part : (i, n), compute the i-th of n parts only; the part that ends last writes the results
     retry : compute cases of these statuses again
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
@@ -62,7 +62,6 @@ class Order:
     results: Path
     workers: int | None = None
     scheduler: str | None = None
-    processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()
     fail_fast: bool = False
@@ -103,11 +102,10 @@ class Order:
     def done(self, found: Condition) -> bool:
         """Whether an examined results file is that of this study, with its title, and holds no case to be tried again.
 
-        One with another title is written anew, of the cases in it, unless these have been solved with moved inputs too:
-        all of that would be computed again.
+        One with another title is written anew, if it was written from the blocks that are there.
         """
         edited = found.title != (self.definition.title or self.definition.name)
-        if not belongs(self.definition, found) or (edited and MOVED not in self.definition.grid.sizes):
+        if not belongs(self.definition, found) or (edited and self.store.record(found.digest).exists()):
             return False
         return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 
@@ -117,11 +115,11 @@ class Order:
         return replace(found, **what)
 
 
-def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:
+def look(store: Store, most: float = inf) -> Condition:
     """`examine` the results file of a study. One with other dimensions than the study is foreign."""
-    definition, found = store.definition, examine(store.path, columns)
+    definition, found = store.definition, examine(store.path, most)
     sizes = list(definition.in_results(definition.grid.sizes).items())
-    if found.good and found.digest == definition.digest and found.sizes and list(found.sizes.items()) != sizes:
+    if found.good and found.digest == definition.digest and list(found.sizes.items()) != sizes:
         dims = f"{list(found.sizes)}, not {[dim for dim, _ in sizes]}"
         return replace(found, kind="foreign", reason=f"another program has changed it: its dimensions are {dims}")
     return found
@@ -130,6 +128,37 @@ def look(store: Store, columns: tuple[str, ...] | None = None) -> Condition:
 def belongs(definition: Definition, found: Condition) -> bool:
     """Whether an undamaged results file is that of this very study."""
     return found.good and found.digest == definition.digest
+
+
+def of_what(found: Condition) -> str:
+    """What the results in a sound file belong to, if not to the study as it is now: "another definition"."""
+    return "another definition" if found.numerics == NUMERICS_VERSION else "another version of the numerics"
+
+
+def check_replaceable(order: Order, found: Condition) -> None:
+    """Raise StudyError when a results file has cases that are not in the study, which would replace it.
+
+    A file that roughcoat has not written is never replaced.
+    """
+    store, definition = order.store, order.definition
+    if found.kind in ("foreign", "unreadable"):
+        raise Unusable(found.path, found.kind, f"{found.reason}; move it away, or use --results DIR")
+    nothing = found.kind == "missing" or not found.digest  # nothing in it can be read
+    same_file = order.renew and same_tables(found.text, definition.text)
+    if order.force or nothing or same_file or found.digest == definition.digest:
+        return
+    way = f"{program()} run --force {definition.name}" if order.renew else "--force"
+    made = f'; it was made by "{on_one_line(found.command, 80)}"' if found.command else ""
+    if found.numerics != NUMERICS_VERSION:
+        owner = f"version {found.numerics} of the numerics, this is {NUMERICS_VERSION}"
+        choice = f"{way} computes them again, --results DIR elsewhere"
+        raise StudyError([f"{found.path}: holds results of {owner}: {choice}{made}"])
+    lost = lost_cases(store, found.digest)
+    if lost is None or lost[0]:
+        owner = f"another definition (digest {found.digest[:8]}, here {definition.digest[:8]})"
+        what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
+        choice = f"{way} replaces them, --results DIR writes elsewhere"
+        raise StudyError([f"{found.path}: holds results of {owner}, {what}: {choice}{made}"])
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:

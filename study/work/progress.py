@@ -48,14 +48,17 @@ class Progress:
             # in the context of the caller, by which a notebook knows the cell that the line belongs to
             run = contextvars.copy_context().run
             self._thread = threading.Thread(target=run, args=(self._go_on,), name=SPEAKER, daemon=True)
-            self._thread.start()
+            try:
+                self._thread.start()
+            except BaseException:  # an interrupt: the thread may have written, and __exit__ is not called
+                self.close()
+                raise
         return self
 
     def __exit__(self, *_) -> None:
-        self._ended.set()
+        self.close()
         if self._thread is not None:
             self._thread.join()
-        self.close()
 
     def _go_on(self) -> None:
         wait = max(SILENT - (time.monotonic() - self.begun), 0.0)
@@ -79,9 +82,12 @@ class Progress:
             self._write(self._line)
 
     def close(self) -> None:
-        """End the rewritten line, or erase that of a call."""
+        """End the rewritten line, or erase that of a call. Nothing is written after it, by the thread either."""
         end = ERASE if self.passing else "\n"
-        self._write(lambda terminal: end if terminal and self._shown else "")
+        with self._writing:
+            self._write(lambda terminal: end if terminal and self._shown else "")
+            self.stream = None
+        self._ended.set()
 
     def _write(self, text: Callable[[bool], str]) -> None:
         """Write text(whether it is for a terminal that can erase a line), if there is a stream. When that fails, go on

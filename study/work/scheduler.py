@@ -22,7 +22,7 @@ def connected(address: str, listens: float, answers: float):
 
     Raises StudyError when nothing listens there in `listens` seconds, or no scheduler answers in `answers`.
     """
-    from ..spec.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
+    from ..inputs.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
 
     reason = address_error(address)
     if reason:

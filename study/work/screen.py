@@ -7,7 +7,7 @@ import threading
 from importlib import import_module
 from typing import TextIO
 
-from ..spec.definition import StudyError
+from ..inputs.definition import StudyError
 from ..terminal import shown
 from .progress import ERASE
 

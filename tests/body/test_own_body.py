@@ -6,7 +6,7 @@ from numpy.testing import assert_allclose
 from solver import Model, Problem, Status, solve
 from solver.body import BODIES
 from solver.body.half_space import half_space
-from solver.models import auto
+from solver.models import named
 from solver.parameters import BASES, LAYERED, PARAMETERS
 from study.in_words import MODELS
 
@@ -14,7 +14,7 @@ from study.in_words import MODELS
 @pytest.mark.parametrize("micro", ["disc_cell", "smooth"])
 def test_a_body_of_ones_own(micro, monkeypatch):
     monkeypatch.setitem(BODIES, "mine", lambda problem: half_space(problem.m))
-    monkeypatch.setitem(auto._BY_NAME, "mine", Model.LAYERED)
+    monkeypatch.setitem(named._BY_NAME, "mine", Model.LAYERED)
     monkeypatch.setitem(PARAMETERS, "base", PARAMETERS["base"]._replace(choices=(*BASES, "mine")))
     mine, same = (
         solve(Problem.of(P=[1e-6, 1e-5], base=base, micro=micro, n=1.0, h=0.02, Nbar=250_000.0, Ra=0.004, rtol=1e-9))
@@ -27,5 +27,5 @@ def test_a_body_of_ones_own(micro, monkeypatch):
 
 def test_every_body_is_in_all_lists():
     assert {*BODIES, "auto"} == {*BASES} == {*LAYERED[1], "half_space"}
-    assert set(auto._BY_NAME) == set(BODIES)
+    assert set(named._BY_NAME) == set(BODIES)
     assert {model.name.lower() for model in Model} - {"none"} <= set(MODELS)

@@ -7,7 +7,7 @@ from test_cli import GOOD, OURS, studies  # noqa: F401
 
 from study.__main__ import main
 from study.commands.arguments import proposed
-from study.spec.places import packaged, study_file
+from study.inputs.places import packaged, study_file
 
 
 @pytest.fixture(autouse=True)

@@ -227,7 +227,7 @@ def test_wrong_calls(arguments, capsys):
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
-    assert "usage: python -m study" in capsys.readouterr().err
+    assert "usage: python -m roughcoat" in capsys.readouterr().err
 
 
 def test_answers_without_heavy_imports():

@@ -12,6 +12,7 @@ from test_cli_options import tree
 from study import api, catalogue
 from study.__main__ import main
 from study.figures import registry
+from study.inputs.definition import StudyError
 from study.work.plan import Report
 
 pytestmark = pytest.mark.usefixtures("studies")
@@ -49,7 +50,7 @@ def test_what_cannot_be_drawn_does_not_keep_the_next_from_its_turn(command, func
     assert unknown.startswith('"fig91" is not known; ')
     study = "reference_load" if command == "table" else "spot_density"
     assert missing[0].startswith(f"results/{study}.nc: does not exist, ")
-    assert missing[0].endswith(f"make it with: python -m study run {study}")
+    assert missing[0].endswith(f"make it with: python -m roughcoat run {study}")
 
 
 def test_a_function_that_fails_does_not_keep_the_next_from_its_turn(results, tmp_path, monkeypatch, capsys):
@@ -107,12 +108,34 @@ def test_a_figure_does_not_take_the_name_of_another(monkeypatch):
     )
 
     def other(*_):
-        """Not that of the same name that is defined anew, as a cell of a notebook is run again."""
+        """Another function."""
 
     with pytest.raises(ValueError, match='"fig03" is that of test_cli_drawing.<lambda> already: take another name'):
         registry.figure("fig03", "main_case")(other)
     with pytest.raises(ValueError, match='"table1" is that of test_cli_drawing.* already: take another name'):
         registry.table("table1", "main_case", columns="a")(other)
+    other.__name__, other.__module__ = "<lambda>", "elsewhere"
+    with pytest.raises(ValueError, match='"fig03" is that of test_cli_drawing.<lambda> already: take another name'):
+        registry.figure("fig03", "main_case")(other)
+    other.__module__ = __name__
+    registry.figure("fig03", "main_case")(other)
+    assert registry.entry("figure", "fig03").draw is other, "as a cell of a notebook is run again"
+
+
+def test_results_that_are_missing_have_a_way_out_each(monkeypatch, tmp_path):
+    """Measured by a command, measured beside studies, or computed from a study file."""
+    monkeypatch.setitem(registry.REGISTERS[""], "measured", {"times": None})
+    with pytest.raises(StudyError) as caught:
+        registry.open_studies("mine", ("tradeoff", "times", "main_case"), tmp_path)
+    ways = (
+        "make it with: python -m roughcoat tradeoff",
+        "--run measures it",
+        "make it with: python -m roughcoat run main_case",
+    )
+    names = ("tradeoff", "times", "main_case")
+    assert caught.value.messages == tuple(
+        f"{tmp_path / name}.nc: does not exist, mine needs it; {way}" for name, way in zip(names, ways, strict=True)
+    )
 
 
 def test_a_file_that_holds_no_results_is_bad_input(capsys):

@@ -23,7 +23,13 @@ def test_a_study_of_the_user_goes_before_one_of_the_package(studies, capsys):  #
 
 
 @pytest.mark.parametrize(
-    ("program", "name"), [("/usr/bin/roughcoat", "roughcoat"), ("/x/study/__main__.py", "python -m study")]
+    ("program", "name"),
+    [
+        ("/usr/bin/roughcoat", "roughcoat"),
+        ("/x/study/__main__.py", "python -m study"),
+        ("/x/roughcoat/__main__.py", "python -m roughcoat"),
+        ("/a/notebook.py", "python -m roughcoat"),
+    ],
 )
 def test_the_usage_says_how_it_was_called(program, name, monkeypatch, capsys):
     monkeypatch.setattr(sys, "argv", [program])
@@ -68,6 +74,6 @@ def test_a_shell_completes_names(monkeypatch):
     monkeypatch.setitem(sys.modules, "argcomplete", fake)
     assert main(["check", "good"]) == 0 and not asked
     monkeypatch.setenv("_ARGCOMPLETE", "1")
-    assert main(["check", "good"]) == 0 and asked == ["python -m study"]
+    assert main(["check", "good"]) == 0 and asked == ["python -m roughcoat"]
     monkeypatch.setitem(sys.modules, "argcomplete", None)  # not installed
     assert main(["check", "good"]) == 0

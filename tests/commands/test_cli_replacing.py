@@ -11,7 +11,7 @@ from study.__main__ import main
 from study.figures import registry
 from study.files.examine import examine
 
-pytestmark = [pytest.mark.usefixtures("studies"), pytest.mark.usefixtures("read_in_a_fork")]
+pytestmark = pytest.mark.usefixtures("studies")
 RESULTS = Path("results/book.nc")
 
 
@@ -37,11 +37,11 @@ def elsewhere(text: str) -> None:
 
 def renumber(monkeypatch, version: str) -> None:
     from study.data import provenance
-    from study.spec import identity
-    from study.store import blocks, earlier
-    from study.work import cases
+    from study.inputs import identity
+    from study.store import blocks
+    from study.work import cases, plan
 
-    for module in (identity, blocks, earlier, cases, provenance):
+    for module in (identity, blocks, plan, cases, provenance):
         monkeypatch.setattr(module, "NUMERICS_VERSION", version)
 
 
@@ -116,13 +116,13 @@ def test_damaged_results_of_another_study_stay(name, capsys):
     spoil(RESULTS, name)
     before = RESULTS.read_bytes()
     assert main(["plot", "--run", "one"]) == 2
-    assert "are not in this one: run the study as it was" in capsys.readouterr().err
+    assert "39 of its 40 cases are not in this one: python -m roughcoat run --force" in capsys.readouterr().err
     assert RESULTS.read_bytes() == before
 
 
 def test_a_text_that_is_no_study_file_is_of_no_study(monkeypatch):
     """Nor is one whose parsing would take all memory."""
-    from study.spec.toml_text import same_tables
+    from study.inputs.reading import same_tables
 
     deep = ".".join("a" * 20_000) + " = 1\n"
     for text in (deep, "[" * 5000, "a =", "", "x = 1\n[model]\n"):

@@ -6,6 +6,7 @@ import subprocess
 import sysconfig
 import venv
 import zipfile
+from importlib import metadata
 from pathlib import Path
 
 import numpy as np
@@ -16,8 +17,11 @@ from test_cli import GOOD
 pytest.importorskip("setuptools")
 BUILD = "import sys; from setuptools import build_meta; getattr(build_meta, sys.argv[1])(sys.argv[2])"
 TRAP = "from pathlib import Path\nPath('it-ran').touch()\nraise SystemExit('the wrong one')\n"
-SOLVE = "print(study.solve(P=1e-5, micro='smooth', base='half_space').a.item())"
-POINT = ("point", "P=1e-5", "micro=smooth", "base=half_space")
+MANY = GOOD.replace("[1e-6, 2e-6, 3e-6]", "{ start = 1e-6, stop = 2e-6, num = 8 }")  # enough blocks for processes
+#: The radius of a contact by the `solver` that is imported, and by the one that `study.solve` has: 1 s more of imports.
+CONTACT = "P=1e-5, micro='smooth', base='half_space'"
+SOLVE = f"import solver; print(solver.solve(solver.Problem.of({CONTACT})).a.item())"
+CALL = f"print(study.solve({CONTACT}).a.item())"
 #: What a user may have in the working folder: path -> content. A package hides a module of its name, and both hide a
 #: plain folder, so each of the three is tried where it counts.
 NEIGHBOURS = {
@@ -37,7 +41,7 @@ def run(folder: Path, *command) -> subprocess.CompletedProcess:
 def python(request, tmp_path_factory) -> Path:
     """The Python of an environment in which roughcoat has been installed, and what it needs is that of this one."""
     clone, home = tmp_path_factory.mktemp("clone"), tmp_path_factory.mktemp("home")
-    for name in ("solver", "study", "studies"):
+    for name in ("roughcoat", "solver", "study", "studies"):
         shutil.copytree(ROOT / name, clone / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, clone)
@@ -49,6 +53,10 @@ def python(request, tmp_path_factory) -> Path:
     assert built.returncode == 0, built.stderr
     with zipfile.ZipFile(next(home.glob("*.whl"))) as archive:
         archive.extractall(packages)
+    (command,) = metadata.Distribution.at(next(packages.glob("roughcoat*.dist-info"))).entry_points
+    script = f"#!{python}\nimport sys\nfrom {command.module} import {command.attr}\nsys.exit({command.attr}())\n"
+    (python.parent / "roughcoat").write_text(script)
+    (python.parent / "roughcoat").chmod(0o755)
     return python
 
 
@@ -67,27 +75,83 @@ def beside(tmp_path):
 
 @pytest.mark.parametrize("files", NEIGHBOURS.values(), ids=NEIGHBOURS)
 def test_files_called_like_our_packages_are_left_alone(python, beside, files):
-    folder = beside(files | {"main.py": f"import study\n{SOLVE}\n"})
+    folder = beside(files | {"main.py": f"import study\n{SOLVE}\n", "mine.toml": GOOD})
     done = run(folder, python, "main.py")
     assert (done.returncode, done.stdout) == (0, "0.019574338205844317\n"), done.stderr
-    done = run(folder, python, "-m", "study", *POINT)
-    assert done.returncode == 0 and "= 0.01957" in done.stdout, done.stderr
+    done = run(folder, python, "-m", "study", "check", "mine.toml")
+    assert (done.returncode, done.stdout.split()[:3]) == (0, ["mine.toml:", "3", "cases"]), done.stderr
     assert not (folder / "it-ran").exists()
 
 
 def test_processes_that_compute_take_our_packages_too(python, beside):
     """And the command takes no module of the working folder for one that it needs."""
-    many = GOOD.replace("[1e-6, 2e-6, 3e-6]", "{ start = 1e-6, stop = 2e-6, num = 8 }")  # enough blocks for processes
-    folder = beside(NEIGHBOURS["modules"] | {"many.toml": many, "dask.py": TRAP})
+    folder = beside(NEIGHBOURS["modules"] | {"many.toml": MANY, "dask.py": TRAP})
     done = run(folder, python, "-m", "study", "run", "many.toml", "--workers", "2")
     assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
     (folder / "dask.py").unlink()
-    script = "import numpy as np, study; from study.work import share; share.BLOCK, share.START = 10, 1e-9\n"
+    script = "import numpy as np, study; from study.work import engine; engine.BLOCK, engine.START = 10, 1e-9\n"
     script += "c = study.solve(P=np.geomspace(1e-6, 1e-5, 40), micro='smooth', base='half_space', workers=2)\n"
-    script += "assert (c.status == 0).all(); print(share._pool.count)"
+    script += "assert (c.status == 0).all(); print(engine._pool.count)"
     done = run(folder, python, "-c", script)
     assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
     assert not (folder / "it-ran").exists()
+
+
+#: A package hides a module of its name.
+CALLED_STUDY = {
+    "modules": {"study.py": TRAP, "solver.py": TRAP},
+    "packages": {"study/__init__.py": TRAP, "solver/__init__.py": TRAP, "study/__main__.py": TRAP},
+}
+
+
+@pytest.mark.parametrize("files", CALLED_STUDY.values(), ids=CALLED_STUDY)
+def test_roughcoat_works_beside_a_study_of_the_user(python, beside, files):
+    """As a command by its name, by `python -m`, and imported."""
+    folder = beside(
+        files | {"many.toml": MANY, "main.py": "import roughcoat as rc, study; print(rc.solve is study.solve)"}
+    )
+    for command in (
+        (python.parent / "roughcoat", "check", "many.toml"),
+        (python, "-m", "roughcoat", "check", "many.toml"),
+    ):
+        done = run(folder, *command)
+        assert done.returncode == 0 and done.stdout.startswith("many.toml: 8 cases"), done.stderr
+    done = run(folder, python, "main.py")
+    assert (done.returncode, done.stdout) == (0, "True\n"), done.stderr
+    assert not (folder / "it-ran").exists()
+
+
+def test_processes_take_our_study_beside_one_of_the_user(python, beside):
+    """Those of a run, and those of a call."""
+    folder = beside(CALLED_STUDY["modules"] | {"many.toml": MANY})
+    done = run(folder, python, "-m", "roughcoat", "run", "many.toml", "--workers", "2")
+    assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
+    script = "import numpy as np, roughcoat as rc\n"
+    script += "from study.work import engine; engine.BLOCK, engine.START = 10, 1e-9\n"
+    script += "c = rc.solve(P=np.geomspace(1e-6, 1e-5, 40), micro='smooth', base='half_space', workers=2)\n"
+    script += "assert (c.status == 0).all(); print(engine._pool.count)"
+    done = run(folder, python, "-c", script)
+    assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
+    assert not (folder / "it-ran").exists()
+
+
+def test_workers_of_dask_take_our_study_too(python, beside):
+    """They look for modules where the program does that starts them: in the working folder first."""
+    pytest.importorskip("distributed")
+    folder = beside(CALLED_STUDY["modules"] | {"many.toml": MANY})
+    script = "from distributed import LocalCluster; import roughcoat as rc\n"
+    script += "with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:\n"
+    script += "    print(rc.load('many.toml').run(scheduler=cluster.scheduler_address).computed)"
+    done = run(folder, python, "-c", script)
+    assert (done.returncode, done.stdout) == (0, "8\n"), done.stderr
+    assert not (folder / "it-ran").exists()
+
+
+def test_another_study_that_the_program_has_imported_is_named(python, beside):
+    folder = beside({"study.py": "mine = 1\n"})
+    done = run(folder, python, "-c", "import study, roughcoat")
+    assert done.returncode == 1
+    assert f"ImportError: {folder / 'study.py'}: has been imported as study, which is a package of rough" in done.stderr
 
 
 FIGURES = """
@@ -103,12 +167,13 @@ def radius(axes, line):
 
 
 def test_a_figure_of_the_user_and_the_book_in_a_folder_with_nothing_else(python, beside):
-    """Whatever the user has that is called like our packages."""
+    """Whatever the user has that is called like our packages. One figure needs a study of the book, one is a drawing of
+    it, and the table needs no study."""
     folder = beside(NEIGHBOURS["modules"] | {"studies/mine.toml": GOOD, "studies/figures.py": FIGURES})
-    done = run(folder, python, "-m", "study", "plot", "--run", "radius", "fig01", "fig03", "fig09")
+    done = run(folder, python, "-m", "study", "plot", "--run", "radius", "fig01", "fig03")
     assert done.returncode == 0, done.stderr
     names = {path.name for path in (folder / "figures").iterdir()}
-    assert {"radius.csv", "radius.pdf", "radius.png", "fig01.svg", "fig03.pdf", "fig09.csv"} <= names
+    assert {"radius.csv", "radius.pdf", "radius.png", "fig01.svg", "fig03.pdf", "fig03.csv"} <= names
     assert (folder / "figures/radius.csv").read_text().splitlines()[0] == "P,a"
     done = run(folder, python, "-m", "study", "table", "table1")
     assert done.returncode == 0 and (folder / "tables/table1.txt").exists(), done.stderr
@@ -119,7 +184,7 @@ def test_a_figure_of_the_user_and_the_book_in_a_folder_with_nothing_else(python,
 
 
 def test_a_script_may_be_called_solver(python, beside):
-    folder = beside({"solver.py": f"import study\n{SOLVE}\n"})
+    folder = beside({"solver.py": f"import study\n{CALL}\n"})
     done = run(folder, python, "solver.py")
     assert (done.returncode, done.stdout) == (0, "0.019574338205844317\n"), done.stderr
 
@@ -135,7 +200,7 @@ def test_another_solver_that_the_program_has_imported_is_named(python, beside, n
 def test_our_solver_stays_what_it_is(python, beside):
     """Imported before or after, by the name that the pages use, and though the working folder changes."""
     folder = beside({"elsewhere/solver.py": TRAP})
-    for order in ("solver, study", "study, solver"):
-        script = f"import os, sys\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{SOLVE}; print(solver.Problem)"
+    for order, answer in {"solver, study": SOLVE, "study, solver": CALL}.items():
+        script = f"import os\nimport {order}\nos.chdir('elsewhere')\nimport solver\n{answer}; print(solver.Problem)"
         done = run(folder, python, "-c", script)
         assert done.returncode == 0 and "solver.problem.Problem" in done.stdout, done.stderr

@@ -36,7 +36,7 @@ def installed(tmp_path_factory) -> Path:
     """The packages as a wheel has them; where setuptools cannot build one, those of the repository."""
     clone, folder = tmp_path_factory.mktemp("clone"), tmp_path_factory.mktemp("installed")
     unwanted = shutil.ignore_patterns("__pycache__")
-    for name in ("solver", "study", "studies"):
+    for name in ("roughcoat", "solver", "study", "studies"):
         shutil.copytree(ROOT / name, clone / name, ignore=unwanted)
     for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, clone)
@@ -49,7 +49,7 @@ def installed(tmp_path_factory) -> Path:
     with zipfile.ZipFile(wheels[0]) as archive:
         archive.extractall(folder)
         assert (
-            "roughcoat = study.__main__:command"
+            "roughcoat = roughcoat.__main__:command"
             in archive.read(next(name for name in archive.namelist() if name.endswith("entry_points.txt"))).decode()
         )
     return folder

@@ -7,7 +7,7 @@ import xarray as xr
 import study
 from solver import Model
 from study.data import dataset, derived
-from study.spec.vocabulary import attributes
+from study.inputs.vocabulary import attributes
 from study.studies.evidence import validity_maps
 
 
@@ -241,5 +241,5 @@ def test_multiples_of_units_are_not_taken_for_si():
 
 
 def test_a_quantity_without_a_row_is_refused():
-    with pytest.raises(ValueError, match="P_spot has no row in study/spec/vocabulary.toml: a quantity needs one"):
+    with pytest.raises(ValueError, match="P_spot has no row in study/inputs/vocabulary.toml: a quantity needs one"):
         derived.quantity("P_spot")

@@ -9,7 +9,7 @@ import pytest
 import study
 from solver import NUMERICS_VERSION
 from study.data import provenance
-from study.spec.definition import from_tables
+from study.inputs.reading import from_tables
 
 TEXT = """title = "A line"
 [model]
@@ -114,6 +114,7 @@ def test_the_commit_is_unknown_outside_a_checkout(checkout, monkeypatch, tmp_pat
     ("program", "expected"),
     [
         ("/home/someone/lib/study/__main__.py", "python -m study run 'a b.toml'"),
+        ("/home/someone/lib/roughcoat/__main__.py", "python -m roughcoat run 'a b.toml'"),
         ("/usr/bin/tool", "tool run 'a b.toml'"),
     ],
 )

@@ -7,7 +7,7 @@ import xarray as xr
 import study
 from study.data import derived
 from study.data.units import factor
-from study.spec.vocabulary import PARAMETERS, VOCABULARY
+from study.inputs.vocabulary import PARAMETERS, VOCABULARY
 
 SCALE = {"R": 5e-3, "E2_star": 2e11}
 

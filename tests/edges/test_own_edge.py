@@ -13,6 +13,7 @@ from solver.body.half_space import half_space
 from solver.contact.adaptive import solve_newton
 from solver.contact.equation import Cases
 from solver.laws import LAWS
+from solver.numerics.mesh import mesh_of
 
 X = np.array([0.0, 0.5, 0.9, 1.0])
 
@@ -101,3 +102,31 @@ def test_a_batch_is_its_cases():
         _, alone = on_layers(1e-9, rows=[i], a=LAYERS["a"][[i]] * 1.1)
         assert_allclose([alone.P[0], alone.D[0]], [found.P[i], found.D[i]], rtol=1e-11, atol=0)
         assert_allclose(alone.p[0], found.p[i], rtol=1e-8, atol=0)
+
+
+def test_the_operator_of_an_added_pressure():
+    """Its products are linear in q, those of its edge are the same by themselves, and its slopes are differences by
+    ln a, of a half-space and of layers; a part of it and the whole of its parts are as they were."""
+    mesh, step, size = mesh_of(12), 1e-4, 4
+    for body in (half_space(np.full(size, 0.4)), layer_of(h=np.geomspace(0.02, 0.3, size), n=3.0, m=0.4)):
+        edge, a = JKR(np.geomspace(1e-7, 1e-5, size), body.E), np.geomspace(0.03, 0.08, size)
+        q = np.outer(np.arange(1.0, 1 + size), mesh.s) + 0.1 * mesh.s**2
+        operator = edge.at(body, a, mesh)
+        Kq, at_edge = operator.products(q)
+        assert_allclose(operator.at_edge(q), at_edge, rtol=1e-13, atol=0)
+        none, none_at_edge = operator.products(0 * q)
+        plain, plain_at_edge = body.at(a, mesh).products(q)
+        assert_allclose(Kq, none + plain, rtol=0, atol=1e-13)
+        assert_allclose(at_edge, none_at_edge + plain_at_edge, rtol=1e-12, atol=0)
+        (low, low_edge), (high, high_edge) = (
+            edge.at(body, a * np.exp(sign * step), mesh).products(q) for sign in (-1, 1)
+        )
+        slope, slope_edge = operator.slopes(q)
+        assert_allclose(slope, (high - low) / (2 * step), rtol=0, atol=1e-6)  # of step² and of rounding over the step
+        assert_allclose(slope_edge, (high_edge - low_edge) / (2 * step), rtol=0, atol=1e-6)
+        places = [np.array([1, 3]), np.array([0, 2])]
+        whole = operator.join([operator.take(place) for place in places], places)
+        for found, expected in zip(
+            (*whole.products(q), *whole.slopes(q)), (Kq, at_edge, slope, slope_edge), strict=True
+        ):
+            assert_allclose(found, expected, rtol=0, atol=1e-13)

@@ -14,7 +14,7 @@ from study import catalogue, open_results
 from study.__main__ import main
 from study.data import derived
 from study.figures.registry import FIGURES, TABLES
-from study.spec import vocabulary
+from study.inputs import vocabulary
 
 SECTIONS = dict(part.split("\n", 1) for part in pages.read("docs/extending.md").split("\n## ")[1:])
 

@@ -7,6 +7,7 @@ from drawn import frame, lines
 from matplotlib.figure import Figure
 
 import study
+from study.figures.labels import wrapped
 from study.figures.lines import drawn
 
 LOADS = np.geomspace(1e-6, 1e-4, 5)
@@ -58,3 +59,12 @@ def test_the_band_lies_across_where_the_abscissa_has_the_spread():
     assert expected <= corners and half.min() > 0
     np.testing.assert_allclose(lines(figure.axes[0])[0].x, a, rtol=1e-14)  # one product
     np.testing.assert_array_equal(columns["a_spread [m]"], found.a_spread)
+
+
+def test_the_line_above_a_figure_is_broken_where_it_is_full():
+    """Texts of four letters and ", ": as many on a line as it holds, and one in any case. Signs of mathtext do not
+    count."""
+    texts = [f"$R_{i}$=1" for i in range(7)]  # printed as R0=1
+    for most, count in ((5, 7), (6, 7), (11, 7), (12, 4), (18, 3), (41, 2), (42, 1)):
+        found = wrapped(texts, most)
+        assert found.count("\n") + 1 == count and found.replace(",\n", ", ").split(", ") == texts

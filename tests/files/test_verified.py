@@ -1,4 +1,4 @@
-"""Results files that can be verified: what is damaged is named, computed again, and never given out as right."""
+"""Results files that can be verified: damage is noticed, never given out as right, and the file is written again."""
 
 import os
 import shutil
@@ -8,18 +8,19 @@ import sys
 import netCDF4
 import numpy as np
 import pytest
-import xarray as xr
 from conftest import ROOT
 from line_study import load
 from same import assert_same
 
 import study
 from study.__main__ import main
-from study.files import checksums, results_file
-from study.files.checksums import CaseDigests
-from study.files.examine import examine, examined
+from study.files import results_file
+from study.files.examine import ATTRIBUTE, FORMER, Sums, examine
+from study.files.netcdf import File
 
 ONE = '[model]\nmicro = "smooth"\nbase = "thin_layer"\nP = 1e-5\nh = 0.02\nn = 0.5\n[output]\nx = 3\n'
+BYTES = "is damaged: its bytes are not those that were written"
+CHANGED = "is damaged, or another program has changed it: its numbers are not those that were written"
 
 
 @pytest.fixture(scope="module")
@@ -40,129 +41,113 @@ def opened(one, tmp_path) -> study.Study:
     return study.Study(one.definition, tmp_path / "results")
 
 
-def damage(opened: study.Study, old: bytes, new: bytes) -> None:
-    path = opened.results / f"{opened.definition.name}.nc"
-    data = path.read_bytes()
-    assert data.count(old) == 1 and len(old) == len(new)
-    path.write_bytes(data.replace(old, new))
+def flip(path, number: float, byte: int = 6) -> None:
+    """One bit of the only such number in a file: 0.02 becomes 0.0161."""
+    old, data = np.array(number, "<f8").tobytes(), path.read_bytes()
+    assert data.count(old) == 1
+    path.write_bytes(data.replace(old, old[:byte] + bytes([old[byte] ^ 4]) + old[byte + 1 :]))
 
 
-def flip(opened: study.Study, name: str) -> None:
-    """One bit of a number: h 0.02 becomes 0.0161."""
-    number = opened.open()[name].values.astype("<f8").tobytes()
-    damage(opened, number, number[:6] + bytes([number[6] ^ 4]) + number[7:])
-
-
-@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("name", ["h", "a"])
-def test_one_flipped_bit_is_named_and_mended(one, opened, name, tmp_path, capsys, caplog):
-    flip(opened, name)
+def test_one_flipped_bit_is_noticed_and_mended(one, opened, name, tmp_path, capsys, caplog):
     path = opened.results / "one.nc"
-    said = f"{path}: is damaged, or another program has changed it: {name}"
+    flip(path, one.open()[name].item())
     command = [str(tmp_path / "one.toml"), "--results", str(opened.results)]
     assert main(["verify", *command]) == main(["verify", str(path)]) == 1
-    assert capsys.readouterr().err.startswith(said)
+    assert capsys.readouterr().err == f"{path}: {BYTES}\n" * 2
     for read in (opened.open, lambda: study.open_results(path)):
-        with pytest.raises(study.StudyError, match=said):
+        with pytest.raises(study.StudyError, match=f"{path}: {BYTES}"):
             read()
+    assert main(["status", *command]) == 0
+    assert capsys.readouterr().out.endswith(f"  damaged  \n    {path}: {BYTES}\n")
     damaged = path.read_bytes()
-    assert opened.run().computed == (name == "a"), "what h belongs to can be told by the study"
-    assert f"{said}" in caplog.text and f"{path}.damaged keeps it" in caplog.text
+    assert opened.run().computed == 0, "the numbers are in the block"
+    assert f"{path}: {BYTES}; it is written again, {path}.damaged keeps it" in caplog.text
     assert_same(opened.open(), one.open())
     assert (opened.results / "one.nc.damaged").read_bytes() == damaged
-    assert opened.verify().kind == "sound" and opened.run().computed == 0
+    assert opened.verify().kind == "sound" and opened.run().counts == {}
 
 
-def test_status_says_what_is_damaged(opened, tmp_path, capsys):
-    flip(opened, "h")
-    assert opened.status()["state"] == "damaged"
-    assert main(["status", str(tmp_path / "one.toml"), "--results", str(opened.results)]) == 0
-    assert "  damaged  \n    " in (said := capsys.readouterr().out) and said.endswith("has changed it: h\n")
+def number(file) -> None:
+    file["a"][...] = 2 * file["a"][...]
 
 
-@pytest.mark.usefixtures("read_in_a_fork")
-@pytest.mark.parametrize(
-    ("old", "new", "name"),
-    [
-        (b"CF-1.11", b"CF-1.19", "a part of it cannot be read (NetCDF: Can't open HDF5 attribute)"),
-        (b"frictionless", b"frictionlfss", "bonding"),
-    ],
-)
-def test_texts_are_verified(opened, old, new, name):
-    damage(opened, old, new)
-    assert examine(opened.results / "one.nc", ()).reason.endswith(f": {name}")
-    assert opened.run().complete and opened.verify().kind == "sound"
-    assert opened.open().bonding.item() == "frictionless"
+def coordinate(file) -> None:
+    file["h"][...] = 0.03
 
 
-@pytest.fixture(scope="module")
-def runs(tmp_path_factory):
-    """A study of 23 cases, its file with checksums for runs of five."""
-    folder = tmp_path_factory.mktemp("runs")
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(checksums, "RUN", 5)
-        patch.setattr("study.files.examine.CHUNK", 5)
-        patch.setattr("study.store.writer.CHUNK", 5)
-        # another process would have the usual runs of cases
-        patch.setattr("study.files.examine.examined_in_child", lambda *given: examined(*given[:3]))
-        found = load(folder / "line.toml")
-        found.run()
-        yield found
+def text(file) -> None:
+    file["bonding"][0] = b"F"
 
 
-@pytest.fixture
-def line(runs, tmp_path) -> study.Study:
-    shutil.copytree(runs.results, tmp_path / "results")
-    return study.Study(runs.definition, tmp_path / "results")
+def fill_value_of_a_number(file) -> None:
+    file["a"].missing_value = file["a"][...]
 
 
-def flip_profile(opened: study.Study, case: int) -> None:
-    raw = opened.open().p.isel(P=case).values.astype("<f8").tobytes()
-    damage(opened, raw, raw[:3] + bytes([raw[3] ^ 1]) + raw[4:])
+def name(file) -> None:
+    file.renameVariable("p0", "p_max_0")
 
 
-def test_only_the_damaged_run_of_cases_is_computed_again(runs, line, computed):
-    flip_profile(line, 7)
-    found = line.verify()
-    assert np.flatnonzero(~found.intact).tolist() == [5, 6, 7, 8, 9]
-    assert found.reason.endswith(": p in 5 of 23 cases, 5 to 9")
-    assert line.run().computed == 5 and computed == [5]
-    assert_same(line.open(), runs.open())
+def dimension(file) -> None:
+    file.renameDimension("x", "r")
 
 
-def test_a_damaged_case_is_not_carried_on_by_an_extension(runs, line, computed, tmp_path):
-    flip_profile(line, 7)
-    text = runs.definition.text.replace(
-        "{start = 1e-6, stop = 1e-4, num = 23}", str([5e-7, *runs.open().P.values.tolist()])
-    )
-    (tmp_path / "line.toml").write_text(text, encoding="utf-8")
-    wider = study.load(tmp_path / "line.toml", line.results)
-    assert wider.dry_run().present == 18 and wider.run().computed == 6
-    xr.testing.assert_allclose(wider.open().a[1:], runs.open().a, rtol=1e-12, atol=0)
+def title(file) -> None:
+    file.title = "another"
 
 
-def test_a_damaged_coordinate_stops_an_extension(runs, line, tmp_path):
-    raw = runs.open().P.values.astype("<f8")[9:10].tobytes()
-    data = (line.results / "line.nc").read_bytes()
-    (line.results / "line.nc").write_bytes(data.replace(raw, raw[:6] + bytes([raw[6] ^ 1]) + raw[7:]))
-    text = runs.definition.text.replace("num = 23", "num = 24")
-    (tmp_path / "line.toml").write_text(text, encoding="utf-8")
-    with pytest.raises(study.StudyError, match="has changed it: P; which cases it holds cannot be told: run the study"):
-        study.load(tmp_path / "line.toml", line.results).run()
-    assert line.run().computed == 0
-    assert_same(line.open(), runs.open())
+def more(file) -> None:
+    file.createVariable("mine", "f8", ())[...] = 1.0
 
 
-def test_a_file_of_an_earlier_version_is_used_but_cannot_be_verified(runs, line, capsys):
-    path = line.results / "line.nc"
+CHANGES = [number, coordinate, text, fill_value_of_a_number, name, dimension, title, more]
+
+
+@pytest.mark.parametrize("change", CHANGES, ids=lambda change: change.__name__)
+def test_what_another_program_changes_is_noticed_by_the_digest(one, opened, change):
+    """All is as netCDF writes it, with the checksums of netCDF and no seal."""
+    path = opened.results / "one.nc"
     with netCDF4.Dataset(path, "a") as file:
-        file.delncattr("checksums")
+        file.set_auto_chartostring(False)
+        change(file)
+    assert examine(path).reason == CHANGED
+    with pytest.raises(study.StudyError, match=CHANGED):
+        study.open_results(path)
+    assert opened.run().computed == 0 and opened.verify().kind == "sound"
+    assert_same(opened.open(), one.open())
+
+
+def test_who_computed_it_and_when_is_not_in_the_digest(one, opened):
+    """So two runs of one study have the same."""
+    path = opened.results / "one.nc"
+    with netCDF4.Dataset(path, "a") as file:
+        file.history, file.created = "ncatted", "yesterday"
+    assert opened.verify().kind == "sound"
+    path.unlink()
+    opened.run()
+    assert results_file.numbers_digest(path) == results_file.numbers_digest(one.results / "one.nc")
+
+
+def test_a_missing_file_is_written_again(one, opened):
+    (opened.results / "one.nc").unlink()
+    report = opened.run()
+    assert report.complete and report.computed == 0
+    assert_same(opened.open(), one.open())
+
+
+def test_a_file_of_an_earlier_version_is_used_but_cannot_be_verified(one, opened, capsys):
+    """It has no digest, and its cases are not in blocks. It is not written anew."""
+    path = opened.results / "one.nc"
+    shutil.rmtree(opened.results / ".one.blocks")
+    with netCDF4.Dataset(path, "a") as file:
+        file.delncattr(ATTRIBUTE)
+        file.setncattr(FORMER, "@title 0123\n=checksums 4567\n")
+    before = path.read_bytes()
     assert main(["verify", str(path)]) == 1
-    assert "xarray or an earlier version wrote it, without checksums to compare" in capsys.readouterr().out
-    assert line.status()["state"] == "done" and line.run().computed == 0
-    flip_profile(line, 12)
-    assert line.run().computed == 5, "the profiles had checksums before"
-    assert_same(line.open(), runs.open())
+    assert "xarray or an earlier version wrote it, without a digest to compare" in capsys.readouterr().out
+    assert opened.status()["state"] == "done" and opened.run().counts == {}
+    assert path.read_bytes() == before and FORMER not in opened.open().attrs
+    assert_same(opened.open(), one.open())
 
 
 def test_exit_codes_of_verify(opened, tmp_path, capsys):
@@ -172,61 +157,47 @@ def test_exit_codes_of_verify(opened, tmp_path, capsys):
     assert main(["verify", str(opened.results / "one.nc"), str(tmp_path / "one.toml"), "--results", "none"]) == 2
 
 
-def test_added_attributes_and_the_history_are_nobodys_damage(opened):
-    with netCDF4.Dataset(opened.results / "one.nc", "a") as file:
-        file.comment, file.history = "mine", "ncatted"
-    assert opened.verify().kind == "sound"
-
-
-def test_lazily_read_chunks_are_verified_and_the_file_is_named(line, monkeypatch):
-    flip_profile(line, 7)
+def test_lazily_read_chunks_are_verified_and_the_file_is_named(file, monkeypatch):
+    """By netCDF. The digest of a large file is left to `verify`."""
+    monkeypatch.setattr("study.store.writer.CHUNK", 5)
+    line = load(file)
+    line.run()
+    flip(line.results / "line.nc", line.open().p.values[7, 1], byte=3)
+    assert line.verify().kind == "damaged"
     monkeypatch.setattr(study.api, "LAZY", 0)
-    found = line.open()
-    with pytest.raises(study.StudyError, match=r"line.nc: is damaged: a part of it cannot be read \(NetCDF: HDF error"):
-        found.p.compute()
-    assert found.p.isel(P=slice(10, 23)).compute().notnull().all()
+    monkeypatch.setattr(results_file, "LAZY", 0)
+    for found in (line.open(), study.open_results(line.results / "line.nc")):
+        with pytest.raises(study.StudyError, match=r"line.nc: is damaged: a part of it cannot be read \(NetCDF: HDF"):
+            found.p.compute()
+        assert found.p.isel(P=slice(10, 23)).compute().notnull().all()
 
 
-def test_the_checksums_stay_in_the_file(opened, tmp_path):
+def test_the_digest_stays_in_the_file(opened, tmp_path):
     found = opened.open()
     found.isel(x=[0, 2]).to_netcdf(tmp_path / "part.nc")
-    assert "checksums" not in found.attrs
+    assert ATTRIBUTE not in found.attrs
     assert examine(tmp_path / "part.nc").kind == "unverified"
 
 
-def test_digests_do_not_depend_on_the_pieces(monkeypatch):
-    monkeypatch.setattr(checksums, "RUN", 4)
-    numbers, found = np.arange(22.0).reshape(11, 2), []
-    for pieces in ([11], [4, 4, 3], [1, 2, 8], [3, 3, 3, 2]):
-        rows = CaseDigests(11)
-        for piece in np.split(numbers, np.cumsum(pieces)[:-1]):
-            rows.add("p", piece)
-        found.append(rows.lines())
-    assert all(lines == found[0] for lines in found) and len(found[0]["=runs"]) == 3 * 32
-    assert CaseDigests(10**9).run == -(-(10**9) // 1024), "the attribute stays small"
+def test_digests_do_not_depend_on_the_pieces(opened):
+    numbers, found = np.arange(22.0).reshape(11, 2), set()
+    with File(opened.results / "one.nc") as file:
+        for pieces in ([11], [4, 4, 3], [1, 2, 8], [3, 3, 3, 2]):
+            sums = Sums()
+            for piece in np.split(numbers, np.cumsum(pieces)[:-1]):
+                sums.add("p", piece)
+            found.add(sums.digest(file))
+    assert len(found) == 1
 
 
-def test_a_damaged_file_is_kept_under_a_name_of_its_own(tmp_path, monkeypatch):
-    path, names = tmp_path / "f.nc", []
-    for link in (os.link, lambda *_: (_ for _ in ()).throw(OSError(95, "no links"))):
-        monkeypatch.setattr(os, "link", link)
-        path.write_bytes(b"damaged")
-        names += [results_file.set_aside(path).name]
-        path.unlink(missing_ok=True)
-    assert names == ["f.nc.damaged", "f.nc.damaged-2"]
-
-
-@pytest.mark.parametrize("links", [True, False], ids=["hard links", "no hard links"])
-def test_a_damaged_file_behind_a_symbolic_link_is_kept_and_mended_there(one, opened, tmp_path, monkeypatch, links):
+def test_a_damaged_file_behind_a_symbolic_link_is_kept_and_mended_there(one, opened, tmp_path):
     path, there = opened.results / "one.nc", tmp_path / "disk" / "large.nc"
     there.parent.mkdir()
     path.rename(there)
     path.symlink_to(there)
-    flip(opened, "a")
+    flip(there, one.open().a.item())
     damaged = there.read_bytes()
     (there.parent / ".large.nc.01234567.tmp").touch()  # of a run that was killed
-    if not links:
-        monkeypatch.setattr(os, "link", lambda *_: (_ for _ in ()).throw(OSError(95, "no links")))
     opened.run()
     assert path.is_symlink() and sorted(os.listdir(there.parent)) == ["large.nc", "large.nc.damaged"]
     assert (there.parent / "large.nc.damaged").read_bytes() == damaged

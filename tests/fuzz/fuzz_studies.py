@@ -144,7 +144,7 @@ def fault(arguments: list[str]) -> tuple[int, str]:
 
 def faults(count: int, seed: int, folder: Path, done: Counter) -> list[str]:
     """What is wrong with how the commands end; counted in `done`: commands by their exit code."""
-    from study.physical.study_file import read
+    from study.inputs.reading import read
 
     found, texts, file = [], bases(), folder / "mutated.toml"
     for number in range(count):

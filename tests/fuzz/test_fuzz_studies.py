@@ -7,7 +7,7 @@ import fuzz_studies
 import pytest
 from fuzz_studies import fault, faults
 
-from study.spec import definition
+from study.inputs import definition
 
 
 def test_mutated_study_files(tmp_path, monkeypatch):

@@ -121,14 +121,13 @@ def test_one_layer_is_a_contact_of_the_program(control, sampler):
         assert_allclose(getattr(found, name), getattr(exact, name), rtol=1e-10, atol=0)
 
 
-@pytest.mark.parametrize("stiffness", range(6))
+@pytest.mark.parametrize("stiffness", range(4))
 @pytest.mark.parametrize("octave", [-8, -3, 0, 3])
 def test_few_nodes_determine_a_stack(octave, stiffness):
     """Other stacks than those by which they were chosen, beside all nodes, over the size of the operator: 4e-12 is left
-    out at most, where a loose operator may leave out 3e-10 of soft layers."""
-    loose, of_class = divmod(stiffness, 4)
+    out at most."""
     random, mesh = np.random.default_rng(octave + 100), mesh_of(16)
-    low, high = np.log([1e-9, *STIFFEST][of_class : of_class + 2])
+    low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])
     kernel = SAMPLER.draw(random, np.exp(random.uniform(low, high, 60)))
     k, weight = quadrature(octave, stiffness)
     nodes, eta = few(SAMPLER, octave, stiffness), 2.0 ** (octave + random.random((60, 1)))
@@ -138,4 +137,4 @@ def test_few_nodes_determine_a_stack(octave, stiffness):
     J, phi = j0(k[:, None] * mesh.x) - j0(k)[:, None], tables.transform(mesh, k)
     scale = np.maximum(np.abs(weight * all_of_it / (1 + k * k)).sum(axis=1), 1.0)
     matrix = np.einsum("bk,ki,kj->bij", left, J, phi, optimize=True)
-    assert (np.abs(matrix).max(axis=(1, 2)) / scale).max() < (1e-9 if loose else 1e-11)
+    assert (np.abs(matrix).max(axis=(1, 2)) / scale).max() < 1e-11

@@ -9,9 +9,8 @@ spot, which is p* under any load.
 
 import numpy as np
 
-from solver.laws import Curve, Law
+from solver import Curve, Law, Parameter
 from solver.laws.disc_cell import PARAMETERS
-from solver.parameters import Parameter
 
 
 def scales(E, Nbar, alpha):

@@ -18,9 +18,9 @@ import study
 from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS, Parameter
 from study.figures.labels import stated
-from study.physical.inputs import used_inputs
-from study.spec.definition import from_tables
-from study.spec.identity import case_keys
+from study.in_words.inputs import used_inputs
+from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.work.cases import parcel
 
 CASE = {"h": 0.02, "n": 0.5, "Nbar": 250_000.0}
@@ -156,7 +156,9 @@ def test_messages_are_those_of_any_parameter():
     )
     unnamed = dataclasses.replace(cones.CONES, version="")
     assert "version must be a text" in message(micro=unnamed, alpha=1.0)
-    assert "must have a name of its own" in message(micro=dataclasses.replace(cones.CONES, name="smooth"), alpha=1.0)
+    for name in ("smooth", "", "two words", "steep-cones", "1cone", "cones\n", "cônes!", "_cones"):
+        named = dataclasses.replace(cones.CONES, name=name)
+        assert f'micro law "{name}": must have a name of its own' in message(micro=named, alpha=1.0)
     other = dataclasses.replace(cones.CONES, name="blunt", parameters={"h": PARAMETERS["h"]})
     assert "the name of the parameter h is that of something else" in message(micro=other)
     assert "the name of the parameter lam is that of something else" in message(
@@ -164,6 +166,14 @@ def test_messages_are_those_of_any_parameter():
             cones.CONES, name="blunt", parameters={"lam": PARAMETERS["h"]._replace(needed_by=("", ()))}
         )
     )
+
+
+def test_a_batch_from_before_a_law_has_none_of_its_parameters():
+    before = Problem.of(P=[1e-5, 2e-5], micro="smooth", base="half_space")
+    laws.register(cones.CONES)
+    assert np.isnan(before.alpha).all() and before.alpha.shape == (2,) and (solve(before).status == 0).all()
+    with pytest.raises(AttributeError, match="^Problem has no gamma$"):
+        _ = before.gamma
 
 
 def test_a_law_can_be_registered_anew_with_other_bounds():

@@ -50,6 +50,33 @@ def test_what_the_table_does_not_say_of_the_edge(tmp_path, law, more, ratio):
         assert found.status == 0 and far < found.model_error < 0.27  # 0.4/1.5^1.2 and `accuracy`
 
 
+def test_the_profiles_are_those_that_are_asked_for(tmp_path):
+    """Whatever radii the range is looked at besides; alone and among other laws."""
+    micro, x = limited(tmp_path, "disc_cell", {}, 1e-7, 0.3), np.array([0.0, 0.4, 0.9])
+    for words in (micro, [micro, "disc_cell"]):
+        found = solve(Problem.of(P=1e-5, h=0.02, n=0.5, micro=words, **ASPERITIES), x)
+        true = solve(Problem.of(P=1e-5, h=0.02, n=0.5, micro="disc_cell", **ASPERITIES), x)
+        assert found.p.shape == found.lam.shape == (np.size(words), 3)
+        np.testing.assert_allclose(found.p, np.broadcast_to(true.p, found.p.shape), rtol=1e-3)
+        np.testing.assert_allclose(found.lam, np.broadcast_to(true.lam, found.p.shape), rtol=1e-3)
+
+
+@pytest.mark.parametrize("x", [(0.0, 1.0), np.linspace(0, 1, 101)])
+def test_a_pressure_in_a_ring_is_beyond_the_table(tmp_path, x):
+    """A hard plate presses most near the edge: there, not in the centre, the rows end. Whatever profile is
+    asked for."""
+    plate = {"a": 0.04, "h": 0.01, "n": 300.0, "Nbar": 1e8, "Ra": 1e-3}
+    p = solve(Problem.of(**plate), np.linspace(0, 1, 101)).p[0] / plate["n"]
+    assert p.max() > 2 * p[0]
+    p0, ring = p[0], p.max()
+    spots = {"Nbar": plate.pop("Nbar"), "Ra": plate.pop("Ra")}
+    for last, status in ((1.2 * ring, Status.CONVERGED), (0.8 * ring, Status.OUTSIDE_LAW)):
+        rows = np.geomspace(1e-3 * p0, last, 80)
+        table = np.transpose([rows, *laws.LAWS["disc_cell"].at(rows, 1.0, **spots)])
+        np.savetxt(tmp_path / "ring.csv", table, fmt="%.17g", delimiter=",", header="p,A,lam,p_max", comments="")
+        assert solve(Problem.of(**plate, micro=f"table:{tmp_path}/ring.csv"), x).status[0] == status
+
+
 #: Law, more of its parameters, base, p(0) over the first pressure of the table.
 EDGES = {
     "small exponent": ("power_law", {"B": 0.39, "beta": 0.33}, "half_space", 200),

@@ -46,7 +46,7 @@ def ratios(control: str, size: int, seed: int) -> dict:
             near = (bound > 1e-4) & (bound < 0.3)
             if not near.any():
                 continue
-            cheap = _on_model(model, auto.take(index[near]), np.array([0.0, 1.0]), solve)
+            cheap = _on_model(model, auto.take(index[near]), np.array([0.0, 1.0]))
             errors = [np.abs(getattr(cheap, name) / getattr(exact, name)[index[near]] - 1) for name in JUDGED]
             error = np.where(cheap.status == 0, np.max(errors, axis=0), 0.0)
             found.setdefault(model.name, []).append(np.maximum(error - 2e-6, 0) / bound[near])

@@ -5,7 +5,7 @@ from functools import cache
 import numpy as np
 import pytest
 
-from solver import Problem, solve
+from solver import Problem, Status, solve
 from solver.contact.results import difference
 from solver.models.model_error import NODES, distance
 from solver.numerics.mesh import mesh_of
@@ -55,12 +55,16 @@ def test_first_order_counts_what_its_mesh_misses():
 def test_a_first_order_that_fails_has_no_error():
     """An exact equation without a solution; a pressure of NaN costs only steps; a case without cheap numbers has no
     estimate at all."""
-    contact = {"P": [1e-5] * 4, "h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
+    contact = {"P": [1e-5] * 3, "h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004}
     problem = Problem.of(**contact)
-    cases = as_cases(problem)._replace(value=np.array([1e-5, np.nan, 1e-5, 1e-5]))
+    cases = as_cases(problem)._replace(value=np.array([1e-5, np.nan, 1e-5]))
     cheap = solve(Problem.of(**contact, base="thin_layer"), mesh_of(NODES).x)
-    cheap.a[2], p = np.nan, cheap.p.copy()
-    p[3] = np.nan
+    p = cheap.p.copy()
+    p[2] = np.nan
     error = distance(cases, cheap, p)
-    assert 0 < error[0] < 1 and error[1] == np.inf and np.isnan(error[2])
-    np.testing.assert_allclose(error[3], error[0], rtol=1e-6)
+    assert 0 < error[0] < 1 and error[1] == np.inf
+    np.testing.assert_allclose(error[2], error[0], rtol=1e-6)
+    thin = {"base": "thin_layer", "model_check": "first_order", "bonding": "bonded"}
+    solution = solve(Problem.of(**contact | thin, nu1=[0.3, 0.5, 0.3]))
+    assert solution.status.tolist() == [Status.CONVERGED, Status.THIN_LAYER_NOT_APPLICABLE, Status.CONVERGED]
+    assert solution.model_error[0] == solution.model_error[2] > 0 and np.isnan(solution.model_error[1])

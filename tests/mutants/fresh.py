@@ -5,10 +5,12 @@ has it. The mutants of mutants.toml name their tests; a fresh one is tried with 
 that run its function first, the quickest first. Last come the tests of results, and those that start processes.
 
 `--map FILE` keeps which functions each test runs, which takes as long as all tests in one process, for another list.
+`--seconds S` tries each mutant with the first tests that take so long together; what they let live counts as survived.
 """
 
 import argparse
 import ast
+import itertools
 import json
 import os
 import signal
@@ -22,8 +24,9 @@ from fnmatch import fnmatch
 from importlib import import_module
 from pathlib import Path
 
+from copies import NIGHT, Task, answers, copy
 from mutants import FRESH, ROOT, Batch, Mutant, Verdict, batches, totals, with_figures
-from mutate import LIBRARIES, NIGHT, PATIENCE, SLOWER, Task, _copy, answers, judge, results_in, tested
+from mutate import LIBRARIES, PATIENCE, SLOWER, judge, results_in, tested
 
 #: Audit events of a process that begins. What it runs is not seen: such a test may run any file.
 BEGIN = {"subprocess.Popen", "os.fork", "os.forkpty", "os.posix_spawn", "socket.connect"}
@@ -82,7 +85,6 @@ class Chosen:
 
 def _tested(folder: Path, paths: list[str], results: Path | None, *options: str, plugins: list) -> dict:
     """`tested`, with the paths of the tests from the root: modules of the project have examples that are tests too."""
-    sys.modules.pop("mutate", None)  # that of this process is another file than the one in the folder
     return tested(folder, [f"../{path}" for path in paths], results, *options, plugins=plugins)
 
 
@@ -128,8 +130,14 @@ def _function(text: str, line: int) -> range | None:
     return found
 
 
-def judged(mutants: list[Mutant], folders: list[Path], kept: Path | None) -> Iterator[Verdict]:
-    """Verdicts as they come. kept : the file of the map"""
+def first(seconds: dict[str, float], most: float) -> dict[str, float]:
+    """The first of some tests, as many as take at most so long together, and at least one."""
+    count = sum(spent <= most for spent in itertools.accumulate(seconds.values()))
+    return dict(itertools.islice(seconds.items(), max(1, count)))
+
+
+def judged(mutants: list[Mutant], folders: list[Path], kept: Path | None, most: float) -> Iterator[Verdict]:
+    """Verdicts as they come. kept : the file of the map; most : seconds of tests of each mutant"""
     results = folders[0].with_name("kept-results")
     ((_, computing),) = answers([Task("results", lambda _: results_in(results))], folders)
     if isinstance(computing, str):
@@ -145,7 +153,7 @@ def judged(mutants: list[Mutant], folders: list[Path], kept: Path | None) -> Ite
     tasks = []
     for mutant in mutants:
         text = (folders[0] / mutant.file).read_text(encoding="utf-8")
-        seconds = order(mutant, text, known)
+        seconds = first(order(mutant, text, known), most)
         if not seconds:
             yield Verdict(mutant, False, "for no test runs its file")
             continue
@@ -177,6 +185,7 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     parser.add_argument("--only", nargs="+", metavar="ID", default=["*"], help="these alone, say solver.kernel.*")
     parser.add_argument("--part", metavar="I/N", default="1/1", help="the I-th of N parts: each N-th mutant")
     parser.add_argument("--jobs", type=int, default=2, metavar="N", help="how many at a time (default: 2)")
+    parser.add_argument("--seconds", type=float, default=NIGHT, metavar="S", help="of tests a mutant (default: all)")
     parser.add_argument("--map", type=Path, metavar="FILE", help="keep here which functions each test runs")
     parser.add_argument("--page", type=Path, metavar="FILE", help="put the lists' figures on this page, run nothing")
     options = parser.parse_args(arguments)
@@ -194,8 +203,8 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as temporary:
         folders = [Path(temporary) / f"tree{i}" for i in range(options.jobs)]
         for folder in folders:
-            _copy(root, folder)
-        for verdict in judged(mutants, folders, options.map):
+            copy(root, folder)
+        for verdict in judged(mutants, folders, options.map, options.seconds):
             verdicts.append(verdict)
             print(f"{len(verdicts)} of {len(mutants)}: {verdict.mutant.id} {verdict}", flush=True)
     minutes = (time.monotonic() - begun) / 60

@@ -7,119 +7,25 @@ Exit code: 0 when at least 95 % of the mutants of the solver and of those of the
 """
 
 import argparse
-import compileall
-import json
 import os
-import resource
-import shutil
-import signal
 import sys
 import tempfile
 import time
-import traceback
 from collections import defaultdict
-from collections.abc import Callable, Iterator
-from contextlib import suppress
-from dataclasses import dataclass
+from collections.abc import Iterator
 from datetime import UTC, datetime
 from fnmatch import fnmatch
 from importlib import import_module
 from pathlib import Path
-from types import ModuleType
 
+from copies import NIGHT, Task, answers, copy
 from mutants import ROOT, WANTED, Mutant, Verdict, read, table, totals
 
 LIBRARIES = (
     "numpy", "scipy.special", "scipy.optimize", "scipy.interpolate", "scipy.sparse", "scipy.integrate", "dask.array",
     "xarray", "netCDF4", "matplotlib.pyplot", "matplotlib.backends.backend_pdf", "mpmath", "hypothesis", "pytest",
 )  # fmt: skip
-# Not the repository either: in a worktree it is a pointer, and a test that ends in the middle would lock the real one.
-NOT_COPIED = {"results", "figures", "tables", "build", "dist", ".git", ".venv", ".hypothesis", ".pytest_cache"}
 PATIENCE, SLOWER = 60.0, 10.0  # seconds that a mutant gets, and times of what its tests take without it
-NIGHT = 40_000.0  # seconds for what has no measure
-MEMORY = 8_000_000_000  # bytes: a mutant may ask for all there are
-
-
-@dataclass(frozen=True)
-class Task:
-    """What a child does: `action(folder)` gives its answer (JSON). `change`: a file and its text while it runs."""
-
-    key: object
-    action: Callable[[Path], object]
-    seconds: float = NIGHT
-    change: tuple[str, str] | None = None
-
-
-def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, object]]:
-    """Tasks and their answers as they come, one child in each folder at a time; a text when a child gave none."""
-    free, running, left, clock, last = list(folders), {}, tasks[::-1], 0.0, time.monotonic()
-    try:
-        while left or running:
-            while left and free:
-                task, folder = left.pop(), free.pop()
-                running[_begun(task, folder)] = task, folder, clock + task.seconds
-            time.sleep(0.01)
-            last, before = time.monotonic(), last
-            clock += min(last - before, 1.0)  # it stands while this process is stopped or the machine asleep
-            for child, (task, folder, end) in list(running.items()):
-                late = clock > end
-                if late or os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
-                    _swept(child)
-                    del running[child]
-                    yield task, "takes too long" if late else _answer(folder)
-                    if task.change:
-                        os.replace(folder.with_suffix(".kept"), folder / task.change[0])
-                    free.append(folder)
-    finally:
-        for child in running:
-            _swept(child)
-
-
-def _begun(task: Task, folder: Path) -> int:
-    """Fork the child of a task; returns its process id."""
-    answer = folder.with_suffix(".json")
-    answer.unlink(missing_ok=True)
-    if task.change:
-        path, text = folder / task.change[0], task.change[1]
-        shutil.copy2(path, folder.with_suffix(".kept"))  # beside the tree: tests ask which files a package has
-        path.write_text(text, encoding="utf-8")
-        os.utime(path, (315_619_200,) * 2)  # 1980, the first year of zip; else a compiled form of this second may count
-    child = os.fork()
-    if child:
-        return child
-    try:
-        os.setsid()
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
-        log = os.open(folder.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
-        os.dup2(log, 1), os.dup2(log, 2)
-        os.chdir(folder)
-        tests = folder / "tests"
-        sys.path[:] = [str(folder), str(tests), str(tests / "shared"), *sys.path[1:]]  # the first was that of this file
-        sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
-        del sys.modules["mutants"]
-        sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size
-        os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
-        answer.write_text(json.dumps(task.action(folder)))
-    except BaseException:
-        answer.write_text(json.dumps(traceback.format_exc()))
-    finally:
-        os._exit(0)
-
-
-def _swept(child: int) -> None:
-    """End a child and what it has begun."""
-    for kill in (os.killpg, os.kill):  # it may not lead its group yet
-        with suppress(ProcessLookupError):
-            kill(child, signal.SIGKILL)
-    os.waitpid(child, 0)
-
-
-def _answer(folder: Path) -> object:
-    try:
-        return json.loads(folder.with_suffix(".json").read_text())
-    except (OSError, ValueError):
-        return "ends the process of the tests"
 
 
 class Watch:
@@ -221,13 +127,6 @@ def judge(mutant: Mutant, found) -> Verdict:
     return Verdict(mutant, True, by[0]) if found["code"] else Verdict(mutant, False)
 
 
-def _copy(root: Path, folder: Path) -> None:
-    """Copy what the tests need of a tree."""
-    shutil.copytree(root, folder, ignore=lambda at, names: NOT_COPIED & set(names) if Path(at) == root else [])
-    for package in ("solver", "study", "studies"):
-        compileall.compile_dir(folder / package, quiet=1)
-
-
 def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     """Run the mutants and print their table; returns the exit code."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
@@ -244,7 +143,7 @@ def main(arguments=None, root: Path = ROOT, libraries=LIBRARIES) -> int:
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as temporary:
         folders = [Path(temporary) / f"tree{i}" for i in range(options.jobs)]
         for folder in folders:
-            _copy(root, folder)
+            copy(root, folder)
         for verdict in judged(mutants, folders, options.all):
             verdicts[verdict.mutant.id] = verdict
             print(f"{len(verdicts)} of {len(mutants)}: {verdict.mutant.id} {verdict}", flush=True)

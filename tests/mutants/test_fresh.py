@@ -7,7 +7,7 @@ from collections import Counter
 
 import pytest
 from conftest import ROOT
-from fresh import order
+from fresh import first, order
 from mutants import Mutant, batches, read, table, with_figures
 
 LISTS = batches()
@@ -85,6 +85,13 @@ def test_tests_of_the_function_come_first_those_that_start_processes_last():
     assert list(order(cube, MODULE, known)) == [*expected, *starts]
     known["computing"] = ["solver.one"]
     assert list(order(cube, MODULE, known)) == [*expected, "tests/test_three.py::asks", *starts]
+
+
+def test_the_first_seconds_of_tests():
+    """In their order, and one in any case."""
+    seconds = {"quick": 1.0, "slow": 4.0, "last": 1.0}
+    for most, count in ((0.5, 1), (1.0, 1), (4.9, 1), (5.0, 2), (6.0, 3), (60.0, 3)):
+        assert list(first(seconds, most)) == list(seconds)[:count]
 
 
 @pytest.mark.parametrize("batch", LISTS, ids=[batch.name for batch in LISTS])

@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 import study
-from study.physical.names import si
-from study.spec.vocabulary import ROWS
+from study.inputs.scene.names import si
+from study.inputs.vocabulary import ROWS
 
 DRAWS = 10_000
 NAMES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")

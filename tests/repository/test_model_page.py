@@ -11,7 +11,7 @@ from solver import Model, Problem, Status, solve
 from solver.kernels.closed_form import layered_kernel
 from study.data import derived
 from study.data.dataset import status_words
-from study.spec.vocabulary import VOCABULARY
+from study.inputs.vocabulary import VOCABULARY
 
 PAGE = pages.read("docs/model.md")
 ROLES = ("control", "material", "roughness", "numerics", "result", "profile", "flag", "count", "derived")

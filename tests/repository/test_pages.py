@@ -12,11 +12,12 @@ from conftest import ROOT
 from test_repository import TARGETS
 from validate_page import page as resolved
 
+import roughcoat
 import solver
 import study
 from study import open_results
 from study.__main__ import main, parser
-from study.physical.study_file import from_tables, read
+from study.inputs.reading import from_tables, read
 
 TEXT = {page: pages.read(page) for page in pages.PAGES}
 
@@ -93,17 +94,25 @@ def test_what_a_page_names_exists(page):
     files = re.findall(r"`((?:studies|study|solver|tests)/[\w/]+\.(?:py|toml|csv))`", text)
     for path in set(files) - {"studies/mine.toml", "studies/figures.py"}:
         assert (ROOT / path).exists(), path
-    for package, names in re.findall(r"`(study|solver|derived)((?:\.[a-z_]\w*)+)", code):
-        found = {"study": study, "solver": solver, "derived": study.derived}[package]
+    for package, names in re.findall(r"`(rc|study|solver|derived)((?:\.[a-z_]\w*)+)", code):
+        found = {"rc": roughcoat, "study": study, "solver": solver, "derived": study.derived}[package]
         for name in names.strip(".").split("."):
             found = getattr(found, name)
+
+
+@pytest.mark.parametrize("package", [roughcoat, solver])
+def test_the_page_of_python_has_every_public_name(package):
+    shown = re.findall(
+        r"`(?:rc|solver)\.(\w+)`", TEXT["docs/python.md"].partition("## The solver")[2 * (package is solver)]
+    )
+    assert {*shown} == {*package.__all__} | ({"__version__"} if package is roughcoat else set())
 
 
 @pytest.mark.parametrize("page", ["README.md", "docs/studies.md"])
 def test_commands_parse(page):
     found = [line for block in pages.blocks(page, "sh") for line in block.splitlines()]
-    found += re.findall(r"`((?:python -m study|roughcoat) [^`]+)`", TEXT[page])
-    calls = [re.match(r"(?:.*-m study|roughcoat) (.*)", line) for line in found]
+    found += re.findall(r"`((?:python -m )?roughcoat [^`]+)`", TEXT[page])
+    calls = [re.match(r"(?:.*-m )?roughcoat (.*)", line) for line in found]
     commands = [shlex.split(call[1]) for call in calls if call]
     commands += [line.split() for line in re.findall(r"`((?:run|status|retry|clean) mine[^`|]*)`", TEXT[page])]
     assert len(commands) >= 3
@@ -124,7 +133,7 @@ def test_the_table_of_real_systems_has_their_numbers_of_cases():
         assert read(ROOT / f"studies/systems/{name}.toml").grid.size == int(cases) * int(times)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md", "docs/python.md"])
 def test_python_prints_what_stands_there(page, tmp_path):
     pages.check_examples(page, tmp_path)
 
@@ -169,8 +178,8 @@ def microseconds(text: str, head: str, row: str, between: str) -> dict[float, fl
 
 @pytest.mark.parametrize(("ours", "measured"), [("the paper's layer", "paper, layer"), ("coatings", "coatings")])
 def test_times_are_those_of_tradeoff(ours, measured):
-    page = (ROOT / "docs/tradeoff_measured.txt").read_text(encoding="utf-8")
     """To the two digits that are shown."""
+    page = (ROOT / "docs/tradeoff_measured.txt").read_text(encoding="utf-8")
     found = microseconds(TEXT["docs/accuracy.md"], r"\| processor time", rf"\| {ours}", r" \| ")
     known = microseconds(page, "set  ", rf"{measured} +newton, rtol", " {2,}")
     assert found == {error: float(f"{known[error]:.2g}") for error in (1e-3, 1e-6, 1e-9)}

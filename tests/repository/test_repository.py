@@ -96,7 +96,7 @@ def test_clean_removes_what_the_program_draws_alone(tmp_path):
     kept = ("figures/mine.pdf", "figures/parameter_map_p_max.pdf", "tables/mine.txt", "results/main_case.nc")
     ours = ("figures/fig01.svg", "figures/fig04.pdf", "figures/fig10_layered.csv", "figures/captions.md",
             "figures/.roughcoat.json", "tables/.roughcoat.json",
-            "tables/table1.tex", "bench.json", "study/spec/__pycache__/x.pyc", ".ruff_cache/x")  # fmt: skip
+            "tables/table1.tex", "bench.json", "study/inputs/__pycache__/x.pyc", ".ruff_cache/x")  # fmt: skip
     for name in (*kept, *ours):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
@@ -163,13 +163,13 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
     """As a wheel has it: `roughcoat plot --run fig03` works in an empty folder."""
     command = [sys.executable, "setup.py", "--quiet", "build_py", "--build-lib", str(tmp_path)]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True, timeout=120)
-    for package in ("solver", "study"):
+    for package in ("roughcoat", "solver", "study"):
         ours = {path.relative_to(ROOT) for path in (ROOT / package).rglob("*") if "__pycache__" not in path.parts}
         built = {path.relative_to(tmp_path) for path in (tmp_path / package).rglob("*")}
         assert ours - built == set()
     assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 21
-    assert {path.name for path in tmp_path.iterdir()} == {"solver", "study"}
-    assert PROJECT["project"]["scripts"] == {"roughcoat": "study.__main__:command"}
+    assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}
+    assert PROJECT["project"]["scripts"] == {"roughcoat": "roughcoat.__main__:command"}
 
 
 def test_ci_runs_the_tests_of_the_readme():

@@ -91,4 +91,7 @@ def load(file, **changes) -> study.Study:
 
 
 def leftovers(folder: Path) -> list[str]:
-    return sorted(path.name for path in folder.rglob("*") if path.name != "line.nc")
+    """Names of what is in a folder of results, but for results and what a run keeps with its blocks."""
+    kept = ("line.nc", "lock")
+    names = (path.name for path in folder.rglob("*") if path.suffix not in (".blocks", ".block", ".cases"))
+    return sorted(name for name in names if name not in kept)

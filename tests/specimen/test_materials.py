@@ -223,3 +223,11 @@ def test_the_table_comes_with_an_installed_package(tmp_path):
     script += "; assert m.__file__.startswith(sys.path[0]); print(m.get('ta-C').E)"
     ended = subprocess.run([sys.executable, "-c", script], cwd=tmp_path, capture_output=True, text=True)
     assert ended.stdout == "625000000000.0\n", ended.stderr
+
+
+def test_a_name_goes_before_the_other_name_of_another():
+    """In whichever order they stand; of an own list, which may have both."""
+    steel = materials.Material("steel", 2e11, 0.3, 0.0, 0.0, also=("iron", "Fe"))
+    iron = materials.Material("iron", 1.9e11, 0.29, 0.0, 0.0, also=("steel",))
+    for own in ({"steel": steel, "iron": iron}, {"iron": iron, "steel": steel}):
+        assert [materials.get(name, own) for name in ("steel", "Iron", "fe")] == [steel, iron, steel]

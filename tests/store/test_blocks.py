@@ -9,8 +9,9 @@ import pytest
 
 from study.data.dataset import not_run
 from study.files.seal import seal
-from study.spec.definition import Definition, from_tables
-from study.spec.identity import case_keys
+from study.inputs.definition import Definition
+from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.store import blocks
 from study.store.block_file import Block, Damaged, read_block, write_block
 from study.store.blocks import Store, add, count_statuses, facts, gather, inventory, put, usable
@@ -114,8 +115,10 @@ def test_a_block_has_every_column(wanted):
 @pytest.mark.parametrize("name", sorted(COLUMNS))
 def test_a_block_without_a_column_does_not_serve(wanted, name):
     arrays = columns(wanted)
-    assert usable(wanted, facts(wanted.x), arrays)
-    assert not usable(wanted, facts(wanted.x), {other: arrays[other] for other in arrays if other != name})
+    keys = np.zeros((4, 2), np.uint64)
+    assert usable(wanted, Block(facts(wanted.x), keys, arrays))
+    others = {other: arrays[other] for other in arrays if other != name}
+    assert not usable(wanted, Block(facts(wanted.x), keys, others))
 
 
 def test_what_serves_a_study(wanted):
@@ -135,7 +138,8 @@ def test_what_serves_a_study(wanted):
         (scalars, facts(other), columns(wanted), True),
         (scalars, here | {"numerics_version": "another"}, columns(wanted), False),
     ):
-        assert usable(definition, given, arrays) == expected, (definition.profiles, definition.dtype, given)
+        block = Block(given, np.zeros((4, 2), np.uint64), arrays)
+        assert usable(definition, block) == expected, (definition.profiles, definition.dtype, given)
 
 
 @pytest.fixture
@@ -173,21 +177,6 @@ def test_of_two_blocks_the_case_that_ended_better_is_taken(some):
     assert inventory(some, retry=(0, 1, 2, 3)).missing.tolist() == [1, 2, 3]
 
 
-def test_blocks_with_a_case_of_another_study_are_not_given_up(some):
-    """What is not going to be in the results file would be lost with them: cases that only another study has, wherever
-    their keys are among those of this one, and digits that this one does not write."""
-    keys = case_keys(some.definition.grid)
-    whole = put(some, block(some, [0, 1], [0, 0]))
-    for place, other in enumerate((0, 2**64 - 1, int(keys[:, 0].min()) + 1)):
-        theirs = block(some, [2, 3], [0, 0], first=place)
-        theirs.keys[place % 2] = [other, 7]
-        put(some, theirs)
-    known = inventory(some)
-    assert known.covered == {whole} and len(known.blocks) == 4 and known.status.tolist() == [0, 0, 0, 0]
-    half = Store(line(dtype="float32"), some.folder.parent)
-    assert half.folder == some.folder and not inventory(half).covered
-
-
 def test_a_part_of_the_cases_is_gathered_from_its_blocks(some):
     put(some, block(some, [3, 1], [0, 2], first=10))
     put(some, block(some, [0], [1], first=20))
@@ -209,13 +198,10 @@ def test_what_is_added_is_in_the_inventory_as_on_the_disk(some):
     assert {source.path for source in again.sources} == {source.path for source in known.sources}
 
 
-def test_blocks_of_other_numerics_are_left_alone_when_forced(some):
+def test_blocks_of_other_numerics_are_left_alone(some):
     old = put(some, block(some, [0], [0], numerics_version="old"))
     new = put(some, block(some, [1], [0]))
-    with pytest.raises(ValueError, match="holds unfinished work of version old of the numerics, this is"):
-        inventory(some)
-    assert old.exists()
-    assert inventory(some, force=True).status.tolist() == [127, 0, 127, 127]
+    assert inventory(some).status.tolist() == [127, 0, 127, 127]
     assert old.exists() and new.exists()
 
 

@@ -55,7 +55,7 @@ def test_an_edit_of_the_numerics_computes_again(load, tmp_path, before, after, s
     edited = load(**after)
     assert edited.dry_run().present == 0
     if finished:
-        with pytest.raises(study.StudyError, match="2 of its 2 cases are not in this one"):
+        with pytest.raises(study.StudyError, match="2 of its 2 cases are not in this one: --force"):
             edited.run()
     assert edited.run(force=finished).computed == 2
     found = edited.open()

@@ -14,11 +14,12 @@ from numpy.testing import assert_array_equal
 
 import solver
 from solver.parameters import CONTROL, EVERY, Parameter
-from study.spec import identity
-from study.spec.definition import Definition, from_tables
-from study.spec.grid import Grid
-from study.spec.identity import case_keys, digest_of
-from study.spec.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
+from study.inputs import identity
+from study.inputs.definition import Definition
+from study.inputs.grid import Grid
+from study.inputs.identity import case_keys, digest_of
+from study.inputs.reading import from_tables
+from study.inputs.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
 from study.work.cases import compute, parcel
 
 OF_ALL = CONTROL | solver.parameters.PARAMETERS

@@ -1,6 +1,7 @@
 """Cases are computed once: keys of cases, extending and reordering a study, what is refused and what --force does."""
 
 import itertools
+import shutil
 
 import numpy as np
 import pytest
@@ -9,10 +10,10 @@ from line_study import store_block
 from same import assert_same
 
 import study
-from study.spec import identity
-from study.spec.grid import Grid
-from study.spec.identity import case_keys, find
-from study.store import blocks, earlier
+from study.inputs import identity
+from study.inputs.grid import Grid
+from study.inputs.identity import case_keys, find
+from study.store import blocks
 
 BASE = {"micro": '"smooth"', "base": '"thin_layer"', "n": "0.5"}
 AXES = {"P": "[1e-6, 2e-6, 4e-6]", "h": "[0.001, 0.002]"}
@@ -49,15 +50,13 @@ EXTENDED = {
     "order of values": ({"h": "[0.002, 0.001]", "P": "[4e-6, 1e-6, 2e-6]"}, 0),
     "axis of words": ({"bonding": '["bonded", "frictionless"]'} | AXES, 6),
 }
-# Which cases are new is found from their keys, wherever those come from; blocks give theirs in one way.
-SOURCES = [(name, True) for name in EXTENDED] + [("values of two axes", False), ("axis in front", False)]
+STATES = [(name, True) for name in EXTENDED] + [("values of two axes", False), ("axis in front", False)]
 
 
-@pytest.mark.parametrize(("change", "finished"), SOURCES)
-def test_only_new_cases_are_computed(load, tmp_path, computed, monkeypatch, change, finished):
-    """Of a finished study, whose cases lie in a results file, and of one whose cases lie in blocks."""
+@pytest.mark.parametrize(("change", "finished"), STATES)
+def test_only_new_cases_are_computed(load, tmp_path, computed, change, finished):
+    """Of a finished study, and of one that was stopped."""
     axes, new = EXTENDED[change]
-    monkeypatch.setattr("study.files.examine.CHUNK", 2)
     if finished:
         load().run()
     else:
@@ -84,12 +83,21 @@ def test_regrouping_axes_to_single_cases_computes_nothing(load, tmp_path):
 def test_results_that_would_lose_cases_are_refused(load):
     load().run()
     before = load().open()
-    for other in (load(AXES | {"P": "[1e-6, 2e-6]"}), load(output="x = 5"), load(output="profiles = false\nx = 3")):
-        if other.definition.profiles:
-            with pytest.raises(study.StudyError, match="holds results of another definition .* --force replaces them"):
-                other.run()
-            assert_same(load().open(), before)
+    with pytest.raises(study.StudyError, match="definition .* 2 of its 6 cases are not in this one: --force replaces"):
+        load(AXES | {"P": "[1e-6, 2e-6]"}).run()
+    assert_same(load().open(), before)
     assert load(AXES | {"P": "[1e-6, 2e-6, 8e-6]"}).run(force=True).computed == 2
+    assert load().run(force=True).computed == 0, "the blocks keep what the results have lost"
+    assert_same(load().open(), before)
+
+
+def test_results_of_which_no_block_tells_the_cases_are_refused(load):
+    """Such as those of an earlier version, which removed its blocks."""
+    load().run()
+    shutil.rmtree(load().results / ".line.blocks")
+    with pytest.raises(study.StudyError, match="definition .* which cases cannot be told: --force replaces them"):
+        load(MORE).run()
+    assert load(MORE).run(force=True).computed == 8
 
 
 def test_fewer_outputs_are_taken_from_what_is_there_but_not_more(load, tmp_path):
@@ -102,9 +110,10 @@ def test_fewer_outputs_are_taken_from_what_is_there_but_not_more(load, tmp_path)
         opened = load(output=output)
         assert opened.run().computed == new
         xr.testing.assert_allclose(opened.open(), fresh(opened, tmp_path / output), rtol=1e-6, atol=0)
-    for output in ("x = 3\nprofiles = false", 'x = 3\ndtype = "float32"'):
-        with pytest.raises(study.StudyError, match="6 of its 6 cases are not in this one"):
-            load(output=output).run()
+    assert load().run().computed == 0, "the first blocks have all of it"
+    assert load(output="x = 5").run().computed == 6
+    (load().results / "line.nc").unlink()
+    assert load().status()["counts"] == {0: 6}
 
 
 @pytest.mark.parametrize(
@@ -134,9 +143,9 @@ def test_wrong_outputs_are_named(load):
 
 def renumber(monkeypatch, version: str) -> None:
     from study.data import provenance
-    from study.work import cases
+    from study.work import cases, plan
 
-    for module in (identity, blocks, earlier, cases, provenance):
+    for module in (identity, blocks, plan, cases, provenance):
         monkeypatch.setattr(module, "NUMERICS_VERSION", version)
 
 
@@ -150,12 +159,13 @@ def test_another_version_of_the_numerics_is_refused_with_a_choice(load, monkeypa
     assert load(MORE).run(force=True).computed == 8
 
 
-def test_unfinished_work_of_another_version_of_the_numerics_too(load, monkeypatch):
-    store_block(load(), 0, 2)
-    renumber(monkeypatch, "next")
-    with pytest.raises(study.StudyError, match="holds unfinished work of version .* --force computes it again"):
-        load().run()
-    assert load().run(force=True).computed == 6
+def test_blocks_of_another_version_of_the_numerics_are_not_used(load, monkeypatch):
+    path = store_block(load(), 0, 2)
+    with monkeypatch.context() as patched:
+        renumber(patched, "next")
+        assert load().run().computed == 6
+        assert path.exists()
+        assert load().clean()[0].endswith("removed 1 block of 2 cases; the study needs the other 3 blocks")
 
 
 def test_a_worker_of_another_version_computes_nothing(load, monkeypatch):

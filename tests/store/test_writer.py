@@ -13,9 +13,11 @@ from same import assert_same
 
 import study
 from study.data.dataset import parts
-from study.files.results_file import open_lazily, write
-from study.spec.definition import from_tables
-from study.spec.grid import Grid, box, cut_out, windows
+from study.files import results_file
+from study.files.examine import examine
+from study.files.results_file import write
+from study.inputs.grid import Grid, box, cut_out, windows
+from study.inputs.reading import from_tables
 from study.store import writer
 from study.work.cases import compute, parcel
 
@@ -71,7 +73,7 @@ def test_written_by_windows_as_written_whole(tmp_path, monkeypatch, size, output
     opened = study.Study(definition, tmp_path)
     opened.run()
     whole = parts(definition, compute(parcel(definition, np.arange(24))), "command").dataset()
-    write(whole, tmp_path / "whole.nc")
+    write(whole, tmp_path / "whole.nc", examine(tmp_path / "whole.nc"))
     expected, found = study.open_results(tmp_path / "whole.nc"), opened.open()
     assert_same(found, expected)
 
@@ -81,7 +83,7 @@ def test_written_by_windows_as_written_whole(tmp_path, monkeypatch, size, output
 def test_a_grid_cut_out_is_the_cases_there(low, length):
     grid = from_tables(tables(), "w", "", "w").grid
     window = {dim: slice(low % size, min(low % size + length, size)) for dim, size in grid.sizes.items()}
-    from study.spec.grid import columns
+    from study.inputs.grid import columns
 
     part, whole = cut_out(grid, window), columns(grid, np.arange(grid.size))
     for name, column in columns(part, np.arange(part.size)).items():
@@ -90,16 +92,16 @@ def test_a_grid_cut_out_is_the_cases_there(low, length):
 
 
 def test_a_large_file_is_opened_lazily(tmp_path, monkeypatch):
-    monkeypatch.setattr(study.api, "LAZY", 1000)
     monkeypatch.setattr(writer, "CHUNK", 6)
     opened = study.Study(from_tables(tables(), "lazy", "", "lazy"), tmp_path)
     opened.run()
+    eager = study.open_results(tmp_path / "lazy.nc")
+    monkeypatch.setattr(results_file, "LAZY", 1000)
     found = opened.open()
     assert all(found[name].chunks for name in found.data_vars)
     assert found.p.data.chunks[:2] == ((1, 1), (1, 1, 1))
-    eager = study.open_results(tmp_path / "lazy.nc")
     assert float(found.p.max().compute(num_workers=4)) == float(eager.p.max())
-    xr.testing.assert_identical(open_lazily(tmp_path / "lazy.nc").load(), eager)
+    xr.testing.assert_identical(study.open_results(tmp_path / "lazy.nc").load(), eager)
 
 
 def peak_of_a_run(folder, points: int, answers) -> None:

@@ -65,6 +65,17 @@ def test_a_run_that_computes_nothing_leaves_the_terminal_alone():
     assert screen.getvalue() == ""
 
 
+def test_nothing_is_written_after_the_end(clock):
+    """The thread that says how far it is may wake up once more, after an interrupt."""
+    screen = Terminal()
+    shown = Progress("solving", 20, screen, begun=1000.0, passing=True)
+    shown.tell()
+    shown.close()
+    clock[0] += 100
+    shown.tell()
+    assert screen.getvalue() == "\r\x1b[Ksolving: 0 s\r\x1b[K"
+
+
 def test_without_a_stream_nothing_is_written():
     shown = Progress("fig04", 20, None)
     shown.update(20, failed=20)

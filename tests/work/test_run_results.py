@@ -3,7 +3,6 @@
 import os
 import threading
 import weakref
-from concurrent.futures import Executor, Future
 from types import SimpleNamespace
 
 import netCDF4
@@ -15,7 +14,8 @@ from line_study import leftovers, load, store_block
 import study
 from study.commands.computing import state_line
 from study.files import netcdf, results_file
-from study.work import cases, workers
+from study.files.examine import examine
+from study.work import cases
 
 
 def test_results_of_another_definition_are_kept(file):
@@ -41,21 +41,9 @@ def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
         raise FileNotFoundError(path)
 
     monkeypatch.setattr(study.api, "statuses", removed)
-    assert load(file).status()["state"] == "new"
+    assert load(file).status()["state"] == "partial"
 
 
-def test_a_run_that_ends_while_one_asks_for_partial_results(file, monkeypatch):
-    """The blocks that were found were removed before they were read."""
-
-    def ended(*_):
-        assert load(file).run().complete
-        raise FileNotFoundError("a block")
-
-    monkeypatch.setattr(study.api, "partial_dataset", ended)
-    assert (load(file).open(partial=True).status == 0).all()
-
-
-@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("content", [b"", b"no netCDF"])
 def test_a_file_that_is_no_result_is_kept(file, content):
     opened = load(file)
@@ -85,7 +73,7 @@ def test_failed_write_leaves_the_old_file_and_no_litter(file, monkeypatch, failu
 
     monkeypatch.setattr(os, "replace", replace)
     with pytest.raises(type(failure)):
-        results_file.write(found, path)
+        results_file.write(found, path, examine(path))
     assert path.read_bytes() == before
     assert leftovers(opened.results) == []
 
@@ -115,20 +103,9 @@ def recorded(function, threads: set):
     return call
 
 
-class AtOnce(Executor):
-    """Computes what is submitted there and then: no worker can be faster."""
-
-    def __init__(self, _):
-        pass
-
-    def submit(self, function, *arguments):
-        future = Future()
-        future.set_result(function(*arguments))
-        return future
-
-
 def test_memory_is_bounded(file, monkeypatch):
-    """A stored block is forgotten: of 60 never more are alive than are under way, and the one that is being stored."""
+    """A stored block is forgotten: of 60 one is alive, and the one that is being stored. How many results of processes
+    may wait is left to test_here_and_apart.py."""
     alive, most, real = weakref.WeakSet(), [], cases.compute
 
     class Arrays(dict):
@@ -141,22 +118,13 @@ def test_memory_is_bounded(file, monkeypatch):
         return found
 
     monkeypatch.setattr(cases, "compute", compute)
-    monkeypatch.setattr(workers, "ThreadPoolExecutor", AtOnce)
     load(file, **{"num = 23": "num = 300"}).run(workers=2)
     assert len(most) == 60
-    assert max(most) == 2 * workers.AHEAD + 1
+    assert max(most) <= 2
 
 
-def test_blocks_of_a_killed_run_are_removed_when_the_results_are_there(file):
-    opened = load(file)
-    opened.run()
-    store_block(opened, 0, 5)
-    opened.run()
-    assert leftovers(opened.results) == []
-
-
-def test_status_counts_blocks_and_what_an_outdated_file_gives(file, monkeypatch):
-    """A case that failed in the old file failed here as well; of a case in both, the block is what a run takes."""
+def test_a_case_that_failed_is_not_computed_again_unless_asked(file, monkeypatch):
+    """Of a case in two blocks the one that ended better is what a run takes."""
     real = cases.compute
 
     def compute(wanted):

@@ -1,79 +1,20 @@
 """Calls that take more than two seconds say that they go on, where somebody may look; others do not say a word."""
 
 import io
-import os
-import re
-import signal
-import subprocess
 import sys
 import threading
 import time
 import types
-from pathlib import Path
 
 import numpy as np
 import pytest
+from screens import CONTACT, PATIENCE, Screen, as_stderr, lines, nobody_speaks, slowly
 
 import study
 from solver import Status
 from study import solving
-from study.work import progress, run, screen, share
+from study.work import cases, engine, progress, screen
 from study.work.progress import ERASE, Progress
-
-ROOT = Path(__file__).resolve().parents[2]
-PATIENCE = 20  # seconds that a test waits for a line at most
-CONTACT = {"P": 1e-5, "micro": "smooth", "base": "half_space"}
-
-
-class Screen(io.StringIO):
-    """A terminal, which knows when something was written."""
-
-    def __init__(self):
-        super().__init__()
-        self.written = threading.Event()
-
-    def isatty(self) -> bool:
-        return True
-
-    def write(self, text: str) -> int:
-        self.written.set()
-        return super().write(text)
-
-
-@pytest.fixture
-def impatient(monkeypatch):
-    """What takes two seconds for people takes a hundredth here."""
-    monkeypatch.setenv("TERM", "xterm")
-    monkeypatch.setattr(progress, "SILENT", 0.01)
-    monkeypatch.setattr(progress, "AGAIN", 0.01)
-
-
-@pytest.fixture
-def stderr(monkeypatch, impatient) -> Screen:
-    """A terminal in place of stderr."""
-    return as_stderr(monkeypatch, Screen())
-
-
-def as_stderr(monkeypatch, stream):
-    """Let a stream be stderr for calls, but not for pytest, which replaces it before each test."""
-    monkeypatch.setattr(screen, "sys", types.SimpleNamespace(stderr=stream, modules=sys.modules))
-    return stream
-
-
-def slowly(monkeypatch, wait) -> None:
-    """Every block takes as long as wait() takes."""
-    real = share.compute
-    monkeypatch.setattr(share, "compute", lambda wanted: (wait(), real(wanted))[1])
-
-
-def nobody_speaks() -> bool:
-    """Whether no thread of a call is left that says how far it is; those of other tests may be."""
-    return all(thread.name != progress.SPEAKER for thread in threading.enumerate())
-
-
-def lines(text: str) -> list[str]:
-    """What was on the screen, one after another; a few seconds are "0 s", since reading may take some."""
-    return [re.sub(r": \d s\b", ": 0 s", line) for line in text.split(ERASE) if line]
 
 
 def test_a_call_that_lasts_says_so_and_leaves_the_terminal_as_it_was(monkeypatch, capsys, stderr):
@@ -105,14 +46,14 @@ def test_it_says_how_often_a_contact_is_solved(monkeypatch, stderr):
 def test_a_quick_call_says_nothing(monkeypatch, stderr):
     """As long as SILENT is: no block of several changes that."""
     monkeypatch.setattr(progress, "SILENT", PATIENCE)
-    monkeypatch.setattr(share, "BLOCK", 10)
+    monkeypatch.setattr(engine, "BLOCK", 10)
     study.solve(progress=True, **CONTACT)
     study.solve(progress=True, workers=1, **CONTACT | {"P": np.geomspace(1e-6, 1e-5, 100)})
     assert stderr.getvalue() == "" and nobody_speaks()
 
 
 def test_of_several_blocks_it_says_how_far_it_is(monkeypatch, stderr):
-    monkeypatch.setattr(share, "BLOCK", 10)
+    monkeypatch.setattr(engine, "BLOCK", 10)
     monkeypatch.setattr(progress, "BLINK", 0)
 
     def wait() -> None:
@@ -206,18 +147,6 @@ def test_a_terminal_that_goes_away_does_not_end_the_call(monkeypatch, stderr):
     assert study.solve(**CONTACT).status == 0 and stderr.written.is_set()
 
 
-@pytest.mark.parametrize("error", [KeyboardInterrupt, MemoryError])
-def test_an_interrupted_call_leaves_no_line_and_no_thread(monkeypatch, stderr, error):
-    def wait() -> None:
-        stderr.written.wait(PATIENCE)
-        raise error
-
-    slowly(monkeypatch, wait)
-    with pytest.raises(error):
-        study.solve(**CONTACT)
-    assert lines(stderr.getvalue()) and stderr.getvalue().endswith(ERASE) and nobody_speaks()
-
-
 class Handle:
     """What IPython gives for an output that can be changed; `cell` is what stands there now."""
 
@@ -276,9 +205,9 @@ LINE = '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = [1e-6, 2e-6,
 @pytest.mark.parametrize(("value", "said"), [(None, True), (True, True), (False, False)])
 def test_runs_from_python_say_it_as_calls_do(tmp_path, monkeypatch, stderr, value, said):
     (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
-    real = run.guarded
+    real = engine.guarded
     monkeypatch.setattr(
-        run, "guarded", lambda wanted: (stderr.written.wait(PATIENCE if said else 0.1), real(wanted))[1]
+        engine, "guarded", lambda wanted: (stderr.written.wait(PATIENCE if said else 0.1), real(wanted))[1]
     )
     report = study.load(tmp_path / "line.toml", tmp_path / "results").run(workers=1, progress=value)
     assert report.complete and bool(lines(stderr.getvalue())) == said
@@ -296,59 +225,10 @@ def test_a_run_whose_first_block_lasts_says_that_it_goes_on(impatient):
     assert lines(shown.getvalue())[-1].startswith("line: 20 of 20 cases, 0 failed") and shown.getvalue().endswith("\n")
 
 
-SLOW_POINT = """
-import sys, time
-from study.work import progress, share
-progress.SILENT = 0.05
-real = share.compute
-share.compute = lambda wanted: (time.sleep({seconds}), real(wanted))[1]
-sys.argv = ["roughcoat", "point", "P=1e-5", "micro=smooth", "base=half_space"]
-from study.__main__ import main
-sys.exit(main())
-"""
-
-
-def point(seconds: float, **streams) -> subprocess.Popen:
-    """`roughcoat point` of a contact that takes so many seconds; two seconds without a word are 0.05 s here."""
-    environment = os.environ | {"TERM": "xterm", "PYTHONPATH": str(ROOT), "PYTHONWARNINGS": "error"}
-    code = SLOW_POINT.format(seconds=seconds)
-    return subprocess.Popen([sys.executable, "-c", code], env=environment, stdout=subprocess.PIPE, **streams)
-
-
-def test_point_says_nothing_beside_its_answer_in_a_pipe():
-    process = point(0.3, stderr=subprocess.PIPE)
-    answer, said = process.communicate(timeout=100)
-    assert process.returncode == 0 and said == b"" and answer.startswith(b"Given:")
-
-
-@pytest.mark.skipif(os.name == "nt", reason="POSIX terminals")
-@pytest.mark.parametrize("interrupted", [False, True])
-def test_point_says_on_a_terminal_that_it_goes_on(interrupted):
-    inside, outside = os.openpty()
-    process = point(PATIENCE if interrupted else 0.3, stderr=outside)
-    os.close(outside)
-    said = os.read(inside, 10_000)
-    if interrupted:
-        process.send_signal(signal.SIGINT)
-    answer, _ = process.communicate(timeout=100)
-    with pytest.raises(OSError, match="."):  # the other end is closed
-        while True:
-            if not (more := os.read(inside, 10_000)):
-                raise OSError("the end")
-            said += more
-    os.close(inside)
-    text = said.decode()
-    assert text.startswith(ERASE) and lines(text)[0] == "solving 1 contact: 0 s" and ERASE in text[len(ERASE) :]
-    if interrupted:
-        assert process.returncode == 130 and answer == b"" and "Traceback" not in text
-    else:
-        assert process.returncode == 0 and text.endswith(ERASE) and answer.startswith(b"Given:")
-
-
 def test_status_of_a_failed_case_is_counted(monkeypatch, stderr):
     """Cases that failed are named; one without a solution has not."""
-    monkeypatch.setattr(share, "BLOCK", 4)
-    real = share.compute
+    monkeypatch.setattr(engine, "BLOCK", 4)
+    real = cases.compute
 
     def compute(wanted):
         stderr.written.clear()
@@ -357,7 +237,7 @@ def test_status_of_a_failed_case_is_counted(monkeypatch, stderr):
         found["status"][:3] = Status.DIVERGED, Status.DIVERGED, Status.LIFT_OFF
         return found
 
-    monkeypatch.setattr(share, "compute", compute)
+    monkeypatch.setattr(cases, "compute", compute)
     monkeypatch.setattr(progress, "BLINK", 0)
     study.solve(workers=1, **CONTACT | {"P": np.geomspace(1e-6, 1e-5, 12)})
     said = [line for line in lines(stderr.getvalue()) if "failed" in line]

@@ -21,6 +21,8 @@ LAWS = {"normal": "normal_heights", "equal": "disc_cell"}
 class Roughness:
     """Asperities of a scan, by one method, after one filter, at one resolution: N̄ and Ra depend on all three.
 
+    Attributes
+    ----------
     Nbar : asperities per unit area, 1/m²
     Ra : radius of an asperity, 1/(mean curvature of the summits), m
     sigma_summits : standard deviation of the heights of the summits, m; also called `sigma`
@@ -55,7 +57,12 @@ class Roughness:
         return value if self.cutoff is not None else float(value)
 
     def about_cut(self) -> str:
-        """Where `cut` of one scan is from, a sentence."""
+        """Where `cut` of one scan is from.
+
+        Returns
+        -------
+        str : a sentence
+        """
         own, low, high = -ndtri(1 / max(self.summits, 1.0)), *ends(CUT.interval)[:2]
         bound = "" if low <= own <= high else f", which would be {max(own, 0):.3g}; the law takes {low:g} to {high:g}"
         number = f"{self.summits:.0f}" if self.summits < 1e6 else f"{self.summits:.3g}"
@@ -64,13 +71,19 @@ class Roughness:
     def parameters(self, heights: str = "normal") -> dict[str, Any]:
         """What `study.solve` takes: Nbar, Ra and the micro law.
 
+        Parameters
+        ----------
         heights : "normal", micro = "normal_heights" with sigma and cut, as random surfaces are; or "equal", micro =
             "disc_cell", of designed surfaces: it neglects that the highest summits touch first, and so gives more real
             contact and a smaller p_max
 
-        Lengths are text with units, all digits. Of a list of cutoffs the numbers are DataArrays over `cutoff`.
+        Returns
+        -------
+        dict : lengths are text with units, all digits. Of a list of cutoffs the numbers are DataArrays over `cutoff`
 
-        Raises ValueError: other heights.
+        Raises
+        ------
+        ValueError : other heights
         """
         if heights not in LAWS:
             raise ValueError(f'heights = {heights!r}; allowed are "normal" and "equal"')

@@ -11,7 +11,7 @@ from solver import Problem, Status, solve
 from solver.parameters import CONTROL, PARAMETERS, ends
 from solver.scaling import dimensionless, refused
 from study.__main__ import main
-from study.spec.vocabulary import VOCABULARY
+from study.inputs.vocabulary import VOCABULARY
 from study.studies.paper.uniform import solve_uniform
 
 #: What tests, `make extremes` and the issue use, and units as far as floating point goes.

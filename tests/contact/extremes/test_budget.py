@@ -12,7 +12,7 @@ from solver import Problem, Status, solve
 from solver.body.half_space import half_space
 from solver.contact import adaptive, driver, panels, picard
 from solver.contact.driver import newton_steps
-from study.spec.definition import from_tables
+from study.inputs.reading import from_tables
 
 X = np.linspace(0.0, 1.0, 5)
 #: Relaxed so much that it takes some 500 approximations; and hardly, on springs that carry nearly all: some 20.
@@ -209,3 +209,10 @@ def test_blocks_of_slow_cases_are_small(given, size):
     axes = {"P": [1e-5, 2e-5], "n": [0.5, given.get("n", 0.6)]}
     made = from_tables({"model": model, "axes": axes, "numerics": numerics}, "s", "", "s.toml")
     assert made.block == size
+
+
+def test_a_film_that_begins_as_a_thin_layer():
+    """Its first panels are those of the thin layer; without them it spends its budget (a case of extremes_layered)."""
+    film = {"h": 1.94e-7, "n": 1.55e-5, "nu1": 0.0688, "nu2": 0.369, "bonding": "bonded", "base": "layered"}
+    s = solve(Problem.of(P=3.44e-6, **film, Nbar=3240.0, Ra=0.0068))
+    assert s.status[0] == Status.CONVERGED

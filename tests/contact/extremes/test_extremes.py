@@ -17,8 +17,8 @@ from solver import Problem, Status, solve
 from solver.contact import equation
 from solver.contact.start import guess_radius
 from solver.scaling import as_cases
-from study.spec.sample import draw
-from study.spec.vocabulary import VOCABULARY
+from study.inputs.sample import draw
+from study.inputs.vocabulary import VOCABULARY
 
 RTOL = 1e-6
 #: Cases of the sample, and the share of those with a solution that must converge.

@@ -112,6 +112,16 @@ def test_a_number_set_inside_the_only_block_stays():
     assert counts() == {2}
 
 
+def test_the_number_of_an_earlier_block_is_forgotten():
+    """A program that has one thread since then keeps it."""
+    for number in (2, 1, 3):
+        for library in ThreadpoolController().select(user_api="blas").lib_controllers:
+            solver.threads._set(library, number)
+        with one_blas_thread():
+            assert counts() == {1}
+        assert counts() == {number}
+
+
 def test_overlapping_calls_leave_the_number_of_the_user():
     """The first to enter leaves first: were each to restore what it found, the number would end as 1."""
     second_is_in, first_is_out = threading.Event(), threading.Event()

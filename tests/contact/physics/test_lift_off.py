@@ -53,3 +53,20 @@ def test_tension_that_no_finer_mesh_will_judge():
     s = plates([4.0], 1e5, "bonded", nodes=[64, 96])
     assert list(s.status) == [Status.TOLERANCE_NOT_MET] * 2
     assert np.all((s.error > 1e-6) & (s.error < 1e-5)) and np.isfinite(s.P).all()
+
+
+def test_tension_above_the_error_of_the_mesh_is_the_error():
+    """16 nodes err by 7e-5, and their polynomial has 2e-4 of the load in tension: whoever allows 1e-4 gets no contact,
+    whoever allows 1e-2 reads of the larger."""
+    s = plates([5.0], 4.9e5, "bonded", nodes=16, rtol=[1e-4, 1e-2])
+    assert list(s.status) == [Status.TOLERANCE_NOT_MET, Status.CONVERGED]
+    assert np.all((s.error > 1.5e-4) & (s.error < 3e-4))
+
+
+def test_a_gap_is_an_error_of_all_of_the_contact():
+    """Asperities in a ring hang over so stiff a plate. The mesh is off by less than a
+    half, and says that nothing is right."""
+    rough = {"micro": "power_law", "Nbar": 1e12, "Ra": 1e-6, "B": 1.0, "beta": 0.6, "rtol": 0.9}
+    s = plates([7.0403465, 10.7600884], [3888109.0, 30663147.0], "bonded", nodes=48, **rough)
+    assert list(s.status) == [Status.TOLERANCE_NOT_MET] * 2 and list(s.error) == [1.0, 1.0]
+    assert np.all(s.p0 > 0), "it is pressed in the centre"

@@ -45,6 +45,19 @@ def test_a_few_summits_far_above_the_many_are_refused(tmp_path):
         read(f"table:{file}")
 
 
+def test_means_of_a_few_spots_at_a_time_are_the_same_bits(monkeypatch):
+    """Of two laws of random heights at 50 points: in one piece, and a few points at a time."""
+    sigma, cut = np.array([[0.01], [1.0]]), np.array([[3.0], [5.0]])
+    at = partial(heights.NORMAL.at, cut=cut[..., None, None])
+    delta, q = np.geomspace(1e-4, 20, 50) * np.ones((2, 1)), np.geomspace(1e-6, 1, 50) * np.ones((2, 1))
+    found = []
+    for most in (10**9, 200):
+        monkeypatch.setattr(spread, "_AT_A_TIME", most)
+        found.append(np.array(spread.means(heights.NORMAL.edges(cut), at, 1.0, q, delta, sigma)))
+    assert found[0].shape == (5, 2, 50)
+    np.testing.assert_array_equal(found[0], found[1])
+
+
 @pytest.mark.parametrize("kind", ["counted", "rare"])
 def test_few_spots_are_those_of_the_highest_class(kind):
     """A ~ p^0.4 as the pressure goes to 0, of the density of the highest summits alone."""

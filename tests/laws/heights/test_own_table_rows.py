@@ -4,20 +4,25 @@ import numpy as np
 import pytest
 
 from solver import laws
-from solver.laws import own_table
+from solver.laws import heights, own_table
 
 P = np.geomspace(1e-5, 0.03, 30)
 NAMES = ("p", "A", "lam", "p_max")
 
 
+def written(tmp_path, columns: dict[str, np.ndarray]) -> str:
+    """The name of the law of a table with these columns."""
+    path = tmp_path / "mine.csv"
+    rows = ["# remarks are no rows", ",".join(columns)]
+    rows += [",".join(map(repr, map(float, row))) for row in zip(*columns.values(), strict=True)]
+    path.write_text("\n".join(rows), encoding="utf-8")
+    return f"table:{path}"
+
+
 def read(tmp_path, columns: dict[str, np.ndarray]) -> str:
     """What is said of a table with these columns."""
-    path = tmp_path / "mine.csv"
-    rows = ["# remarks are no rows", ",".join(NAMES)]
-    rows += [",".join(map(repr, map(float, row))) for row in zip(*(columns[name] for name in NAMES), strict=True)]
-    path.write_text("\n".join(rows), encoding="utf-8")
     with pytest.raises(ValueError) as caught:
-        own_table.read(f"table:{path}")
+        own_table.read(written(tmp_path, columns))
     return str(caught.value)
 
 
@@ -48,6 +53,32 @@ def test_numbers_that_cannot_be(tmp_path, disc, row):
         assert f'column {name}, row {row}: "-1.0": must be a finite number > 0' in message
     above = np.where(np.arange(1, 31) >= row, 1.5 + 0.01 * np.arange(30), disc["lam"])
     assert f"column lam, row {row}: {above[row - 1]:g}: must be at most 1" in read(tmp_path, disc | {"lam": above})
+
+
+def test_what_is_just_allowed_and_what_is_not(tmp_path, disc):
+    """The fewest rows, the most of a histogram, full contact in a row."""
+    few = {name: values[10:15] for name, values in disc.items()}
+    assert own_table.read(written(tmp_path, few)).least == few["p"][0]
+    assert read(tmp_path, {name: values[:4] for name, values in few.items()}).endswith(
+        "has 4 rows: must have at least 5"
+    )
+    full = few | {"lam": np.array([0.6, 0.8, 0.95, 0.99, 1.0]), "p_max": 2 * few["p"]}
+    assert own_table.read(written(tmp_path, full)).most == full["p"][-1]
+    for rows in (2, 32):
+        z = 1e-7 * np.arange(rows)
+        assert own_table.read(written(tmp_path, {"z": z, "share": np.ones(rows)})).error == heights.STEPPED
+    for rows, words in ((1, "has 1 rows: must have at least 2"), (33, "has 33 rows: must have at most 32")):
+        assert read(tmp_path, {"z": 1e-7 * np.arange(rows), "share": np.ones(rows)}).endswith(words)
+
+
+@pytest.mark.parametrize("column", ["A", "lam", "p_max"])
+def test_the_error_is_that_of_the_worst_column(tmp_path, disc, column):
+    """Noise of 1 % on one of them."""
+    noisy = {
+        name: values * (1 + 0.01 * (name == column) * np.sin(2.4 * np.arange(30))) for name, values in disc.items()
+    }
+    quiet, found = (own_table.read(written(tmp_path, columns)).error for columns in (disc, noisy))
+    assert quiet < 1e-3 and 0.005 < found < 0.05
 
 
 @pytest.mark.parametrize("row", [2, 9, 29])

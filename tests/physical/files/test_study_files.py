@@ -1,5 +1,6 @@
 """Study files with units: results in SI, found by text, computed once, and one message for each slip."""
 
+import shutil
 import tomllib
 
 import numpy as np
@@ -8,8 +9,8 @@ import xarray as xr
 
 import study
 from study.__main__ import main
-from study.physical.study_file import from_tables
-from study.spec.identity import case_keys
+from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.store import writer
 
 pytest.importorskip("pint")
@@ -63,7 +64,7 @@ def test_results_are_those_of_solve_in_si(folder):
 
 def test_whoever_edits_a_study_computes_what_is_new(folder, tmp_path):
     """The dimensionless numbers of a case, and its key, are the same in any grid: alone, on an axis, from a file."""
-    (tmp_path / "dlc.nc").write_bytes((folder / "dlc.nc").read_bytes())
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     before = of(TEXT, tmp_path).open()
     edited = TEXT.replace('["2 um", "20 um"]', '["20 um", "3 um", "2 um"]').replace('["210 GPa", "rigid"]', '["rigid"]')
     with pytest.raises(study.StudyError, match="6 of its 12 cases are not in this one"):
@@ -114,12 +115,13 @@ def test_the_same_contact_twice_as_large_is_another_study(tmp_path):
     np.testing.assert_allclose(of(large, tmp_path).open().a, 2 * before.a.values, rtol=1e-15)
 
 
-def test_what_is_damaged_is_computed_again(folder, tmp_path):
+def test_what_is_damaged_is_written_again(folder, tmp_path):
     content = bytearray((folder / "dlc.nc").read_bytes())
     before = of(TEXT, folder).open()
     place = content.find(before.h.values.astype("<f8").tobytes())
     assert place > 0
-    content[place] ^= 1  # of a coordinate: which cases these are is known by the study
+    content[place] ^= 1  # of a coordinate
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     (tmp_path / "dlc.nc").write_bytes(content)
     assert of(TEXT, tmp_path).status()["state"] == "damaged"
     assert of(TEXT, tmp_path).run(workers=1).computed == 0
@@ -216,7 +218,7 @@ def test_a_run_says_what_the_model_does_not_describe(tmp_path, monkeypatch, caps
         ("[axes]", "rtol = 1e-6\n[axes]", r"\[model\] rtol belongs in \[numerics\]"),
         ("[axes]", 'hh = "1 um"\n[axes]', '"hh" is not a parameter; did you mean "h"'),
         ("[output]", "[sample]\nnu2 = [0.1, 0.2]\n[output]", r"\[sample\] size is missing: must be a whole number"),
-        ("[output]", f"{DRAWN}nu1 = [0.1]\n[output]", r"nu1 is given twice: in \[sample\] and elsewhere"),
+        ("[output]", f"{DRAWN}nu1 = [0.1]\n[output]", r"nu1 is given twice: in \[model\] and in \[sample\]"),
         ("[output]", f"{DRAWN}Ra = {{start = 1, stop = 2}}\n[output]", r"\[sample\] Ra: start = 1 has no unit"),
         ("[output]", f'{DRAWN}Nbar = {{start = "1 m", stop = 2, over = "h"}}\n[output]', "Nbar: start .* is a length"),
         ("[output]", f"{DRAWN}nu2 = {{start = 0, stop = 2}}\n[output]", r"nu2: stop = 2.*: must be in \(-1, 0.5\]"),

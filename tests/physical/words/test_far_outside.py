@@ -10,12 +10,13 @@ from conftest import STUDIES
 
 import study
 from solver import Problem, laws, solve
+from solver.closed_forms import hertz
 from solver.estimate import estimate
 from study import solving
 from study.data.assumptions import validity_of
 from study.data.dataset import model_attributes
 from study.in_words import FarOutside, early, far_outside
-from study.physical.study_file import read
+from study.inputs.reading import read
 
 BALL = {"R": "5 mm", "punch": "steel 52100", "P": "5 N", "Ra": "2 um", "bonding": "bonded"}
 FILM = BALL | {"layer": "PTFE", "h": "10 nm", "body": "steel 52100", "Nbar": "0.1 1/um^2"}
@@ -140,6 +141,16 @@ def test_random_contacts(control):
     if control == "P":
         ratio = guess["a"][solved] / solution.a[solved]
         assert ((ratio > 0.5) & (ratio < 2)).mean() > 0.97
+
+
+def test_the_estimate_of_hertz_contacts():
+    """Asperities so fine and dense that they do not yield: all is known but the depth, of which it is half, the height
+    of the punch at r = a."""
+    P, E = np.geomspace(1e-9, 1e-6, 4), np.array([1.0, 1.0, 2.0, 1e3])
+    found = estimate(Problem.of(P=P, h=1e3, n=E, Nbar=1e18, Ra=1e-7))
+    expected = hertz(P=P, E=E)
+    for name, values in (("a", expected.a), ("D", expected.D / 2), ("p0", expected.p0)):
+        np.testing.assert_allclose(found[name], values, rtol=0.01, err_msg=name)
 
 
 def test_the_estimate_of_what_is_refused_is_unknown():

@@ -7,8 +7,8 @@ import pytest
 import xarray as xr
 
 import study
-from study.physical.bounds import absurd
-from study.physical.inputs import is_rigid, used_inputs
+from study.in_words.inputs import is_rigid, used_inputs
+from study.inputs.scene.bounds import absurd
 
 FILM = {"base": "layered", "h": "2 um", "E1": "200 GPa"}
 BARE = {"base": "half_space"}

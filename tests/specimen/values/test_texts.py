@@ -46,7 +46,7 @@ def test_texts_do_not_depend_on_the_decimals_of_the_caller(context):
 )
 def test_a_spread_is_not_negative(sign, spread):
     """The minus sign was dropped without a word."""
-    with pytest.raises(ValueError, match="^E1 = .*: behind ± must be a number"):
+    with pytest.raises(ValueError, match="^solve: E1 = .*: behind ± must be a number"):
         quantity("E1", f"200 GPa {sign} {spread}", "Pa")
     with pytest.raises(ValueError, match="behind ± must be a number"):
         quantity("E1", f"200 {sign} {spread}", "Pa")

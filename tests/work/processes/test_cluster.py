@@ -1,83 +1,21 @@
 """More than one machine: workers and schedulers that die."""
 
-import asyncio
-import multiprocessing
-import os
 import random
-import re
 import socket
-import sys
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from threading import Thread
 
 import pytest
-from children import PATIENCE, PROCESSES, held, holding, joined, stored, wait_for
-from children import started as launched
+from children import PATIENCE, PROCESSES, held, joined, stored, wait_for
+from clusters import Cluster, distributed
 from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_disk, written
 from same import assert_same_numbers
 
 import study
-from study.work import cases, run
-from study.work import workers as engines
-
-distributed = pytest.importorskip("distributed")
-
-
-class Cluster:
-    """A scheduler and workers, processes of this machine that have imported everything: what the commands of dask
-    start, which the walk-through does start by them."""
-
-    def __init__(self, folder: Path):
-        self.folder = folder
-        self.file = folder / "scheduler.json"
-        self.processes = []
-        self.start({"scheduler_file": str(self.file), "port": 0}, "Scheduler", {})
-
-    def start(self, options: dict, kind: str, environment: dict[str, str]) -> multiprocessing.Process:
-        self.processes.append(launched(_serve, kind, options, environment, self.folder / "cluster.log"))
-        return self.processes[-1]
-
-    def worker(self, first: int = CASES, numerics: str = "") -> multiprocessing.Process:
-        """Start a worker that holds its blocks from case `first` on until folder/go is there.
-
-        numerics : the version that it has in place of ours
-        """
-        environment = holding(self.folder, first) | ({"OTHER_NUMERICS": numerics} if numerics else {})
-        return self.start({"scheduler_ip": self.address, "nthreads": 1}, "Worker", environment)
-
-    def wait_for_workers(self, count: int) -> list[str]:
-        """The addresses of the workers, when there are so many."""
-        with distributed.Client(self.address, set_as_default=False) as client:
-            client.wait_for_workers(count, timeout=PATIENCE)
-            return list(client.nthreads())
-
-    @property
-    def address(self) -> str:
-        wait_for(lambda: self.file.exists() and self.file.stat().st_size > 0)  # the file exists before the address
-        return re.search(r'"address": "(tcp://[^"]+)"', self.file.read_text())[1]
-
-    def stop(self) -> None:
-        for process in self.processes:
-            process.kill()
-            process.join()
-
-
-def _serve(kind: str, options: dict, environment: dict[str, str], log: Path) -> None:
-    """Be a scheduler or a worker until killed."""
-    os.environ |= environment
-    os.dup2(os.open(log, os.O_WRONLY | os.O_CREAT | os.O_APPEND), sys.stderr.fileno())
-    if environment:
-        import hold  # noqa: F401
-    if "OTHER_NUMERICS" in environment:
-        cases.NUMERICS_VERSION = environment["OTHER_NUMERICS"]
-
-    async def serve():
-        async with getattr(distributed, kind)(host="127.0.0.1", dashboard=False, **options) as served:
-            await served.finished()
-
-    asyncio.run(serve())
+from study.work import cases, engine
+from study.work import cluster as engines
 
 
 @pytest.fixture
@@ -215,13 +153,13 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
 def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):
     cluster.worker()
     opened = written(tmp_path)
-    real = run.parcel
+    real = engine.parcel
 
     def parcel(definition, index):
         found = real(definition, index)
         return found if found.first != 50 else replace(found, numerics="another")
 
-    monkeypatch.setattr(run, "parcel", parcel)
+    monkeypatch.setattr(engine, "parcel", parcel)
     report = opened.run(scheduler=cluster.address)
     monkeypatch.undo()
     ((_, reason),) = report.failures.items()
@@ -289,5 +227,5 @@ def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch
 
         monkeypatch.setattr(client, "_gather", lost)
         monkeypatch.setattr(engines, "connected", lambda *_: client)
-        with engines.engine(None, "any") as found:
-            assert list(engines.as_they_come(found, str.split, ["one two"])) == [(0, ["one", "two"])]
+        found = engines.computed_there("any", None, str.split, ["one two"])
+        assert list(found) == [(0, ["one", "two"])]

@@ -1,0 +1,36 @@
+"""The solved equation of cases whose radius is known: on the mesh that gave the solution, by a few Newton steps."""
+
+import numpy as np
+
+from ..contact.driver import BUDGET, solve_on
+from ..contact.equation import evaluate
+from ..contact.panels import solve_on_panels
+from ..contact.results import quantities
+from ..contact.start import first_guess
+from ..numerics.ladder import LADDER
+from ..numerics.mesh import mesh_of
+
+#: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
+_LEAST = LADDER[0]
+
+
+def meshes(solution, problem):
+    """Number of nodes (B,) of the one panel on which each case was solved; 0: on several panels."""
+    nodes = np.maximum(solution.nodes, _LEAST)
+    return np.where((problem.nodes > 0) | np.isin(nodes, LADDER), nodes, 0)
+
+
+def found_again(cases, nodes, a, rtol):
+    """:class:`~solver.contact.driver.Iterated` of cases of about the radii a (B,), in units R = E2* = 1, on `nodes`
+    nodes; 0: of one case on panels of its own."""
+    if not nodes:
+        return solve_on_panels(cases, rtol[0], BUDGET)[0]
+    mesh = mesh_of(nodes)
+    return solve_on(evaluate(cases, first_guess(cases, mesh, a), mesh))
+
+
+def same(ev, solution, rtol):
+    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It is not where there
+    are two solutions, or where it was solved on other panels."""
+    own = quantities(ev)
+    return np.maximum(np.abs(own.a / solution.a - 1), np.abs(own.D / solution.D - 1)) <= rtol

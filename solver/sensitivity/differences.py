@@ -1,0 +1,23 @@
+"""Derivatives by moved inputs: each case solved again with each input a little larger and a little smaller.
+
+It takes 2 k solutions, and they have errors. It is for cases whose equation is not found again, such as those on panels
+that another round would choose otherwise.
+"""
+
+import numpy as np
+
+from ..solve import solve
+from .changes import moved, slope_of
+
+#: By how much an input is moved, and the rtol of the moved cases: the error is about their ratio, and this squared.
+_STEP, _RTOL = 1e-3, 1e-9
+
+
+def by_differences(problem, inputs, quantities, x):
+    """Quantity -> (k, B), derivatives of its logarithm; and those of p and λ at the radii x, (2, k, B, m). `problem` is
+    in units R = E2* = 1; NaN where a moved case has no numbers."""
+    cases = moved(problem, inputs, _STEP)
+    found = solve(cases.but(rtol=np.minimum(cases.rtol, _RTOL)), x)
+    k = len(inputs)
+    logs = {name: slope_of(np.log(getattr(found, name)), k, _STEP) for name in quantities}
+    return logs, np.stack([slope_of(values, k, _STEP) for values in (found.p, found.lam)])

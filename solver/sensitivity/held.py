@@ -1,0 +1,50 @@
+"""The problem that was solved for each case: of a named base, in the units in which its equation is written."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..kernels.two_layers import layer_modulus
+from ..laws import smooth
+from ..problem import Problem
+from ..scaling import dimensionless, with_a_stiff_base, with_rigid_punch
+from ..solution import Model
+
+_THIN = (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
+_EXACT = (Model.LAYERED, Model.SMOOTH_LAYERED)
+_SMOOTH = (Model.SMOOTH_LAYER_ALONE, Model.SMOOTH_THIN_LAYER)
+
+
+class Held(NamedTuple):
+    """Cases whose base is the one that was used.
+
+    named : Problem, with the name of that base
+    written : the same in units R = E2* = 1 of its own, under a rigid punch where that is the same contact
+    E2 : (B,), the modulus that is 1 there
+    added : (B,) bool, a smooth punch was solved, and the asperities were added afterwards
+    """
+
+    named: Problem
+    written: Problem
+    E2: np.ndarray
+    added: np.ndarray
+
+    def take(self, index):
+        return Held(self.named.take(index), self.written.take(index), self.E2[index], self.added[index])
+
+
+def held(scaled, used):
+    """:class:`Held` of a problem in units R = E2* = 1; used : (B,), the :class:`~solver.solution.Model` of each case.
+    The base "auto" stays at the model that it chose."""
+    auto, thin, exact = scaled.base == "auto", np.isin(used, _THIN), np.isin(used, _EXACT)
+    alone, added = auto & ~thin & ~exact, auto & np.isin(used, _SMOOTH) & scaled.rough()
+    of_model = np.select([thin, exact], ["thin_layer", "layered"], "half_space")
+    named = scaled.but(
+        base=np.where(auto, of_model, scaled.base),
+        micro=np.where(added, smooth.LAW.name, scaled.micro),
+        E2=np.where(alone, layer_modulus(scaled.n), 1.0),
+        scheme="newton",
+        model_check="closed_form",
+    )
+    moved = with_a_stiff_base(with_rigid_punch(named))
+    return Held(named, dimensionless(moved), moved.E2, added)

@@ -1,0 +1,60 @@
+"""Derivatives of pressure and λ between the nodes: of profiles, and of Ar/An where λ has corners."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..contact.results import interpolate
+from ..numerics.mesh import gauss_rule
+from .state import along, moving_numbers, of_law
+
+#: Gauss points between any two nodes at which a λ with corners is differentiated. With 5 points the derivatives of
+#: Ar/An are as right as the other ones (tests/sensitivity/test_sensitivities.py).
+_FEW = 5
+
+
+class Points(NamedTuple):
+    """Pressure and λ (B, m) at points, in units R = E2* = 1; and their derivatives (k, B, m) by k inputs."""
+
+    p: np.ndarray
+    lam: np.ndarray
+    d_p: np.ndarray
+    d_lam: np.ndarray
+
+
+def at_points(ev, changes, found, s):
+    """:class:`Points` at s (m,) > 0. `found`: :class:`.state.Implicit` of the solutions `ev`.
+
+    Under asperities the logarithm of q changes smoothly from node to node, also next to the edge, where q itself does
+    not; so its change is interpolated. Without them q is a polynomial in s, and so is its change.
+    """
+    law, s = ev.cases.law, np.asarray(s, dtype=float)
+    basis, y = ev.mesh.basis(s).T, interpolate(ev, s)
+    curve = law.evaluate(y)
+    if law.rough:
+        q = curve.q * (np.where(ev.curve.q > 0, found.q / ev.curve.q, 0.0) @ basis)
+    else:
+        q = s * ((found.q / ev.mesh.s) @ basis)
+    d_lam = along(ev, changes, of_law(law, y, curve, moving_numbers(changes)), q)[1]
+    p_star = law.p_star[:, None]
+    return Points(p_star * curve.q, law.area(y, curve.q), p_star * (q + changes.p_star[..., None] * curve.q), d_lam)
+
+
+def of_corners(ev, changes, found):
+    """Derivatives (k, B) of ln Ar/An of a law whose λ has corners."""
+    s, w = gauss_rule(_FEW, (0.0, *ev.mesh.s.tolist()))
+    at = at_points(ev, changes, found, s)
+    return (at.d_lam @ (w * s)) / (at.lam @ (w * s))
+
+
+def profiles(ev, changes, found, x):
+    """:class:`Points` at the radii x (m,); 0 at the edge."""
+    s = np.sqrt((1 - x) * (1 + x))
+    inner = s > 0
+    return Points(*(_with_edge(values, inner) for values in at_points(ev, changes, found, s[inner])))
+
+
+def _with_edge(values, inner):
+    whole = np.zeros((*values.shape[:-1], len(inner)))
+    whole[..., inner] = values
+    return whole

@@ -1,0 +1,157 @@
+"""Derivatives of the answers by the inputs: one more linear system for each solution.
+
+The equation of each case is found again on its mesh, from its radius, by a few Newton steps; there :mod:`.state` has
+all derivatives at once. Where that fails, the case is solved with each input moved: :mod:`.differences`.
+"""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..numerics.ladder import STACK
+from ..parameters import uses
+from ..problem import Problem
+from ..scaling import as_cases, dimensionless
+from ..solution import Solution
+from ..status import Status
+from ..threads import one_blas_thread
+from .added import of_added
+from .again import found_again, meshes, same
+from .changes import changes_of, inputs_of, moved, slope_of
+from .differences import by_differences
+from .held import Held, held
+from .points import of_corners, profiles
+from .state import implicit, operators_of
+from .stiffness import of_stiffness
+
+#: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`, and those of them whose unit
+#: has the modulus as a factor.
+QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
+_OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
+#: Most unknowns of a stack: with k inputs it has k right-hand sides.
+_STACK = STACK // 4
+
+
+class Sensitivities(NamedTuple):
+    """Derivatives of B solutions by k inputs.
+
+    Attributes
+    ----------
+    inputs : their names, the control first
+    logs : quantity -> (B, k), d ln quantity/d ln input; by a Poisson ratio d ln quantity/d ratio. 0 where an input does
+        not act, or is 0; NaN of a case without numbers. A smooth punch has 0 for A0, which is 0
+    p, lam : (B, k, m), d p/d ln input at fixed r/a, in the unit of p, and d λ/d ln input
+    """
+
+    inputs: tuple
+    logs: dict
+    p: np.ndarray
+    lam: np.ndarray
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")  # a number that goes wrong is a NaN
+def sensitivities(
+    problem: Problem, solution: Solution, x: ArrayLike = (), inputs: Sequence[str] | None = None
+) -> Sensitivities:
+    """Derivatives of solved cases by their inputs.
+
+    Parameters
+    ----------
+    problem, solution : the cases, and what `solve` has made of them
+    x : (m,), radii r/a in [0, 1] of the profiles
+    inputs : some names of parameters that are numbers, and of the control; None: all
+
+    Returns
+    -------
+    Sensitivities
+
+    Examples
+    --------
+    >>> from solver import Problem, solve
+    >>> problem = Problem.of(P=[1e-5, 2e-5], micro="smooth", base="half_space")
+    >>> print(sensitivities(problem, solve(problem), inputs=("P",)).logs["a"].round(6).ravel())
+    [0.333333 0.333333]
+    """
+    inputs, x = tuple(inputs_of(problem.control) if inputs is None else inputs), np.asarray(x, dtype=float)
+    solved = np.isfinite(solution.p0) & np.isin(solution.status, (Status.CONVERGED, Status.TOLERANCE_NOT_MET))
+    index, acting = np.flatnonzero(solved), [name for name in inputs if _acts(problem, name)]
+    size, places = len(problem), [inputs.index(name) for name in acting]
+    logs = {name: np.where(solved[:, None], 0.0, np.full((size, len(inputs)), np.nan)) for name in QUANTITIES}
+    shapes = np.where(solved[:, None, None], 0.0, np.full((2, size, len(inputs), len(x)), np.nan))
+    if acting and len(index):
+        part, ended = problem.take(index), solution.take(index)
+        ended = replace(ended, a=ended.a / part.R, D=ended.D / part.R)
+        by_name, at_x = _of_solved(dimensionless(part), ended, acting, x)
+        for name, values in by_name.items():
+            logs[name][np.ix_(index, places)] = values.T
+        shapes[np.ix_((0, 1), index, places)] = np.moveaxis(at_x, 1, 2)
+    return Sensitivities(inputs, logs, shapes[0] * problem.E2[:, None, None], shapes[1])
+
+
+def _acts(problem, name):
+    """Whether an input changes the answer of some case."""
+    return name == problem.control or bool(np.any(uses(name, lambda key: getattr(problem, key))))
+
+
+def _of_solved(scaled, solution, inputs, x):
+    """Quantity -> (k, B), and (2, k, B, m), of solutions that have numbers; `scaled`, and a and D of the `solution`,
+    are in units R = E2* = 1."""
+    k, size = len(inputs), len(scaled)
+    logs = {name: np.full((k, size), np.nan) for name in QUANTITIES}
+    shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
+    now, above = held(scaled, solution.model_used), moved(scaled, inputs)
+    beside = held(above, np.tile(solution.model_used, 2 * k))
+    for index, nodes in _stacks(now.written, meshes(solution, scaled), solution.a):
+        rows = (np.arange(2 * k)[:, None] * size + index).ravel()
+        part = now.take(index), beside.take(rows), above.take(rows)
+        good, found, at_x = _of_stack(*part, solution.take(index), nodes, x)
+        left[index[good]] = False
+        for name, values in found.items():
+            logs[name][:, index[good]] = values[:, good]
+        shapes[:, :, index[good]] = at_x[:, :, good]
+    rest = np.flatnonzero(left & ~now.added)
+    if len(rest):
+        found, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x)
+        for name, values in found.items():
+            logs[name][:, rest] = values
+    return logs, shapes
+
+
+def _stacks(problem, nodes, a):
+    """Yield the indices of cases of one law, base and mesh, and their number of nodes; 0: of one case on panels."""
+    kinds = np.stack([problem.micro, problem.base, nodes.astype(str)])
+    for kind in np.unique(kinds, axis=1).T:
+        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[2])
+        order = as_cases(problem.take(index)).body.order(a[index])
+        index = index if order is None else index[order]
+        yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // _STACK) or len(index)))
+
+
+def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
+    """(B,) bool, whether the solutions were found again; quantity -> (k, B); and (2, k, B, m) for p and λ.
+
+    beside, above : the 2 k B moved cases as they are solved, and as they were asked for
+    """
+    k, rtol = len(beside.E2) // (2 * len(now.E2)), now.written.rtol
+    iterated = found_again(as_cases(now.written), nodes, solution.a, rtol)
+    ev, d_E2 = iterated.at, slope_of(np.log(beside.E2), k)
+    changes = changes_of(beside.written, ev.state.eta, k)
+    operators = operators_of(ev, changes)
+    found = implicit(ev, changes, operators)
+    logs = found.logs | {"dP_dD": of_stiffness(ev, beside.written, found, operators)}
+    if ev.cases.law.law.corners:
+        logs["Ar_An"] = of_corners(ev, changes, found)
+    logs |= {name: logs[name] + d_E2 for name in _OF_MODULUS}
+    at = profiles(ev, changes, found, x)
+    d_p, d_lam = now.E2[:, None] * (at.d_p + d_E2[..., None] * at.p), at.d_lam
+    if now.added.any():
+        spots, lam = of_added(ev, changes, found, above, (now.E2, d_E2), x)
+        logs = {name: np.where(now.added, spots.get(name, values), values) for name, values in logs.items()}
+        d_lam = np.where(now.added[:, None], lam, d_lam)
+    finite = np.all([np.isfinite(values).all(axis=0) for values in logs.values()], axis=0)
+    good = iterated.closed & finite & same(ev, solution, rtol)
+    return good, logs, np.stack([d_p, d_lam])

@@ -1,0 +1,57 @@
+"""Derivatives of the contact stiffness dP/dD by inputs: of the slope S = d ln P/d ln D of the curve.
+
+At a fixed depth the derivative of S by an input θ is that of d ln P/dθ by ln D. So d ln P/dθ at a fixed depth is formed
+at two states next to the solution, on the tangent of the branch: their error is even in the distance and cancels. At
+such a state one transposed system serves all inputs. Then, under the control,
+
+    d ln S/dθ = [d(d ln P/dθ)/d ln D + (dS/d ln D) (d ln D/dθ)]/S,    dP/dD = S P/D.
+"""
+
+import numpy as np
+
+from ..contact.equation import State, control_gradient, evaluate, jacobian
+from ..numerics.linalg import solve_stack
+from .changes import changes_of
+from .state import explicit, moving_numbers, of_law
+
+#: Distance of the two states in ln a.
+STEP = 3e-4
+
+
+def of_stiffness(ev, part, found, operators):
+    """Derivatives (k, B) of ln dP/dD. `part`: the moved cases; `found`: :class:`.state.Implicit` of the solutions `ev`;
+    `operators`: input -> :class:`.state.OperatorChange` at the radii of the solutions."""
+    by_depth = control_gradient("D", ev)
+    D_eta = (by_depth[0] * found.tangent).sum(axis=1) + by_depth[1]
+    ends = [_beside(ev, part, found, operators, sign * STEP) for sign in (1, -1)]
+    loads, slopes = (np.subtract(*both) / (2 * STEP * D_eta) for both in zip(*ends, strict=True))
+    S = (ends[0][1] + ends[1][1]) / 2
+    logs = found.logs
+    return (loads + slopes * logs["D"]) / S + logs["P"] - logs["D"]
+
+
+def _beside(ev, part, found, operators, step):
+    """d ln P/dθ at a fixed depth (k, B), and S (B,), at the state with η + `step` on the tangent of the branch."""
+    tangent = found.tangent
+    y = ev.state.y + step * tangent / ev.curve.dq
+    at = evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
+    changes = changes_of(part, at.state.eta, len(found.eta))
+    law = of_law(at.cases.law, y, at.curve, moving_numbers(changes))
+    moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
+    fixed = explicit(at, changes, {i: own[0] for i, own in law.by_own.items()}, moved)
+    diagonal, dF_deta = jacobian(at)
+    gradients = [control_gradient(name, at) for name in ("P", "D")]
+    right = np.stack([by_q for by_q, _ in gradients], axis=-1)
+    adjoint = solve_stack(np.swapaxes(at.operator.K, 1, 2), diagonal, right)
+    P, D = adjoint[..., 0], adjoint[..., 1]
+    P_eta, D_eta = (by_eta - (v * dF_deta).sum(axis=1) for v, (_, by_eta) in zip((P, D), gradients, strict=True))
+    S = P_eta / D_eta
+    of_load, of_depth = (np.einsum("bn,kbn->kb", v, fixed.F) for v in (P, D))
+    return fixed.P - of_load - S * (fixed.D - of_depth), S
+
+
+def _beside_products(change, q, tangent, step):
+    """Derivatives of K q and edge @ q by an input that changes the operator, at the state beside the solution; to first
+    order, from the operator at the radius of the solution."""
+    parts = change.products(q), change.products(tangent), change.slopes(q)
+    return tuple(own + step * (along + slope) for own, along, slope in zip(*parts, strict=True))

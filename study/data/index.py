@@ -1,0 +1,62 @@
+"""Selection by texts with units: `sel(h="3 um")` along a dimension of SI numbers."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from xarray.indexes import PandasIndex
+
+from ..inputs.scene.names import si
+from ..inputs.vocabulary import ROWS
+from ..specimen.quantities import has_unit
+
+
+class _AsPandasIndex(type):
+    """The class of UnitIndex, which counts as equal to PandasIndex.
+
+    xarray aligns two arrays only if their indexes have equal classes. Without this, results could not be reindexed, nor
+    subtracted from measured values that are known at some of their loads.
+    """
+
+    def __eq__(cls, other: Any) -> bool:
+        return other is cls or other is PandasIndex
+
+    def __hash__(cls) -> int:
+        return hash(PandasIndex)
+
+
+class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
+    """An index of SI numbers in which `sel(h="3 um")`, and slices and lists of such texts, find 3e-6."""
+
+    def sel(self, labels: dict, method=None, tolerance=None):
+        """As that of other indexes of xarray. Raises ValueError for a text without a unit, or of something else."""
+        name, label = next(iter(labels.items()))
+
+        def number(one: Any) -> Any:
+            text = isinstance(one, str) or has_unit(one)
+            return si(name, one).value if text and name in ROWS else one
+
+        if isinstance(label, slice):
+            label = slice(number(label.start), number(label.stop), label.step)
+        elif getattr(label, "dtype", None) is not None and label.dtype.kind in "OTU":  # an array of texts
+            numbers = np.reshape([number(one) for one in np.asarray(label).ravel().tolist()], label.shape)
+            label = label.copy(data=numbers) if isinstance(label, (xr.DataArray, xr.Variable)) else numbers
+        else:
+            label = [number(one) for one in label] if isinstance(label, (list, tuple)) else number(label)
+        return super().sel({name: label}, method=method, tolerance=number(tolerance))
+
+    def reindex_like(self, other, method=None, tolerance=None) -> dict:
+        """As that of other indexes of xarray. Raises ValueError for texts: they would be the new coordinate."""
+        texts = [one for one in other.index if isinstance(one, str)] if other.index.dtype.kind in "OTU" else ()
+        if texts:
+            raise ValueError(f'{other.dim}: give numbers in the SI unit here; texts such as "{texts[0]}" are for sel')
+        return super().reindex_like(other, method=method, tolerance=tolerance)
+
+
+def searchable(dataset: xr.Dataset) -> xr.Dataset:
+    """The dataset with a UnitIndex along each dimension whose coordinate has a unit."""
+    for name, variable in dataset.variables.items():
+        unit = variable.attrs.get("units")
+        if variable.dims == (name,) and name in ROWS and isinstance(unit, str) and unit == ROWS[name].unit != "1":
+            dataset = dataset.drop_indexes(name, errors="ignore").set_xindex(name, UnitIndex)
+    return dataset

@@ -1,0 +1,61 @@
+"""Which inputs of contacts a text or a figure states, and in which order."""
+
+import numpy as np
+import xarray as xr
+
+from solver.laws import LAWS
+
+from ..inputs.laws import smooth_laws
+from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, matters, names
+
+_OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
+
+
+def all_inputs() -> list[str]:
+    """All inputs in order: radii, what the bodies are made of, the control, the layer, the asperities."""
+    between = [name for name in names("material") if name not in (*_OF_BODIES, "base")]
+    of_laws = [name for name, entry in VOCABULARY.items() if entry.role == "roughness" and name != "micro"]
+    return ["R1", "R2", "R", *_OF_BODIES, *CONTROLS, *between, "micro", *of_laws]
+
+
+def used_inputs(contacts: xr.Dataset) -> list[str]:
+    """The inputs in a dataset that the answer of some contact depends on; [] for a dataset without contacts.
+
+    Left out are ν of a rigid body, and n and m where the moduli are given. A law that is not registered may depend on
+    all that there is of asperities.
+    """
+    if "base" not in contacts.variables:
+        return []
+
+    def values(name: str) -> np.ndarray:
+        return contacts[name].values
+
+    hidden = {"R"} if "R1" in contacts else set()
+    hidden |= {"n", "m"} if "E2" in contacts else set()
+    hidden |= {"m", "punch", "E_punch", "nu_punch"} if is_rigid(contacts, "punch") else set()
+    hidden |= {"n", "body", "E2", "nu2"} if is_rigid(contacts, "base") else set()
+    hidden |= {"layer", "E1", "nu1"} if (values("base") == "half_space").all() else set()
+    hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
+    unknown_law = not np.isin(values("micro"), list(LAWS)).all()
+    certain = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
+    certain |= set(names("roughness")) if unknown_law else set()
+    return [
+        name
+        for name in all_inputs()
+        if name in contacts.variables
+        and name not in hidden
+        and (name not in VOCABULARY or name in certain or matters(name, values))
+    ]
+
+
+def is_rigid(contacts: xr.Dataset, body: str) -> bool:
+    """Whether the punch of all contacts, or the base under their layers, is known to be rigid.
+
+    The modulus says it, if there is one: `groupby` and `mean` of xarray leave out m and n where these vary.
+    """
+    modulus, ratio = ("E_punch", "m") if body == "punch" else ("E2", "n")
+    if modulus in contacts:
+        return bool(np.isinf(contacts[modulus]).all())
+    if ratio not in contacts or (ratio == "n" and (contacts["base"] == "half_space").any()):
+        return False
+    return bool((contacts[ratio] == 0).all())

@@ -1,0 +1,161 @@
+"""What can be wrong with inputs, or a grid, as a whole, though each parameter is right."""
+
+from collections.abc import Callable, Collection, Iterable
+from functools import partial
+
+import numpy as np
+
+from solver import Problem
+from solver.laws import LAWS, untried
+from solver.scaling import dimensionless, law_of
+
+from ..terminal import shown
+from .given import Given
+from .grid import MOVED, Grid, along, same_labels, twins
+from .laws import smooth_laws
+from .vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, VOCABULARY, cases_with
+
+FITTED = ("B", "beta")
+"""Parameters that are fitted to Nbar and Ra where neither is given (`fitted.py`)."""
+
+
+def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: list[str]) -> list[str]:
+    """Messages for parameters without a default that are not given, though some case needs them.
+
+    given : names of those that are given; texts : a function, name of a parameter such as base -> its values
+    errors : found before. If one is of an unknown name or section, the missing parameter may be there: no messages then
+    """
+    messages = []
+    if any("is not a parameter" in error or "is not a section" in error for error in errors):
+        return []
+    neither = not {*FITTED} & {*given}  # is given: then both are fitted, and it is said once to what
+    for name in PARAMETERS:
+        own = VOCABULARY[name].own
+        selector, words = own.needed_by
+        if name in given or name in CONTROLS or own.default is not None:
+            continue
+        values = texts(selector)
+        found = " or ".join(shown(word) for word in words if word in values)
+        if name in FITTED and neither:
+            if found and name == FITTED[0] and not {"Nbar", "Ra"} <= {*given}:
+                messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
+        elif found:
+            messages.append(f"{name} is missing: {selector} = {found} needs it")
+    if messages and "micro = " in messages[-1] and "micro" not in given:
+        messages[-1] += ' (without asperities: micro = "smooth")'
+    return messages
+
+
+def one_control(names: Collection[str]) -> list[str]:
+    """A message if the names of the parameters have none of P, a and D, or several."""
+    given = [name for name in CONTROLS if name in names]
+    return [f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}"] * (len(given) != 1)
+
+
+def equal_cases(cases: list) -> list[str]:
+    """A message for two of the cases that are the same."""
+    return [f"cases {i} and {j} are the same" for i, j in twins(cases)]
+
+
+def dimensions_that_differ(given: Given, values: dict[str, np.ndarray]) -> list[str]:
+    """Messages for dimensions whose name is taken, and for inputs that have other lengths or coordinates along one.
+
+    values : of axes without units, and names of materials; along a dimension called like it an input is the coordinate
+    """
+    inputs = {name: entry for name, entry in given.inputs.items() if not entry.is_wrong}
+    arrays = {name: entry for name, entry in inputs.items() if entry.array is not None}
+    messages = dict.fromkeys(text for name in arrays for text in _taken(given, name))
+    itself = {name: entry for name, entry in inputs.items() if entry.dims in ((name,), ("case",))}
+    lengths = {entry.dims[0]: (name, len(entry.values)) for name, entry in itself.items() if entry.array is None}
+    labels = {name: (name, values.get(name, entry.array)) for name, entry in itself.items() if entry.dims == (name,)}
+    labels = {name: (name, np.asarray(known)) for name, (_, known) in labels.items() if known is not None}
+    for name, entry in arrays.items():
+        if entry.dims == (name,) and name in entry.array.coords:
+            labels[name] = name, entry.array.coords[name].values
+    for name, entry in arrays.items():
+        for dim, length in zip(entry.dims, entry.shape, strict=True):
+            other, expected = lengths.setdefault(dim, (name, length))
+            coordinate = entry.array.coords[dim].values if dim in entry.array.coords else None
+            if length == 0:
+                messages[f"{name} is empty: must have at least one value"] = None
+            elif length != expected:
+                messages[f"{name} has {length} values along {dim}, {other} has {expected}"] = None
+            elif coordinate is not None:
+                other, known = labels.setdefault(dim, (name, coordinate))
+                if not same_labels(known, coordinate):
+                    messages[f"{name} has other values of {dim}, or in another order, than {other}"] = None
+    return list(messages)
+
+
+def _taken(given: Given, name: str) -> list[str]:
+    """Messages for dimensions of a DataArray whose name is that of something else."""
+    found = []
+    for dim in given.inputs[name].dims:
+        owner = given.inputs.get(dim)
+        parameter = dim in PARAMETERS or dim in SCENE or dim in BODIES
+        of_units = given.physical and dim in ROWS and ROWS[dim].unit != "1"
+        if dim == MOVED:
+            found.append(f'{name}: a dimension cannot be called "{dim}" here')
+        elif parameter and dim not in given.sections:
+            found.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
+        elif owner and owner.dims != (dim,):
+            found.append(f"{dim} is a dimension and a parameter over other dimensions")
+        elif owner and of_units and owner.array is None:
+            found.append(f'{name}: a dimension cannot be called "{dim}" here, unless that is a DataArray over itself')
+        elif not parameter and dim in VOCABULARY and dim != "case":
+            found.append(f'a dimension cannot be called "{dim}", which is the name of a result')
+    return found
+
+
+def missing_parameters(grid: Grid) -> list[str]:
+    """Messages for parameters that are given, but not in some case that needs them."""
+    messages = []
+    for name in grid.values:
+        gaps = np.isnan(along(grid, name)) if VOCABULARY[name].own.default is None else np.False_
+        gaps = gaps & cases_with(name, partial(along, grid)) if gaps.any() else gaps
+        if gaps.any():
+            selector, words = VOCABULARY[name].own.needed_by
+            case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
+            found = [shown(word) for word in words if word in along(grid, selector)]
+            reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
+            messages.append(f"{name} is missing in case {case}{reason}")
+    return messages
+
+
+def mixed_units(grid: Grid) -> list[str]:
+    """A message if layers on a rigid base, whose numbers are in E1*, are among others, whose numbers are in E2*."""
+    n, layered = np.broadcast_arrays(along(grid, "n"), cases_with("n", partial(along, grid)))
+    if not (n == 0).any() or not (n[layered] > 0).any():
+        return []
+    return [
+        "n = 0, a rigid base, is among others: its numbers are in E1*, theirs in E2*. Make two studies, or give "
+        'physical values (R, E1, E2 = "rigid", ... with units)'
+    ]
+
+
+def picard_for_nothing(grid: Grid) -> list[str]:
+    """A message if all cases with the scheme "picard" are smooth: it solves rough cases only.
+
+    In a grid that has it for rough cases too, each smooth case is refused by its status.
+    """
+    asked, smooth = along(grid, "scheme") == "picard", smooth_laws()
+    if not asked.any() or (asked & ~np.isin(along(grid, "micro"), smooth)).any():
+        return []
+    others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
+    names = " or ".join(map(shown, smooth))
+    return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']
+
+
+def slips_of_laws(grid: Grid) -> list[str]:
+    """Messages for micro laws of somebody else's that fail when they are tried at a few cases of the grid."""
+    messages, (dims, micro) = [], grid.values["micro"]
+    for word in sorted(word for word in set(micro.ravel().tolist()) if untried(LAWS[word])):
+        having = np.argwhere(micro == word)
+        few = {dim: having[np.linspace(0, len(having) - 1, 3).astype(int), axis] for axis, dim in enumerate(dims)}
+        few = {dim: few.get(dim, np.linspace(0, size - 1, 3).astype(int)) for dim, size in grid.sizes.items()}
+        given = {name: array[tuple(few[dim] for dim in own)] for name, (own, array) in grid.values.items()}
+        try:
+            law_of(dimensionless(Problem.of(**given)))
+        except ValueError as error:
+            messages.append(str(error))
+    return messages

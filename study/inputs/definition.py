@@ -1,0 +1,128 @@
+"""Study files: TOML text -> a checked, frozen Definition with the digest of what determines its numbers."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..specimen.foreign import plain
+from ..terminal import counted, shown
+from .given import MOST_MESSAGES
+from .grid import MOVED, Grid
+from .vocabulary import finite, names
+
+POINTS = 33  # of a profile, when a study does not say it
+LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
+MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
+DTYPES = ("float64", "float32")
+PER_CASE = 16  # about how many numbers a case has besides the profiles
+
+
+class StudyError(ValueError):
+    """Input that cannot be used; `messages` has every reason, one line each.
+
+    code : exit code of a command; 1 where the input is right, and what it leads to is wrong
+    """
+
+    def __init__(self, messages, code: int = 2):
+        self.messages, self.code = tuple(messages), code
+        super().__init__("\n".join(self.messages))
+
+
+@dataclass(frozen=True, eq=False)
+class Definition:
+    """What a study computes.
+
+    text : the study file as it was read; goes into the dataset
+    x : (m,) points r/a of the profiles
+    profiles : names of the profiles that are stored
+    dtype : "float64" or "float32", of the stored numbers
+    block : number of cases computed and stored at a time
+    digest : sha256 of all that determines the numbers
+    laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
+    scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
+    """
+
+    name: str
+    title: str
+    text: str
+    grid: Grid
+    x: np.ndarray
+    profiles: tuple[str, ...]
+    dtype: str
+    block: int
+    digest: str
+    laws: tuple[str, ...] = ()
+    scene: Any = None
+
+    def __repr__(self) -> str:
+        return f'Definition("{self.name}", {self.cases})'
+
+    @property
+    def cases(self) -> str:
+        """Number of cases and axes in words: "12 cases (h 2 x P 6)", "60 cases (h 2 x P 6, each 5 times for ±)"."""
+        dims = " x ".join(f"{name} {size}" for name, size in self.in_results(self.grid.sizes).items()) or "one case"
+        moved = f", each {self.times} times for ±" if self.times > 1 else ""
+        return f"{counted(self.grid.size, 'case')} ({dims}{moved})"
+
+    @property
+    def times(self) -> int:
+        """How often a case of the results is solved: once, and twice more for each of its inputs with a spread."""
+        return self.grid.sizes.get(MOVED, 1)
+
+    @property
+    def numbers(self) -> int:
+        """How many numbers the results hold, roughly."""
+        return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
+
+    def in_results(self, of_dims: dict) -> dict:
+        """A dictionary of the dimensions of the grid, with the names that the results give these, and without MOVED."""
+        names = self.scene.dims if self.scene else {}
+        return {names.get(dim, dim): value for dim, value in of_dims.items() if dim != MOVED}
+
+
+def settings(tables: dict, errors: list[str]) -> tuple:
+    """Title, points and names of the profiles, and type of the numbers: of the title and the section [output]."""
+    title = tables.get("title", "")
+    output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
+    x = profile_points(output["x"], errors)
+    if not isinstance(title, str):
+        errors.append(f"title = {shown(title)}: must be text")
+    profiles, dtype = profile_names(output["profiles"], errors), output["dtype"]
+    if dtype not in DTYPES:
+        errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
+    return title, x, profiles, dtype
+
+
+def refusal(where: str, errors: list[str]) -> StudyError:
+    """The error to raise for these messages. Each begins with `where`; after MOST_MESSAGES the rest is counted."""
+    more = len(errors) - MOST_MESSAGES
+    shortened = errors[:MOST_MESSAGES] + ([f"and {more} more mistakes"] if more > 0 else [])
+    return StudyError(f"{where}: {message}" for message in shortened)
+
+
+def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
+    """Names of the profiles to store, from true, false or their list; in the order of the vocabulary."""
+    known, profiles = names("profile"), plain(profiles)
+    if isinstance(profiles, bool):
+        return known if profiles else ()
+    if not isinstance(profiles, (list, tuple)) or not set(map(str, profiles)) <= set(known):
+        listed = ", ".join(f'"{name}"' for name in known)
+        errors.append(f"profiles = {shown(profiles)}: must be true or false, or a list of {listed}")
+        return ()
+    return tuple(name for name in known if name in profiles)
+
+
+def profile_points(x, errors: list[str]) -> np.ndarray:
+    """Points r/a from their number or their list: increasing from 0 to 1."""
+    points = plain(x)
+    points = points.values.tolist() if hasattr(points, "dims") else points
+    if type(points) is int and 2 <= points <= 10_000:
+        return np.linspace(0.0, 1.0, points)
+    if not isinstance(points, (list, tuple, range)) or not all(map(finite, points)):
+        errors.append(f"x = {shown(x)}: must be a whole number in [2, 10000] or a list of numbers from 0 to 1")
+        return np.array([])
+    found = np.array(points, dtype=float)
+    if len(found) < 2 or found[0] != 0 or found[-1] != 1 or (np.diff(found) <= 0).any():
+        errors.append(f"x = {shown(points)}: a list must increase from 0 to 1, both included")
+    return found

@@ -1,0 +1,210 @@
+"""What is given, in a call of Python or in a study file: one form for both, before any number is read."""
+
+from contextlib import suppress
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..specimen.foreign import plain
+from ..specimen.quantities import Quantity, has_unit
+from ..terminal import shown
+from .grid import LONGEST_AXIS, equal_values
+from .laws import is_parameter, law_names, update_vocabulary
+from .sample import LIMITS
+from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
+
+MOST_MESSAGES = 30  # that are shown for a study at a time
+#: Attributes `units` of pure numbers; pint writes the last.
+PURE = ("1", "", "dimensionless")
+#: The end of a message about `same_piece`.
+NEEDS_NAMES = (
+    "no two of punch, layer and body are of one material by name, such as punch and body of PMMA; leave it out"
+)
+
+
+@dataclass
+class Input:
+    """A parameter as it was given: numbers, texts, quantities of pint, or names of materials.
+
+    section : of the study file, "" in Python
+    dims : its dimensions, () of a single value
+    values : list of its values, None where a case does not say it; a range is a dict until it is read. Of values with
+        a mistake it is None
+    array : the DataArray that was given, if it was one; its `values` are read when they are needed
+    """
+
+    name: str
+    section: str = ""
+    dims: tuple[str, ...] = ()
+    values: Any = None
+    array: Any = None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return self.array.shape if self.array is not None else (len(self.values),) if self.dims else ()
+
+    @property
+    def unit(self) -> str:
+        """The unit of a DataArray; "1" of pure numbers."""
+        unit = "1" if self.array is None else self.array.attrs.get("units", "1")
+        return "1" if unit in PURE else unit
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether there is a message about all of it, and no value."""
+        return self.array is None and self.values is None
+
+    @property
+    def has_unit(self) -> bool:
+        """Whether it, or one of its values, has a unit or a spread."""
+        if self.array is not None:
+            return self.unit != "1"
+        values = self.values.values() if isinstance(self.values, dict) else self.values
+        values = list(values) if isinstance(self.values, (dict, list)) else []
+        pure = {*map(type, values)} <= {float, int}  # quick: of most long lists
+        return not pure and any(type(one) is Quantity or has_unit(one) for one in values)
+
+    def at(self, place: list[int]) -> Any:
+        """What was given at a place, one number for each dimension; None for a number that follows from other words."""
+        if self.array is not None:
+            return f"{self.array.values[tuple(place)]:g}" + f" {self.unit}" * (self.unit != "1")
+        value = self.values[place[0] if place else 0]
+        return None if type(value) is Quantity else value
+
+
+@dataclass
+class Given:
+    """All inputs of a call or of a study file.
+
+    errors : messages, without the name of the file
+    inputs : name -> input; cases come before axes, as `case` is the first dimension
+    sections : name -> the section of the file where it is given, "" in Python
+    rows : of [[cases]]; sample : the section of this name
+    labels : of the cases
+    same_piece : whether bodies of one material are one piece of it
+    sign : what makes it a study with units, in words: an input with a unit, or one that no other study has; "" if none
+    """
+
+    errors: list[str] = field(default_factory=list)
+    inputs: dict[str, Input] = field(default_factory=dict)
+    sections: dict[str, str] = field(default_factory=dict)
+    rows: list[dict] = field(default_factory=list)
+    sample: Any = None
+    labels: list[str] = field(default_factory=list)
+    same_piece: bool = False
+    sign: str = ""
+
+    def __post_init__(self):
+        update_vocabulary()
+
+    @property
+    def physical(self) -> bool:
+        """Whether it has units."""
+        return bool(self.sign)
+
+    @classmethod
+    def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any) -> "Given":
+        """Parameters of a call: DataArrays, 1-D sequences or single values, and rows of cases."""
+        given = cls()
+        with suppress(ValueError):  # laws as objects have parameters; what is wrong with one is told when micro is read
+            micro = [table.get("micro") for table in (parameters, *rows)]
+            law_names([law for one in micro for law in (one if isinstance(one, list) else [one])])
+        given._same_piece(same_piece, "")
+        if rows:
+            given._cases(rows)
+        for name, value in parameters.items():
+            value = plain(value)
+            if hasattr(value, "dims") and hasattr(value, "shape"):  # a Dataset has no shape
+                given._add(Input(name, "", tuple(map(str, value.dims)), array=value))
+            elif isinstance(value, (list, range)) or (isinstance(value, tuple) and name != "layer"):
+                given._add(Input(name, "", (name,), list(value[: LONGEST_AXIS + 1])))  # a range may be endless
+            else:
+                given._add(Input(name, "", (), [value]))
+        return given._decided()
+
+    @classmethod
+    def in_file(cls, tables: dict, errors: list[str]) -> "Given":
+        """The sections of a study file; [model], [axes] and [numerics] are tables."""
+        given = cls(errors)
+        for name, value in tables["numerics"].items():
+            if name in NUMERICS:
+                given._add(Input(name, "[numerics]", (), [value]))
+        for name, value in tables["model"].items():
+            if name == "same_piece":
+                given._same_piece(value, "[model] ")
+            else:
+                given._add(Input(name, "[model]", (), [value]))
+        if "cases" in tables:
+            given._cases(tables["cases"])
+        if "sample" in tables:
+            given.sample = table = tables["sample"]
+            for name in (name for name in table if name not in LIMITS) if isinstance(table, dict) else ():
+                given._add(Input(name, "[sample]", ("case",), table[name]))
+            if given.rows:
+                errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
+        for name, value in tables["axes"].items():
+            given._add(Input(name, "[axes]", (name,), value))
+        return given._decided()
+
+    def _same_piece(self, value: Any, place: str) -> None:
+        value = plain(value)
+        if not isinstance(value, bool):
+            self.errors.append(f"{place}same_piece = {shown(value)}: must be true or false")
+        self.same_piece = value is True
+
+    def _cases(self, rows: Any) -> None:
+        """Rows of parameters: values over the dimension `case`."""
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            self.errors.append("cases must be [[cases]] tables (a list of dictionaries)")
+            return
+        if not rows:
+            self.errors.append("cases is empty: must have at least one case")
+            return
+        self.rows = rows = [{name: plain(value) for name, value in row.items()} for row in rows]
+        for name in dict.fromkeys(name for row in rows for name in row):
+            if name != "label":
+                self._add(Input(name, "[[cases]]", ("case",), [row.get(name) for row in rows]))
+                continue
+            self.labels = [row.get(name, "") for row in rows]
+            if not all(isinstance(label, str) for label in self.labels):
+                self.labels = []
+                self.errors.append("[[cases]] label: must be text")
+            self.errors += equal_values(name, [label or i for i, label in enumerate(self.labels)])
+
+    def _add(self, entry: Input) -> None:
+        """Note an input, unless it is given already or stands in a wrong section."""
+        name, section = entry.name, entry.section
+        if name == "same_piece":
+            self.errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
+        elif section == "[model]" and name in NUMERICS:
+            self.errors.append(f"{section} {name} belongs in [numerics]")
+        elif name in self.sections:
+            other = f"in {section}" if section else "elsewhere"
+            self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
+        elif not is_input(name):
+            place = f"{section} " if section else ""
+            known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
+            later = len(self.errors) >= MOST_MESSAGES  # and not shown
+            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, known, place))
+        else:
+            if section in ("[model]", "[numerics]") and isinstance(entry.values[0], (list, dict)):
+                self.errors.append(f"{section} {name} has several values: these belong in [axes]")
+                entry.values = None
+            self.sections[name], self.inputs[name] = section, entry
+
+    def _decided(self) -> "Given":
+        """The same, with units or without, and its cases first."""
+        signs = [entry for name, entry in self.inputs.items() if name in SCENE or name in BODIES or entry.has_unit]
+        for entry in sorted(signs, key=lambda entry: bool(entry.dims))[:1]:  # a single value rather than several
+            values = [value for value in entry.values if value is not None] if isinstance(entry.values, list) else []
+            value = next(filter(has_unit, values), values[0] if values else entry.values)
+            self.sign = f"the unit of {entry.name}" if entry.array is not None else f"{entry.name} = {shown(value)}"
+        if self.same_piece and not self.physical:
+            self.errors.append(f"same_piece: {NEEDS_NAMES}")
+        order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2}
+        self.inputs = dict(sorted(self.inputs.items(), key=lambda pair: order.get(pair[1].section, 1)))
+        return self
+
+
+def is_input(name: Any) -> bool:
+    """Whether a name is that of a parameter, of an input of a scene, or of a body of a material."""
+    return name in SCENE or name in BODIES or is_parameter(name)

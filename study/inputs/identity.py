@@ -1,0 +1,138 @@
+"""The key of a case and the digest of a study: they are made only of the values that can change a number.
+
+A value counts where its case uses the parameter (`needed_by`, `used_by` in the solver's table) and where it is not the
+default. So keys and digests stay as they are when an unused value is edited, or a parameter with a default is added to
+the program. A case has the same key on another grid, in another order of the axes and in another run.
+
+Whoever changes a default, or how keys are made, must change NUMERICS_VERSION, which is in the digest and beside every
+key: no case on disk is found by other keys.
+"""
+
+import hashlib
+import json
+from functools import partial
+
+import numpy as np
+
+from solver import NUMERICS_VERSION
+from solver.laws import identity as law_identity
+from solver.parameters import uses
+
+from .grid import Grid, along
+from .vocabulary import PARAMETERS, VOCABULARY
+
+
+def counts(grid: Grid, name: str) -> np.ndarray:
+    """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
+    value, default = along(grid, name), VOCABULARY[name].own.default
+    given = ~np.isnan(value) if default is None else value != default
+    return given & uses(name, partial(along, grid))
+
+
+def law_versions(grid: Grid) -> list[str]:
+    """ "NAME VERSION" of each micro law in the grid that does not come with this package."""
+    words = set(grid.values["micro"][1].ravel().tolist()) if "micro" in grid.values else ()
+    return sorted(law_identity(word) for word in words if law_identity(word) != word)
+
+
+def digest_of(definition) -> str:
+    """sha256 over what determines the results of a `Definition`: not title, comments or block size.
+
+    The values of a dimension are always in it, since results are selected by them. Of the other parameters only the
+    values that count are.
+    """
+    grid = definition.grid
+    arrays = {**grid.labels, "x": (("x",), definition.x)}
+    arrays |= {name: (dims, array) for name, (dims, array) in grid.values.items() if name in grid.sizes}
+    content = {
+        "numerics_version": NUMERICS_VERSION,
+        "sizes": list(grid.sizes.items()),
+        "arrays": {name: (dims, digest_of_array(array)) for name, (dims, array) in arrays.items()},
+        "values": {name: _digest_of_values(grid, name) for name in PARAMETERS if name not in grid.sizes},
+        "profiles": definition.profiles,
+        "dtype": definition.dtype,
+    }
+    content["values"] = {name: found for name, found in content["values"].items() if found}
+    content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
+    digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    return _digest_of_scene(digest, definition.scene) if definition.scene else digest
+
+
+def _digest_of_scene(of_numbers: str, scene) -> str:
+    """sha256 of the digest of dimensionless numbers, and of the SI values from which they follow."""
+    content = [of_numbers, scene.labels, sorted(scene.names.items())]
+    for name, value in sorted(scene.given.items()):
+        content.append((name, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
+    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+
+
+def _digest_of_values(grid: Grid, name: str) -> tuple:
+    """Shape of a parameter, digest of the places whose value counts for some case, digest of these values; () if none
+    does."""
+    dims, array = grid.values.get(name, ((), None))
+    if not dims and (array is None or array == VOCABULARY[name].own.default):  # quick: most parameters end here
+        return ()
+    values = along(grid, name)
+    several = tuple(np.flatnonzero(np.array(values.shape) == 1))
+    mask = np.broadcast_to(counts(grid, name).any(axis=several, keepdims=True), values.shape)
+    return (values.shape, digest_of_array(mask), digest_of_array(values[mask])) if mask.any() else ()
+
+
+def digest_of_array(array: np.ndarray) -> str:
+    """Numbers by their float64 bytes, all else (labels of a DataArray may be dates) by its text."""
+    numbers = array.dtype.kind in "iufb"
+    raw = (array.astype("<f8") + 0.0).tobytes() if numbers else "\0".join(map(str, array.ravel().tolist())).encode()
+    return hashlib.sha256(raw).hexdigest()
+
+
+def case_keys(grid: Grid) -> np.ndarray:
+    """(B, 2) uint64: keys of 128 bits, two sums of a hash of (name, value) over the parameters whose value counts.
+
+    It is a sum so that a parameter is hashed along its own dimensions only. -0.0 counts as 0.0. A million keys take a
+    fraction of a second.
+    """
+    lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
+    for name in PARAMETERS:
+        counted = counts(grid, name)
+        if counted.any():
+            lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
+    return np.ascontiguousarray(lanes.reshape(2, -1).T)
+
+
+def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
+    """(B,) int64: the row of each of the keys (B, 2) among the `known` (N, 2), that of lowest `rank`; -1: not there.
+
+    Of two different known keys with the same first half one may be reported as not there.
+    """
+    if not len(known):
+        return np.full(len(keys), -1)
+    order = np.lexsort((rank, known[:, 0]))
+    place = np.searchsorted(known[order, 0], keys[:, 0])
+    row = order[np.minimum(place, len(known) - 1)]
+    return np.where((known[row] == keys).all(axis=1), row, -1)
+
+
+def _hashed(name: str, array: np.ndarray) -> np.ndarray:
+    """(2, *shape) uint64: two hashes of each value of a parameter, which depend on its name."""
+    if array.dtype.kind == "U":
+        word = law_identity if name == "micro" else str
+        bits, left = np.zeros(array.shape, np.uint64), np.ones(array.shape, bool)
+        while left.any():  # word by word: there are few words, and np.unique of a million takes seconds
+            here = array == array.flat[left.argmax()]
+            bits[here] = _digest(word(str(array[here][0])), 8)[0]
+            left &= ~here
+    else:
+        numbers = array.astype(np.float64) + 0.0
+        bits = np.where(np.isnan(numbers), np.nan, numbers).view(np.uint64)  # every NaN has the same bits
+    return _mixed(bits ^ _digest(name, 16).reshape(2, *[1] * array.ndim))
+
+
+def _digest(text: str, size: int) -> np.ndarray:
+    return np.frombuffer(hashlib.blake2b(text.encode(), digest_size=size).digest(), dtype="<u8").astype(np.uint64)
+
+
+def _mixed(z: np.ndarray) -> np.ndarray:
+    """The finalizer of splitmix64: every bit of the argument moves every bit of the result."""
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    return z ^ (z >> np.uint64(31))

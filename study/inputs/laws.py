@@ -1,0 +1,105 @@
+"""Micro laws: those that users register, with parameters in the vocabulary, and power laws that are fitted."""
+
+from contextlib import suppress
+
+import numpy as np
+
+from solver import laws
+from solver.laws.fit import fit_power_law
+from solver.laws.own_table import PREFIX
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+from solver.parameters import allowed
+
+from .grid import Grid, along
+from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, names
+
+MOST_FITS = 1000
+"""Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
+DIGITS = 10
+"""Significant digits of B and beta that are kept: the last ones of a fit depend on the processor, and results are found
+on disk by the values of their parameters."""
+COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.025 E1*, as in Section 4.1 of the paper"
+
+# A law must not call a parameter like a result, or like what `study.solve` is told beside parameters.
+laws.RESERVED.update({*VOCABULARY, "cases", "profiles", "title", "workers"} - set(SOLVER_PARAMETERS))
+laws.RESERVED.update(f"{name}_spread" for name in VOCABULARY)
+laws.RESERVED.update(SCENE, BODIES)
+
+
+def update_vocabulary() -> None:
+    """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
+    own = names("control", "material", "roughness", "numerics")
+    for name in set(PARAMETERS) - set(own):  # their laws may have been replaced
+        del VOCABULARY[name]
+    PARAMETERS[:] = own
+    for name, declared in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
+        if name not in PARAMETERS:
+            owners = " and ".join(SOLVER_PARAMETERS[name].needed_by[1])
+            words = declared.long_name or f"parameter of the micro law {owners}"
+            VOCABULARY[name] = Entry(name, "roughness", words, declared.symbol or name, declared.powers)
+            PARAMETERS.append(name)
+
+
+def law_names(given: list) -> list:
+    """The values of `micro` as names. A law given as an object is registered under its name.
+
+    If a name is not known, the laws of installed packages are loaded. Raises ValueError for a law that cannot be used.
+    """
+    found = laws.named(given)
+    laws.load((), [word for word in found if isinstance(word, str)])
+    update_vocabulary()
+    return found
+
+
+def recall(versions: str) -> None:
+    """Register laws of results, a line "NAME VERSION" for each, that are not known but installed.
+
+    A table of one's own is not read: whoever sends a results file must not choose which files are opened.
+    """
+    for line in versions.splitlines():
+        if (name := laws.name_in(line)) not in laws.LAWS and not name.startswith(PREFIX):
+            with suppress(ValueError):  # then it stays unknown
+                law_names([name])
+
+
+def is_parameter(name: str) -> bool:
+    """Whether a name is that of a parameter. If it is not known, the laws of installed packages are loaded first."""
+    if name not in PARAMETERS:
+        with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
+            laws.load([name], ())
+        update_vocabulary()
+    return name in PARAMETERS
+
+
+def smooth_laws() -> list[str]:
+    """Names of the laws without asperities."""
+    return [name for name, law in laws.LAWS.items() if not law.rough]
+
+
+def wants_a_fit(grid: Grid) -> bool:
+    """Whether some case has the power law, none has B and beta, and Nbar and Ra are known where they are needed. Of B
+    and beta a grid has both or none: that one is missing has been said before."""
+    power = along(grid, "micro") == "power_law"
+    if not power.any() or "B" in grid.values:
+        return False
+    return bool((np.isfinite(along(grid, "Nbar") * along(grid, "Ra")) | ~power).all())
+
+
+def fitted(grid: Grid) -> tuple[dict, list[str]]:
+    """Values of B and beta over the dimensions of Nbar and Ra, as in `Grid.values`; and what is wrong with them."""
+    products = along(grid, "Nbar") * along(grid, "Ra") ** 2
+    known = np.unique(products[np.isfinite(products)]).tolist()
+    if len(known) > MOST_FITS:
+        few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(known)}"
+        return {}, [f"B and beta are missing: {few}"]
+    dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
+    fitted_laws, found, errors = {value: fit_power_law(value) for value in known}, {}, []
+    for name in ("B", "beta"):
+        own = VOCABULARY[name].own
+        fits = {value: getattr(law, name) for value, law in fitted_laws.items()}
+        kept = {value: float(f"{fit:.{DIGITS}g}") for value, fit in fits.items()}
+        array = np.array([kept.get(value, np.nan) for value in products.ravel().tolist()])
+        found[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])
+        wrong = [(value, fit) for value, fit in fits.items() if not allowed(own, fit)]
+        errors += [f"{name} fitted to Nbar Ra^2 = {v:g} is {fit:g}: must be in {own.interval}" for v, fit in wrong[:1]]
+    return found, errors

@@ -1,0 +1,193 @@
+"""From study files, or the parameters of a call, to a checked, frozen Definition with the digest of what determines its
+numbers.
+
+With or without units: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`. Inputs may have spreads
+("200 ± 10 GPa", materials by name). Then each case is solved several times: as given, and with each such input moved up
+and down, along the dimension MOVED. The results have `NAME_spread` in place of this dimension.
+"""
+
+import errno
+import re
+import tomllib
+from dataclasses import replace
+from itertools import islice
+from pathlib import Path
+from typing import Any
+
+from ..terminal import on_one_line, shown
+from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
+from .draft import Draft
+from .given import MOST_MESSAGES, Given
+from .grid import usual_block
+from .identity import digest_of, law_versions
+from .vocabulary import NUMERICS, absent, suggest
+
+TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
+KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
+"""Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
+SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
+FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
+LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
+MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
+MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
+TABLE = re.compile(r"^[ \t]*+\[\[|\{", re.MULTILINE)
+
+#: A value that begins with a word, or with a number and a word or ±; the e of "1e-6" is none.
+_NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)")
+
+
+def read(path) -> Definition:
+    """Definition of a study file. Raises StudyError with all that is wrong with it."""
+    return from_tables(*parsed(path))
+
+
+def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
+    """Definition of the parsed TOML tables; `where` begins every message."""
+    kind = tables.get("kind", "contact")
+    if kind != "contact":
+        gone = "; a micro law needs no study: call solver.fit_power_law" if kind == "micro_law" else ""
+        raise StudyError([f'{where}: kind = {shown(kind)}: must be "contact", or left out{gone}'])
+    unknown = islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
+    errors = [_no_section(key, tables[key]) for key in unknown]
+    tables = tables | {section: _table(tables, section, keys, errors) for section, keys in KEYS.items()}
+    return complete(Given.in_file(tables, errors), tables, name, text, where)
+
+
+def from_call(parameters: dict, rows: list[dict], same_piece: bool, tables: dict) -> Definition:
+    """Definition of a call of `study.solve`; tables : title and output, as those of a study file."""
+    return complete(Given.in_python(parameters, rows, same_piece), tables, "solve", "", "solve", LARGE)
+
+
+def complete(given: Given, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
+    """The definition of what is given, with its digest. Raises StudyError with every message.
+
+    tables : title, [output], the block of [numerics], and the order of [axes] are read here
+    most : how many numbers the results may hold
+    """
+    draft, errors, scene = Draft(given), given.errors, None
+    draft.expand()
+    spreads = tables.get("output", {}).get("spreads", True)
+    if not isinstance(spreads, bool):
+        errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
+    if given.physical:
+        from .scene.reading import read as read_scene  # it imports xarray, for which pure numbers need not wait
+
+        scene = read_scene(given, draft, spreads is True, list(tables.get("axes", ())))
+    else:
+        for entry in given.inputs.values():
+            if not entry.is_wrong:
+                draft.read(entry)
+        draft.check({})
+    draft.put_dimensions()
+    grid = draft.finish()
+    title, x, profiles, dtype = settings(tables, errors)
+    if scene and scene.spreads and dtype == "float32":
+        problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
+        errors.append(f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}')
+    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
+    if type(block) is not int or not 1 <= block <= 1_000_000:
+        errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
+    made = Definition(name, title, text, grid, x, profiles, dtype, block, "", scene=scene)
+    if made.numbers > most:
+        errors.append(
+            f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
+        )
+    if errors:
+        raise refusal(where, errors)
+    return replace(made, digest=digest_of(made), laws=tuple(law_versions(grid)))
+
+
+def parsed(path) -> tuple[dict, str, str, str]:
+    """The tables of a study file, its name, its text, and the path that begins every message.
+
+    Raises StudyError when the file cannot be read or is not TOML.
+    """
+    path = Path(path)
+    where = path.as_posix()
+    if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}", path.stem):
+        name = "NAME of letters without accents, digits, _, - and ., 200 at most"
+        raise StudyError([f"{where}: a study file is called NAME.toml, {name}"])
+    try:
+        text = text_in(path)
+        tables = tomllib.loads(text)
+    except OSError as error:
+        raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
+    except RecursionError:
+        raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
+    except UnicodeDecodeError as error:
+        wrong = f"is not UTF-8 (byte {error.start}): save it with the encoding UTF-8, which TOML has"
+        raise StudyError([f"{where}: {wrong}"]) from None
+    except ValueError as error:  # wrong TOML
+        reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
+        more = hint(text, reason) if isinstance(error, tomllib.TOMLDecodeError) else ""
+        raise StudyError([f"{where}: is not valid TOML: {reason}{more}"]) from None
+    return tables, path.stem, text, where
+
+
+def _no_section(key: str, value: Any) -> str:
+    """A message about a key at the top of the file: a parameter, say, since the line [model] is missing."""
+    lacking = absent(key)
+    near = f"; {lacking}" if lacking else suggest(key, SECTIONS)
+    below = near.startswith("; known") and not isinstance(value, (dict, list))
+    return f"{shown(key)} is not a section{near}{'; parameters stand below [model] or [axes]' * below}"
+
+
+def _table(tables: dict, section: str, known: tuple[str, ...] | None, errors: list[str]) -> dict:
+    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller checks them)."""
+    found = tables.get(section, {})
+    if not isinstance(found, dict):
+        errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
+        return {}
+    unknown = [key for key in found if known and key not in known]
+    errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
+    return found
+
+
+def text_in(path: Path) -> str:
+    """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and for keys of too many parts."""
+    if path.exists() and not path.is_file() and not path.is_dir():  # opening a folder has a message of its own
+        raise OSError(errno.EINVAL, "is no regular file")
+    with open(path, "rb") as file:
+        raw = file.read(LARGEST_FILE + 1)
+    if len(raw) > LARGEST_FILE:
+        raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
+    text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    tables = sum(1 for _ in TABLE.finditer(text))
+    if tables > MOST_TABLES:  # before tomllib reads them
+        wrong = f"has {tables} tables, [[cases]] and those in braces: at most {MOST_TABLES}"
+        raise OSError(errno.EFBIG, f"{wrong}; [axes] and [sample] say as many cases in a few lines")
+    _check_keys(text)
+    return text
+
+
+def _check_keys(text: str) -> None:
+    """Raise ValueError for a key of too many parts."""
+    long = LONG_KEY.search(text)
+    if long:
+        raise ValueError(f"a key has more than {MOST_PARTS} parts (at line {text.count(chr(10), 0, long.start()) + 1})")
+
+
+def same_tables(one: str, other: str) -> bool:
+    """Whether the texts of two study files say the same, but for the title, comments and the order of lines."""
+    try:
+        _check_keys(one)
+        _check_keys(other)
+        return one == other or tomllib.loads(one) | {"title": ""} == tomllib.loads(other) | {"title": ""}
+    except (ValueError, RecursionError):
+        return False
+
+
+def hint(text: str, reason: str) -> str:
+    """The end of a message about a line of TOML that has a usual mistake; "" for another."""
+    if "overwrite" in reason:
+        return "; a name is given twice in one section"
+    place = re.search(r"at line (\d+)", reason)
+    line = text.split("\n")[int(place[1]) - 1][:300] if place else ""
+    if re.search("[“”„‘’«»]", line):
+        return '; quotes are straight: "5 mm"'
+    if re.search(r"=\s*[-+]?\d+,\d", line):
+        return "; a number has a decimal point"
+    plain = "'" not in line and '"' not in line and _NO_QUOTES.search(line)
+    return '; texts stand in quotes, a number with its unit too: "5 mm"' if plain else ""

@@ -1,0 +1,176 @@
+"""Values that a study file says by a rule: ranges, and random cases, which are the same on every machine."""
+
+import re
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..specimen.quantities import Quantity, quantity
+from ..terminal import shown
+from .grid import LONGEST_AXIS, axis_values, check_range, quoted
+from .scene.bodies import of_names
+from .scene.names import si
+from .vocabulary import BODIES, ROWS, VOCABULARY, Parameter, check, si_unit
+
+KEYS = ("start", "stop", "spacing", "over")  # of a range
+LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
+ANY_NUMBER = Parameter(interval="(-inf, inf)")
+"""Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
+
+
+def values_of_axis(name: str, raw: Any, physical: bool, errors: list[str]) -> list | None:
+    """The values of a list or a range; those of a range with units are in SI. None if it has a mistake."""
+    before = len(errors)
+    in_si = physical and isinstance(raw, dict) and _is_number(name) and ROWS[name].unit != "1"
+    raw = _in_si(raw, name, ROWS[name].unit, errors) if in_si else raw
+    values = axis_values(raw, name, errors) if len(errors) == before else []
+    return (list(map(Quantity, values)) if in_si else values) or None
+
+
+def sampled(table: Any, names: list[str], physical: bool, checked: Callable, errors: list[str]) -> dict[str, list]:
+    """What [sample] draws for the parameters `names`: entries of lists as they stand there, and numbers of ranges, in
+    SI where the study has units. {} if there is a mistake; checked : name, values -> messages are appended."""
+    before, known, read = len(errors), {}, dict(table) if isinstance(table, dict) else {}
+    for name in names:
+        raw = table[name]
+        known[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].own
+        if physical and _is_number(name):
+            known[name] = known[name] if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
+            if isinstance(raw, dict):
+                read[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
+        if isinstance(raw, list):  # all of it, since some of its values may not be drawn
+            _check_list(name, raw, physical, checked, errors)
+    refused = {*read} - {*names, *LIMITS}
+    if len(errors) > before or (refused and not names):
+        return {}
+    read = {name: raw for name, raw in read.items() if name not in refused} if isinstance(table, dict) else table
+    in_si = [name for name in names if physical and isinstance(read[name], dict)]
+    return {n: [*map(Quantity, v)] if n in in_si else v for n, v in draw(read, known, errors).items()}
+
+
+def _is_number(name: str) -> bool:
+    return name not in BODIES and not ROWS[name].own.choices
+
+
+def _check_list(name: str, raw: list, physical: bool, checked: Callable, errors: list[str]) -> None:
+    """Messages for the values of a list of [sample]."""
+    if not (physical and _is_number(name)) and name not in BODIES:
+        checked(name, raw)
+        return
+    for i, one in enumerate(raw):
+        try:
+            of_names(name, [one]) if name in BODIES else si(name, one, f"{name}[{i}]")
+        except (ValueError, LookupError) as error:
+            errors.append(str(error.args[0]))
+
+
+def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
+    """A range with its ends as numbers in the SI `unit`; messages and {} for ends that it cannot have."""
+    try:
+        read = {end: quantity(f"{key}: {end}", raw[end], unit) for end in ("start", "stop") if end in raw}
+    except ValueError as error:
+        errors.append(str(error))
+        return {}
+    unsure = [end for end, one in read.items() if one.spread]
+    errors += [f"{key}: {end} = {shown(raw[end])}: a range has no spread, a list of values may" for end in unsure]
+    ends = {end: one.value for end, one in read.items()}
+    wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
+    errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
+    return {} if wrong or unsure else raw | ends
+
+
+def _unit_of_range(name: str, raw: dict) -> str:
+    """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
+    i, j = ROWS[name].powers
+    other, power = divisor(raw)
+    if other in ROWS:
+        i, j = (own + power * more for own, more in zip((i, j), ROWS[other].powers, strict=True))
+    return si_unit((i, j))
+
+
+def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, list]:
+    """Columns of a random sample: parameter -> list of `size` values, in the order of the table.
+
+    table : {size, seed, NAME = ..., ...}, known names; docs/studies.md says what a parameter may be
+    known : parameter -> what values it may have
+    errors : messages are appended here; {} is returned then
+
+    Each parameter has random numbers of its own, so that a further parameter changes no other and a larger `size`
+    continues the sample. Values are rounded to six digits: powers differ in the last bit between machines, rounded ones
+    do not, and any case can be written down.
+    """
+    if not isinstance(table, dict):
+        errors.append(f"sample = {shown(table)}: must be a table [sample]")
+        return {}
+    before = len(errors)
+    for key, (low, high) in LIMITS.items():
+        if type(table.get(key)) is not int or not low <= table[key] <= high:
+            errors.append(f"[sample] {quoted(key, table)}: must be a whole number in [{low}, {high}]")
+    drawn = {name: given for name, given in table.items() if name not in LIMITS}
+    if not drawn:
+        errors.append("[sample] has no parameter: must draw at least one")
+    for name in drawn:
+        _check(name, drawn, known[name], errors)
+    if len(errors) > before:
+        return {}
+    columns = {}
+    for name in sorted(drawn, key=lambda name: "over" in drawn[name]):  # divisors come first
+        columns[name] = _column(drawn[name], uniform(table["size"], table["seed"], name), columns)
+    return {name: columns[name] for name in drawn}
+
+
+def uniform(size: int, seed: int, name: str) -> np.ndarray:
+    """(size,) numbers uniform on [0, 1): the upper 53 bits of PCG64 seeded by `seed` and `name`.
+
+    numpy promises these bits for ever, which it does not for the numbers of its Generator.
+    """
+    return (np.random.PCG64([seed, *name.encode()]).random_raw(size) >> np.uint64(11)) * 2.0**-53
+
+
+def _column(given, u: np.ndarray, columns: dict[str, list]) -> list:
+    if isinstance(given, list):
+        return [given[int(i)] for i in u * len(given)]
+    start, stop = float(given["start"]), float(given["stop"])
+    log = given.get("spacing", "linear") == "log"
+    values = _rounded(start ** (1 - u) * stop**u if log else start * (1 - u) + stop * u)
+    values = np.clip(values, start, stop)
+    if "over" in given:
+        other, power = divisor(given)
+        with np.errstate(all="ignore"):  # a quotient that is not finite is refused later, as any such value
+            values = _rounded(values / np.array(columns[other]) ** power)
+    return values.tolist()
+
+
+def _rounded(values: np.ndarray) -> np.ndarray:
+    return np.array([float(f"{value:.5e}") for value in values])
+
+
+def divisor(given: dict) -> tuple[str, int]:
+    """Parameter and power by which a range is divided: ("Ra", 2) for over = "Ra^2"; ("", 0) without a valid `over`."""
+    over = given.get("over")
+    found = re.fullmatch(r"(\w+?)(?:\^([1-9]))?", over) if isinstance(over, str) else None
+    return (found[1], int(found[2] or 1)) if found else ("", 0)
+
+
+def _check(name: str, drawn: dict, own: Parameter, errors: list[str]) -> None:
+    """Append messages for the list or range of one parameter."""
+    key, given = f"[sample] {name}", drawn[name]
+    if isinstance(given, list) and given:
+        return  # its values are checked later, as those of any parameter
+    if not isinstance(given, dict) or own.choices or own.whole:
+        form = "" if own.choices or own.whole else f"{{{', '.join(KEYS)}}} or "
+        errors.append(f"{key} = {shown(given)}: must be {form}a list to choose from")
+        return
+    before = len(errors)
+    check_range(given, key, errors, KEYS)
+    if len(errors) == before and not given["start"] < given["stop"]:
+        errors.append(f"{key}: stop = {shown(given['stop'])}: must be > start")
+    if "over" in given:
+        plain = [n for n, other in drawn.items() if isinstance(other, dict) and "over" not in other]
+        if divisor(given)[0] not in plain:
+            allowed = " or ".join(plain) or "none here"
+            errors.append(f"{key}: over = {shown(given['over'])}: must be a power of a range of [sample]: {allowed}")
+    elif len(errors) == before:
+        bad = [(end, check(own, given[end])) for end in ("start", "stop")]
+        errors += [f"{key}: {end} = {shown(given[end])}: {text}" for end, text in bad if text]

@@ -1,0 +1,1 @@
+"""Inputs with units: their SI values, materials by name, and the dimensionless numbers that follow."""

@@ -1,0 +1,103 @@
+"""Materials by name: `punch`, `layer` and `body` of a physical scene stand for E and ν of each."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...specimen import materials
+from ...specimen.quantities import Quantity
+from ...terminal import shown
+from ..grid import equal_values
+from ..vocabulary import BODIES, VOCABULARY, finite
+from .names import RIGID_TEXTS
+
+_MAY_BE_RIGID = ("punch", "body")
+#: What people give as `punch` that is no material; names of materials near these would mislead.
+_SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "pyramid")
+
+
+def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
+    """The inputs with E and ν in place of materials, and body -> (dimension or "", names of its materials).
+
+    E and ν have the spreads of the table of materials; messages are appended to `errors`.
+    """
+    found, names = dict(inputs), {}
+    for body, follows in BODIES.items():
+        entry = found.pop(body, None)
+        if entry is None:
+            continue
+        errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
+        if entry.is_wrong:
+            continue
+        try:
+            texts, *columns = of_names(body, _listed(entry))
+        except LookupError as error:
+            errors.append(str(error.args[0]))
+            continue
+        errors += equal_values(body, texts, str) if entry.dims == (body,) else []
+        for name, column in zip(follows, columns, strict=False):
+            found[name] = replace(entry, name=name, values=list(column), array=None)
+        names[body] = "".join(entry.dims), list(texts)
+    return found, names
+
+
+def of_names(body: str, names: list) -> list[tuple]:
+    """Names, E and ν of the materials that are given for a body. Raises LookupError for what is none."""
+    try:
+        checked = [_checked(name) for name in names]
+        table = {text: _material(body, name) for text, name in {str(name): name for name in checked}.items()}
+    except LookupError as error:
+        modulus, ratio, _ = BODIES[body]
+        raise LookupError(f"{body}: {error.args[0]} (or give {modulus} and {ratio})") from error
+    return list(zip(*(table[str(name)] for name in checked), strict=True))
+
+
+def layered(values: dict) -> bool:
+    """Whether some case may have a layer; values : as those of a Grid. Of a word that is no base it is said later."""
+    _, base = values.get("base", ((), VOCABULARY["base"].own.default))
+    return bool(np.isin(base, [*{*VOCABULARY["base"].own.choices} - {"half_space"}]).any())
+
+
+def assumed(names: set[str], values: dict, given: dict) -> tuple[str, ...]:
+    """What is not given and has its default, though it counts: Poisson ratios of elastic bodies, interface of a layer.
+
+    names : of what is given; values : as those of a Grid; given : the inputs in SI units
+    """
+    ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(given.get(E, np.inf)).all()]
+    return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)
+
+
+def _listed(entry: Any) -> list:
+    """The names in an input; those of earlier results are in a DataArray. Raises LookupError for another one."""
+    if entry.array is None:
+        return entry.values
+    if entry.dims not in ((), (entry.name,)):
+        modulus, ratio, _ = BODIES[entry.name]
+        text = "a DataArray of names is over the dimension of its own name; give a list, or cases"
+        raise LookupError(f"{entry.name}: {text} (or give {modulus} and {ratio})")
+    return np.ravel(entry.array.values).tolist()
+
+
+def _checked(name: Any) -> str | materials.Material:
+    """The same name or material; "inf" of the number. Raises LookupError for anything else."""
+    if isinstance(name, float) and name == np.inf:
+        return "inf"
+    if isinstance(name, tuple):
+        raise LookupError(f"{shown(name)} is a tuple: a list is an axis, a stack of layers is not yet there")
+    if not isinstance(name, (str, materials.Material)):
+        raise LookupError(f'{shown(name)} is no name of a material, such as "steel 52100"')
+    return name
+
+
+def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity, Quantity]:
+    """Name, E and ν of a material, or of a name. Raises LookupError for a name that is not in the table."""
+    if body in _MAY_BE_RIGID and str(name).lower() in RIGID_TEXTS:
+        return "rigid", Quantity(np.inf), Quantity(0.3)
+    if body == "punch" and str(name).lower() in _SHAPES:
+        shape = "the punch is a ball of radius R, other shapes are not in the model"
+        raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
+    found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
+    if not all(map(finite, (found.E, found.nu, found.E_spread, found.nu_spread))):
+        raise LookupError(f"{shown(found.name)}: E, nu and their spreads must be finite numbers, E in Pa")
+    return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)

@@ -1,0 +1,119 @@
+"""Messages for inputs with units that are beyond the bounds of the solver, as they were given: "P = -10 N: ..."."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver.parameters import allowed as within
+from solver.parameters import ends
+
+from ...specimen.quantities import multiple, quantity, readable, unit_in
+from ...terminal import on_one_line
+from ..given import Input
+from ..grid import MOVED
+from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
+from .scales import with_unit
+from .scene import Scene
+
+#: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
+#: 10 Pa, diamond 1.2 TPa; the sharpest tips have some nm, and layers are not thinner than an atom.
+_REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
+_REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
+_REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
+
+_RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
+#: What has a unit and cannot be zero.
+INPUTS = ("P", "a", "D", "h", "Nbar", "Ra", "sigma", "R", "R1", "R2", "E1", "E2", "E_punch")
+
+Place = dict[str, int]
+"""Dimension -> index along it."""
+
+
+def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
+    """A message for each input with a unit, and each ratio of moduli, that is outside its interval.
+
+    inputs : as they were given, E and ν in place of materials
+    """
+    with_units = [name for name in scene.given if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
+    messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
+    for modulus, _, ratio in BODIES.values():
+        for place in _first_outside(scene, ratio) if ratio and modulus in scene.given else ():
+            entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
+            understood = f"{modulus} = {readable(_at(scene.given[modulus], place), 'Pa')}"
+            messages.append(f"{understood}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
+    return messages
+
+
+def absurd(given: dict, spreads: dict) -> list[str]:
+    """A sentence for each input in SI units that no body has, or whose spread is too wide. They are solved.
+
+    given, spreads : name -> numbers, labelled (DataArray or Variable) where they are several
+    """
+    found = []
+    for name, (low, high, words) in _REAL.items():
+        values = np.ravel(given.get(name, np.nan))
+        outside = ((values < low) | (values > high)) & np.isfinite(values)
+        if outside.any():
+            one = readable(float(values[outside][0]), ROWS[name].unit)
+            found.append(f"{name} = {one}: {words}; is its unit right?")
+    for name, spread in spreads.items():
+        value = given[name]
+        limit = 0.5 - value if name in _RATIOS else abs(value)
+        if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+            limit = limit * np.minimum(abs(value / given["R"]), 1)
+        with np.errstate(invalid="ignore"):  # a rigid body has inf, and 0 inf is NaN
+            zero = 0 * (value + spread + limit)  # over all their dimensions
+            value, spread, limit = (np.ravel(zero + one) for one in (value, spread, limit))
+        wide = np.flatnonzero((spread > 0) & (spread >= limit))
+        if len(wide):
+            text = readable(float(value[wide[0]]), ROWS[name].unit, float(spread[wide[0]]))
+            found.append(f"{name} = {text}: too wide a spread for the ± of results, which is to first order")
+    return found
+
+
+def _first_outside(scene: Scene, name: str) -> list[Place]:
+    """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
+    values = scene.parameters[name]
+    inside = within(VOCABULARY[name].own, np.asarray(values))
+    outside = [] if inside.all() else np.argwhere(~inside)[:1].tolist()  # argwhere takes as long as all else here
+    return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
+
+
+def _at(value: Any, place: Place) -> Any:
+    """The number of an array at a place, the first one along dimensions that the place does not have."""
+    if not isinstance(value, xr.DataArray):
+        return value
+    return value.isel({dim: place.get(dim, 0) for dim in value.dims}).item()
+
+
+def _message(scene: Scene, given: Input, place: Place) -> str:
+    """The message for the value of an input at a place."""
+    name = given.name
+    value, entry = scene.given[name], VOCABULARY[name]
+    as_given = place | ({MOVED: 0} if MOVED in place else {})
+    index = [as_given[dim] for dim in getattr(value, "dims", ()) if dim != MOVED]
+    called = f"{name}{index}" if index else name
+    text, word, size = _written(given, index, _at(value, as_given), ROWS[name].unit)
+    moved = "with its spread it " if place != as_given else ""
+    R, unit = _at(scene.R, place), _at(scene.unit, place)
+    # the bounds in the unit of the value
+    low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
+    interval = f"{entry.own.interval[0]}{low}, {high}{entry.own.interval[-1]}"
+    modulus = "E1*" if np.isinf(_at(scene.given["E2"], place)) else "E2*"
+    scale = entry.scale.replace("E2*", modulus)
+    units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
+    here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
+    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
+    return f"{called} = {on_one_line(str(text))}: {moved}{bounds}"
+
+
+def _written(given: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
+    """A value as it was given, the word for its unit there, and the size of that in the SI `unit`.
+
+    A value of a range, or with a unit that is no single word, has the multiple of the SI unit that suits it.
+    """
+    text = given.at(index)
+    word = (given.unit if given.array is not None else unit_in(text)) or multiple(abs(value), unit)[0]
+    size = quantity("", f"1 {word}", unit).value
+    return f"{value / size:g} {word}" if text is None else text, word, size

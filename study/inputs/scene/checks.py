@@ -1,0 +1,84 @@
+"""What can be wrong with a physical scene as a whole, though each of its inputs is right."""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver.laws.own_table import PREFIX
+
+from ..checks import equal_cases
+from ..given import Given
+from ..vocabulary import BODIES
+from .bodies import layered
+from .scene import STEP, Scene
+
+_RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
+
+
+def missing(given: Given, values: dict) -> list[str]:
+    """Messages for what a physical scene cannot do without, and for what cannot be given together.
+
+    values : of the inputs without units, as those of a Grid
+    """
+    names, messages = {*given.sections}, []
+    pair = [name for name in ("R1", "R2") if name in names]
+    messages += [_RADIUS] if "R" not in names and not pair else []
+    if len(pair) == 1:
+        other = "R2" if pair == ["R1"] else "R1"
+        messages.append(f'{other} is missing: R1 and R2 go together; of a flat body {other} = "flat"')
+    if pair and "R" in names:
+        messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
+    if not {"E2", "body"} & names:
+        messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
+    if layered(values) and not {"E1", "n", "layer"} & names:
+        messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
+    for modulus, _, ratio in BODIES.values():
+        if modulus in names and ratio in names:
+            messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
+    if "nu_punch" in names and not {"E_punch", "punch"} & names:
+        messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
+    return messages
+
+
+def same_cases(scene: Scene) -> list[str]:
+    """A message for two of [[cases]] that are the same, in whatever units they are given."""
+    arrays = [v for table in (scene.given, scene.spreads, scene.parameters) for v in table.values()]
+    columns = [v.values.tolist() for v in arrays if isinstance(v, xr.DataArray) and v.dims == ("case",)]
+    columns += [texts for dim, texts in scene.names.values() if dim == "case"]
+    return equal_cases(list(zip(*columns, strict=True)))
+
+
+def impossible(scene: Scene) -> list[str]:
+    """Messages for bodies that cannot touch as they are given."""
+    given, messages = scene.given, []
+    up = {name: given[name] + STEP * scene.spreads.get(name, 0.0) for name in ("R1", "R2") if name in given}
+    if up and not np.all(1 / up["R1"] + 1 / up["R2"] > 0):
+        R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
+        too = ", with their spreads too" * bool({*up} & {*scene.spreads})
+        wider = f"a cup (the negative radius) must be wider than its ball{too}"
+        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: {wider}")
+    rigid = np.isinf(given["E2"])
+    if not np.any(rigid):
+        wrong = 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'
+        return messages + [wrong] * bool(np.any(scene.parameters.get("n", given.get("n", 1.0)) == 0))
+    if np.any(rigid & (scene.parameters.get("base", "layered") == "half_space")):
+        swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
+        messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
+    if "n" in scene.parameters:
+        messages.append("E2 is rigid and n is given: give E1, the modulus of the layer")
+    return messages
+
+
+def moving_tables(scene: Scene) -> list[str]:
+    """A message where a table of one's own, whose lengths are in R, would change with the spread of a radius."""
+    micro = np.ravel(np.array(scene.parameters.get("micro", ""), dtype=object)).tolist()
+    table = next((word for word in micro if str(word).startswith(PREFIX)), "")
+    moved = sorted({"R", "R1", "R2"} & {*scene.spreads})
+    if not (table and moved):
+        return []
+    return [f"{moved[0]} has a spread: the lengths in {table} are in R and would change with it; give {moved[0]} none"]
+
+
+def _shown(value: Any) -> str:
+    return ", ".join(f"{one:g}" for one in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)

@@ -1,0 +1,35 @@
+"""Values and dimensions of the inputs of a physical scene."""
+
+import math
+from typing import Any
+
+from ...specimen.quantities import Quantity, quantity
+from ..vocabulary import ROWS
+
+#: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
+RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
+#: What may be infinite, and the texts that say so.
+INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS}
+
+
+def dim_of(name: str) -> str:
+    """The dimension along which several values of a parameter lie while the cases are solved.
+
+    A parameter with a unit has a dimension "h in SI". The name alone is that of the dimensionless parameter h/R, which
+    depends on the dimension of R as well.
+    """
+    return name if ROWS[name].unit == "1" else f"{name} in SI"
+
+
+def si(name: str, given: Any, called: str = "") -> Quantity:
+    """The SI value of a parameter or result given as text, quantity of pint or number, or as Quantity.
+
+    called : its name in messages
+
+    Raises ValueError as `quantity` does.
+    """
+    if type(given) is Quantity:
+        return given
+    if name in INFINITE and (given.lower() in INFINITE[name] if isinstance(given, str) else given == math.inf):
+        return Quantity(math.inf)
+    return quantity(called or name, given, ROWS[name].unit)

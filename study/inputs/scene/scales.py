@@ -1,0 +1,71 @@
+"""From SI numbers to dimensionless ones.
+
+The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1; on a rigid base, where E2* is infinite, in E1* = 1. All is
+done number by number, so that a case has the same dimensionless numbers, and key, in any grid.
+"""
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..vocabulary import SCENE, VOCABULARY
+from .scene import Scene
+
+#: Poisson ratio of a punch of which none is given: as of the other bodies.
+_POISSON = VOCABULARY["nu1"].own.default
+
+
+def make_dimensionless(scene: Scene) -> None:
+    """Add to a scene what follows from its SI values: effective radius, unit of moduli, parameters of the solver."""
+    given = scene.given
+    if "R1" in given:
+        given["R"] = 1 / (1 / given["R1"] + 1 / given["R2"])
+    scene.R, scene.unit, layer, body = given["R"], *moduli(given, scene.parameters)
+    if "E1" in given:
+        scene.parameters["n"] = layer / body
+    if "E_punch" in given:
+        given.setdefault("nu_punch", _POISSON)  # results say which it was
+        base = scene.parameters.get("base", "layered")
+        surface = _where(base == "half_space", body, layer)
+        scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
+    for name, value in given.items():
+        if name not in SCENE:
+            scene.parameters[name] = without_unit(value, VOCABULARY[name].powers, scene.unit, scene.R)
+
+
+def moduli(given: dict, parameters: dict) -> tuple:
+    """The unit of moduli, E1* and E2*, in Pa. Without E1 and n, on a half-space, E1* is E2*."""
+    body = _reduced(given, "E2", "nu2")
+    n = given["n"] if "n" in given else parameters.get("n", 1.0)
+    layer = _reduced(given, "E1", "nu1") if "E1" in given else n * body
+    return _where(np.isinf(body), layer, body), layer, body
+
+
+def _where(condition: Any, yes: Any, no: Any) -> Any:
+    """xr.where for arrays. For single numbers plain Python, as xr.where takes a millisecond."""
+    return xr.where(condition, yes, no) if np.ndim(condition) else yes if condition else no
+
+
+def _reduced(given: dict, name: str, nu: str) -> Any:
+    return reduced(given[name], given.get(nu, _POISSON))
+
+
+def reduced(E: Any, nu: Any) -> Any:
+    """E* = E/(1 - ν²). Raises ValueError where nu is outside (-1, 0.5]."""
+    if np.any((nu <= -1) | (nu > 0.5)):
+        raise ValueError("nu must be in (-1, 0.5], and comes after E")
+    return E / (1 - nu * nu)  # nu**2 of a number and of an array may differ in the last bit
+
+
+def without_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """An SI value over unit^i R^j, (i, j) = `powers`."""
+    return with_unit(value, (-powers[0], -powers[1]), unit, R)
+
+
+def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
+    """A dimensionless value times unit^i R^j."""
+    for factor, power in ((unit, powers[0]), (R, powers[1])):
+        for _ in range(abs(power)):
+            value = value * factor if power > 0 else value / factor
+    return value

@@ -1,0 +1,74 @@
+"""A physical scene: its inputs in SI units, and what the solver gets."""
+
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import xarray as xr
+
+#: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
+#: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
+STEP = 0.1
+
+
+@dataclass
+class Scene:
+    """A physical scene.
+
+    given : input -> its SI values, a float or a DataArray
+    spreads : input -> standard deviations, likewise; only of inputs that have some
+    parameters : dimensionless, for the solver
+    R, unit : radius (m) and modulus (Pa) that are 1 for the solver; the modulus is E2*, or E1* on a rigid base
+    dims : dimension while the cases are solved -> name of it in the results
+    labels : of the dimension `case`
+    names : punch, layer, body -> (dimension or "", names of materials along it)
+    given_in : coordinate -> the cases that have it, a DataArray; without a layer a case may have none
+    assumed : interface and Poisson ratios that count and are not given, so that they have their defaults
+    same_piece : whether bodies of one material are one piece of it
+    """
+
+    given: dict = field(default_factory=dict)
+    spreads: dict = field(default_factory=dict)
+    dims: dict = field(default_factory=dict)
+    labels: list = field(default_factory=list)
+    names: dict = field(default_factory=dict)
+    given_in: dict = field(default_factory=dict)
+    assumed: tuple = ()
+    same_piece: bool = False
+    parameters: dict = field(default_factory=dict)
+    R: Any = 1.0
+    unit: Any = 1.0
+
+    def sizes(self, axes: list[str]) -> dict[str, int]:
+        """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
+        dim_of, found = {name: dim for dim, name in self.dims.items()}, {}
+        arrays = [v for v in (*self.given.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
+        known = {dim: size for array in arrays for dim, size in array.sizes.items()}
+        for dim in ("case", *(dim_of.get(axis, axis) for axis in axes)):
+            if dim in known:
+                found[dim] = known[dim]
+        return found
+
+    def radii(self) -> dict[str, xr.Variable]:
+        """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} where R was given."""
+        return {name: bare_variable(self.given[name] / self.R) for name in ("R1", "R2") if name in self.given}
+
+    def within(self, window: dict[str, slice]) -> "Scene":
+        """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
+
+        def cut(value: Any) -> Any:
+            if not isinstance(value, xr.DataArray):
+                return value
+            return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
+
+        tables = (self.given, self.spreads, self.given_in)
+        given, spreads, given_in = ({name: cut(v) for name, v in table.items()} for table in tables)
+        labels = self.labels[window["case"]] if self.labels else []
+        names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
+        changed = {"given": given, "spreads": spreads, "given_in": given_in, "labels": labels, "names": names}
+        return replace(self, **changed, R=cut(self.R), unit=cut(self.unit))
+
+
+def bare_variable(value: Any, attributes: dict | None = None) -> xr.Variable:
+    """A number, or the values of a DataArray, without coordinates."""
+    dims, data = (value.dims, value.data) if isinstance(value, xr.DataArray) else ((), value)
+    return xr.Variable(dims, data, attributes)

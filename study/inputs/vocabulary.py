@@ -1,0 +1,241 @@
+"""What every parameter and result is called, measured in, allowed to be and printed as: the rows of vocabulary.toml."""
+
+import difflib
+import math
+import numbers
+import re
+import tomllib
+from collections import ChainMap
+from dataclasses import dataclass
+from decimal import Decimal
+from functools import cached_property
+from importlib.resources import files
+
+import numpy as np
+
+from solver.parameters import CONTROL, Parameter, among
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+from solver.parameters import allowed as are_within
+
+from ..terminal import shown
+
+__all__ = ["SCENE", "VOCABULARY", "names"]
+INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
+"""Results that are whole numbers -> the type in which they are stored."""
+NOT_RUN = 127
+"""Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
+
+SI = {(0, 0): "1", (0, 1): "m", (0, 2): "m^2", (0, -2): "1/m^2", (1, 0): "Pa", (1, 1): "N/m", (1, 2): "N"}
+"""SI units by their powers of E2* and R; all others are written as powers of Pa and m."""
+
+
+def si_unit(powers: tuple[int, int]) -> str:
+    """The SI unit of E2*^i R^j, (i, j) = `powers`."""
+    return SI.get(powers, "Pa^{} m^{}".format(*powers))
+
+
+@dataclass(frozen=True)
+class Entry:
+    """A row of the vocabulary: one parameter, result or coordinate; vocabulary.toml says what the fields are."""
+
+    name: str
+    role: str
+    long_name: str
+    symbol: str = ""
+    powers: tuple[int, int] = (0, 0)
+    equation: str = ""
+    interval: str = ""
+
+    @property
+    def own(self) -> Parameter:
+        """The row of a parameter in the solver's table: bounds, choices, default, which cases need it."""
+        known = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
+        return known._replace(interval=self.interval) if self.interval else known
+
+    @cached_property
+    def unit(self) -> str:
+        """The SI unit of the physical quantity."""
+        return si_unit(self.powers)
+
+    @cached_property
+    def ratio(self) -> str:
+        """The symbol over its scale, as on the axis of a plot: "h/R", "P/(E2* R^2)"; empty without a symbol."""
+        return over_scale(self.symbol, self.powers) if self.symbol else ""
+
+    @cached_property
+    def scale(self) -> str:
+        """The scale in words, such as "E2* R^2"; empty for a pure number."""
+        parts = [(s, e) for s, e in zip(("E2*", "R"), self.powers, strict=True) if e]
+        return " ".join(s if e == 1 else f"{s}^{e}" for s, e in parts)
+
+
+def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = ("E2*", "R"), gap: str = " ") -> str:
+    """A symbol over its scale E2*^i R^j: "(dP/dD)/(E2* R)", "N̄ R^2".
+
+    powers : (i, j); scales : how E2* and R are written; gap : what is written between two factors
+    """
+    over: list[str] = []
+    times: list[str] = []
+    for word, power in zip(scales, powers, strict=True):
+        if power:
+            (over if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
+    text = gap.join([f"({symbol})" if "/" in symbol and over else symbol, *times])
+    below = gap.join(over)
+    return text + (f"/({below})" if len(over) > 1 else f"/{below}" if over else "")
+
+
+LISTED = 40  # most names that a message lists
+LONGEST = 100  # most letters of a wrong name that are compared with others
+
+
+def entries(tables: dict) -> dict[str, Entry]:
+    """Name -> row, of tables as those of vocabulary.toml: role -> name -> the other fields."""
+    rows = [(name, role, own) for role, table in tables.items() for name, own in table.items()]
+    return {name: Entry(name, role, **own | {"powers": tuple(own.get("powers", (0, 0)))}) for name, role, own in rows}
+
+
+_TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
+SCENE = entries({"scene": _TABLES.pop("scene")})
+"""Inputs of a study with units that are no parameters of the solver, which only has what follows from them."""
+VOCABULARY = entries(_TABLES)
+ROWS = ChainMap(VOCABULARY, SCENE)
+"""Both, and with them the parameters of registered laws."""
+#: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
+BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
+
+
+_NOT_THERE = tomllib.loads((files(__package__) / "not_there.toml").read_text(encoding="utf-8"))
+_RESULT = _NOT_THERE["results"]["says"]
+
+
+def names(*roles: str) -> tuple[str, ...]:
+    """Names that have one of the roles, in the order of the table; without the parameters of registered laws.
+
+    Parameters
+    ----------
+    roles : "control", "material", "roughness", "numerics", "result", "derived", "coordinate"
+
+    Returns
+    -------
+    tuple of str
+
+    Examples
+    --------
+    >>> names("control")
+    ('P', 'a', 'D')
+    """
+    return tuple(name for role, table in _TABLES.items() if role in roles for name in table)
+
+
+CONTROLS = names("control")
+NUMERICS = names("numerics")
+PARAMETERS = list(names("control", "material", "roughness", "numerics"))
+"""Names of parameters; `study.inputs.laws.update_vocabulary` adds those of registered laws here and to VOCABULARY."""
+
+
+def cases_with(name: str, values) -> np.ndarray:
+    """bool: the cases that have a parameter; `values(other)` gives the texts of another one, on which that depends."""
+    return among(VOCABULARY[name].own.needed_by, values)
+
+
+def matters(name: str, values) -> bool:
+    """Whether the answer of some case may depend on a parameter; `values` as in `cases_with`."""
+    own = VOCABULARY[name].own
+    return all(np.any(among(condition, values)) for condition in (own.needed_by, own.used_by))
+
+
+def attributes(name: str, rigid: bool = False) -> dict:
+    """CF attributes of a dimensionless variable: long_name, and where they apply symbol, scale, equation.
+
+    The long_name ends with what stands on the axis of a plot, "thickness of the layer, h/R". There are no units: CF
+    wants none of a pure number, and xarray would write "[1]" behind every label.
+
+    rigid : of layers on a rigid base, where E1* is the unit of moduli
+    """
+    entry = VOCABULARY[name]
+    words = ", ".join(filter(None, (entry.long_name, entry.ratio)))
+    found = {"long_name": words, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    if rigid:
+        found = {key: text.replace("E2*", "E1*") for key, text in found.items()}
+    return {key: text for key, text in found.items() if text}
+
+
+def allowed(own: Parameter) -> str:
+    """What the values of a parameter must be, as the end of a message: "must be > 0"."""
+    if own.choices:
+        return "must be one of " + ", ".join(f'"{choice}"' for choice in own.choices)
+    low, high = own.interval[1:-1].split(", ")
+    if high == "inf":
+        return f"must be {'>' if own.interval[0] == '(' else '>='} {low}"
+    either = "".join(f"{value} or " for value in own.also)
+    return f"must be {either}in {own.interval}"
+
+
+def check(own: Parameter, value) -> str:
+    """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
+    if own.choices:
+        table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
+        hint = f'; a table of your own is "table:{table}"' * bool(table)
+        return "" if isinstance(value, str) and value in own.choices else allowed(own) + hint
+    if not finite(value):
+        return f"must be a finite number, {allowed(own).removeprefix('must be ')}"
+    if own.whole and value != int(value):
+        return "must be a whole number"
+    return "" if are_within(own, float(value)).all() else allowed(own)  # float: a Decimal may trap a comparison
+
+
+def finite(value) -> bool:
+    """Whether a value is a finite real number that a float can hold; True and False are not numbers here."""
+    try:
+        number = isinstance(value, (numbers.Real, Decimal)) and not isinstance(value, bool)
+        return number and math.isfinite(float(value))
+    except (OverflowError, ValueError):  # ValueError: of a signalling NaN
+        return False
+
+
+def no_parameter(name: str, known, place: str = "") -> str:
+    """The message about a name that is no parameter: what is called so here, what the model lacks, or a name like it.
+
+    place : what stands before the name, such as "[model] "; known : the names to propose
+    """
+    known, hint = list(known), absent(name)
+    if hint == _RESULT:
+        search = "solve for several P, which become an axis, and interpolate in it, or find P by scipy.optimize.brentq"
+        hint += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
+    like = [one for one in known if one[0].lower() == str(name)[:1].lower()]  # one letter more or less: Er is no R
+    near = suggest(name, like, known)
+    return f"{place}{shown(str(name))} is not a parameter{f'; {hint}' if hint else near}"
+
+
+def absent(name: str) -> str:
+    """What not_there.toml says of a name that is no parameter, "" if nothing; results are in it too.
+
+    The whole name is looked for, then its parts, of which the first in that file counts: "friction_coeff", "E_film".
+    """
+    name = str(name)[:LONGEST]
+    if name in PARAMETERS or name in SCENE:
+        return ""
+    known = _ABSENT | dict.fromkeys((one for one in names("result", "derived") if one not in _ABSENT), _RESULT)
+    whole = (name, _as_word(name), _as_word(re.sub(r"[\d*']", "", name)))
+    first, *others = re.split(r"[\s_.*-]+", name)
+    parts = [re.sub(r"\d+$", "", first)] * bool(others) + [_as_word(one) for one in (first, *others) if len(one) > 2]
+    found = [known[one] for one in whole if one in known] or [says for one, says in known.items() if one in parts]
+    return found[0] if found else ""
+
+
+def _as_word(name: str) -> str:
+    """A name of three letters or more in small letters, without blanks and underscores; a shorter one as it is."""
+    return re.sub(r"[\s_-]", "", name).lower() if len(name) > 2 else name
+
+
+_ABSENT = {_as_word(word): entry["says"] for entry in _NOT_THERE.values() for word in entry["words"]}
+
+
+def suggest(word: str, known, listed=None) -> str:
+    """The end of a message: '; did you mean "Nbar"?' when a known word is near, else what is known, or `listed`."""
+    lower = {name.lower(): name for name in known}
+    near = difflib.get_close_matches(str(word).lower()[:LONGEST], lower, n=1, cutoff=0.6)
+    if near:
+        return f'; did you mean "{lower[near[0]]}"?'
+    listed = list(listed or known)
+    return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))

@@ -1,0 +1,113 @@
+"""A dataset of dask arrays: a chunk of the grid is solved when its numbers are asked for, wherever dask computes."""
+
+from dataclasses import replace
+from typing import NamedTuple
+from uuid import uuid4
+
+import dask.array
+import numpy as np
+import xarray as xr
+from dask.array.core import normalize_chunks
+
+from solver import laws
+from solver.laws import Law
+
+from .data.dataset import labelled, not_run, parts
+from .data.si import dataset_of
+from .inputs.definition import Definition, StudyError
+from .inputs.grid import MOVED, cut_out
+from .terminal import shown
+from .work.cases import compute, own_laws, parcel
+from .work.engine import blocks_of_grid
+
+
+class Chunks(NamedTuple):
+    """What every task gets.
+
+    definition : of the whole grid
+    ends : dimension of the grid -> where its chunks end, with 0 before them
+    laws : micro laws that another process may not have registered
+    """
+
+    definition: Definition
+    ends: dict[str, np.ndarray]
+    laws: tuple[Law, ...]
+
+    def within(self, place: tuple[int, ...]) -> Definition:
+        """The definition of the cases in the chunk at a place, which has one number for each dimension."""
+        window = {MOVED: slice(None)} if MOVED in self.definition.grid.sizes else {}
+        for (dim, ends), number in zip(self.ends.items(), place, strict=True):
+            window[dim] = slice(int(ends[number]), int(ends[number + 1]))
+        scene = self.definition.scene and self.definition.scene.within(window)
+        return replace(self.definition, grid=cut_out(self.definition.grid, window), scene=scene)
+
+
+def lazily(definition: Definition, chunks: dict, command: str) -> xr.Dataset:
+    """The dataset of a grid whose results are dask arrays. The solver has one task for each chunk.
+
+    chunks : dimension of the results -> length of a chunk, or the lengths of all; -1 or no entry: the dimension whole
+
+    Raises StudyError for chunks that do not fit the grid.
+    """
+    dims = definition.in_results({dim: dim for dim in definition.grid.sizes})
+    lengths = _lengths(chunks, definition.in_results(definition.grid.sizes))
+    ends = {dim: np.cumsum([0, *own]) for dim, own in zip(dims.values(), lengths, strict=True)}
+    each = Chunks(definition, ends, tuple(own_laws(definition.grid.values["micro"][1])))
+    ones = tuple((1,) * len(own) for own in lengths)
+    results = np.empty((0,) * len(ones), dtype=object)
+    solved = dask.array.map_blocks(_solved, each, chunks=ones, meta=results, name=f"solve-{uuid4().hex}")
+    # one case, not solved, has the names, types, dimensions and attributes of all results
+    first = each._replace(ends={dim: np.array([0, 1]) for dim in ends}).within((0,) * len(ends))
+    first_case = _dataset(first, not_run(first, first.grid.size), command)
+    found = dataset_of(definition, labelled(definition, {}, command).settings_apart())
+    variables = {}
+    for name, array in first_case.data_vars.items():
+        more = {"new_axis": len(ones)} if "x" in array.dims else {}
+        there = (*lengths, (len(definition.x),)) if more else lengths
+        nothing = np.empty((0,) * array.ndim, array.dtype)
+        results = solved.map_blocks(_taken, name, chunks=there, meta=nothing, **more)
+        variables[name] = xr.Variable(array.dims, results, array.attrs)
+    return found.assign(variables)
+
+
+def _lengths(chunks: dict, sizes: dict[str, int]) -> tuple[tuple[int, ...], ...]:
+    """The lengths of the chunks along each dimension of the results, whose lengths are `sizes`."""
+    if not isinstance(chunks, dict):
+        raise StudyError([f'chunks = {shown(chunks)}: must be a dictionary such as {{"P": 10}}'])
+    wrong, dims = [], ", ".join(sizes) or "the results have none"
+    for name, length in chunks.items():
+        if name not in sizes:
+            wrong.append(f"chunks: {shown(name)} is no dimension of the grid ({dims})")
+        elif not _fits(length, sizes[name]):
+            what = f"a whole number, 1 or more, -1 for all, or a tuple of lengths that together are {sizes[name]}"
+            wrong.append(f"chunks: {name} = {shown(length)}: must be {what}")
+    if wrong:
+        raise StudyError(wrong)
+    return normalize_chunks(tuple(chunks.get(name, -1) for name in sizes), tuple(sizes.values()))
+
+
+def _fits(length: object, size: int) -> bool:
+    parts = length if isinstance(length, tuple) else (length,)
+    whole = all(type(part) is int and part > 0 for part in parts)
+    return length == -1 or (whole and (parts is not length or sum(parts) == size))
+
+
+def _solved(each: Chunks, block_id: tuple[int, ...]) -> np.ndarray:
+    """The results of a chunk, name -> values, as the only element of an array with as many dimensions as the grid."""
+    for law in each.laws:
+        laws.register(law)
+    here = each.within(block_id)
+    blocks = [compute(parcel(here, index)) for index in blocks_of_grid(here)]
+    arrays = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
+    found = np.empty((1,) * len(block_id), dtype=object)
+    found[(0,) * len(block_id)] = {name: own.values for name, own in _dataset(here, arrays, "").data_vars.items()}
+    return found
+
+
+def _dataset(here: Definition, arrays: dict[str, np.ndarray], command: str) -> xr.Dataset:
+    return dataset_of(here, parts(here, arrays, command))
+
+
+def _taken(results: np.ndarray, name: str) -> np.ndarray:
+    """The values of one result of a chunk."""
+    return results.item()[name]

@@ -1,1 +1,0 @@
-"""Physical scenes: from numbers with units to dimensionless parameters, and from results to SI units."""

@@ -1,0 +1,111 @@
+"""Copies of the tree, in each of which a child of this process does one task after another."""
+
+import compileall
+import json
+import os
+import resource
+import shutil
+import signal
+import sys
+import time
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+# Not the repository either: in a worktree it is a pointer, and a test that ends in the middle would lock the real one.
+NOT_COPIED = {"results", "figures", "tables", "build", "dist", ".git", ".venv", ".hypothesis", ".pytest_cache"}
+NIGHT = 40_000.0  # seconds for what has no measure
+MEMORY = 8_000_000_000  # bytes: a mutant may ask for all there are
+
+
+@dataclass(frozen=True)
+class Task:
+    """What a child does: `action(folder)` gives its answer (JSON). `change`: a file and its text while it runs."""
+
+    key: object
+    action: Callable[[Path], object]
+    seconds: float = NIGHT
+    change: tuple[str, str] | None = None
+
+
+def answers(tasks: list[Task], folders: list[Path]) -> Iterator[tuple[Task, object]]:
+    """Tasks and their answers as they come, one child in each folder at a time; a text when a child gave none."""
+    free, running, left, clock, last = list(folders), {}, tasks[::-1], 0.0, time.monotonic()
+    try:
+        while left or running:
+            while left and free:
+                task, folder = left.pop(), free.pop()
+                running[_begun(task, folder)] = task, folder, clock + task.seconds
+            time.sleep(0.01)
+            last, before = time.monotonic(), last
+            clock += min(last - before, 1.0)  # it stands while this process is stopped or the machine asleep
+            for child, (task, folder, end) in list(running.items()):
+                late = clock > end
+                if late or os.waitid(os.P_PID, child, os.WEXITED | os.WNOHANG | os.WNOWAIT):
+                    _swept(child)
+                    del running[child]
+                    yield task, "takes too long" if late else _answer(folder)
+                    if task.change:
+                        os.replace(folder.with_suffix(".kept"), folder / task.change[0])
+                    free.append(folder)
+    finally:
+        for child in running:
+            _swept(child)
+
+
+def _begun(task: Task, folder: Path) -> int:
+    """Fork the child of a task; returns its process id."""
+    answer = folder.with_suffix(".json")
+    answer.unlink(missing_ok=True)
+    if task.change:
+        path, text = folder / task.change[0], task.change[1]
+        shutil.copy2(path, folder.with_suffix(".kept"))  # beside the tree: tests ask which files a package has
+        path.write_text(text, encoding="utf-8")
+        os.utime(path, (315_619_200,) * 2)  # 1980, the first year of zip; else a compiled form of this second may count
+    child = os.fork()
+    if child:
+        return child
+    try:
+        os.setsid()
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        log = os.open(folder.with_suffix(".log"), os.O_WRONLY | os.O_CREAT | os.O_TRUNC)
+        os.dup2(log, 1), os.dup2(log, 2)
+        os.chdir(folder)
+        tests = folder / "tests"
+        sys.path[:] = [str(folder), str(tests), str(tests / "shared"), *sys.path[1:]]  # the first was that of this file
+        sys.modules["__main__"] = ModuleType("__main__")  # which worker processes import
+        for name in ("mutants", "mutate", "copies"):  # tests import those in the folder
+            sys.modules.pop(name, None)
+        sys.dont_write_bytecode = True  # nor may that of the mutant before, of the same size
+        os.environ |= {"PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+        answer.write_text(json.dumps(task.action(folder)))
+    except BaseException:
+        answer.write_text(json.dumps(traceback.format_exc()))
+    finally:
+        os._exit(0)
+
+
+def _swept(child: int) -> None:
+    """End a child and what it has begun."""
+    for kill in (os.killpg, os.kill):  # it may not lead its group yet
+        with suppress(ProcessLookupError):
+            kill(child, signal.SIGKILL)
+    os.waitpid(child, 0)
+
+
+def _answer(folder: Path) -> object:
+    try:
+        return json.loads(folder.with_suffix(".json").read_text())
+    except (OSError, ValueError):
+        return "ends the process of the tests"
+
+
+def copy(root: Path, folder: Path) -> None:
+    """Copy what the tests need of a tree."""
+    shutil.copytree(root, folder, ignore=lambda at, names: NOT_COPIED & set(names) if Path(at) == root else [])
+    for package in ("solver", "study", "studies"):
+        compileall.compile_dir(folder / package, quiet=1)

@@ -137,7 +137,7 @@ def solve(
         are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
         one chunk
     sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
-        that is a number; by a Poisson ratio d ln a/d ratio. B and beta that are fitted to Nbar and Ra stay as they are
+        that is a number, as `study.sensitivities` gives them
     parameters : of registered laws
 
     Returns

@@ -6,14 +6,20 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from solver import Problem, sensitivities, solve
-from solver.parameters import PARAMETERS, uses
+from solver import Problem, solve
+from solver import sensitivities as derivatives
+from solver.laws import LAWS
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+from solver.parameters import uses
 from solver.sensitivity import is_ratio
 
-from .inputs.definition import Definition
-from .inputs.grid import MOVED, columns
+from .data.assumptions import has_units
+from .inputs.definition import StudyError
+from .inputs.laws import recall
 from .inputs.scene.scales import make_dimensionless
-from .inputs.vocabulary import SCENE, VOCABULARY
+from .inputs.scene.scene import Scene
+from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
+from .terminal import shown
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
@@ -26,59 +32,112 @@ _RATIOS = ("nu1", "nu2", "nu_punch")
 _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
 
 
-def with_sensitivities(definition: Definition, found: xr.Dataset) -> xr.Dataset:
-    """The dataset `found` of a study with NAME_sensitivity of its results. The cases are solved once more."""
-    grid, axes = definition.grid, list(definition.grid.sizes)
-    index = np.arange(grid.size).reshape(grid.shape)
-    index = index.take(0, axes.index(MOVED)) if MOVED in axes else index
-    given = columns(grid, index.ravel())
-    problem = Problem.of(**given)
-    used = [name for name in PARAMETERS if name in given and _counts(problem, name)]
-    solved = sensitivities(problem, solve(problem), inputs=(problem.control, *used))
+def sensitivities(contact: xr.Dataset) -> xr.Dataset:
+    """Derivatives of results by their inputs: d ln result/d ln input; by a Poisson ratio d ln result/d ratio.
+
+    The cases are solved again from the inputs that the dataset has. Held fixed are all other inputs: the one of P, a
+    and D that is given, and with it B and beta that were fitted, and the model that `base = "auto"` took.
+
+    Parameters
+    ----------
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
+
+    Returns
+    -------
+    xarray.Dataset : `a_sensitivity`, and so on of P, D, p0, p_max, Ar_An and dP_dD, over the dimensions of the contact
+        and `input`, the names of its inputs that are numbers; NaN of cases that have not converged. 0 where an input
+        does not act or is 0
+
+    Raises
+    ------
+    StudyError : a dataset that is no result of `study.solve`, has lost an input or SI units, or has an unknown law
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
+    >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
+    0.333333
+    """
+    inputs = _checked(contact)
+    dims, shape = contact["status"].dims, contact["status"].shape
+    scene = _scene(inputs) if "R" in inputs else None
+    numbers = scene.parameters if scene else inputs
+    problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
+    solution = solve(problem)
+    solved = derivatives(problem, solution, inputs=(problem.control, *used))
     logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
-    dims = definition.in_results(grid.sizes)
-    if definition.scene:
-        over = [dim for dim in axes if dim != MOVED]
-        inputs = _in_si(definition.scene, over, index.shape)
-        logs = {name: _by_si(logs[name], inputs, VOCABULARY[name].powers) for name in QUANTITIES}
+    if scene:
+        changes = _in_si(scene, dims, shape)
+        logs = {name: _by_si(logs[name], changes, VOCABULARY[name].powers) for name in QUANTITIES}
     # of the control they are known, to the last bit
-    control = problem.control
+    control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
     logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
     variables = {}
     for name in QUANTITIES:
-        values = np.stack(list(logs[name].values()), axis=-1).reshape(*index.shape, -1)
+        values = np.where(good[:, None], np.stack(list(logs[name].values()), axis=-1), np.nan)
         about = {"long_name": f"sensitivity of {name}", "comment": _COMMENT}
-        variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values, about)
-    return found.assign(variables).assign_coords(input=list(logs["a"]))
+        variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
+    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
+    return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
+
+
+def _checked(contact: xr.Dataset) -> dict[str, Any]:
+    """The inputs of the cases: numbers and texts, or DataArrays without coordinates. Raises StudyError."""
+    if not isinstance(contact, xr.Dataset) or "status" not in contact:
+        raise StudyError(["sensitivities takes a dataset of study.solve or of a results file, with its status"])
+    recall(contact.attrs.get("micro_laws", ""))
+    settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
+    there = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
+    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in there]
+    wrong += ["must have one of P, a and D as a coordinate"] * (len({*there} & {*CONTROLS}) != 1)
+    if wrong:
+        raise StudyError([f"sensitivities: the dataset {wrong[0]}: its cases cannot be solved again"])
+    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in there if ROWS[name].unit != "1"}
+    if units == {True, False} or has_units(contact) != ("R" in there and "E2" in there):
+        raise StudyError(["sensitivities needs all in SI units, as study.solve gives them, or all without units"])
+    unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
+    if unknown:
+        raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
+    return settings | {name: _without_coordinates(contact[name]) for name in there}
+
+
+def _without_coordinates(array: xr.DataArray) -> Any:
+    values = array.values.astype(str) if array.dtype.kind == "O" else array.values
+    return xr.DataArray(values, dims=array.dims) if array.dims else values.item()
+
+
+def _scene(inputs: dict[str, Any]) -> Scene:
+    """The scene of inputs in SI units. What follows from others is computed again."""
+    follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
+    in_si = [name for name in inputs if name in SCENE or name in _RATIOS or VOCABULARY[name].powers != (0, 0)]
+    others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
+    scene = Scene(given={name: inputs[name] for name in in_si}, parameters=others)
+    make_dimensionless(scene)
+    return scene
 
 
 def _counts(problem: Problem, name: str) -> bool:
     """Whether an input is a number on which the answer of some case depends, and no setting."""
-    own = PARAMETERS[name]
+    own = SOLVER_PARAMETERS[name]
     setting = VOCABULARY[name].role == "numerics" if name in VOCABULARY else False
     counts = own.interval and not own.whole and not setting
     return bool(counts and np.any(uses(name, lambda key: getattr(problem, key))))
 
 
-def _in_si(scene: Any, dims: list[str], shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
+def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
     """Input -> what changes with its logarithm, or with a Poisson ratio itself: the logarithms of the solver's inputs
     and of the scales, (B,) each, and Poisson ratios themselves."""
-    given = {name: _as_given(value) for name, value in scene.given.items()}
-    default = VOCABULARY["nu1"].own.default
-    given |= {nu: default for E, nu in (("E1", "nu1"), ("E2", "nu2")) if E in given and nu not in given}
-    scene = replace(scene, given=given)
-    names = [name for name in given if np.all(np.isfinite(given[name])) and not (name == "R" and "R1" in given)]
+    given = scene.given
+    names = [name for name in given if np.any(np.isfinite(given[name])) and not (name == "R" and "R1" in given)]
     own = [name for name in PARAMETERS if name in scene.parameters and name not in given and name not in ("n", "m")]
     own += ["n"] * ("E1" not in given) + ["m"] * ("E_punch" not in given)
     ones = np.ones(int(np.prod(shape)))
     return {name: _changes(scene, name, dims, shape) for name in names} | {name: {name: ones} for name in own}
 
 
-def _as_given(value: Any) -> Any:
-    return value.isel({MOVED: 0}) if MOVED in getattr(value, "dims", ()) else value
-
-
-def _changes(scene: Any, name: str, dims: list[str], shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+def _changes(scene: Scene, name: str, dims: tuple, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
     value, ends = scene.given[name], []
     value = np.minimum(value, 0.5 - 2 * _STEP) if name in _RATIOS else value
     for sign in (1, -1):
@@ -97,10 +156,10 @@ def _changes(scene: Any, name: str, dims: list[str], shape: tuple[int, ...]) -> 
     return found
 
 
-def _flat(value: Any, dims: list[str], shape: tuple[int, ...]) -> np.ndarray:
-    """A number or a DataArray for all cases, (B,)."""
+def _flat(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
+    """A number, a text or a DataArray for all cases, (B,)."""
     if not isinstance(value, xr.DataArray):
-        return np.full(int(np.prod(shape)), float(value))
+        return np.full(int(np.prod(shape)), value)
     sizes, ordered = value.sizes, value.transpose(*(dim for dim in dims if dim in value.dims))
     return np.broadcast_to(ordered.values.reshape([sizes.get(dim, 1) for dim in dims]), shape).ravel()
 

@@ -16,7 +16,7 @@ from solver.laws import Law
 from .carried import with_coordinates
 from .data.dataset import parts
 from .data.si import dataset_of
-from .derivatives import with_sensitivities
+from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, doubts, far_outside
 from .inputs.definition import POINTS, StudyError
 from .inputs.reading import from_call
@@ -137,7 +137,7 @@ def solve(
         are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
         one chunk
     sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
-        that is a number; by a Poisson ratio d ln a/d ratio. B and beta that are fitted to Nbar and Ra stay as they are
+        that is a number, as `study.sensitivities` gives them
     parameters : of registered laws
 
     Returns
@@ -184,7 +184,7 @@ def solve(
     if chunks is None:
         arrays = solved(definition, workers, stream, begun)
         found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
-        found = with_sensitivities(definition, found) if sensitivities else found
+        found = found.assign(derivatives_of(found).data_vars) if sensitivities else found
     else:
         from .lazy import lazily  # the arrays of dask take a while to import
 

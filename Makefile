@@ -82,6 +82,7 @@ fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crash
 	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800
 	$(VENV)/bin/python tests/fuzz/fuzz_studies.py 2000
 	$(VENV)/bin/python tests/fuzz/fuzz_files.py 400
+	$(VENV)/bin/python tests/fuzz/kill_runs.py 10
 
 bench: $(READY) ## speed of the solver: bench.json
 	$(VENV)/bin/python tests/bench/benchmark.py bench.json

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .data import derived, units
     from .data.dataset import decode
     from .data.units import from_physical, readable, reduced_modulus, to_physical
+    from .derivatives import sensitivities
     from .figures.lines import plot
     from .figures.registry import drawing, figure, table
     from .files.results_file import open_results
@@ -48,6 +49,7 @@ __all__ = [
     "readable",
     "reduced_modulus",
     "roughness",
+    "sensitivities",
     "solve",
     "summary",
     "table",
@@ -57,6 +59,7 @@ __all__ = [
 ]
 _HOME = {
     "solve": "solving",
+    "sensitivities": "derivatives",
     "load": "api",
     "Study": "api",
     "open_results": "files.results_file",

@@ -5,8 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from .inputs.scene.bodies import BODIES
-from .inputs.vocabulary import ROWS
+from .inputs.vocabulary import BODIES, ROWS
 from .specimen.foreign import plain
 
 

@@ -162,7 +162,7 @@ def captions(results: Folder = "results") -> str:
 def save(stem: Path, figure: Figure, columns: Columns, title: str) -> list[Path]:
     """Write what `compose` gives as STEM.csv, .pdf and .png."""
     rows = zip(*(np.asarray(column).tolist() for column in columns.values()), strict=True)
-    contents = {"csv": csv_text(columns, rows)}
+    contents: dict[str, str | bytes] = {"csv": csv_text(columns, rows)}
     for ending, dated in (("png", {}), ("pdf", {"CreationDate": None})):
         page = io.BytesIO()
         with style():

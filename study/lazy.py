@@ -18,7 +18,7 @@ from .inputs.definition import Definition, StudyError
 from .inputs.grid import MOVED, cut_out
 from .terminal import shown
 from .work.cases import compute, own_laws, parcel
-from .work.share import blocks_of_grid
+from .work.engine import blocks_of_grid
 
 
 class Chunks(NamedTuple):

@@ -16,17 +16,16 @@ from solver.laws import Law
 from .carried import with_coordinates
 from .data.dataset import parts
 from .data.si import dataset_of
+from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, doubts, far_outside
-from .inputs.definition import LARGE, POINTS, StudyError, complete
-from .inputs.given import Draft
-from .inputs.reading import complete as complete_scene
-from .inputs.scene.reading import read as read_scene
+from .inputs.definition import POINTS, StudyError
+from .inputs.reading import from_call
 from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .specimen.materials import Material
 from .terminal import shown
+from .work.engine import solved
 from .work.screen import screen_of
-from .work.share import solved
 
 Many = Sequence | np.ndarray | xr.DataArray
 """Several values: of a dimension called like the parameter, or over the dimensions of the DataArray."""
@@ -90,6 +89,7 @@ def solve(
     same_piece: bool = False,
     progress: bool | None = None,
     chunks: dict | None = None,
+    sensitivities: bool = False,
     **parameters: Unpack[Parameters],
 ) -> xr.Dataset:
     """Solve the contact problem on a grid and return a labelled dataset.
@@ -136,6 +136,8 @@ def solve(
     chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
         are asked for, by the scheduler of dask that is then active, one task a chunk. A dimension that is not there is
         one chunk
+    sensitivities : whether the dataset holds `a_sensitivity` and so on over `input`: d ln a/d ln input, of each input
+        that is a number, as `study.sensitivities` gives them
     parameters : of registered laws
 
     Returns
@@ -173,25 +175,16 @@ def solve(
     if cases is not None and not (rows and len(rows) == len(cases)):
         table = ' (of a table of pandas: cases=table.to_dict("records"))' * hasattr(cases, "to_dict")
         raise StudyError([f"cases must be a list of dictionaries, at least one{table}"])
-    if not isinstance(same_piece, (bool, np.bool_)):
-        raise StudyError([f"same_piece = {shown(same_piece)}: must be true or false"])
-    draft = Draft()
-    draft.laws([given.get("micro") for given in (parameters, *rows)])
-    scene = read_scene(parameters, cases, same_piece=bool(same_piece))
-    about = {"title": title, "output": {"x": x, "profiles": profiles}}, "solve", "", "solve"
-    if scene:
-        definition = complete_scene(draft, scene, [], about, most=LARGE)
-    else:
-        if cases is not None:
-            draft.cases(cases)
-        for name, given in parameters.items():
-            draft.of_any_form(name, given)
-        definition = complete(draft, *about, LARGE)
+    if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
+        raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
+    tables = {"title": title, "output": {"x": x, "profiles": profiles}}
+    definition = from_call(parameters, rows, same_piece, tables)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     if chunks is None:
         arrays = solved(definition, workers, stream, begun)
         found = dataset_of(definition, parts(definition, arrays, "study.solve").settings_apart())
+        found = found.assign(derivatives_of(found).data_vars) if sensitivities else found
     else:
         from .lazy import lazily  # the arrays of dask take a while to import
 
@@ -199,7 +192,7 @@ def solve(
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:
         warnings.warn(text, stacklevel=2)
-    beyond = doubts(found) if scene and chunks is None else []
+    beyond = doubts(found) if definition.scene and chunks is None else []
     if beyond:
         warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found

@@ -12,7 +12,7 @@ from ..numerics.ladder import LADDER, climb, finer_mesh, first_rung
 from ..numerics.mesh import mesh_of
 from ..solution import Solution
 from ..status import Status
-from .answer import Answer, answer, hopeless, stuck, tensile_centre
+from .answer import Answer, Goal, Verdict, answer, at_floor, may_be_error, tensile_centre
 from .driver import BUDGET, newton_steps, solve_on
 from .equation import evaluate
 from .panels import solve_on_panels
@@ -21,6 +21,11 @@ from .start import first_guess, guess_radius, nodes_wanted
 #: Panels are halved until the last coefficients on each are small against rtol. If the error is then still above rtol,
 #: they are halved until these coefficients are small against this times rtol.
 _FINER = 0.03
+#: The table of :class:`.answer.Verdict`: which cases go to panels when no finer mesh follows, and the status of those
+#: that end. A verdict that is not there leaves the status as it is.
+_TO_PANELS = (Verdict.LIFTED, Verdict.OPEN, Verdict.STUCK, Verdict.COARSE)
+_ENDS = dict.fromkeys((Verdict.FLOOR, Verdict.STUCK, Verdict.COARSE), Status.TOLERANCE_NOT_MET)
+_ENDS[Verdict.SPENT] = Status.BUDGET_SPENT
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
@@ -37,53 +42,42 @@ def solve_newton(cases, rtol, nodes, limit, x):
         begin = first_guess(part, mesh, a[index]) if start is None else start
         iterated = solve_on(evaluate(part, begin, mesh), limit)
         work[index] += iterated.count * part.body.work(a[index], n)[1]
-        goes_on = free[index] & (n < LADDER[-1]) & (work[index] <= BUDGET)
-        found = answer(iterated, x, np.where(goes_on, rtol[index], np.inf), before[index])
-        useless = (found.solution.status != Status.CONVERGED) | _hopeless(found, rtol[index])
-        useless |= stuck(found.solution.error, found.slow, n, rtol[index]) | (work[index] > BUDGET)
-        error = np.where(free[index] & found.unsure, np.inf, found.solution.error)
-        before[index] = error
-        return np.where(useless, np.nan, error), found.finer, found._replace(finer=None)
+        spent = work[index] > BUDGET
+        finer = free[index] & (n < LADDER[-1]) & ~spent
+        answered = answer(iterated, x, Goal(rtol[index], before[index], free[index], finer, spent))
+        error = answered.solution.error
+        before[index] = np.where(free[index] & may_be_error(answered.tension, error), np.inf, error)
+        error = np.where(answered.verdict == Verdict.COARSE, np.inf, np.nan)  # on to the next mesh, or not
+        return error, answered.finer, answered._replace(finer=None)
 
     rungs = climb(rtol, nodes, on_mesh, first_rung(nodes_wanted(cases, rtol, a)), cases.body.order(a))
-    found = _together(rungs, size, len(x))
-    undecided = ~free & found.unsure  # no finer mesh will judge the tension: its part of the load is an error
-    np.maximum(found.solution.error, found.tension, out=found.solution.error, where=undecided)
-    lifted, closed = found.lifted(cases.edge), found.solution.status == Status.CONVERGED
-    missed, spent = closed & ((found.solution.error > rtol) | (free & found.unsure)), work > BUDGET
-    unfinished = (missed | lifted | ~closed) & (lifted | ~_hopeless(found, rtol))
-    rest = np.flatnonzero(unfinished & free & (limit == 0) & ~spent)
-    ends = [([i], _on_panels(cases.take([i]), found.take([i]), rtol[i], x, BUDGET - work[i])) for i in rest]
-    # where the budget is spent, no panels can confirm that the punch lifts off: the error counts as too large
-    ended = _ended(found.solution, missed | (lifted & spent), lifted & ~spent, spent)
+    answered = _together(rungs, size, len(x))
+    rest = np.flatnonzero(np.isin(answered.verdict, _TO_PANELS) & free & (limit == 0))
+    ends = [([i], _on_panels(cases.take([i]), answered.take([i]), rtol[i], x, BUDGET - work[i])) for i in rest]
+    ended = _ended(answered.solution, answered.verdict)
     return Solution.join(size, len(x), [(np.arange(size), ended), *ends]) if ends else ended
 
 
 def _together(rungs, size, points):
     """:class:`.answer.Answer` of `size` cases from those on all meshes, (index, answer): the last one of each case,
     with the steps of all."""
-    count, (tension, floor) = np.zeros(size, int), np.zeros((2, size))
-    gap, slow = np.zeros((2, size), bool)
-    for index, found in rungs:
-        count[index] += found.solution.iterations
-        tension[index], gap[index], slow[index], floor[index] = found[1:-1]
-    solution = Solution.join(size, points, [(index, found.solution) for index, found in rungs])
-    return Answer(replace(solution, iterations=count.astype(np.int32)), tension, gap, slow, floor, None)
+    count, tension, gap = np.zeros(size, int), np.zeros(size), np.zeros(size, bool)
+    verdict = np.zeros(size, np.int8)
+    for index, answered in rungs:
+        count[index] += answered.solution.iterations
+        tension[index], gap[index], verdict[index] = answered[1:-1]
+    solution = Solution.join(size, points, [(index, answered.solution) for index, answered in rungs])
+    return Answer(replace(solution, iterations=count.astype(np.int32)), tension, gap, verdict, None)
 
 
-def _hopeless(found, rtol):
-    """(B,) bool: the error is above rtol, and no mesh will make it smaller."""
-    closed, error = found.solution.status == Status.CONVERGED, found.solution.error
-    return closed & hopeless(error, found.slow, found.floor, rtol) & ~found.unsure
-
-
-def _ended(solution, missed, lifted, spent):
-    """The solution with its final status. missed, lifted, spent : (B,) bool: the error is above rtol, the punch lifts
-    off, the budget is spent."""
-    status = np.where(missed, np.where(spent, Status.BUDGET_SPENT, Status.TOLERANCE_NOT_MET), solution.status)
-    over = (status == Status.ITERATION_LIMIT) & (spent | (solution.iterations >= newton_steps(solution.nodes)))
-    status = np.where(over, Status.BUDGET_SPENT, status).astype(np.int8)
-    return replace(solution, status=status).refused(lifted, Status.LIFT_OFF)
+def _ended(solution, verdict):
+    """The solution with its final status: that of the `verdict` (B,), :class:`.answer.Verdict`."""
+    status, has_numbers = solution.status.copy(), solution.status != Status.DIVERGED
+    for of_case, by in _ENDS.items():
+        status[(verdict == of_case) & has_numbers] = by
+    over = (status == Status.ITERATION_LIMIT) & (solution.iterations >= newton_steps(solution.nodes))
+    status[over] = Status.BUDGET_SPENT
+    return replace(solution, status=status).refused(verdict == Verdict.LIFTED, Status.LIFT_OFF)
 
 
 def _on_panels(case, before, rtol, x, left):
@@ -105,18 +99,26 @@ def _on_panels(case, before, rtol, x, left):
         if at is not None and iterated.at.mesh == at.mesh:
             break  # no finer panels than those before
         at = iterated.at
-        found = answer(iterated, x, before=0.0)  # so `slow` is True: finer panels hardly lower the error
-        left -= case.body.work(found.solution.a, finer_mesh(at.mesh).n)[0][0]
-        lifted = (found.gap | found.lifted(case.edge)) & (not resolved)
+        answered = answer(iterated, x)
+        left -= case.body.work(answered.solution.a, finer_mesh(at.mesh).n)[0][0]
+        lifted = (answered.gap | answered.lifted(case.edge)) & (not resolved)
         if lifted[0]:
             continue
-        resolved = True
-        if not found.gap[0] and found.solution.error[0] < np.nan_to_num(best.error[0], nan=np.inf):
-            best = found.solution
+        resolved, error = True, answered.solution.error
+        if not answered.gap[0] and error[0] < np.nan_to_num(best.error[0], nan=np.inf):
+            best = answered.solution
         missed = (best.status == Status.CONVERGED) & (best.error > rtol)
-        if best.status[0] == Status.CONVERGED and (not missed[0] or _hopeless(found, rtol)[0]):
+        # finer panels hardly lower an error
+        useless = at_floor(error, True, at.floor, rtol) & ~may_be_error(answered.tension, error)
+        if best.status[0] == Status.CONVERGED and (not missed[0] or useless[0]):
             spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))
     lifted |= tensile_centre(best, case.edge)
-    return _ended(best, missed, lifted, spent)
+    ends = {
+        Verdict.LIFTED: lifted,
+        Verdict.SOLVED: (best.status == Status.CONVERGED) & ~missed,
+        Verdict.SPENT: np.array([spent]),
+        Verdict.COARSE: missed,
+    }
+    return _ended(best, np.select(list(ends.values()), list(ends), Verdict.OPEN))

@@ -1,5 +1,6 @@
-"""What an iteration on a mesh has found: the solution with its error and profiles, and whether the punch lifts off."""
+"""What an iteration on a mesh has found: the solution with its error and profiles, and what becomes of each case."""
 
+from enum import IntEnum
 from functools import lru_cache
 from typing import NamedTuple
 
@@ -26,21 +27,61 @@ _FALLS, _LATE, _FAR = 0.5, 48, 100.0
 _NOISE = 30.0
 
 
+class Verdict(IntEnum):
+    """What becomes of a case on a mesh: of these conditions the first that holds. :func:`_verdicts` has them in code.
+
+    ========  ==========================================================  ==============================================
+    verdict   condition                                                   what happens
+    ========  ==========================================================  ==============================================
+    SOLVED    closed; the error is at most rtol; no tension               it ends, converged
+    SPENT     the budget is spent                                         it ends, budget_spent
+    LIFTED    tension that is no error; the error sends it to no finer    panels confirm it; it ends, lift_off
+              mesh, or there is none
+    OPEN      the iteration has not closed                                panels; else it ends with the status it has
+    FLOOR     the error is above rtol, and that of the operator           it ends, tolerance_not_met
+    STUCK     on a fine mesh the error is far above rtol and hardly       panels; else it ends, tolerance_not_met
+              smaller than on the mesh before
+    COARSE    the error is above rtol, or there is tension that may be    the next finer mesh; after the last panels,
+              no more than the error                                      else it ends, tolerance_not_met
+    ========  ==========================================================  ==============================================
+
+    There are no panels for cases whose `nodes` or `max_iterations` are given. Panels end by the same statuses.
+    """
+
+    SOLVED = 0
+    SPENT = 1
+    LIFTED = 2
+    OPEN = 3
+    FLOOR = 4
+    STUCK = 5
+    COARSE = 6
+
+
+class Goal(NamedTuple):
+    """What the cases (B,) of a mesh want: `rtol`; `before`, their error on the mesh before, inf on the first; `free`,
+    bool, whether their mesh is chosen by rtol; `finer`, bool, whether a finer one may follow; `spent`, bool, whether
+    their budget is."""
+
+    rtol: np.ndarray
+    before: np.ndarray
+    free: np.ndarray
+    finer: np.ndarray
+    spent: np.ndarray
+
+
 class Answer(NamedTuple):
     """The solution of B cases, and what tells whether the punch lifts off and whether a finer mesh is of use.
 
     tension : (B,), the tensile part of the load over the load; 0 where the edge pulls
     gap : (B,) bool, there is a gap inside the contact. Gap or tension may also mean a mesh that is too coarse
-    slow : (B,) bool, the error is hardly smaller than on the mesh before
-    floor : (B,), no mesh brings the error below this
+    verdict : (B,) int8, a :class:`Verdict`; COARSE where there is no goal
     finer : the state on the next finer mesh, with which that mesh begins
     """
 
     solution: Solution
     tension: np.ndarray
     gap: np.ndarray
-    slow: np.ndarray
-    floor: np.ndarray
+    verdict: np.ndarray
     finer: State | None
 
     def take(self, index):
@@ -50,12 +91,7 @@ class Answer(NamedTuple):
     def lifted(self, edge):
         """(B,) bool: there is tension, in all or in the centre, which is too large to be an error, though the `edge`
         does not pull."""
-        return (self.tension > np.fmax(10 * self.solution.error, _TENSION)) | tensile_centre(self.solution, edge)
-
-    @property
-    def unsure(self):
-        """(B,) bool: there is tension, and it may be no more than its error: a finer mesh will tell."""
-        return (self.tension > _TENSION) & (self.tension <= 10 * self.solution.error)
+        return is_tension(self.tension, self.solution.error) | tensile_centre(self.solution, edge)
 
 
 @lru_cache(maxsize=32)
@@ -65,56 +101,99 @@ def _between(mesh):
     return mesh.basis(s).T, w * s
 
 
+def is_tension(tension, error):
+    """(B,) bool: the tension is too large to be an error."""
+    return tension > np.fmax(10 * error, _TENSION)
+
+
+def may_be_error(tension, error):
+    """(B,) bool: there is tension, and it may be no more than its error: a finer mesh will tell."""
+    return (tension > _TENSION) & (tension <= 10 * error)
+
+
 def tensile_centre(solution, edge):
-    """(B,) bool: p(0) < 0, the error is too small to make it so, and the `edge` does not pull."""
+    """(B,) bool: p(0) < 0, the error is too small to make it so, and the `edge` does not pull. `solution` : what has p0
+    and error (B,)."""
     return (solution.p0 < 0) & (solution.error < _SURE) & (not edge.pulls)
 
 
-def stuck(error, slow, nodes, rtol):
-    """(B,) bool: finer meshes of one panel will hardly bring the error to rtol."""
-    return slow & (nodes >= _LATE) & (error > _FAR * rtol)
-
-
-def hopeless(error, slow, floor, rtol):
-    """(B,) bool: the error is above rtol, and no mesh makes it smaller: it is that of the operator, `floor`."""
+def at_floor(error, slow, floor, rtol):
+    """(B,) bool: the error is above rtol, and no mesh makes it smaller: it is that of the operator, `floor`. `slow` :
+    it is hardly smaller than on the mesh before."""
     return (floor > rtol) & (error <= np.where(slow, _NOISE, 1.0) * floor)
 
 
-def answer(iterated, x, enough=np.inf, before=np.inf):
+def _verdicts(ev, closed, solution, tension, goal):
+    """:class:`Verdict` (B,) of cases whose iterations are `closed` (B,) bool; `solution` : what has p0 and error."""
+    error, rtol = solution.error, goal.rtol
+    slow, doubt = error > _FALLS * goal.before, may_be_error(tension, error)
+    lifted = is_tension(tension, error) | tensile_centre(solution, ev.cases.edge)
+    wanting = (error > rtol) | (goal.free & doubt)
+    floor = at_floor(error, slow, ev.floor, rtol) & ~doubt
+    table = {
+        Verdict.SOLVED: closed & ~wanting & ~lifted,
+        Verdict.SPENT: goal.spent,
+        Verdict.LIFTED: lifted & (~closed | ~wanting | floor | ~goal.finer),
+        Verdict.OPEN: ~closed,
+        Verdict.FLOOR: floor,
+        Verdict.STUCK: slow & (ev.mesh.n >= _LATE) & (error > _FAR * rtol),
+    }
+    return np.select(list(table.values()), list(table), Verdict.COARSE).astype(np.int8)
+
+
+def answer(iterated, x, goal=None):
     """:class:`Answer` of an iteration, with profiles at the radii x (m,).
 
-    A case will go on to a finer mesh, and gets no profiles here, if it has closed, its error is above `enough` (B,),
-    and it is neither stuck nor hopeless. `before` (B,): its error on the mesh before. A case without finite numbers is
-    ``Status.DIVERGED`` and NaN.
+    goal : :class:`Goal` of cases that may go on to a finer mesh: those that do get no profiles here. None: all end.
+
+    A case without finite numbers is ``Status.DIVERGED`` and NaN.
     """
     ev, closed, count = iterated
-    own = quantities(ev)
-    refined = refine(ev, own)
-    error = estimate(ev, own, refined)
+    numbers = quantities(ev)
+    refined = refine(ev, numbers)
+    error = estimate(ev, numbers, refined)
     finite = np.isfinite(ev.residual) & np.isfinite(error)
-    enough = np.where(closed, enough, np.inf)
-    slope, last = refined.dP_dD, np.flatnonzero(enough == np.inf)
+    slope, size = refined.dP_dD, len(error)
+    last = np.flatnonzero(~closed | ~goal.finer) if goal else np.arange(size)
     if len(last):  # cases that end on this mesh have dP/dD of this mesh, as their other numbers are
         at = ev.take(last)
-        slope[last] = newton.stiffness(at, newton.tangent(at), own.P[last], own.D[last])
-    slow = error > _FALLS * before
-    useless = hopeless(error, slow, ev.floor, enough) | stuck(error, slow, ev.mesh.n, enough)
-    done = np.flatnonzero(finite & (useless | (error <= enough)))
-    own.Ar_An[done], error[done] = completed(ev, own.Ar_An, error, done)
-    p, lam = np.full((2, len(error), len(x)), np.nan)
-    p[done], lam[done] = profiles(ev, x, done)
-    between = np.full(len(error), np.nan)
-    between[done] = of_profiles(ev, refined, done)
-    gap = ev.gap.max(axis=1) > _GAP
+        slope[last] = newton.stiffness(at, newton.tangent(at), numbers.P[last], numbers.D[last])
+    gap, tension = ev.gap.max(axis=1) > _GAP, _tension(ev, finite)
     error = np.where(gap, np.maximum(error, 1.0), error)
+    verdict, goes_on = np.full(size, Verdict.COARSE, dtype=np.int8), np.zeros(size, dtype=bool)
+    if goal:
+        judged = _Judged(numbers.p0, error)
+        goes_on = finite & goal.finer & (_verdicts(ev, closed, judged, tension, goal) == Verdict.COARSE)
+    done = np.flatnonzero(finite & ~goes_on)
+    numbers.Ar_An[done], error[done] = completed(ev, numbers.Ar_An, error, done)
+    if goal:
+        fixed = ~goal.free & may_be_error(tension, error)  # no finer mesh will judge the tension: it is an error
+        error = np.where(fixed, np.maximum(error, tension), error)
+        verdict = _verdicts(ev, closed & finite, _Judged(numbers.p0, error), tension, goal)
+        verdict[goes_on] = Verdict.COARSE
+    p, lam = np.full((2, size, len(x)), np.nan)
+    p[done], lam[done] = profiles(ev, x, done)
+    between = np.full(size, np.nan)
+    between[done] = of_profiles(ev, refined, done)
     status = np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT)
     errors = {"residual": ev.residual, "error": error, "profile_error": np.maximum(error, between)}
     rest = {"dP_dD": slope, "p": p, "lam": lam, "status": status, "nodes": ev.mesh.n, "iterations": count}
-    solution = Solution.of(len(error), len(x), **own._asdict(), **errors, **rest)
-    tension = np.zeros(len(error))
-    # there can be tension only where the equation is linear: without asperities
-    if not ev.cases.law.rough and not ev.cases.edge.pulls:
-        basis, w = _between(ev.mesh)
-        q = ev.curve.q @ basis
-        tension = np.where(finite, np.maximum(-q, 0.0) @ w / np.abs(q @ w), 0.0)
-    return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, slow, ev.floor, refined.end.state)
+    solution = Solution.of(size, len(x), **numbers._asdict(), **errors, **rest)
+    return Answer(solution.refused(~finite, Status.DIVERGED), tension, gap, verdict, refined.end.state)
+
+
+class _Judged(NamedTuple):
+    """p(0) and error (B,), by which the centre is judged."""
+
+    p0: np.ndarray
+    error: np.ndarray
+
+
+def _tension(ev, finite):
+    """The tensile part (B,) of the load over the load, of cases with `finite` numbers. There can be tension only where
+    the equation is linear: without asperities."""
+    if ev.cases.law.rough or ev.cases.edge.pulls:
+        return np.zeros(len(finite))
+    basis, w = _between(ev.mesh)
+    q = ev.curve.q @ basis
+    return np.where(finite, np.maximum(-q, 0.0) @ w / np.abs(q @ w), 0.0)

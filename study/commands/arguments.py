@@ -68,8 +68,7 @@ def assignment(text: str) -> tuple[str, float | str]:
 def proposed(command: str, prefix: str, **_) -> list[str]:
     """Completions of a word of a command or option: names of studies, figures ... that begin with `prefix`."""
     if command == "point":
-        from ..inputs.scene.bodies import BODIES
-        from ..inputs.vocabulary import CONTROLS, SCENE, names
+        from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, names
 
         known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
     elif command in ("plot", "table"):

@@ -92,7 +92,7 @@ def _compute(study: Study, options, **more) -> int:
 
 def completed(study: Study, **options) -> int:
     """Run a study and say what came of it; returns the exit code."""
-    name, report = study.definition.name, study.run(**options, processes=True, stream=sys.stderr)
+    name, report = study.definition.name, study.run(**options, stream=sys.stderr)
     if report.failures:
         say("\n".join(failure_lines(report, name)), sys.stderr)
         return 1

@@ -220,7 +220,7 @@ def _surface_modulus(dataset: xr.Dataset):
 
 def _rough_model(used: xr.DataArray) -> xr.DataArray:
     """Where the model that was used has asperities, so that D has their A[p(0)]."""
-    return sum(used == model for model in Model if not model.name.startswith(("SMOOTH", "NONE"))) > 0
+    return used.isin([int(model) for model in Model if not model.name.startswith(("SMOOTH", "NONE"))])
 
 
 def _scales(dataset: xr.Dataset, name: str) -> tuple:

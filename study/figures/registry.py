@@ -7,7 +7,7 @@ import re
 from collections import defaultdict
 from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -194,7 +194,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
     return list(dict.fromkeys([*REGISTERS[""][kind], *beside.names(kind, long=long)]))
 
 
-def entry(kind: str, name: str) -> NamedTuple:
+def entry(kind: str, name: str) -> Any:
     """What is registered of a name: of the program itself, or beside studies, where it is run now.
 
     Raises StudyError, which suggests another name, if there is none.

@@ -113,7 +113,7 @@ def _described(file: File) -> Condition:
     """What a file says of itself."""
     there = file.attributes()
     if not {*OURS} & {*there}:
-        return Condition(file.path, "foreign", "is a netCDF file of another program")
+        return Condition(file.path, "foreign", "is a netCDF file of another program", unpacked=file.unpacked)
     names = (*OURS, "title", "study", "command")
     about = [str(file.attribute(name)) if name in there else "" for name in names]
     dims, sizes = file.variables.get("status", ()), file.sizes

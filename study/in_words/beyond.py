@@ -7,9 +7,8 @@ from ..data import derived
 from ..data.assumptions import assumption_texts
 from ..data.dataset import broken
 from ..inputs.laws import smooth_laws
-from ..inputs.scene.bodies import BODIES
 from ..inputs.scene.bounds import INPUTS, absurd
-from ..inputs.vocabulary import ROWS
+from ..inputs.vocabulary import BODIES, ROWS
 from ..specimen.roughness import looks_like_iso_ra
 from .pressures import RING
 

@@ -16,10 +16,10 @@ from .beyond import BROKEN
 #: that factor: of 300 random contacts beyond no limit it takes none for far outside, and of 300 that exceed one 50
 #: times it finds all but a few (tests/physical/words/test_far_outside.py).
 FAR = 10.0
-#: Layers softer than this against the body (n = E1*/E2*) may take seconds. Of 120 films of 1 nm to 10 µm between
-#: steels, solved once each, the slowest took 6.8 s with n = 0.003, 1.3 s with 0.03, 0.4 s with 0.1 and 0.1 s with 0.3.
+#: Only contacts on layers softer than this against the body (n = E1*/E2*) are looked at: they may take seconds, the
+#: more the softer the layer is. A choice, for the time falls evenly as n rises.
 SOFT = 0.1
-MOST = 100  # contacts of a grid that are looked at, evenly spread: some 3 ms
+MOST = 100  # contacts of a grid that are looked at, evenly spread: so few that it is not noticed
 SAID = f"far outside what the model describes: an estimate exceeds limits {FAR:g} times and more. It may take long."
 
 

@@ -6,8 +6,7 @@ import xarray as xr
 from solver.laws import LAWS
 
 from ..inputs.laws import smooth_laws
-from ..inputs.scene.bodies import BODIES
-from ..inputs.vocabulary import CONTROLS, VOCABULARY, matters, names
+from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, matters, names
 
 _OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
 

@@ -4,8 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..data.si import ASSUMED
-from ..inputs.scene.bodies import BODIES
-from ..inputs.vocabulary import CONTROLS
+from ..inputs.vocabulary import BODIES, CONTROLS
 from ..specimen.quantities import READABLE, readable
 
 

@@ -7,7 +7,7 @@ import xarray as xr
 
 from ..data import derived
 from ..data.dataset import decode
-from ..inputs.scene.bodies import BODIES
+from ..inputs.vocabulary import BODIES
 from ..specimen.quantities import readable
 from .inputs import is_rigid
 

@@ -6,8 +6,7 @@ from solver import Status
 
 from ..data.dataset import decode
 from ..data.si import ASSUMED
-from ..inputs.scene.bodies import BODIES
-from ..inputs.vocabulary import VOCABULARY
+from ..inputs.vocabulary import BODIES, VOCABULARY
 from .beyond import doubts
 from .pressures import RUBBER, not_checked
 

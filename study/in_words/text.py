@@ -5,8 +5,7 @@ import xarray as xr
 
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
-from ..inputs.scene.bodies import BODIES
-from ..inputs.vocabulary import CONTROLS, VOCABULARY
+from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
 from .inputs import is_rigid, used_inputs
 from .numbers import given_text, in_its_unit, result_text, ring_text, spread_of
 from .pressures import largest

@@ -1,4 +1,4 @@
-"""What can be wrong with a grid as a whole, though each of its parameters is right."""
+"""What can be wrong with inputs, or a grid, as a whole, though each parameter is right."""
 
 from collections.abc import Callable, Collection, Iterable
 from functools import partial
@@ -10,9 +10,10 @@ from solver.laws import LAWS, untried
 from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
-from .grid import Grid, along
+from .given import Given
+from .grid import MOVED, Grid, along, same_labels, twins
 from .laws import smooth_laws
-from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY, cases_with
+from .vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, VOCABULARY, cases_with
 
 FITTED = ("B", "beta")
 """Parameters that are fitted to Nbar and Ra where neither is given (`fitted.py`)."""
@@ -40,7 +41,73 @@ def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: 
                 messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
         elif found:
             messages.append(f"{name} is missing: {selector} = {found} needs it")
+    if messages and "micro = " in messages[-1] and "micro" not in given:
+        messages[-1] += ' (without asperities: micro = "smooth")'
     return messages
+
+
+def one_control(names: Collection[str]) -> list[str]:
+    """A message if the names of the parameters have none of P, a and D, or several."""
+    given = [name for name in CONTROLS if name in names]
+    return [f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}"] * (len(given) != 1)
+
+
+def equal_cases(cases: list) -> list[str]:
+    """A message for two of the cases that are the same."""
+    return [f"cases {i} and {j} are the same" for i, j in twins(cases)]
+
+
+def dimensions_that_differ(given: Given, values: dict[str, np.ndarray]) -> list[str]:
+    """Messages for dimensions whose name is taken, and for inputs that have other lengths or coordinates along one.
+
+    values : of axes without units, and names of materials; along a dimension called like it an input is the coordinate
+    """
+    inputs = {name: entry for name, entry in given.inputs.items() if not entry.is_wrong}
+    arrays = {name: entry for name, entry in inputs.items() if entry.array is not None}
+    messages = dict.fromkeys(text for name in arrays for text in _taken(given, name))
+    itself = {name: entry for name, entry in inputs.items() if entry.dims in ((name,), ("case",))}
+    lengths = {entry.dims[0]: (name, len(entry.values)) for name, entry in itself.items() if entry.array is None}
+    labels = {name: (name, values.get(name, entry.array)) for name, entry in itself.items() if entry.dims == (name,)}
+    labels = {name: (name, np.asarray(known)) for name, (_, known) in labels.items() if known is not None}
+    for name, entry in arrays.items():
+        if entry.dims == (name,) and name in entry.array.coords:
+            labels[name] = name, entry.array.coords[name].values
+    for name, entry in arrays.items():
+        for dim, length in zip(entry.dims, entry.shape, strict=True):
+            other, expected = lengths.setdefault(dim, (name, length))
+            coordinate = entry.array.coords[dim].values if dim in entry.array.coords else None
+            if length == 0:
+                messages[f"{name} is empty: must have at least one value"] = None
+            elif length != expected:
+                messages[f"{name} has {length} values along {dim}, {other} has {expected}"] = None
+            elif coordinate is not None:
+                other, known = labels.setdefault(dim, (name, coordinate))
+                if not same_labels(known, coordinate):
+                    messages[f"{name} has other values of {dim}, or in another order, than {other}"] = None
+    return list(messages)
+
+
+def _taken(given: Given, name: str) -> list[str]:
+    """Messages for dimensions of a DataArray whose name is that of something else."""
+    found = []
+    for dim in given.inputs[name].dims:
+        owner = given.inputs.get(dim)
+        of_scene = dim in SCENE or dim in BODIES
+        if of_scene and not given.physical:  # a study without units has no such parameter
+            continue
+        parameter = dim in PARAMETERS or of_scene
+        of_units = given.physical and dim in ROWS and ROWS[dim].unit != "1"
+        if dim == MOVED:
+            found.append(f'{name}: a dimension cannot be called "{dim}" here')
+        elif parameter and dim not in given.sections:
+            found.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
+        elif owner and owner.dims != (dim,):
+            found.append(f"{dim} is a dimension and a parameter over other dimensions")
+        elif owner and of_units and owner.array is None:
+            found.append(f'{name}: a dimension cannot be called "{dim}" here, unless that is a DataArray over itself')
+        elif not parameter and dim in VOCABULARY and dim != "case":
+            found.append(f'a dimension cannot be called "{dim}", which is the name of a result')
+    return found
 
 
 def missing_parameters(grid: Grid) -> list[str]:

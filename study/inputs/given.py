@@ -1,223 +1,210 @@
-"""A draft of a grid: it takes parameters in every form in which they can be given, and collects all mistakes."""
+"""What is given, in a call of Python or in a study file: one form for both, before any number is read."""
 
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
-
-import numpy as np
+from dataclasses import dataclass, field
+from typing import Any
 
 from ..specimen.foreign import plain
-from .checks import missing_parameters, mixed_units, not_given, picard_for_nothing, slips_of_laws
-from .grid import LONGEST_AXIS, Grid, as_array, axis_values, equal_values, same_labels, twins
-from .laws import fitted, is_parameter, law_names, update_vocabulary, wants_a_fit
-from .sample import LIMITS, draw
-from .vocabulary import CONTROLS, NUMERICS, PARAMETERS, VOCABULARY, no_parameter
+from ..specimen.quantities import Quantity, has_unit
+from ..terminal import shown
+from .grid import LONGEST_AXIS, equal_values
+from .laws import is_parameter, law_names, update_vocabulary
+from .sample import LIMITS
+from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
-MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as one more
-
-
-def label_slips(labels: list) -> list[str]:
-    """Messages for labels of [[cases]] that are no texts, or the same."""
-    if not all(isinstance(label, str) for label in labels):
-        return ["[[cases]] label: must be text"]
-    return equal_values("label", [label or i for i, label in enumerate(labels)])
-
-
-def one_control(names) -> list[str]:
-    """A message if the names of the parameters have none of P, a and D, or several."""
-    given = [name for name in CONTROLS if name in names]
-    return [f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}"] * (len(given) != 1)
+#: Attributes `units` of pure numbers; pint writes the last.
+PURE = ("1", "", "dimensionless")
+#: The end of a message about `same_piece`.
+NEEDS_NAMES = (
+    "no two of punch, layer and body are of one material by name, such as punch and body of PMMA; leave it out"
+)
 
 
 @dataclass
-class Draft:
-    """Collects parameters; `finish` makes the Grid of them.
+class Input:
+    """A parameter as it was given: numbers, texts, quantities of pint, or names of materials.
+
+    section : of the study file, "" in Python
+    dims : its dimensions, () of a single value
+    values : list of its values, None where a case does not say it; a range is a dict until it is read. Of values with
+        a mistake it is None
+    array : the DataArray that was given, if it was one; its `values` are read when they are needed
+    """
+
+    name: str
+    section: str = ""
+    dims: tuple[str, ...] = ()
+    values: Any = None
+    array: Any = None
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        return self.array.shape if self.array is not None else (len(self.values),) if self.dims else ()
+
+    @property
+    def unit(self) -> str:
+        """The unit of a DataArray; "1" of pure numbers."""
+        unit = "1" if self.array is None else self.array.attrs.get("units", "1")
+        return "1" if unit in PURE else unit
+
+    @property
+    def is_wrong(self) -> bool:
+        """Whether there is a message about all of it, and no value."""
+        return self.array is None and self.values is None
+
+    @property
+    def has_unit(self) -> bool:
+        """Whether it, or one of its values, has a unit or a spread."""
+        if self.array is not None:
+            return self.unit != "1"
+        values = self.values.values() if isinstance(self.values, dict) else self.values
+        values = list(values) if isinstance(self.values, (dict, list)) else []
+        pure = {*map(type, values)} <= {float, int}  # quick: of most long lists
+        return not pure and any(type(one) is Quantity or has_unit(one) for one in values)
+
+    def at(self, place: list[int]) -> Any:
+        """What was given at a place, one number for each dimension; None for a number that follows from other words."""
+        if self.array is not None:
+            return f"{self.array.values[tuple(place)]:g}" + f" {self.unit}" * (self.unit != "1")
+        value = self.values[place[0] if place else 0]
+        return None if type(value) is Quantity else value
+
+
+@dataclass
+class Given:
+    """All inputs of a call or of a study file.
 
     errors : messages, without the name of the file
-    sizes, values, labels : as those of the Grid
-    sections : parameter -> the section of the file where it is given, "" in Python
-    claims : (parameter, dimension, its size, its coordinate or None), of each dimension of each DataArray
-    physical : whether the results will be in SI units
+    inputs : name -> input; cases come before axes, as `case` is the first dimension
+    sections : name -> the section of the file where it is given, "" in Python
+    rows : of [[cases]]; sample : the section of this name
+    labels : of the cases
+    same_piece : whether bodies of one material are one piece of it
+    sign : what makes it a study with units, in words: an input with a unit, or one that no other study has; "" if none
     """
 
     errors: list[str] = field(default_factory=list)
-    sizes: dict[str, int] = field(default_factory=dict)
-    values: dict = field(default_factory=dict)
-    labels: dict = field(default_factory=dict)
+    inputs: dict[str, Input] = field(default_factory=dict)
     sections: dict[str, str] = field(default_factory=dict)
-    claims: list = field(default_factory=list)
-    physical: bool = False
+    rows: list[dict] = field(default_factory=list)
+    sample: Any = None
+    labels: list[str] = field(default_factory=list)
+    same_piece: bool = False
+    sign: str = ""
 
     def __post_init__(self):
         update_vocabulary()
 
-    def laws(self, given: list) -> None:
-        """Register micro laws that are given as objects, so that their parameters are known when these come.
+    @property
+    def physical(self) -> bool:
+        """Whether it has units."""
+        return bool(self.sign)
 
-        What is wrong with a law is told later, when `micro` itself is checked.
-        """
-        with suppress(ValueError):
-            law_names([law for one in given for law in (one if isinstance(one, list) else [one])])
-
-    def scalar(self, name: str, raw, section: str) -> None:
-        """One value for all cases."""
-        if self._accept(name, section):
-            if section and isinstance(raw, (list, dict)):
-                self.errors.append(f"{section} {name} has several values: these belong in [axes]")
+    @classmethod
+    def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any) -> "Given":
+        """Parameters of a call: DataArrays, 1-D sequences or single values, and rows of cases."""
+        given = cls()
+        with suppress(ValueError):  # laws as objects have parameters; what is wrong with one is told when micro is read
+            micro = [table.get("micro") for table in (parameters, *rows)]
+            law_names([law for one in micro for law in (one if isinstance(one, list) else [one])])
+        given._same_piece(same_piece, "")
+        if rows:
+            given._cases(rows)
+        for name, value in parameters.items():
+            value = plain(value)
+            if hasattr(value, "dims") and hasattr(value, "shape"):  # a Dataset has no shape
+                given._add(Input(name, "", tuple(map(str, value.dims)), array=value))
+            elif isinstance(value, (list, range)) or (isinstance(value, tuple) and name != "layer"):
+                given._add(Input(name, "", (name,), list(value[: LONGEST_AXIS + 1])))  # a range may be endless
             else:
-                self.values[name] = (), self.checked(name, [raw]).reshape(())
+                given._add(Input(name, "", (), [value]))
+        return given._decided()
 
-    def axis(self, name: str, raw, section: str) -> None:
-        """A dimension called like its parameter."""
-        if self._accept(name, section):
-            array = self.checked(name, axis_values(raw, name, self.errors), distinct=True)
-            self.sizes[name], self.values[name] = len(array), ((name,), array)
+    @classmethod
+    def in_file(cls, tables: dict, errors: list[str]) -> "Given":
+        """The sections of a study file; [model], [axes] and [numerics] are tables."""
+        given = cls(errors)
+        for name, value in tables["numerics"].items():
+            if name in NUMERICS:
+                given._add(Input(name, "[numerics]", (), [value]))
+        for name, value in tables["model"].items():
+            if name == "same_piece":
+                given._same_piece(value, "[model] ")
+            else:
+                given._add(Input(name, "[model]", (), [value]))
+        if "cases" in tables:
+            given._cases(tables["cases"])
+        if "sample" in tables:
+            given.sample = table = tables["sample"]
+            for name in (name for name in table if name not in LIMITS) if isinstance(table, dict) else ():
+                given._add(Input(name, "[sample]", ("case",), table[name]))
+            if given.rows:
+                errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
+        for name, value in tables["axes"].items():
+            given._add(Input(name, "[axes]", (name,), value))
+        return given._decided()
 
-    def of_any_form(self, name: str, given) -> None:
-        """A parameter given in Python: a DataArray, a 1-D sequence or a scalar."""
-        given = plain(given)
-        if hasattr(given, "dims") and hasattr(given, "shape"):  # a Dataset has no shape
-            self.array(name, given)
-        elif isinstance(given, (list, tuple, range)):
-            self.axis(name, list(given[: LONGEST_AXIS + 1]), "")  # a range may be endless
-        else:
-            self.scalar(name, given, "")
+    def _same_piece(self, value: Any, place: str) -> None:
+        value = plain(value)
+        if not isinstance(value, bool):
+            self.errors.append(f"{place}same_piece = {shown(value)}: must be true or false")
+        self.same_piece = value is True
 
-    def cases(self, rows) -> None:
-        """Rows of parameters: the dimension `case`. What a row leaves out has its default, or NaN if it has none."""
+    def _cases(self, rows: Any) -> None:
+        """Rows of parameters: values over the dimension `case`."""
         if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
             self.errors.append("cases must be [[cases]] tables (a list of dictionaries)")
             return
         if not rows:
             self.errors.append("cases is empty: must have at least one case")
             return
-        before = len(self.errors)
-        self.number_cases(len(rows))
+        self.rows = rows = [{name: plain(value) for name, value in row.items()} for row in rows]
         for name in dict.fromkeys(name for row in rows for name in row):
-            if name == "label":
-                labels = [row.get("label", "") for row in rows]
-                slips = label_slips(labels)
-                self.errors += slips
-                self.labels["label"] = ("case",), np.array([] if slips else labels, dtype=str)
-            elif self._accept(name, "[[cases]]"):
-                default = VOCABULARY[name].own.default
-                raw = [default if row.get(name) is None else row[name] for row in rows]
-                self.values[name] = ("case",), self.checked(name, raw, gaps=True)
-        if len(self.errors) == before:  # otherwise the values need not be comparable
-            points = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in rows]
-            self.errors += [f"cases {i} and {j} are the same" for i, j in twins(points)]
+            if name != "label":
+                self._add(Input(name, "[[cases]]", ("case",), [row.get(name) for row in rows]))
+                continue
+            self.labels = [row.get(name, "") for row in rows]
+            if not all(isinstance(label, str) for label in self.labels):
+                self.labels = []
+                self.errors.append("[[cases]] label: must be text")
+            self.errors += equal_values(name, [label or i for i, label in enumerate(self.labels)])
 
-    def sample(self, table) -> None:
-        """Random cases, drawn as the table [sample] says: the dimension `case`."""
-        given = table if isinstance(table, dict) else {}
-        known = {name: drawn for name, drawn in given.items() if name in LIMITS or self._accept(name, "[sample]")}
-        if "case" in self.sizes:
-            self.errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
-            return
-        own = {name: VOCABULARY[name].own for name in known if name not in LIMITS}
-        before = len(self.errors)
-        for name in own:
-            if isinstance(known[name], list):  # all of it, since some of its values may not be drawn
-                self.checked(name, known[name])
-        drawn = draw(known if given else table, own, self.errors)
-        for name, values in drawn.items() if len(self.errors) == before else ():
-            self.number_cases(len(values))
-            self.values[name] = ("case",), self.checked(name, values)
-
-    def array(self, name: str, given) -> None:
-        """A DataArray: values over its own dimensions, which may be shared with other parameters."""
-        if not self._accept(name, ""):
-            return
-        for dim, size in zip(map(str, given.dims), given.shape, strict=True):
-            self.sizes.setdefault(dim, size)
-            coordinate = given.coords[dim].values if dim in given.coords and dim != name else None
-            if dim not in PARAMETERS and coordinate is not None:
-                self.labels.setdefault(dim, ((dim,), coordinate))
-            self.claims.append((name, dim, size, coordinate))
-        flat = self.checked(name, given.values.ravel().tolist(), distinct=given.dims == (name,))
-        self.values[name] = tuple(map(str, given.dims)), flat.reshape(given.shape)
-
-    def finish(self) -> Grid:
-        """Fill in the defaults and check what concerns several parameters."""
-        self.errors += one_control(self.sections)
-        self._check_dimensions()
-        _, laws = self.values.get("micro", ((), ""))  # "" if what was given has been refused
-        for name in [name for name in PARAMETERS if name not in self.sections]:
-            own = VOCABULARY[name].own  # a parameter of a law that no case has stays away
-            selector, owners = own.needed_by
-            if own.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
-                self.values[name] = (), np.array(own.default)
-        self.errors += not_given(self.sections, lambda name: self.values.get(name, ((), ()))[1], self.errors)
-        grid = self._grid()
-        if not self.errors and wants_a_fit(grid):
-            laws, errors = fitted(grid)
-            self.values |= laws
-            self.errors += errors
-            grid = replace(self._grid(), fitted=True)
-        if not self.errors:
-            self.errors += missing_parameters(grid) + picard_for_nothing(grid)
-            self.errors += [] if self.physical else mixed_units(grid)
-        self.errors += [] if self.errors else slips_of_laws(grid)
-        return grid
-
-    def _grid(self) -> Grid:
-        return Grid(self.sizes, {name: self.values[name] for name in PARAMETERS if name in self.values}, self.labels)
-
-    def _accept(self, name: str, section: str) -> bool:
-        """Whether the name is known and new; otherwise a message."""
-        place = f"{section} " if section else ""
-        if not is_parameter(name):
-            known = [*PARAMETERS, *["label"] * (section == "[[cases]]")]
-            later = len(self.errors) >= MOST_MESSAGES  # and not shown
-            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, known, place))
+    def _add(self, entry: Input) -> None:
+        """Note an input, unless it is given already or stands in a wrong section."""
+        name, section = entry.name, entry.section
+        if name == "same_piece":
+            self.errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
         elif section == "[model]" and name in NUMERICS:
-            self.errors.append(f"{place}{name} belongs in [numerics]")
+            self.errors.append(f"{section} {name} belongs in [numerics]")
         elif name in self.sections:
             other = f"in {section}" if section else "elsewhere"
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
+        elif not is_input(name):
+            place = f"{section} " if section else ""
+            known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
+            later = len(self.errors) >= MOST_MESSAGES  # and not shown
+            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, known, place))
         else:
-            self.sections[name] = section
-            return True
-        return False
+            if section in ("[model]", "[numerics]") and isinstance(entry.values[0], (list, dict)):
+                self.errors.append(f"{section} {name} has several values: these belong in [axes]")
+                entry.values = None
+            self.sections[name], self.inputs[name] = section, entry
 
-    def checked(self, name: str, raw: list, gaps: bool = False, distinct: bool = False) -> np.ndarray:
-        """The values as an array, with messages for those that are not allowed.
+    def _decided(self) -> "Given":
+        """The same, with units or without, and its cases first."""
+        signs = [entry for name, entry in self.inputs.items() if name in SCENE or name in BODIES or entry.has_unit]
+        for entry in sorted(signs, key=lambda entry: bool(entry.dims))[:1]:  # a single value rather than several
+            values = [value for value in entry.values if value is not None] if isinstance(entry.values, list) else []
+            value = next(filter(has_unit, values), values[0] if values else entry.values)
+            self.sign = f"the unit of {entry.name}" if entry.array is not None else f"{entry.name} = {shown(value)}"
+        if self.same_piece and not self.physical:
+            self.errors.append(f"same_piece: {NEEDS_NAMES}")
+        order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2}
+        self.inputs = dict(sorted(self.inputs.items(), key=lambda pair: order.get(pair[1].section, 1)))
+        return self
 
-        gaps : None is allowed, and becomes NaN; distinct : values that are equal get a message
-        """
-        before = len(self.errors)
-        if name == "micro":
-            try:
-                raw = law_names(raw)
-            except ValueError as error:
-                self.errors.append(f"{name}: {error}")
-                return np.empty(len(raw))
-        array = as_array(VOCABULARY[name].own, raw, name, self.errors, gaps)
-        if distinct and len(self.errors) == before:
-            self.errors += equal_values(name, array.tolist())
-        return array
 
-    def number_cases(self, count: int) -> None:
-        """Make the dimension `case`."""
-        self.sizes["case"] = count
-        self.labels["case"] = ("case",), np.arange(count, dtype=np.int32)
-
-    def _check_dimensions(self) -> None:
-        """Messages for dimensions: names that are taken, sizes or coordinates on which two parameters disagree."""
-        if len(self.sizes) > MOST_DIMENSIONS:
-            self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
-        for dim in self.sizes:
-            if dim in PARAMETERS and self.values.get(dim, ((dim,),))[0] != (dim,):
-                self.errors.append(f"{dim} is a dimension and a parameter over other dimensions")
-            elif dim in PARAMETERS and dim not in self.sections:
-                self.errors.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
-            elif dim in VOCABULARY and dim not in PARAMETERS and dim != "case":
-                self.errors.append(f'a dimension cannot be called "{dim}", which is the name of a result')
-        for name, dim, size, coordinate in self.claims:
-            owner = (self.values if dim in PARAMETERS else self.labels).get(dim)
-            if size == 0:
-                self.errors.append(f"{name} is empty: must have at least one value")
-            elif size != self.sizes[dim]:
-                self.errors.append(f"{name} has {size} values along {dim}, another parameter has {self.sizes[dim]}")
-            elif coordinate is not None and owner is not None and not same_labels(owner[1], coordinate):
-                self.errors.append(f"{name} has other values of {dim} than another parameter")
+def is_input(name: Any) -> bool:
+    """Whether a name is that of a parameter, of an input of a scene, or of a body of a material."""
+    return name in SCENE or name in BODIES or is_parameter(name)

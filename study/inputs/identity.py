@@ -54,6 +54,15 @@ def digest_of(definition) -> str:
     }
     content["values"] = {name: found for name, found in content["values"].items() if found}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
+    digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+    return _digest_of_scene(digest, definition.scene) if definition.scene else digest
+
+
+def _digest_of_scene(of_numbers: str, scene) -> str:
+    """sha256 of the digest of dimensionless numbers, and of the SI values from which they follow."""
+    content = [of_numbers, scene.labels, sorted(scene.names.items())]
+    for name, value in sorted(scene.given.items()):
+        content.append((name, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

@@ -11,7 +11,7 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import allowed
 
 from .grid import Grid, along
-from .vocabulary import PARAMETERS, VOCABULARY, Entry, names
+from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, names
 
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
@@ -23,6 +23,7 @@ COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.
 # A law must not call a parameter like a result, or like what `study.solve` is told beside parameters.
 laws.RESERVED.update({*VOCABULARY, "cases", "profiles", "title", "workers"} - set(SOLVER_PARAMETERS))
 laws.RESERVED.update(f"{name}_spread" for name in VOCABULARY)
+laws.RESERVED.update(SCENE, BODIES)
 
 
 def update_vocabulary() -> None:

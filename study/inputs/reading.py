@@ -1,206 +1,193 @@
-"""Study files, with units or without: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`.
+"""From study files, or the parameters of a call, to a checked, frozen Definition with the digest of what determines its
+numbers.
 
-Inputs may have spreads ("200 ± 10 GPa", materials by name). Then each case is solved several times: as given, and with
-each such input moved up and down, along the dimension MOVED. The results have `NAME_spread` in place of this dimension.
+With or without units: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`. Inputs may have spreads
+("200 ± 10 GPa", materials by name). Then each case is solved several times: as given, and with each such input moved up
+and down, along the dimension MOVED. The results have `NAME_spread` in place of this dimension.
 """
 
-import hashlib
-import json
+import errno
+import re
+import tomllib
 from dataclasses import replace
+from itertools import islice
+from pathlib import Path
 from typing import Any
 
-import numpy as np
+from ..terminal import on_one_line, shown
+from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
+from .draft import Draft
+from .given import MOST_MESSAGES, Given
+from .grid import usual_block
+from .identity import digest_of, law_versions
+from .vocabulary import NUMERICS, absent, suggest
 
-from ..specimen.quantities import Quantity, has_unit, quantity
-from ..terminal import shown
-from . import definition
-from .definition import Definition, StudyError
-from .given import Draft
-from .grid import axis_values
-from .identity import digest_of_array
-from .laws import is_parameter
-from .sample import LIMITS, divisor, draw
-from .scene.bodies import BODIES, with_materials
-from .scene.names import NEEDS_NAMES, CaseValues, QuantityList, dim_of, si
-from .vocabulary import NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY, Parameter, no_parameter, si_unit
-
-ANY_NUMBER = Parameter(interval="(-inf, inf)")
-"""Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
-ANY_VALUE = 0.3
-"""Stands for an axis with a mistake. Every parameter that is a number may have it, so no second message follows."""
+TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
+KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
+"""Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
+SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
 FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
+LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
+MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
+MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
+_PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
+LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
+TABLE = re.compile(r"^[ \t]*+\[\[|\{", re.MULTILINE)
+
+#: A value that begins with a word, or with a number and a word or ±; the e of "1e-6" is none.
+_NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)")
 
 
 def read(path) -> Definition:
     """Definition of a study file. Raises StudyError with all that is wrong with it."""
-    return from_tables(*definition.parsed(path))
+    return from_tables(*parsed(path))
 
 
 def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     """Definition of the parsed TOML tables; `where` begins every message."""
-    model = tables.get("model")
-    model = model if isinstance(model, dict) else {}
-    same_piece = model.get("same_piece", False)
-    if not _has_units(tables):
-        if "same_piece" in model:
-            raise definition.refusal(where, [f"[model] same_piece: {NEEDS_NAMES}"])
-        return definition.from_tables(tables, name, text, where)
-    from .scene.reading import (
-        read as read_scene,  # here: it imports xarray, for which a study without units need not wait
-    )
+    kind = tables.get("kind", "contact")
+    if kind != "contact":
+        gone = "; a micro law needs no study: call solver.fit_power_law" if kind == "micro_law" else ""
+        raise StudyError([f'{where}: kind = {shown(kind)}: must be "contact", or left out{gone}'])
+    unknown = islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
+    errors = [_no_section(key, tables[key]) for key in unknown]
+    tables = tables | {section: _table(tables, section, keys, errors) for section, keys in KEYS.items()}
+    return complete(Given.in_file(tables, errors), tables, name, text, where)
 
-    draft, given = definition.new_draft(tables, where)
-    before = len(draft.errors)
-    parameters = _parameters(draft, given)
-    if draft.errors and "sample" in given:  # what it draws would be missing
-        raise definition.refusal(where, draft.errors)
-    spreads, errors, scene = given["output"].get("spreads", True), draft.errors, None
-    try:
-        right = len(errors) == before
-        scene = read_scene(parameters, tables.get("cases"), spreads is True, right, same_piece is True)
-    except StudyError as error:
-        errors += error.messages
-    if not isinstance(same_piece, bool):
-        errors.append(f"[model] same_piece = {shown(same_piece)}: must be true or false")
+
+def from_call(parameters: dict, rows: list[dict], same_piece: bool, tables: dict) -> Definition:
+    """Definition of a call of `study.solve`; tables : title and output, as those of a study file."""
+    return complete(Given.in_python(parameters, rows, same_piece), tables, "solve", "", "solve", LARGE)
+
+
+def complete(given: Given, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
+    """The definition of what is given, with its digest. Raises StudyError with every message.
+
+    tables : title, [output], the block of [numerics], and the order of [axes] are read here
+    most : how many numbers the results may hold
+    """
+    draft, errors, scene = Draft(given), given.errors, None
+    draft.expand()
+    spreads = tables.get("output", {}).get("spreads", True)
     if not isinstance(spreads, bool):
         errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
-    if scene and scene.spreads and given["output"].get("dtype") == "float32":
+    if given.physical:
+        from .scene.reading import read as read_scene  # it imports xarray, for which pure numbers need not wait
+
+        scene = read_scene(given, draft, spreads is True, list(tables.get("axes", ())))
+    else:
+        for entry in given.inputs.values():
+            if not entry.is_wrong:
+                draft.read(entry)
+        draft.check({})
+    draft.put_dimensions()
+    grid = draft.finish()
+    title, x, profiles, dtype = settings(tables, errors)
+    if scene and scene.spreads and dtype == "float32":
         problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
         errors.append(f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}')
-    if errors:  # what is read later only, words and other sections, is checked too: all mistakes are named at once
-        for key, value in parameters.items():
-            if key in VOCABULARY and VOCABULARY[key].own.choices:
-                draft.checked(key, value if isinstance(value, list) else [value])
-        definition.settings(given, errors)
-        raise definition.refusal(where, errors)
-    made = complete(draft, scene, list(given["axes"]), (given, name, text, where))
-    return replace(made, digest=_digest(made))
+    block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
+    if type(block) is not int or not 1 <= block <= 1_000_000:
+        errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
+    made = Definition(name, title, text, grid, x, profiles, dtype, block, "", scene=scene)
+    if made.numbers > most:
+        errors.append(
+            f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
+        )
+    if errors:
+        raise refusal(where, errors)
+    return replace(made, digest=digest_of(made), laws=tuple(law_versions(grid)))
 
 
-def complete(draft: Draft, scene: Any, axes: list[str], about: tuple, **options) -> Definition:
-    """The definition of a study of a scene. Its dimensions are `case`, the `axes` in their order, and MOVED.
+def parsed(path) -> tuple[dict, str, str, str]:
+    """The tables of a study file, its name, its text, and the path that begins every message.
 
-    about, options : the other arguments of `study.inputs.definition.complete`
+    Raises StudyError when the file cannot be read or is not TOML.
     """
-    draft.physical = True
-    draft.sizes |= scene.sizes(axes)
-    for name, value in scene.parameters.items():
-        draft.of_any_form(name, value)
-    if "case" in draft.sizes and "case" not in draft.labels:  # DataArrays may bring numbers of their own
-        draft.number_cases(draft.sizes["case"])
-    return replace(definition.complete(draft, *about, **options), scene=scene)
-
-
-def _has_units(tables: dict) -> bool:
-    """Whether a parameter has a unit, or only a study with units has it."""
-    rows = tables["cases"] if isinstance(tables.get("cases"), list) else []
-    for table in (tables.get("model"), tables.get("axes"), tables.get("sample"), *rows):
-        for name, given in table.items() if isinstance(table, dict) else ():
-            values = given.values() if isinstance(given, dict) else given if isinstance(given, list) else [given]
-            if name in SCENE or name in BODIES or (name in VOCABULARY and any(map(has_unit, values))):
-                return True
-    return False
-
-
-def _parameters(draft: Draft, given: dict) -> dict:
-    """The parameters of [model], [axes] and [sample], ranges as lists of their values; messages go to the draft."""
-    errors, axes = draft.errors, given["axes"]
-    model = {name: value for name, value in given["model"].items() if name != "same_piece"}  # which is no parameter
-    sample = _sampled(given["sample"], draft) if "sample" in given else {}
-    if sample and "cases" in given:
-        errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
-    errors += [f"{name} is given twice: in [sample] and elsewhere" for name in sample if name in model or name in axes]
-    rows = given.get("cases", [{}])
-    if not isinstance(rows, list) or not rows or not all(isinstance(row, dict) for row in rows):
-        errors.append("cases must be [[cases]] tables, at least one")
-    for name, value in model.items():
-        if name in NUMERICS:
-            errors.append(f"[model] {name} belongs in [numerics]")
-        elif name in axes:
-            errors.append(f"{name} is given twice: in [model] and in [axes]")
-        elif isinstance(value, (list, dict)):
-            errors.append(f"[model] {name} has several values: these belong in [axes]")
-    return sample | {name: _axis(name, raw, errors) for name, raw in axes.items()} | model
-
-
-def _axis(name: str, raw: Any, errors: list[str]) -> list | QuantityList:
-    """The values of an axis. A range with units becomes SI values."""
-    numeric = name in ROWS and not ROWS[name].own.choices
-    with_unit = isinstance(raw, dict) and numeric and ROWS[name].unit != "1"
-    before = len(errors)
-    raw = _in_si(raw, name, ROWS[name].unit, errors) if with_unit else raw
-    values = axis_values(raw, name, errors) if len(errors) == before else []
-    if not values:  # what else is wrong is looked for, without a second message about this
-        word = "PTFE" if name in BODIES else []  # any material
-        return QuantityList([Quantity(ANY_VALUE)], dim_of(name)) if numeric else word
-    return QuantityList([Quantity(value) for value in values], dim_of(name)) if with_unit else values
-
-
-def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
-    """A range with its ends as numbers in the SI `unit`; messages and {} for ends that it cannot have."""
+    path = Path(path)
+    where = path.as_posix()
+    if path.suffix != ".toml" or not re.fullmatch(r"[A-Za-z0-9_][A-Za-z0-9_.-]{0,199}", path.stem):
+        name = "NAME of letters without accents, digits, _, - and ., 200 at most"
+        raise StudyError([f"{where}: a study file is called NAME.toml, {name}"])
     try:
-        read = {end: quantity(f"{key}: {end}", raw[end], unit) for end in ("start", "stop") if end in raw}
-    except ValueError as error:
-        errors.append(str(error))
+        text = text_in(path)
+        tables = tomllib.loads(text)
+    except OSError as error:
+        raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
+    except RecursionError:
+        raise StudyError([f"{where}: is not valid TOML: brackets are nested too deep"]) from None
+    except UnicodeDecodeError as error:
+        wrong = f"is not UTF-8 (byte {error.start}): save it with the encoding UTF-8, which TOML has"
+        raise StudyError([f"{where}: {wrong}"]) from None
+    except ValueError as error:  # wrong TOML
+        reason = TOO_MANY_DIGITS if "integer string conversion" in str(error) else on_one_line(str(error), 200)
+        more = hint(text, reason) if isinstance(error, tomllib.TOMLDecodeError) else ""
+        raise StudyError([f"{where}: is not valid TOML: {reason}{more}"]) from None
+    return tables, path.stem, text, where
+
+
+def _no_section(key: str, value: Any) -> str:
+    """A message about a key at the top of the file: a parameter, say, since the line [model] is missing."""
+    lacking = absent(key)
+    near = f"; {lacking}" if lacking else suggest(key, SECTIONS)
+    below = near.startswith("; known") and not isinstance(value, (dict, list))
+    return f"{shown(key)} is not a section{near}{'; parameters stand below [model] or [axes]' * below}"
+
+
+def _table(tables: dict, section: str, known: tuple[str, ...] | None, errors: list[str]) -> dict:
+    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller checks them)."""
+    found = tables.get(section, {})
+    if not isinstance(found, dict):
+        errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
         return {}
-    unsure = [end for end, one in read.items() if one.spread]
-    errors += [f"{key}: {end} = {shown(raw[end])}: a range has no spread, a list of values may" for end in unsure]
-    ends = {end: one.value for end, one in read.items()}
-    wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
-    errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
-    return {} if wrong or unsure else raw | ends
+    unknown = [key for key in found if known and key not in known]
+    errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
+    return found
 
 
-def _sampled(table: Any, draft: Draft) -> dict[str, CaseValues | QuantityList]:
-    """What [sample] draws, over the dimension `case`: SI numbers from ranges, entries of lists as they stand there."""
-    drawn, errors = table if isinstance(table, dict) else {}, draft.errors
-    before, known, in_si = len(errors), {}, dict(drawn)
-    for name, raw in drawn.items():
-        if isinstance(raw, list):
-            _check_list(name, raw, draft)
-        if name in BODIES:
-            known[name] = Parameter(choices=("a material",))
-        elif name in SCENE or is_parameter(name):
-            known[name] = VOCABULARY[name].own if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
-            if isinstance(raw, dict):
-                in_si[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
-        elif name not in LIMITS:
-            errors.append(no_parameter(name, [*PARAMETERS, *SCENE, *BODIES], "[sample] "))
-    if len(errors) > before:
-        return {}
-    return {
-        name: QuantityList(list(map(Quantity, values)), "case") if isinstance(drawn[name], dict) else CaseValues(values)
-        for name, values in draw(in_si if drawn else table, known, errors).items()
-    }
+def text_in(path: Path) -> str:
+    """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and for keys of too many parts."""
+    if path.exists() and not path.is_file() and not path.is_dir():  # opening a folder has a message of its own
+        raise OSError(errno.EINVAL, "is no regular file")
+    with open(path, "rb") as file:
+        raw = file.read(LARGEST_FILE + 1)
+    if len(raw) > LARGEST_FILE:
+        raise OSError(errno.EFBIG, f"is larger than {LARGEST_FILE // 1_000_000} MB; ranges and [sample] keep it small")
+    text = raw.decode("utf-8-sig").replace("\r\n", "\n").replace("\r", "\n")
+    tables = sum(1 for _ in TABLE.finditer(text))
+    if tables > MOST_TABLES:  # before tomllib reads them
+        wrong = f"has {tables} tables, [[cases]] and those in braces: at most {MOST_TABLES}"
+        raise OSError(errno.EFBIG, f"{wrong}; [axes] and [sample] say as many cases in a few lines")
+    _check_keys(text)
+    return text
 
 
-def _check_list(name: str, raw: list, draft: Draft) -> None:
-    """Messages for values of a list of [sample], of which some may not be drawn."""
-    if name in BODIES:
-        with_materials({name: CaseValues(raw)}, draft.errors)
-    elif name in SCENE or (is_parameter(name) and not VOCABULARY[name].own.choices):
-        for i, one in enumerate(raw):
-            try:
-                si(name, one, f"{name}[{i}]")
-            except ValueError as error:
-                draft.errors.append(str(error))
-    elif is_parameter(name):
-        draft.checked(name, raw)
+def _check_keys(text: str) -> None:
+    """Raise ValueError for a key of too many parts."""
+    long = LONG_KEY.search(text)
+    if long:
+        raise ValueError(f"a key has more than {MOST_PARTS} parts (at line {text.count(chr(10), 0, long.start()) + 1})")
 
 
-def _unit_of_range(name: str, raw: dict) -> str:
-    """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
-    i, j = ROWS[name].powers
-    other, power = divisor(raw)
-    if other in ROWS:
-        i, j = (own + power * more for own, more in zip((i, j), ROWS[other].powers, strict=True))
-    return si_unit((i, j))
+def same_tables(one: str, other: str) -> bool:
+    """Whether the texts of two study files say the same, but for the title, comments and the order of lines."""
+    try:
+        _check_keys(one)
+        _check_keys(other)
+        return one == other or tomllib.loads(one) | {"title": ""} == tomllib.loads(other) | {"title": ""}
+    except (ValueError, RecursionError):
+        return False
 
 
-def _digest(made: Definition) -> str:
-    """The digest of a study with units: of its dimensionless numbers, and of the SI values from which they follow."""
-    scene = made.scene
-    content = [made.digest, scene.labels, sorted(scene.names.items())]
-    for name, value in sorted(scene.given.items()):
-        content.append((name, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
-    return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
+def hint(text: str, reason: str) -> str:
+    """The end of a message about a line of TOML that has a usual mistake; "" for another."""
+    if "overwrite" in reason:
+        return "; a name is given twice in one section"
+    place = re.search(r"at line (\d+)", reason)
+    line = text.split("\n")[int(place[1]) - 1][:300] if place else ""
+    if re.search("[“”„‘’«»]", line):
+        return '; quotes are straight: "5 mm"'
+    if re.search(r"=\s*[-+]?\d+,\d", line):
+        return "; a number has a decimal point"
+    plain = "'" not in line and '"' not in line and _NO_QUOTES.search(line)
+    return '; texts stand in quotes, a number with its unit too: "5 mm"' if plain else ""

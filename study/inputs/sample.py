@@ -1,15 +1,92 @@
-"""Random cases: the section [sample] of a study file becomes columns of values, the same on every machine."""
+"""Values that a study file says by a rule: ranges, and random cases, which are the same on every machine."""
 
 import re
+from collections.abc import Callable
+from typing import Any
 
 import numpy as np
 
+from ..specimen.quantities import Quantity, quantity
 from ..terminal import shown
-from .grid import LONGEST_AXIS, check_range, quoted
-from .vocabulary import Parameter, check
+from .grid import LONGEST_AXIS, axis_values, check_range, quoted
+from .scene.bodies import of_names
+from .scene.names import si
+from .vocabulary import BODIES, ROWS, VOCABULARY, Parameter, check, si_unit
 
 KEYS = ("start", "stop", "spacing", "over")  # of a range
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
+ANY_NUMBER = Parameter(interval="(-inf, inf)")
+"""Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
+
+
+def values_of_axis(name: str, raw: Any, physical: bool, errors: list[str]) -> list | None:
+    """The values of a list or a range; those of a range with units are in SI. None if it has a mistake."""
+    before = len(errors)
+    in_si = physical and isinstance(raw, dict) and _is_number(name) and ROWS[name].unit != "1"
+    raw = _in_si(raw, name, ROWS[name].unit, errors) if in_si else raw
+    values = axis_values(raw, name, errors) if len(errors) == before else []
+    return (list(map(Quantity, values)) if in_si else values) or None
+
+
+def sampled(table: Any, names: list[str], physical: bool, checked: Callable, errors: list[str]) -> dict[str, list]:
+    """What [sample] draws for the parameters `names`: entries of lists as they stand there, and numbers of ranges, in
+    SI where the study has units. {} if there is a mistake; checked : name, values -> messages are appended."""
+    before, known, read = len(errors), {}, dict(table) if isinstance(table, dict) else {}
+    for name in names:
+        raw = table[name]
+        known[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].own
+        if physical and _is_number(name):
+            known[name] = known[name] if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
+            if isinstance(raw, dict):
+                read[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
+        if isinstance(raw, list):  # all of it, since some of its values may not be drawn
+            _check_list(name, raw, physical, checked, errors)
+    refused = {*read} - {*names, *LIMITS}
+    if len(errors) > before or (refused and not names):
+        return {}
+    read = {name: raw for name, raw in read.items() if name not in refused} if isinstance(table, dict) else table
+    in_si = [name for name in names if physical and isinstance(read[name], dict)]
+    return {n: [*map(Quantity, v)] if n in in_si else v for n, v in draw(read, known, errors).items()}
+
+
+def _is_number(name: str) -> bool:
+    return name not in BODIES and not ROWS[name].own.choices
+
+
+def _check_list(name: str, raw: list, physical: bool, checked: Callable, errors: list[str]) -> None:
+    """Messages for the values of a list of [sample]."""
+    if not (physical and _is_number(name)) and name not in BODIES:
+        checked(name, raw)
+        return
+    for i, one in enumerate(raw):
+        try:
+            of_names(name, [one]) if name in BODIES else si(name, one, f"{name}[{i}]")
+        except (ValueError, LookupError) as error:
+            errors.append(str(error.args[0]))
+
+
+def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
+    """A range with its ends as numbers in the SI `unit`; messages and {} for ends that it cannot have."""
+    try:
+        read = {end: quantity(f"{key}: {end}", raw[end], unit) for end in ("start", "stop") if end in raw}
+    except ValueError as error:
+        errors.append(str(error))
+        return {}
+    unsure = [end for end, one in read.items() if one.spread]
+    errors += [f"{key}: {end} = {shown(raw[end])}: a range has no spread, a list of values may" for end in unsure]
+    ends = {end: one.value for end, one in read.items()}
+    wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
+    errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
+    return {} if wrong or unsure else raw | ends
+
+
+def _unit_of_range(name: str, raw: dict) -> str:
+    """The SI unit of the ends of a range of [sample]: with over = "Ra^2" that of the product with Ra²."""
+    i, j = ROWS[name].powers
+    other, power = divisor(raw)
+    if other in ROWS:
+        i, j = (own + power * more for own, more in zip((i, j), ROWS[other].powers, strict=True))
+    return si_unit((i, j))
 
 
 def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, list]:

@@ -100,6 +100,8 @@ SCENE = entries({"scene": _TABLES.pop("scene")})
 VOCABULARY = entries(_TABLES)
 ROWS = ChainMap(VOCABULARY, SCENE)
 """Both, and with them the parameters of registered laws."""
+#: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
+BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 
 
 _NOT_THERE = tomllib.loads((files(__package__) / "not_there.toml").read_text(encoding="utf-8"))

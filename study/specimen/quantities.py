@@ -92,7 +92,10 @@ def quantity(name: str, given: Any, unit: str) -> Quantity:
     Raises ValueError: there is no number or no unit, or the unit is of something else, which the message names.
     """
     with localcontext(_EXACT):
-        return _quantity(name, given, unit)
+        try:
+            return _quantity(name, given, unit)
+        except (Overflow, InvalidOperation) as error:  # "1e999999 km" is beyond _EXACT too
+            raise ValueError(f"{name} = {shown(given)}: must be finite") from error
 
 
 def _quantity(name: str, given: Any, unit: str) -> Quantity:

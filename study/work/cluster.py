@@ -2,14 +2,20 @@
 
 import logging
 import threading
-from collections.abc import Callable
-from concurrent.futures import Future
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 
 from .cases import NUMERICS_VERSION, Failure
+from .scheduler import connected
 
 log = logging.getLogger(__name__)
+CONNECT = 10  # seconds in which something must listen at the address of a scheduler
+ANSWER = 60  # seconds that a scheduler which listens has to answer: it may be busy
+AHEAD = 4  # blocks submitted for each thread, which goes on with them while the process of the run writes
+AGAIN = 5  # seconds after which a run that waits looks which workers are there: it is one short message
 
 
 class Lost(ConnectionError):
@@ -152,3 +158,61 @@ def _question() -> Callable[[], str]:
         return cases.NUMERICS_VERSION
 
     return version
+
+
+def computed_there(
+    scheduler: str, workers: int | None, function: Callable, tasks: Iterable
+) -> Iterator[tuple[int, object]]:
+    """(number of the task, function(task)) by the workers of a cluster, in the order in which they end.
+
+    scheduler : its address; workers : most threads that are used at a time
+
+    Raises StudyError when no scheduler answers, Lost when it is gone.
+    """
+    with cluster_at(scheduler, workers) as (submit, width):
+        yield from as_they_come(submit, width, function, tasks)
+
+
+@contextmanager
+def cluster_at(scheduler: str, workers: int | None) -> Iterator[tuple[Callable[..., Future], Callable[[], int]]]:
+    """What `as_they_come` needs of a cluster, which is left at the end."""
+    cluster = Cluster(connected(scheduler, CONNECT, ANSWER))
+
+    def width() -> int:
+        threads = cluster.threads()
+        return AHEAD * max(1, min(threads, workers or threads))
+
+    try:
+        yield cluster.submit, width
+    finally:
+        cluster.leave(CONNECT)
+
+
+def as_they_come(
+    submit: Callable[..., Future], width: Callable[[], int], function: Callable, tasks: Iterable
+) -> Iterator[tuple[int, object]]:
+    """(number of the task, function(task)) in the order in which they end, in this thread.
+
+    submit(function, task) gives a Future; width() : how many tasks there should be at a time, which may change. A task
+    is made when there is room for it, and dropped when its result has been taken, so that memory is bounded.
+    """
+    pending: dict[Future, int] = {}
+    for number, task in enumerate(tasks):
+        pending[submit(function, task)] = number
+        while len(pending) >= width():
+            yield _first(pending, width)
+    while pending:
+        yield _first(pending, width)
+
+
+def _first(pending: dict[Future, int], width: Callable[[], int]) -> tuple[int, object]:
+    while not (done := wait(pending, AGAIN, FIRST_COMPLETED).done):
+        width()
+    future = min(done, key=pending.get)
+    number = pending.pop(future)
+    try:
+        return number, future.result()
+    except Lost:
+        raise
+    except Exception as error:  # of the cluster: a block has killed its workers, say
+        return number, Failure(f"{type(error).__name__}: {error}", "")

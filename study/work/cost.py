@@ -11,8 +11,8 @@ from ..data.dataset import not_run
 from ..inputs.definition import Definition, StudyError
 from ..store.writer import AT_ONCE
 from .cases import compute, parcel
+from .engine import AHEAD, MANY, available_workers, processes_for
 from .progress import duration
-from .workers import AHEAD, available_workers, processes_for
 
 SAMPLE = 256  # cases whose time is measured
 PROCESS = 250_000_000  # bytes of this process, Python and the packages
@@ -57,7 +57,8 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     seconds = missing * seconds_per_case(definition) / count if missing else 0.0
     size = definition.numbers * np.dtype(definition.dtype).itemsize
     block = size / cases * min(definition.block, cases)
-    processes = processes_for(count, blocks)
+    here = blocks < MANY or count == 1  # whether the calling thread computes too
+    processes = processes_for(count, blocks, here)
     memory = PROCESS + WORKER * processes + PER_CASE * cases + 3 * min(size, AT_ONCE)
     memory += (AHEAD + WORKING) * count * block
     base, judged = (definition.grid.values[name][1] for name in ("base", "model_check"))
@@ -65,7 +66,7 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
     exact = np.isin(base, ("layered", "auto")).any() or (base == "thin_layer").any() and (judged == "first_order").any()
     nodes = max(LADDER[-1], int(definition.grid.values["nodes"][1].max()))
     matrices = nodes**2 * min(definition.block, cases), nodes * (3 * STACK if exact else STACK)
-    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes or 1) * TABLES * exact
+    memory += count * (SOLVING + 8 * MATRICES * min(matrices)) + (processes + here) * TABLES * exact
     # the blocks of the missing cases, and the record of the cases in the results file
     stored = KEY * cases + missing * (KEY + sum(array.nbytes for array in not_run(definition, 1).values()))
     return Estimate(cases, present, seconds, memory, size, HEAD + ROOM * size + stored if missing else 0.0)

@@ -17,7 +17,7 @@ from ..files.atomic import make_folder, target
 from ..files.examine import Condition, examine, statuses
 from ..inputs.definition import LARGE, Definition, StudyError
 from ..inputs.identity import law_versions
-from ..inputs.toml_text import same_tables
+from ..inputs.reading import same_tables
 from ..inputs.vocabulary import NOT_RUN, suggest
 from ..store.blocks import Inventory, Store, count_statuses, lost_cases
 from ..terminal import on_one_line, program, shown
@@ -46,8 +46,7 @@ class Report:
 class Order:
     """What a run is asked for.
 
-    workers, scheduler : see `workers.engine`
-    processes : workers may be processes, which do not know what the calling program itself defines
+    workers, scheduler : see `engine.computed`
     part : (i, n), compute the i-th of n parts only; the part that ends last writes the results
     retry : compute cases of these statuses again
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
@@ -63,7 +62,6 @@ class Order:
     results: Path
     workers: int | None = None
     scheduler: str | None = None
-    processes: bool = False
     part: tuple[int, int] = (1, 1)
     retry: tuple[int, ...] = ()
     fail_fast: bool = False

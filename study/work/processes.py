@@ -1,7 +1,7 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
-`dask.distributed.LocalCluster` is not used because it starts 2.5 s later; two starts and a run of 100,000 thin rough
-cases took 11.5 s of processor time, with dask 18.1 s (`python tests/bench/benchmark_engine.py 3 100`). Dask's process
+`dask.distributed.LocalCluster` is not used because two starts and a run of 100,000 thin rough cases took 11.5 s of
+processor time, with dask 18.1 s (`python tests/bench/benchmark_engine.py 3 100`). Dask's process
 scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed process ends it.
 """
 
@@ -13,9 +13,9 @@ import threading
 import traceback
 from collections.abc import Callable
 from contextlib import suppress
+from pathlib import Path
 from queue import Empty, SimpleQueue
 
-from ..files.child import python_command
 from .cases import Failure
 
 #: How often a block is tried. Once is too few, as a process may be killed because others take the memory. A block
@@ -25,6 +25,17 @@ KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps fo
 #: Seconds after which a process without a task ends, and frees its memory. It is started again for the next task.
 IDLE = 60
 SERVE = "from study.work.processes import serve; serve()"
+
+
+def python_command(statement: str) -> tuple[list[str], dict[str, str]]:
+    """Command and environment of a Python process that executes a statement, and can import this package, whatever
+    folder the program was started in.
+
+    It looks for modules in the working folder last, because a user may have a solver.py there.
+    """
+    where = os.pathsep.join(filter(None, [str(Path(__file__).parents[2]), os.environ.get("PYTHONPATH")]))
+    command = [sys.executable, "-P", "-c", f"import sys; sys.path.append(''); {statement}"]
+    return command, os.environ | {"PYTHONPATH": where}
 
 
 class Processes:
@@ -45,7 +56,12 @@ class Processes:
                 pickle.dump(task, process.stdin)
                 process.stdin.flush()
                 return pickle.load(process.stdout)
-            except (EOFError, OSError, pickle.UnpicklingError):  # the process has ended, perhaps in the middle
+            except (
+                EOFError,
+                OSError,
+                ValueError,
+                pickle.UnpicklingError,
+            ):  # it has ended, or `end` has closed its pipe
                 self._mine.process = None
         return Failure(KILLED, "")
 

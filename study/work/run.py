@@ -1,6 +1,7 @@
 """Run a study: missing cases -> workers -> blocks on disk -> results file, an export of the blocks."""
 
 import logging
+from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,12 +16,12 @@ from ..inputs.definition import Definition, StudyError
 from ..store.blocks import Inventory, Store, add, gather, inventory, remove_litter
 from ..store.writer import export
 from ..terminal import say
-from .cases import Failure, blocks_of, can_travel, guarded, parcel
+from .cases import Failure, blocks_of
 from .cost import Estimate, estimate
+from .engine import computed
 from .plan import Order, Report, check_countable, check_replaceable, check_size, check_writable, look
 from .progress import Progress
 from .screen import screen_of
-from .workers import as_they_come, engine
 
 log = logging.getLogger(__name__)
 
@@ -95,10 +96,9 @@ def compute_blocks(order: Order, known: Inventory) -> dict[int, str]:
     size = order.definition.grid.size
     stream, passing = order.stream or screen_of(order.progress), order.stream is None
     shown = Progress(order.definition.name, size, stream, size - len(known.missing), passing=passing)
-    many = len(blocks) if order.processes and can_travel(order.definition) else 0
-    with shown as progress, engine(order.workers, order.scheduler, many) as workers:
-        tasks = (parcel(order.definition, index) for index in blocks)
-        for number, result in as_they_come(workers, guarded, tasks):
+    results = computed(order.definition, blocks, order.workers, order.scheduler, storing=True)
+    with shown as progress, closing(results):
+        for number, result in results:
             if isinstance(result, Failure):
                 failures[number] = result.message
                 log.debug("block %d: %s", number, result.trace)

@@ -2,9 +2,8 @@
 
     python tests/bench/benchmark_engine.py [REPEATS [THOUSANDS]]
 
-For each, seconds until both workers have given a first answer, and wall and processor time of a run of so many
-thousand thin rough cases, 200 by default. Each measurement is a process of its own. The module
-`study.work.processes` says what was found.
+For each, wall and processor time of a run of so many thousand thin rough cases, 200 by default, with the start of the
+workers. Each measurement is a process of its own. The module `study.work.processes` says what was found.
 """
 
 import os
@@ -13,51 +12,42 @@ import subprocess
 import sys
 import time
 import tomllib
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 from tempfile import TemporaryDirectory
 
-import numpy as np
 from benchmark_study import STUDY, WORKERS
 
-from study.inputs.definition import from_tables
-from study.work import cases, run, workers
+from study.inputs.reading import from_tables
+from study.work import run
 
 
 @contextmanager
-def local_cluster(*_):
-    """The engine of a dask cluster of this machine, as lean as it can be configured."""
+def local_cluster():
+    """The address of a dask cluster of this machine, as lean as it can be configured."""
     import dask
-    from dask.distributed import Client, LocalCluster
+    from dask.distributed import LocalCluster
 
     # what dask sets makes malloc give memory back after each block, which doubles the processor time
     dask.config.set({"distributed.nanny.pre-spawn-environ": {}, "distributed.worker.profile.enabled": False})
     options = {"n_workers": WORKERS, "threads_per_worker": 1, "memory_limit": 0, "dashboard_address": ":0"}
-    with LocalCluster(**options) as cluster, Client(cluster, set_as_default=False) as client:
-        yield workers.Engine(client.get_executor(pure=False).submit, lambda: workers.AHEAD * WORKERS)
+    with LocalCluster(**options) as cluster:
+        yield cluster.scheduler_address
 
 
-ENGINES = {"ours": workers.engine, "dask": local_cluster}
+ENGINES = {"ours": nullcontext, "dask": local_cluster}
 
 
 def measure(name: str, thousands: int) -> str:
     """What is said of an engine, in this process."""
     text = STUDY.replace("num = 100,", f"num = {thousands // 10},")
     definition = from_tables(tomllib.loads(text), "many", text, "many")
-    one, start = cases.parcel(definition, np.arange(1)), time.perf_counter()
-    with ENGINES[name](WORKERS, None, workers.MANY) as found:
-        for future in [found.submit(cases.guarded, one) for _ in range(WORKERS)]:
-            future.result()
-        first = time.perf_counter() - start
-    run.engine = ENGINES[name]
     start = time.perf_counter()
-    with TemporaryDirectory() as folder:
-        run.run(definition, folder, workers=WORKERS, processes=True, yes=True)
+    with TemporaryDirectory() as folder, ENGINES[name]() as scheduler:
+        run.run(definition, folder, workers=WORKERS, scheduler=scheduler, yes=True)
     wall = time.perf_counter() - start
     used = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
     processor = sum(one.ru_utime + one.ru_stime for one in used)
-    return (
-        f"{name}: first answers {first:.1f} s; {thousands},000 cases {wall:.1f} s, all processor time {processor:.1f} s"
-    )
+    return f"{name}: {thousands},000 cases {wall:.1f} s, all processor time {processor:.1f} s"
 
 
 def main(repeats: int = 3, thousands: int = 200) -> None:

@@ -13,7 +13,7 @@ from tempfile import TemporaryDirectory
 import numpy as np
 
 from solver import Problem, solve
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.work.cases import parcel
 
 STUDY = """

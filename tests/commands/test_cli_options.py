@@ -37,9 +37,9 @@ def asked(monkeypatch) -> list:
     return found
 
 
-DEFAULTS = {"workers": None, "scheduler": None, "fail_fast": False, "yes": False, "processes": True}
+DEFAULTS = {"workers": None, "scheduler": None, "fail_fast": False, "yes": False}
 FULL = "--results there --workers 3 --scheduler tcp://host:1 --fail-fast --yes"
-CHOSEN = {"workers": 3, "scheduler": "tcp://host:1", "fail_fast": True, "yes": True, "processes": True}
+CHOSEN = {"workers": 3, "scheduler": "tcp://host:1", "fail_fast": True, "yes": True}
 
 
 @pytest.mark.parametrize(
@@ -74,7 +74,6 @@ def test_dry_run_is_told_the_workers_and_computes_nothing(asked, monkeypatch, ca
     assert capsys.readouterr().out.startswith("good: 3 cases, 0 of them computed; ")
 
 
-@pytest.mark.usefixtures("read_in_a_fork")
 @pytest.mark.parametrize("whose", ["another program", "another definition"])
 def test_dry_run_says_that_run_would_be_refused(studies, whose, capsys):  # noqa: F811
     """With the message and the exit code of `run`, behind the cost."""

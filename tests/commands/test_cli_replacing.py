@@ -122,7 +122,7 @@ def test_damaged_results_of_another_study_stay(name, capsys):
 
 def test_a_text_that_is_no_study_file_is_of_no_study(monkeypatch):
     """Nor is one whose parsing would take all memory."""
-    from study.inputs.toml_text import same_tables
+    from study.inputs.reading import same_tables
 
     deep = ".".join("a" * 20_000) + " = 1\n"
     for text in (deep, "[" * 5000, "a =", "", "x = 1\n[model]\n"):

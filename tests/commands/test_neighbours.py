@@ -89,9 +89,9 @@ def test_processes_that_compute_take_our_packages_too(python, beside):
     done = run(folder, python, "-m", "study", "run", "many.toml", "--workers", "2")
     assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
     (folder / "dask.py").unlink()
-    script = "import numpy as np, study; from study.work import share; share.BLOCK, share.START = 10, 1e-9\n"
+    script = "import numpy as np, study; from study.work import engine; engine.BLOCK, engine.START = 10, 1e-9\n"
     script += "c = study.solve(P=np.geomspace(1e-6, 1e-5, 40), micro='smooth', base='half_space', workers=2)\n"
-    script += "assert (c.status == 0).all(); print(share._pool.count)"
+    script += "assert (c.status == 0).all(); print(engine._pool.count)"
     done = run(folder, python, "-c", script)
     assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
     assert not (folder / "it-ran").exists()
@@ -127,9 +127,9 @@ def test_processes_take_our_study_beside_one_of_the_user(python, beside):
     done = run(folder, python, "-m", "roughcoat", "run", "many.toml", "--workers", "2")
     assert done.returncode == 0 and "8 computed now" in done.stdout, done.stderr
     script = "import numpy as np, roughcoat as rc\n"
-    script += "from study.work import share; share.BLOCK, share.START = 10, 1e-9\n"
+    script += "from study.work import engine; engine.BLOCK, engine.START = 10, 1e-9\n"
     script += "c = rc.solve(P=np.geomspace(1e-6, 1e-5, 40), micro='smooth', base='half_space', workers=2)\n"
-    script += "assert (c.status == 0).all(); print(share._pool.count)"
+    script += "assert (c.status == 0).all(); print(engine._pool.count)"
     done = run(folder, python, "-c", script)
     assert (done.returncode, done.stdout) == (0, "1\n"), done.stderr
     assert not (folder / "it-ran").exists()

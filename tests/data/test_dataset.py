@@ -8,6 +8,7 @@ import xarray as xr
 
 import study
 from study.files import access, results_file
+from study.files.examine import examine
 from study.inputs.vocabulary import NOT_RUN, PARAMETERS, attributes
 
 CASES = [
@@ -24,7 +25,7 @@ def solved() -> xr.Dataset:
 @pytest.fixture(scope="module")
 def reread(solved, tmp_path_factory) -> xr.Dataset:
     path = tmp_path_factory.mktemp("results") / "file.nc"
-    results_file.write(solved, path)
+    results_file.write(solved, path, examine(path))
     return study.open_results(path)
 
 
@@ -50,7 +51,7 @@ def test_results_of_a_file_go_before_those_of_solve(tmp_path):
 
 
 def test_plain_xarray_opens_it(reread, tmp_path):
-    results_file.write(reread, tmp_path / "again.nc")
+    results_file.write(reread, tmp_path / "again.nc", examine(tmp_path / "again.nc"))
     with xr.open_dataset(tmp_path / "again.nc") as plain:
         assert plain.sel(bonding="bonded").sizes == {"case": 2, "x": 5}
         assert plain.status.dtype == np.int8
@@ -124,7 +125,7 @@ def test_an_interrupted_write_is_finished_first(reread, monkeypatch, tmp_path):
 
     monkeypatch.setattr(results_file, "stored", lambda array: Interrupting() if array.name == "a" else real(array))
     with pytest.raises(KeyboardInterrupt):
-        results_file.write(reread, tmp_path / "file.nc")
+        results_file.write(reread, tmp_path / "file.nc", examine(tmp_path / "file.nc"))
     assert ended and list(tmp_path.iterdir()) == []
 
 

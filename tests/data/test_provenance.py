@@ -9,7 +9,7 @@ import pytest
 import study
 from solver import NUMERICS_VERSION
 from study.data import provenance
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 
 TEXT = """title = "A line"
 [model]

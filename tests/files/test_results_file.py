@@ -10,7 +10,7 @@ import study
 from study.data import derived
 from study.files import results_file
 from study.files.examine import examine
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 
 TABLES = {
     "model": {"base": "thin_layer", "h": 0.02, "n": 0.5, "Nbar": 250000, "Ra": 0.004},

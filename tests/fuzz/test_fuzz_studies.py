@@ -7,7 +7,7 @@ import fuzz_studies
 import pytest
 from fuzz_studies import fault, faults
 
-from study.inputs import definition
+from study.inputs import definition, reading
 
 
 def test_mutated_study_files(tmp_path, monkeypatch):
@@ -38,7 +38,7 @@ def _warning(*_, **__):
 )
 def test_faults_are_found(tmp_path, monkeypatch, broken, seen):
     monkeypatch.setattr(fuzz_studies, "PATIENCE", 0.2)
-    monkeypatch.setattr(definition, "complete", broken)
+    monkeypatch.setattr(reading, "complete", broken)
     file = tmp_path / "s.toml"
     file.write_text('[model]\nP = 1e-5\nmicro = "smooth"\nbase = "half_space"\n', encoding="utf-8")
     assert fault(["check", str(file)])[1].startswith(seen)

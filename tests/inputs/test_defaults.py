@@ -7,8 +7,8 @@ from numpy.testing import assert_allclose, assert_array_equal
 import study
 from solver import Problem, Status, solve
 from solver.parameters import PARAMETERS
-from study.inputs.definition import from_tables
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.inputs.vocabulary import VOCABULARY
 
 DEFAULTS = {
@@ -137,7 +137,8 @@ def test_what_has_no_default_is_asked_for(chosen, given, message):
     assert str(caught.value) == message
     with pytest.raises(study.StudyError) as caught:
         study.solve(**case)
-    assert caught.value.messages == (f"solve: {message}",)
+    hint = ' (without asperities: micro = "smooth")' * ("micro = " in message and "micro" not in case)
+    assert caught.value.messages == (f"solve: {message}{hint}",)
 
 
 def test_all_that_is_missing_is_named():

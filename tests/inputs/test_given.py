@@ -11,8 +11,9 @@ import xarray as xr
 import study
 from solver.parameters import Parameter
 from study import StudyError
-from study.inputs.definition import Definition, from_tables
+from study.inputs.definition import Definition
 from study.inputs.grid import as_array
+from study.inputs.reading import from_tables
 from study.inputs.vocabulary import VOCABULARY
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
@@ -98,7 +99,7 @@ def test_what_is_missing_is_said_with_the_first_case_that_needs_it():
 
 def test_what_is_missing_is_said_beside_other_mistakes():
     said = messages(model={"micro": "smooth", "P": -1, "bonding": "glued"}, axes={"n": []})
-    assert [text.split(":")[0] for text in said] == ["P = -1", 'bonding = "glued"', "n is empty", "h is missing"]
+    assert [text.split(":")[0] for text in said] == ["n is empty", "P = -1", 'bonding = "glued"', "h is missing"]
     said = messages(model={"micro": "smooth", "P": 1, "n": 0.5, "hh": 0.1})  # it may be the thickness
     assert said == ['[model] "hh" is not a parameter; did you mean "h"?']
     assert len(messages(model={"base": "soft", "P": 1, "n": 0.5, "micro": "smooth"})) == 1

@@ -114,10 +114,13 @@ def array(values, *dims, **coords):
 @pytest.mark.parametrize(
     ("parameters", "message"),
     [
-        ({"P": [1, 2], "Ra": array([1, 2, 3], "P")}, "Ra has 3 values along P, another parameter has 2"),
-        ({"Ra": array([1, 2, 3], "P"), "P": [1, 2]}, "Ra has 3 values along P, another parameter has 2"),
-        ({"P": [1, 2], "Ra": array([1, 2], "P", P=[1, 3])}, "Ra has other values of P than another parameter"),
-        ({"P": array([1, 2], "s", s=[1, 2]), "Ra": array([1, 2], "s", s=[1, 3])}, "Ra has other values of s than"),
+        ({"P": [1, 2], "Ra": array([1, 2, 3], "P")}, "Ra has 3 values along P, P has 2"),
+        ({"Ra": array([1, 2, 3], "P"), "P": [1, 2]}, "Ra has 3 values along P, P has 2"),
+        ({"P": [1, 2], "Ra": array([1, 2], "P", P=[1, 3])}, "Ra has other values of P, or in another order, than P"),
+        (
+            {"P": array([1, 2], "s", s=[1, 2]), "Ra": array([1, 2], "s", s=[1, 3])},
+            "Ra has other values of s, or in another order, than P",
+        ),
         ({"P": 1, "Ra": array([1, 2], "P")}, "P is a dimension and a parameter over other dimensions"),
         ({"P": 1, "Ra": array([1, 2], "h")}, "the dimension h is called like a parameter that is not given: rename it"),
         ({"P": 1, "Ra": array([1, 2], "lam")}, 'a dimension cannot be called "lam", which is the name of a result'),
@@ -208,7 +211,7 @@ def chunk(first: int, last: int) -> dict[str, np.ndarray]:
 
 @cache
 def chunked_definition():
-    from study.inputs.definition import from_tables
+    from study.inputs.reading import from_tables
 
     tables = {
         "model": {"h": 0.02, "n": 0.5, "Nbar": 250000, "Ra": 0.004, "B": 0.1, "beta": 0.5},

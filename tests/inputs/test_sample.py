@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from study import StudyError
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.inputs.sample import uniform
 
 GOOD = """

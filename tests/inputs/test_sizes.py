@@ -6,7 +6,7 @@ import pytest
 import study
 from study import solving
 from study.inputs import definition, given, grid, sample
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
 

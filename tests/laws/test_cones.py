@@ -19,8 +19,8 @@ from solver import Problem, laws, solve
 from solver.parameters import PARAMETERS, Parameter
 from study.figures.labels import stated
 from study.in_words.inputs import used_inputs
-from study.inputs.definition import from_tables
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.work.cases import parcel
 
 CASE = {"h": 0.02, "n": 0.5, "Nbar": 250_000.0}

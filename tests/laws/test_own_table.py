@@ -12,8 +12,8 @@ from numpy.testing import assert_allclose
 import study
 from solver import Problem, Status, laws, solve
 from solver.laws import own_table
-from study.inputs.definition import from_tables
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.work.cases import compute, parcel
 
 ASPERITIES = {"Nbar": 250_000.0, "Ra": 0.004}

@@ -47,7 +47,7 @@ def test_what_the_table_does_not_say_of_the_edge(tmp_path, law, more, ratio):
         top = float(true.p0) / (1.0 if base == "half_space" else CASE["n"])
         found = study.solve(**given, micro=limited(tmp_path, law, more, top / ratio, 30 * top))
         far = max(abs(float(found[name] / true[name]) - 1) for name in ("a", "D", "p0", "p_max", "Ar_An"))
-        assert found.status == 0 and far < found.model_error < 0.12
+        assert found.status == 0 and far < found.model_error < 0.27  # 0.4/1.5^1.2 and `accuracy`
 
 
 def test_the_profiles_are_those_that_are_asked_for(tmp_path):
@@ -96,6 +96,20 @@ def test_an_edge_where_the_area_rises_fast(tmp_path, law, more, base, ratio):
     found = study.solve(**given, micro=limited(tmp_path, law, more, top / ratio, 30 * top))
     far = max(abs(float(found[name] / true[name]) - 1) for name in ("a", "D", "p0", "p_max", "Ar_An"))
     assert found.status == 0 and far < found.error + found.model_error < 0.01
+
+
+def test_a_table_that_begins_near_the_largest_pressure():
+    """Below it λ of these heights is a guess that is farther off than that of other laws: at given radius 0.335
+    (p1/p(0))^1.2, the largest that a search found."""
+    heights = {"Nbar": 129.24242, "Ra": 0.065663067, "sigma": 4.176585e-5, "cut": 4.766572}
+    p = np.geomspace(5.26064895e-5, 0.0157819, 50)
+    table = own_table.of_columns("table:heights.csv", p, *laws.LAWS["normal_heights"].at(p, 1.0, **heights))
+    true = solve(Problem.of(a=np.geomspace(0.03, 0.09, 12), base="half_space", micro="normal_heights", **heights))
+    found = solve(Problem.of(a=true.a, base="half_space", micro=table))
+    far = np.max([np.abs(getattr(found, name) / getattr(true, name) - 1) for name in ("P", "D", "p0", "Ar_An")], axis=0)
+    inside = (found.status == Status.CONVERGED) & (true.p0 > 1.5 * p[0])
+    assert inside.sum() > 5 and (far / found.model_error)[inside].max() > 0.6
+    assert (far <= found.error + found.model_error)[inside].all()
 
 
 @pytest.mark.parametrize("x", [2, 51])

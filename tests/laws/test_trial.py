@@ -15,7 +15,7 @@ from solver import Problem, laws, solve
 from solver.laws import trial
 from solver.parameters import PARAMETERS, Parameter, ends
 from study.__main__ import main
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.work.cases import can_travel, compute, parcel
 from study.work.run import run
 

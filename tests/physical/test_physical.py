@@ -91,7 +91,7 @@ def test_a_case_without_a_layer_needs_none(layer):
     np.testing.assert_array_equal(unsaid.D, found.D)
     with pytest.raises(study.StudyError) as caught:
         study.solve(cases=[coated, {"base": "layered", "bonding": "bonded"} | layer], **common)
-    assert caught.value.messages == ("h must be given in every case, or once for all",)
+    assert caught.value.messages == ("solve: h must be given in every case, or once for all",)
 
 
 @pytest.mark.parametrize(
@@ -223,13 +223,13 @@ def test_series_of_pandas_and_percent():
         ({"E2": "steel 52100"}, 'must be a pressure, such as "2 MPa"; a material is given as body, in place of E2$'),
         ({"E1": "2 mm"}, 'E1 = "2 mm" is a length: must be a pressure, such as "2 MPa"$'),
         ({"hh": "2 um"}, '"hh" is not a parameter; did you mean "h"'),
-        ({"R": "5 km", "h": "2 nm"}, r"^h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R, R = 5000 m$"),
+        ({"R": "5 km", "h": "2 nm"}, r"h = 2 nm: must be in \[5, 5e\+18\] nm, which is \[1e-12, 1e6\] R, R = 5000 m$"),
         ({"h": xr.DataArray([1e-6], dims="film")}, 'the DataArray has no attribute "units"; a length needs one'),
-        ({"P": of_rows([1.0, np.nan], "N")}, r"^P\[1\] = nan N: must be a number$"),
-        ({"E2": of_rows([1.0, -2.0], "GPa")}, r"^E2\[1\] = -2 GPa: must be > 0$"),
+        ({"P": of_rows([1.0, np.nan], "N")}, r"^solve: P\[1\] = nan N: must be a number$"),
+        ({"E2": of_rows([1.0, -2.0], "GPa")}, r"^solve: E2\[1\] = -2 GPa: must be > 0$"),
         ({"nu2": of_rows([0.3], "N")}, 'nu2 = "1 N" is a force: must be a number without a unit'),
-        ({"nu2": of_rows([0.2, 0.7], "1")}, r"^nu2\[1\] = 0.7: must be in"),
-        ({"nu2": 1}, r"^nu2 = 1: must be in \(-1, 0.5\]$"),
+        ({"nu2": of_rows([0.2, 0.7], "1")}, r"^solve: nu2\[1\] = 0.7: must be in"),
+        ({"nu2": 1}, r"^solve: nu2 = 1: must be in \(-1, 0.5\]$"),
         *(({"cases": rows}, "^cases must be a list of dictionaries, at least one$") for rows in ([], "x", {}, [3])),
         ({"cases": pd.DataFrame({"h": ["2 um"]}), "h": None}, r"cases=table.to_dict\("),
     ],

@@ -24,7 +24,7 @@ def of(values, units: str, dim: str = "ball", labels=None) -> xr.DataArray:
         ({"R": of([1, 2], "mm", labels=[0, 1]), "P": of([3, 4], "N", labels=[1, 2])}, "P has other values of ball, or"),
         ({"R": of([1, 2], "mm"), "P": of([3, 4, 5], "N")}, "P has 3 values along ball, R has 2"),
         ({"R": "1 mm", "nu2": [0.1, 0.2], "P": of([3, 4, 5], "N", "nu2")}, "P has 3 values along nu2, nu2 has 2"),
-        ({"R": "1 mm", "nu2": [0.1, 0.2], "P": of([3, 4], "N", "nu2", [0.2, 0.1])}, "solve: P has other values of nu2"),
+        ({"R": "1 mm", "nu2": [0.1, 0.2], "P": of([3, 4], "N", "nu2", [0.2, 0.1])}, "P has other values of nu2"),
         ({"cases": [{"R": "1 mm"}] * 2, "P": of([3, 4, 5], "N", "case")}, "P has 3 values along case, R has 2"),
         # the load of copper was that of PTFE
         (
@@ -38,11 +38,11 @@ def of(values, units: str, dim: str = "ball", labels=None) -> xr.DataArray:
         ({"R": "1 mm", "P": of(["3", "4"], "N")}, "P: a DataArray must hold numbers"),
         ({"R": "1 mm", "P": of([True, True], "N")}, "P: a DataArray must hold numbers"),
         ({"R": "1 mm", "P": "1 N", "nu2": xr.DataArray(["0.3"], dims="q")}, "nu2: a DataArray must hold numbers"),
-        ({"R": "1 mm", "P": "1 N", "punch": []}, "punch: must have at least one material"),
+        ({"R": "1 mm", "P": "1 N", "punch": []}, "punch is empty: must have at least one value"),
     ],
 )
 def test_what_is_refused(given, message):
-    with pytest.raises(study.StudyError, match=f"^{re.escape(message)}"):
+    with pytest.raises(study.StudyError, match=f"^solve: {re.escape(message)}"):
         study.solve(**BALL | given)
 
 

@@ -29,7 +29,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "data", "in_words", "files", "store", "work"),
-        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -177,7 +177,7 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     assert users["vocabulary"] == {"solver.parameters"}
     own = {"solver.parameters", "solver.laws", "solver.laws.own_table", "solver.laws.fit"}
     assert users["laws"] == own, "those that others have registered, tables in files, fits"
-    assert not any(users[name] for name in ("grid", "given", "run", "api", "units", "progress"))
+    assert not any(users[name] for name in ("grid", "given", "draft", "run", "api", "units", "progress"))
 
 
 def alone(script: str) -> None:
@@ -192,7 +192,7 @@ NOT_HEAVY = "assert not {'xarray', 'dask', 'netCDF4', 'matplotlib'} & set(sys.mo
 def test_light_modules_stay_light():
     """Complaints about a study file come at once, and worker processes, which import `processes`, start soon."""
     light = (
-        *("inputs.vocabulary", "inputs.grid", "inputs.given", "inputs.definition", "commands.arguments"),
+        *("inputs.vocabulary", "inputs.grid", "inputs.draft", "inputs.reading", "commands.arguments"),
         "work.processes",
     )
     alone("; ".join(f"import study.{module}; {NOT_HEAVY}" for module in (*light, "specimen.materials")))
@@ -234,11 +234,11 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
     """The signature is what editors show; the docstring has a line for each name, the vocabulary the truth."""
     import study
     from solver.parameters import PARAMETERS as OWN
-    from study.inputs.scene.bodies import BODIES
-    from study.inputs.vocabulary import PARAMETERS, SCENE
+    from study.inputs.vocabulary import BODIES, PARAMETERS, SCENE
 
     known = inspect.signature(study.solve).parameters
-    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks", "parameters"}
+    beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks"}
+    beside |= {"sensitivities", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

@@ -8,7 +8,7 @@ import types
 
 import pytest
 
-from study.work import progress, screen, share
+from study.work import cases, progress, screen
 from study.work.progress import ERASE
 
 PATIENCE = 20  # seconds that a test waits for a line at most
@@ -52,8 +52,8 @@ def as_stderr(monkeypatch, stream):
 
 def slowly(monkeypatch, wait) -> None:
     """Every block takes as long as wait() takes."""
-    real = share.compute
-    monkeypatch.setattr(share, "compute", lambda wanted: (wait(), real(wanted))[1])
+    real = cases.compute
+    monkeypatch.setattr(cases, "compute", lambda wanted: (wait(), real(wanted))[1])
 
 
 def nobody_speaks() -> bool:

@@ -9,8 +9,9 @@ import pytest
 
 from study.data.dataset import not_run
 from study.files.seal import seal
-from study.inputs.definition import Definition, from_tables
+from study.inputs.definition import Definition
 from study.inputs.identity import case_keys
+from study.inputs.reading import from_tables
 from study.store import blocks
 from study.store.block_file import Block, Damaged, read_block, write_block
 from study.store.blocks import Store, add, count_statuses, facts, gather, inventory, put, usable

@@ -15,9 +15,10 @@ from numpy.testing import assert_array_equal
 import solver
 from solver.parameters import CONTROL, EVERY, Parameter
 from study.inputs import identity
-from study.inputs.definition import Definition, from_tables
+from study.inputs.definition import Definition
 from study.inputs.grid import Grid
 from study.inputs.identity import case_keys, digest_of
+from study.inputs.reading import from_tables
 from study.inputs.vocabulary import NUMERICS, PARAMETERS, VOCABULARY, Entry
 from study.work.cases import compute, parcel
 

@@ -16,8 +16,8 @@ from study.data.dataset import parts
 from study.files import results_file
 from study.files.examine import examine
 from study.files.results_file import write
-from study.inputs.definition import from_tables
 from study.inputs.grid import Grid, box, cut_out, windows
+from study.inputs.reading import from_tables
 from study.store import writer
 from study.work.cases import compute, parcel
 

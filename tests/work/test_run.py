@@ -15,7 +15,7 @@ from same import assert_same_numbers
 
 import study
 from study.data.dataset import Parts
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 from study.store.blocks import Store
 from study.work import cases
 from study.work import run as running
@@ -90,12 +90,6 @@ def test_blocks_on_disk_serve_another_block_size(file, computed):
     assert computed == [5, 14]
     assert (other.open().status == 0).all()
     assert opened.status()["state"] == "done"
-
-
-def test_many_blocks_of_a_program_are_computed_in_threads(file, computed):
-    """Worker processes would not know what it defines itself, a law say; those of the command line are asked for."""
-    load(file, **{"block = 5": "block = 2"}).run(workers=2)
-    assert sorted(computed) == list(range(0, 23, 2))
 
 
 def test_failing_block_costs_that_block_only(file, monkeypatch, caplog):

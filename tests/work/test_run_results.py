@@ -3,7 +3,6 @@
 import os
 import threading
 import weakref
-from concurrent.futures import Executor, Future
 from types import SimpleNamespace
 
 import netCDF4
@@ -16,7 +15,7 @@ import study
 from study.commands.computing import state_line
 from study.files import netcdf, results_file
 from study.files.examine import examine
-from study.work import cases, workers
+from study.work import cases
 
 
 def test_results_of_another_definition_are_kept(file):
@@ -104,20 +103,9 @@ def recorded(function, threads: set):
     return call
 
 
-class AtOnce(Executor):
-    """Computes what is submitted there and then: no worker can be faster."""
-
-    def __init__(self, _):
-        pass
-
-    def submit(self, function, *arguments):
-        future = Future()
-        future.set_result(function(*arguments))
-        return future
-
-
 def test_memory_is_bounded(file, monkeypatch):
-    """A stored block is forgotten: of 60 never more are alive than are under way, and the one that is being stored."""
+    """A stored block is forgotten: of 60 one is alive, and the one that is being stored. How many results of processes
+    may wait is left to test_here_and_apart.py."""
     alive, most, real = weakref.WeakSet(), [], cases.compute
 
     class Arrays(dict):
@@ -130,10 +118,9 @@ def test_memory_is_bounded(file, monkeypatch):
         return found
 
     monkeypatch.setattr(cases, "compute", compute)
-    monkeypatch.setattr(workers, "ThreadPoolExecutor", AtOnce)
     load(file, **{"num = 23": "num = 300"}).run(workers=2)
     assert len(most) == 60
-    assert max(most) == 2 * workers.AHEAD + 1
+    assert max(most) <= 2
 
 
 def test_a_case_that_failed_is_not_computed_again_unless_asked(file, monkeypatch):

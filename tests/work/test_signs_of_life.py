@@ -13,7 +13,7 @@ from screens import CONTACT, PATIENCE, Screen, as_stderr, lines, nobody_speaks, 
 import study
 from solver import Status
 from study import solving
-from study.work import progress, run, screen, share
+from study.work import cases, engine, progress, screen
 from study.work.progress import ERASE, Progress
 
 
@@ -46,14 +46,14 @@ def test_it_says_how_often_a_contact_is_solved(monkeypatch, stderr):
 def test_a_quick_call_says_nothing(monkeypatch, stderr):
     """As long as SILENT is: no block of several changes that."""
     monkeypatch.setattr(progress, "SILENT", PATIENCE)
-    monkeypatch.setattr(share, "BLOCK", 10)
+    monkeypatch.setattr(engine, "BLOCK", 10)
     study.solve(progress=True, **CONTACT)
     study.solve(progress=True, workers=1, **CONTACT | {"P": np.geomspace(1e-6, 1e-5, 100)})
     assert stderr.getvalue() == "" and nobody_speaks()
 
 
 def test_of_several_blocks_it_says_how_far_it_is(monkeypatch, stderr):
-    monkeypatch.setattr(share, "BLOCK", 10)
+    monkeypatch.setattr(engine, "BLOCK", 10)
     monkeypatch.setattr(progress, "BLINK", 0)
 
     def wait() -> None:
@@ -205,9 +205,9 @@ LINE = '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = [1e-6, 2e-6,
 @pytest.mark.parametrize(("value", "said"), [(None, True), (True, True), (False, False)])
 def test_runs_from_python_say_it_as_calls_do(tmp_path, monkeypatch, stderr, value, said):
     (tmp_path / "line.toml").write_text(LINE, encoding="utf-8")
-    real = run.guarded
+    real = engine.guarded
     monkeypatch.setattr(
-        run, "guarded", lambda wanted: (stderr.written.wait(PATIENCE if said else 0.1), real(wanted))[1]
+        engine, "guarded", lambda wanted: (stderr.written.wait(PATIENCE if said else 0.1), real(wanted))[1]
     )
     report = study.load(tmp_path / "line.toml", tmp_path / "results").run(workers=1, progress=value)
     assert report.complete and bool(lines(stderr.getvalue())) == said
@@ -227,8 +227,8 @@ def test_a_run_whose_first_block_lasts_says_that_it_goes_on(impatient):
 
 def test_status_of_a_failed_case_is_counted(monkeypatch, stderr):
     """Cases that failed are named; one without a solution has not."""
-    monkeypatch.setattr(share, "BLOCK", 4)
-    real = share.compute
+    monkeypatch.setattr(engine, "BLOCK", 4)
+    real = cases.compute
 
     def compute(wanted):
         stderr.written.clear()
@@ -237,7 +237,7 @@ def test_status_of_a_failed_case_is_counted(monkeypatch, stderr):
         found["status"][:3] = Status.DIVERGED, Status.DIVERGED, Status.LIFT_OFF
         return found
 
-    monkeypatch.setattr(share, "compute", compute)
+    monkeypatch.setattr(cases, "compute", compute)
     monkeypatch.setattr(progress, "BLINK", 0)
     study.solve(workers=1, **CONTACT | {"P": np.geomspace(1e-6, 1e-5, 12)})
     said = [line for line in lines(stderr.getvalue()) if "failed" in line]

@@ -1,80 +1,88 @@
 """Materials by name: `punch`, `layer` and `body` of a physical scene stand for E and ν of each."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
-
-from solver import laws
 
 from ...specimen import materials
 from ...specimen.quantities import Quantity
 from ...terminal import shown
 from ..grid import equal_values
-from ..vocabulary import SCENE, VOCABULARY, finite
-from .names import RIGID_TEXTS, CaseValues, QuantityList
+from ..vocabulary import BODIES, VOCABULARY, finite
+from .names import RIGID_TEXTS
 
-#: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
-BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
-laws.RESERVED.update(SCENE, BODIES)  # a law must not call a parameter like an input of a scene
 _MAY_BE_RIGID = ("punch", "body")
 #: What people give as `punch` that is no material; names of materials near these would mislead.
 _SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "pyramid")
 
 
-def with_materials(parameters: dict, errors: list[str]) -> tuple[dict, dict]:
-    """The parameters with E and ν in place of materials, and body -> (dimension or "", names of its materials).
+def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
+    """The inputs with E and ν in place of materials, and body -> (dimension or "", names of its materials).
 
     E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
-    found, names = dict(parameters), {}
+    found, names = dict(inputs), {}
     for body, follows in BODIES.items():
-        if body not in parameters:
+        entry = found.pop(body, None)
+        if entry is None:
             continue
-        given = found.pop(body)
-        if getattr(given, "dims", None) in ((), (body,)):  # of earlier results
-            given = given.values.tolist()
         errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
-        several = isinstance(given, list) or (isinstance(given, tuple) and body != "layer")
-        try:
-            values = given if several else [given]
-            if not len(values):
-                raise LookupError("must have at least one material")
-            known = {str(one): one for one in map(_checked, values)}
-            known = {text: _material(body, one) for text, one in known.items()}
-        except LookupError as error:
-            errors.append(f"{body}: {error.args[0]} (or give {follows[0]} and {follows[1]})")
-            found[follows[0]] = Quantity(1.0)  # so that no second message says that it is missing
+        if entry.is_wrong:
             continue
-        texts, *numbers = zip(*(known[str(one)] for one in values), strict=True)
-        errors += equal_values(body, texts, str) if several and not isinstance(given, CaseValues) else []
-        dim = ("case" if isinstance(given, CaseValues) else body) if several else ""
-        for name, column in zip(follows, numbers, strict=False):
-            found[name] = QuantityList(list(column), dim) if several else column[0]
-        names[body] = dim, list(texts)
+        try:
+            texts, *columns = of_names(body, _listed(entry))
+        except LookupError as error:
+            errors.append(str(error.args[0]))
+            continue
+        errors += equal_values(body, texts, str) if entry.dims == (body,) else []
+        for name, column in zip(follows, columns, strict=False):
+            found[name] = replace(entry, name=name, values=list(column), array=None)
+        names[body] = "".join(entry.dims), list(texts)
     return found, names
 
 
-def layered(parameters: dict) -> bool:
-    """Whether some case may have a layer."""
-    layers = {*VOCABULARY["base"].own.choices} - {"half_space"}  # of a word that is no base it is said later
-    return not isinstance(parameters.get("base"), str) or parameters["base"] in layers
+def of_names(body: str, names: list) -> list[tuple]:
+    """Names, E and ν of the materials that are given for a body. Raises LookupError for what is none."""
+    try:
+        checked = [_checked(name) for name in names]
+        table = {text: _material(body, name) for text, name in {str(name): name for name in checked}.items()}
+    except LookupError as error:
+        modulus, ratio, _ = BODIES[body]
+        raise LookupError(f"{body}: {error.args[0]} (or give {modulus} and {ratio})") from error
+    return list(zip(*(table[str(name)] for name in checked), strict=True))
 
 
-def assumed(parameters: dict, given: dict) -> tuple[str, ...]:
+def layered(values: dict) -> bool:
+    """Whether some case may have a layer; values : as those of a Grid. Of a word that is no base it is said later."""
+    _, base = values.get("base", ((), VOCABULARY["base"].own.default))
+    return bool(np.isin(base, [*{*VOCABULARY["base"].own.choices} - {"half_space"}]).any())
+
+
+def assumed(names: set[str], values: dict, given: dict) -> tuple[str, ...]:
     """What is not given and has its default, though it counts: Poisson ratios of elastic bodies, interface of a layer.
 
-    given : the inputs in SI units
+    names : of what is given; values : as those of a Grid; given : the inputs in SI units
     """
     ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(given.get(E, np.inf)).all()]
-    return tuple(name for name in [*ratios, *layered(parameters) * ["bonding"]] if name not in parameters)
+    return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)
+
+
+def _listed(entry: Any) -> list:
+    """The names in an input; those of earlier results are in a DataArray. Raises LookupError for another one."""
+    if entry.array is None:
+        return entry.values
+    if entry.dims not in ((), (entry.name,)):
+        modulus, ratio, _ = BODIES[entry.name]
+        text = "a DataArray of names is over the dimension of its own name; give a list, or cases"
+        raise LookupError(f"{entry.name}: {text} (or give {modulus} and {ratio})")
+    return np.ravel(entry.array.values).tolist()
 
 
 def _checked(name: Any) -> str | materials.Material:
     """The same name or material; "inf" of the number. Raises LookupError for anything else."""
     if isinstance(name, float) and name == np.inf:
         return "inf"
-    if hasattr(name, "dims"):
-        raise LookupError("a DataArray of names is over the dimension of its own name; give a list, or cases")
     if isinstance(name, tuple):
         raise LookupError(f"{shown(name)} is a tuple: a list is an axis, a stack of layers is not yet there")
     if not isinstance(name, (str, materials.Material)):

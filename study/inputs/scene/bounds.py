@@ -10,10 +10,9 @@ from solver.parameters import ends
 
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
+from ..given import Input
 from ..grid import MOVED
-from ..vocabulary import ROWS, SCENE, VOCABULARY, allowed
-from .bodies import BODIES
-from .names import QuantityList
+from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
 from .scene import Scene
 
@@ -31,15 +30,13 @@ Place = dict[str, int]
 """Dimension -> index along it."""
 
 
-def beyond_bounds(scene: Scene, given: dict) -> list[str]:
+def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
     """A message for each input with a unit, and each ratio of moduli, that is outside its interval.
 
-    given : the parameters as the user gave them
+    inputs : as they were given, E and ν in place of materials
     """
     with_units = [name for name in scene.given if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
-    messages = [
-        _message(scene, name, given[name], place) for name in with_units for place in _first_outside(scene, name)
-    ]
+    messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
     for modulus, _, ratio in BODIES.values():
         for place in _first_outside(scene, ratio) if ratio and modulus in scene.given else ():
             entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
@@ -90,8 +87,9 @@ def _at(value: Any, place: Place) -> Any:
     return value.isel({dim: place.get(dim, 0) for dim in value.dims}).item()
 
 
-def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
+def _message(scene: Scene, given: Input, place: Place) -> str:
     """The message for the value of an input at a place."""
+    name = given.name
     value, entry = scene.given[name], VOCABULARY[name]
     as_given = place | ({MOVED: 0} if MOVED in place else {})
     index = [as_given[dim] for dim in getattr(value, "dims", ()) if dim != MOVED]
@@ -110,17 +108,12 @@ def _message(scene: Scene, name: str, given: Any, place: Place) -> str:
     return f"{called} = {on_one_line(str(text))}: {moved}{bounds}"
 
 
-def _written(given: Any, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
+def _written(given: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
     """A value as it was given, the word for its unit there, and the size of that in the SI `unit`.
 
     A value of a range, or with a unit that is no single word, has the multiple of the SI unit that suits it.
     """
-    if isinstance(given, xr.DataArray):
-        word = given.attrs["units"]
-        text = f"{given.values[tuple(index)]} {word}"
-    else:
-        text = None if isinstance(given, QuantityList) else given[index[0]] if index else given
-        word = unit_in(text)
-    word = word or multiple(abs(value), unit)[0]
+    text = given.at(index)
+    word = (given.unit if given.array is not None else unit_in(text)) or multiple(abs(value), unit)[0]
     size = quantity("", f"1 {word}", unit).value
     return f"{value / size:g} {word}" if text is None else text, word, size

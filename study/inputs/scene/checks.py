@@ -1,6 +1,5 @@
 """What can be wrong with a physical scene as a whole, though each of its inputs is right."""
 
-from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -8,56 +7,46 @@ import xarray as xr
 
 from solver.laws.own_table import PREFIX
 
-from ...terminal import shown
-from ..checks import not_given
-from ..given import one_control
-from ..grid import twins
-from ..vocabulary import VOCABULARY
-from .bodies import BODIES, layered
-from .scales import over_dimensions
+from ..checks import equal_cases
+from ..given import Given
+from ..vocabulary import BODIES
+from .bodies import layered
 from .scene import STEP, Scene
 
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
-def missing(parameters: dict, names: set[str], errors: list[str]) -> list[str]:
+def missing(given: Given, values: dict) -> list[str]:
     """Messages for what a physical scene cannot do without, and for what cannot be given together.
 
-    names : those of all parameters that are given, also in some of [[cases]] only; errors : what is wrong with them
+    values : of the inputs without units, as those of a Grid
     """
-    pair = [name for name in ("R1", "R2") if name in parameters]
-    messages = [_RADIUS] if "R" not in parameters and not pair else []
+    names, messages = {*given.sections}, []
+    pair = [name for name in ("R1", "R2") if name in names]
+    messages += [_RADIUS] if "R" not in names and not pair else []
     if len(pair) == 1:
         other = "R2" if pair == ["R1"] else "R1"
         messages.append(f'{other} is missing: R1 and R2 go together; of a flat body {other} = "flat"')
-    if pair and "R" in parameters:
+    if pair and "R" in names:
         messages.append(f"R and {pair[0]} are both given: R = 1/(1/R1 + 1/R2) follows from R1 and R2")
-    if "E2" not in parameters:
+    if not {"E2", "body"} & names:
         messages.append('E2 is missing: Young\'s modulus of the body (under the layer, if there is one), or "rigid"')
-    if layered(parameters) and not {"E1", "n", "layer"} & {*parameters, *names}:
+    if layered(values) and not {"E1", "n", "layer"} & names:
         messages.append('E1 is missing: Young\'s modulus of the layer (without a layer: base = "half_space")')
     for modulus, _, ratio in BODIES.values():
-        if modulus in parameters and ratio in parameters:
+        if modulus in names and ratio in names:
             messages.append(f"{modulus} and {ratio} are both given: one follows from the other")
-    if "nu_punch" in parameters and "E_punch" not in parameters:
+    if "nu_punch" in names and not {"E_punch", "punch"} & names:
         messages.append("nu_punch is given without E_punch: a punch without a modulus is rigid")
-
-    def texts(name: str) -> list:
-        """The values of a parameter that has texts: its default, where it is not given."""
-        return np.ravel(np.array(parameters.get(name, VOCABULARY[name].own.default), dtype=object)).tolist()
-
-    absent = not_given({*parameters, *names, "n"}, texts, errors)
-    if absent and "micro = " in absent[-1] and "micro" not in names:
-        absent[-1] += ' (without asperities: micro = "smooth")'
-    return messages + one_control(names) + absent
+    return messages
 
 
-def equal_cases(scene: Scene) -> list[str]:
+def same_cases(scene: Scene) -> list[str]:
     """A message for two of [[cases]] that are the same, in whatever units they are given."""
     arrays = [v for table in (scene.given, scene.spreads, scene.parameters) for v in table.values()]
     columns = [v.values.tolist() for v in arrays if isinstance(v, xr.DataArray) and v.dims == ("case",)]
     columns += [texts for dim, texts in scene.names.values() if dim == "case"]
-    return [f"cases {i} and {j} are the same" for i, j in twins(list(zip(*columns, strict=True)))]
+    return equal_cases(list(zip(*columns, strict=True)))
 
 
 def impossible(scene: Scene) -> list[str]:
@@ -69,14 +58,11 @@ def impossible(scene: Scene) -> list[str]:
         too = ", with their spreads too" * bool({*up} & {*scene.spreads})
         wider = f"a cup (the negative radius) must be wider than its ball{too}"
         messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: {wider}")
-    n = np.array(scene.parameters.get("n", given.get("n", 1.0)), dtype=object)
-    if not all(isinstance(one, Real) and not isinstance(one, bool) for one in n.ravel().tolist()):
-        return [*messages, f"n = {shown(scene.parameters['n'])}: must be a number"]
     rigid = np.isinf(given["E2"])
     if not np.any(rigid):
         wrong = 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'
-        return messages + [wrong] * bool((n == 0).any())
-    if np.any(rigid & (over_dimensions(scene.parameters.get("base", "layered"), "base") == "half_space")):
+        return messages + [wrong] * bool(np.any(scene.parameters.get("n", given.get("n", 1.0)) == 0))
+    if np.any(rigid & (scene.parameters.get("base", "layered") == "half_space")):
         swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
         messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
     if "n" in scene.parameters:

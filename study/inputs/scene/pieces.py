@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from ..grid import MOVED
-from .bodies import BODIES
+from ..vocabulary import BODIES
 from .scene import STEP, Scene
 
 _RIGID = "rigid"  # the name of what has no modulus

@@ -1,8 +1,7 @@
-"""Between SI numbers and dimensionless ones.
+"""From SI numbers to dimensionless ones.
 
 The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1; on a rigid base, where E2* is infinite, in E1* = 1. All is
-done number by number, so that a case has the same dimensionless numbers, and key, in any grid. Results in SI units are
-scaled back to the numbers that were solved: so cases in a file are found again.
+done number by number, so that a case has the same dimensionless numbers, and key, in any grid.
 """
 
 from typing import Any
@@ -10,13 +9,9 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from ..definition import Definition
-from ..grid import MOVED, Grid
 from ..vocabulary import SCENE, VOCABULARY
 from .scene import Scene
 
-Values = dict[str, tuple[tuple[str, ...], np.ndarray]]
-"""Name -> dimensions and numbers over them."""
 #: Poisson ratio of a punch of which none is given: as of the other bodies.
 _POISSON = VOCABULARY["nu1"].own.default
 
@@ -31,7 +26,7 @@ def make_dimensionless(scene: Scene) -> None:
         scene.parameters["n"] = layer / body
     if "E_punch" in given:
         given.setdefault("nu_punch", _POISSON)  # results say which it was
-        base = over_dimensions(scene.parameters.get("base", "layered"), "base")
+        base = scene.parameters.get("base", "layered")
         surface = _where(base == "half_space", body, layer)
         scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
     for name, value in given.items():
@@ -42,7 +37,7 @@ def make_dimensionless(scene: Scene) -> None:
 def moduli(given: dict, parameters: dict) -> tuple:
     """The unit of moduli, E1* and E2*, in Pa. Without E1 and n, on a half-space, E1* is E2*."""
     body = _reduced(given, "E2", "nu2")
-    n = over_dimensions(given["n"] if "n" in given else parameters.get("n", 1.0), "n")
+    n = given["n"] if "n" in given else parameters.get("n", 1.0)
     layer = _reduced(given, "E1", "nu1") if "E1" in given else n * body
     return _where(np.isinf(body), layer, body), layer, body
 
@@ -74,60 +69,3 @@ def with_unit(value: Any, powers: tuple[int, int], unit: Any, R: Any) -> Any:
         for _ in range(abs(power)):
             value = value * factor if power > 0 else value / factor
     return value
-
-
-def over_dimensions(given: Any, name: str) -> Any:
-    """Values of a parameter without a unit, as an array over the dimension of its name where they are several."""
-    return xr.DataArray(list(given), dims=name) if isinstance(given, (list, tuple, range)) else given
-
-
-def parameters_from_si(given: Values) -> tuple[Values, Values]:
-    """The dimensionless parameters that follow from coordinates in SI units, and the scales: R and the unit of moduli.
-
-    They follow from the same SI numbers by the same operations as when the cases were solved, so they are the same to
-    the last bit, and so are the keys of the cases.
-    """
-    arrays = {name: xr.DataArray(array, dims=dims) for name, (dims, array) in given.items()}
-    unit, _, _ = moduli(arrays, arrays)
-    found = {}
-    for name, array in arrays.items():
-        if name not in SCENE:
-            powers = VOCABULARY[name].powers
-            found[name] = array if powers == (0, 0) else without_unit(array, powers, unit, arrays["R"])
-    return _plain(found), _plain({"R": arrays["R"], "unit": unit})
-
-
-def scales_of(definition: Definition) -> Grid | None:
-    """R and the unit of moduli of a study over the dimensions of its results; None for a study without units."""
-    scene = definition.scene
-    if not scene:
-        return None
-    scales = {name: xr.DataArray(value) for name, value in (("R", scene.R), ("unit", scene.unit))}
-    return grid_of_results(definition, Grid(definition.grid.sizes, _plain(scales)))
-
-
-def grid_of_results(definition: Definition, grid: Grid) -> Grid:
-    """A grid of a study over the dimensions of its results: MOVED is left out, and with it the moved inputs."""
-    named = definition.in_results
-
-    def over(table: Values) -> Values:
-        as_given = {
-            name: (dims, array.take(0, dims.index(MOVED)) if MOVED in dims else array)
-            for name, (dims, array) in table.items()
-        }
-        return {name: (tuple(named(dict.fromkeys(dims))), array) for name, (dims, array) in as_given.items()}
-
-    return Grid(named(grid.sizes), over(grid.values), over(grid.labels))
-
-
-def result_from_si(name: str, array: np.ndarray, scales: dict[str, np.ndarray]) -> np.ndarray:
-    """A result (n, ...) in SI units as a dimensionless one, to rounding; scales : R and the unit of moduli, (n,)."""
-    powers = VOCABULARY[name].powers
-    if powers == (0, 0):
-        return array
-    unit, R = (scales[key].reshape(-1, *[1] * (array.ndim - 1)) for key in ("unit", "R"))
-    return without_unit(array, powers, unit, R).astype(array.dtype)
-
-
-def _plain(arrays: dict[str, xr.DataArray]) -> Values:
-    return {name: (tuple(map(str, array.dims)), array.values) for name, array in arrays.items()}

@@ -46,8 +46,6 @@ class Scene:
         for dim in ("case", *(dim_of.get(axis, axis) for axis in axes)):
             if dim in known:
                 found[dim] = known[dim]
-            elif isinstance(self.parameters.get(dim), list):
-                found[dim] = len(self.parameters[dim])
         return found
 
     def radii(self) -> dict[str, xr.Variable]:

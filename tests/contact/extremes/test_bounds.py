@@ -129,9 +129,9 @@ def test_a_study_file_says_it_with_exit_code_2(tmp_path, monkeypatch, capsys):
     (tmp_path / "s.toml").write_text('[model]\nn = 1e308\nh = 5e-324\nmicro = "smooth"\n[axes]\na = [0.1, 1.7e-251]\n')
     assert main(["run", "s.toml"]) == 2
     assert capsys.readouterr().err.splitlines() == [
+        "s.toml: a[1] = 1.7e-251: must be in [1e-9, 1e3]",
         "s.toml: n = 1e+308: must be 0 or in [1e-9, 1e9]",
         "s.toml: h = 5e-324: must be in [1e-12, 1e6]",
-        "s.toml: a[1] = 1.7e-251: must be in [1e-9, 1e3]",
     ]
     assert not (tmp_path / "results").exists()
 

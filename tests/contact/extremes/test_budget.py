@@ -12,7 +12,7 @@ from solver import Problem, Status, solve
 from solver.body.half_space import half_space
 from solver.contact import adaptive, driver, panels, picard
 from solver.contact.driver import newton_steps
-from study.inputs.definition import from_tables
+from study.inputs.reading import from_tables
 
 X = np.linspace(0.0, 1.0, 5)
 #: Relaxed so much that it takes some 500 approximations; and hardly, on springs that carry nearly all: some 20.

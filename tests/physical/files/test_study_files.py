@@ -218,7 +218,7 @@ def test_a_run_says_what_the_model_does_not_describe(tmp_path, monkeypatch, caps
         ("[axes]", "rtol = 1e-6\n[axes]", r"\[model\] rtol belongs in \[numerics\]"),
         ("[axes]", 'hh = "1 um"\n[axes]', '"hh" is not a parameter; did you mean "h"'),
         ("[output]", "[sample]\nnu2 = [0.1, 0.2]\n[output]", r"\[sample\] size is missing: must be a whole number"),
-        ("[output]", f"{DRAWN}nu1 = [0.1]\n[output]", r"nu1 is given twice: in \[sample\] and elsewhere"),
+        ("[output]", f"{DRAWN}nu1 = [0.1]\n[output]", r"nu1 is given twice: in \[model\] and in \[sample\]"),
         ("[output]", f"{DRAWN}Ra = {{start = 1, stop = 2}}\n[output]", r"\[sample\] Ra: start = 1 has no unit"),
         ("[output]", f'{DRAWN}Nbar = {{start = "1 m", stop = 2, over = "h"}}\n[output]', "Nbar: start .* is a length"),
         ("[output]", f"{DRAWN}nu2 = {{start = 0, stop = 2}}\n[output]", r"nu2: stop = 2.*: must be in \(-1, 0.5\]"),

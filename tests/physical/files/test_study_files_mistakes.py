@@ -31,15 +31,15 @@ def test_all_mistakes_are_named_at_once(tmp_path):
     said = [
         message.removeprefix("dlc.toml: ").split(":")[0].split(" has no unit")[0] for message in caught.value.messages
     ]
-    keys = ['"titel" is not a section; did you mean "title"?', "rtol = 5", "P", "E2[1] = 7", 'R = "5 s" is in second']
-    keys += ["nu1 = 0.6", "exactly one of P, a, D must be given, not P and a", 'bonding = "glued"', "x = 1"]
+    keys = ['"titel" is not a section; did you mean "title"?', "P", "rtol = 5", "E2[1] = 7", 'R = "5 s" is in second']
+    keys += ["nu1 = 0.6", 'bonding = "glued"', "exactly one of P, a, D must be given, not P and a", "x = 1"]
     assert said == keys
 
 
 def test_what_is_missing_is_said_in_the_same_round():
     with pytest.raises(study.StudyError) as caught:
         study.solve(R="5 mm", E1=5, bonding="bonded")
-    words = [message.split(":")[0] for message in caught.value.messages]
+    words = [message.removeprefix("solve: ").split(":")[0] for message in caught.value.messages]
     assert words == [
         *("E1 = 5 has no unit", "E2 is missing", "exactly one of P, a, D must be given, not none"),
         *("h is missing", "Nbar is missing", "Ra is missing"),
@@ -47,7 +47,7 @@ def test_what_is_missing_is_said_in_the_same_round():
     cases = [{"P": "1 N", "h": "1 um"}, {"P": "2 N"}]
     with pytest.raises(study.StudyError) as caught:
         study.solve(R="5 mm", E1="1 GPa", E2="9 GPa", micro="smooth", cases=cases)
-    assert caught.value.messages == ("h must be given in every case, or once for all",)
+    assert caught.value.messages == ("solve: h must be given in every case, or once for all",)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_what_is_missing_is_said_in_the_same_round():
             '[[cases]]\nnu2 = 0.3\nlable = "x"\n[output]',
             '"lable" is not a parameter; did you mean "label"?',
         ),
-        ("[output]", "[cases]\nnu2 = 0.3\n[output]", "cases must be [[cases]] tables, at least one"),
+        ("[output]", "[cases]\nnu2 = 0.3\n[output]", "cases must be [[cases]] tables (a list of dictionaries)"),
         ("[axes]", "[axis]\n[axes]", '"axis" is not a section; did you mean "axes"?'),
     ],
 )

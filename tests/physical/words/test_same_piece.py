@@ -124,7 +124,7 @@ def test_without_names_or_units_there_is_no_piece(tmp_path, capsys):
     with pytest.raises(study.StudyError, match="same_piece: no two of punch, layer and body are of one material by"):
         study.solve(P=1e-5, base="half_space", micro="smooth", same_piece=True)
     plain = "[model]\nP = 1e-5\nbase = 'half_space'\nmicro = 'smooth'\nsame_piece = true\n"
-    with pytest.raises(study.StudyError, match=r"^pmma.toml: \[model\] same_piece: no two of punch, layer and body"):
+    with pytest.raises(study.StudyError, match="^pmma.toml: same_piece: no two of punch, layer and body"):
         of(plain)
     named = "[model]\nR = '5 mm'\npunch = 'PMMA'\nbody = 'PMMA'\nbase = 'half_space'\nmicro = 'smooth'\nP = '1 N'\n"
     with pytest.raises(study.StudyError, match=r'\[model\] same_piece = "yes": must be true or false'):

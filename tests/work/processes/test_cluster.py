@@ -14,8 +14,8 @@ from interrupted_study import BLOCK, CASES, TEXT, assert_ends_well, cases_on_dis
 from same import assert_same_numbers
 
 import study
-from study.work import cases, run
-from study.work import workers as engines
+from study.work import cases, engine
+from study.work import cluster as engines
 
 
 @pytest.fixture
@@ -153,13 +153,13 @@ def test_random_blocks_and_orders_on_a_cluster(cluster, tmp_path, undisturbed):
 def test_a_block_that_raises_on_a_worker_costs_that_block_only(cluster, tmp_path, monkeypatch, undisturbed):
     cluster.worker()
     opened = written(tmp_path)
-    real = run.parcel
+    real = engine.parcel
 
     def parcel(definition, index):
         found = real(definition, index)
         return found if found.first != 50 else replace(found, numerics="another")
 
-    monkeypatch.setattr(run, "parcel", parcel)
+    monkeypatch.setattr(engine, "parcel", parcel)
     report = opened.run(scheduler=cluster.address)
     monkeypatch.undo()
     ((_, reason),) = report.failures.items()
@@ -227,5 +227,5 @@ def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch
 
         monkeypatch.setattr(client, "_gather", lost)
         monkeypatch.setattr(engines, "connected", lambda *_: client)
-        with engines.engine(None, "any") as found:
-            assert list(engines.as_they_come(found, str.split, ["one two"])) == [(0, ["one", "two"])]
+        found = engines.computed_there("any", None, str.split, ["one two"])
+        assert list(found) == [(0, ["one", "two"])]

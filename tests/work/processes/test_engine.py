@@ -16,9 +16,10 @@ from children import PATIENCE
 from line_study import load
 
 from study import StudyError
-from study.work import workers
+from study.work import cluster
 from study.work.cases import Failure, parcel
-from study.work.workers import AHEAD, Engine, Lost, as_they_come, available_workers, engine
+from study.work.cluster import AHEAD, Lost, as_they_come, cluster_at
+from study.work.engine import available_workers
 
 
 class AtOnce(Executor):
@@ -42,7 +43,7 @@ def test_a_task_is_made_when_there_is_room_and_results_come_in_order(width):
             made.append(number)
             yield number
 
-    for number, result in as_they_come(Engine(AtOnce().submit, lambda: width), lambda task: task**2, tasks()):
+    for number, result in as_they_come(AtOnce().submit, lambda: width, lambda task: task**2, tasks()):
         assert result == number**2 and number == len(under_way)
         under_way.append(len(made) - number)
     assert len(under_way) == 10 and max(under_way) == min(width, 10)
@@ -51,12 +52,12 @@ def test_a_task_is_made_when_there_is_room_and_results_come_in_order(width):
 def test_the_width_is_asked_again_and_again():
     """As workers come and go."""
     widths, made = iter([3, 2, 2, 1, 1, 1, 1, 1, 1]), []
-    found = as_they_come(Engine(AtOnce().submit, lambda: next(widths)), int, (made.append(i) or i for i in range(4)))
+    found = as_they_come(AtOnce().submit, lambda: next(widths), int, (made.append(i) or i for i in range(4)))
     assert [(number, len(made)) for number, _ in found] == [(0, 2), (1, 3), (2, 3), (3, 4)]
 
 
 def test_a_task_that_raises_is_a_failure():
-    found = dict(as_they_come(Engine(AtOnce().submit, lambda: 2), lambda task: [1][1 - task], [1, 0, 1]))
+    found = dict(as_they_come(AtOnce().submit, lambda: 2, lambda task: [1][1 - task], [1, 0, 1]))
     assert found == {0: 1, 1: Failure("IndexError: list index out of range", ""), 2: 1}
 
 
@@ -84,9 +85,9 @@ def test_a_cluster_is_left_when_no_thread_waits_for_it(monkeypatch):
         done.append(callback(SimpleNamespace(result=result, cancelled=lambda: False)))
 
     client, done = Client(), []
-    monkeypatch.setattr(workers, "connected", lambda *_: client)
-    with engine(2, "tcp://there") as found:
-        first, second = (found.submit(int, task) for task in (1, 2))
+    monkeypatch.setattr(cluster, "connected", lambda *_: client)
+    with cluster_at("tcp://there", 2) as (submit, width):
+        first, second = (submit(int, task) for task in (1, 2))
         threads = [threading.Thread(target=of_dask, args=(callback,)) for callback in callbacks]
         threads[0].start()
         assert asked.wait(PATIENCE)
@@ -96,15 +97,6 @@ def test_a_cluster_is_left_when_no_thread_waits_for_it(monkeypatch):
         thread.join(PATIENCE)
     assert first.result(0) == "here" and client.closed
     assert len(done) == 2 and not asked.is_set() and not second.done(), "the second is not asked for any more"
-
-
-def test_threads_for_each_processor_unless_told_otherwise(monkeypatch):
-    monkeypatch.setattr(workers, "available_workers", lambda: 5)
-    for count, expected in ((None, 5), (2, 2)):
-        with engine(count, None) as found:
-            assert found.submit.__self__._max_workers == expected and found.width() == AHEAD * expected
-            assert found.submit(threading.get_ident).result(PATIENCE) != threading.get_ident()
-            assert found.submit(os.getpid).result(PATIENCE) == os.getpid()
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="containers")
@@ -169,44 +161,44 @@ def client(monkeypatch):
 
 
 def test_as_much_for_a_cluster_as_it_has_threads(client, monkeypatch):
-    with engine(None, "tcp://127.0.0.1:1") as found:
-        assert found.width() == AHEAD * 5
+    with cluster_at("tcp://127.0.0.1:1", None) as (submit, width):
+        assert width() == AHEAD * 5
         client.threads = {"one": 2}
-        assert found.width() == AHEAD * 2, "a machine has left"
+        assert width() == AHEAD * 2, "a machine has left"
         client.threads = {}
-        assert found.width() == AHEAD, "there may come another"
-        assert client.done == [("tcp://127.0.0.1:1", workers.CONNECT, False)]
+        assert width() == AHEAD, "there may come another"
+        assert client.done == [("tcp://127.0.0.1:1", cluster.CONNECT, False)]
         client.threads = None
         with pytest.raises(Lost, match="^the scheduler is gone$"):
-            found.width()
+            width()
     assert client.done[1:] == ["closed"]
 
 
 def test_a_scheduler_that_listens_may_be_busy(client):
     with socket.create_server(("127.0.0.1", 0)) as scheduler:
         address = f"ws://127.0.0.1:{scheduler.getsockname()[1]}"
-        with engine(None, address):
-            assert client.done == [(address, workers.ANSWER, False)]
+        with cluster_at(address, None):
+            assert client.done == [(address, cluster.ANSWER, False)]
 
 
 def test_workers_bound_the_threads_of_a_cluster(client):
     for count, expected in ((3, 3), (9, 5)):
-        with engine(count, "tcp://127.0.0.1:1") as found:
-            assert found.width() == AHEAD * expected
+        with cluster_at("tcp://127.0.0.1:1", count) as (submit, width):
+            assert width() == AHEAD * expected
 
 
 def test_what_comes_of_the_blocks_of_a_cluster(client):
     """A result; a block that raises fails alone; blocks that a lost scheduler has cancelled have not failed."""
-    with engine(None, "tcp://127.0.0.1:1") as found:
-        (_, number), (_, failure) = as_they_come(found, float, ["2.5", "many"])
+    with cluster_at("tcp://127.0.0.1:1", None) as (submit, width):
+        (_, number), (_, failure) = as_they_come(submit, width, float, ["2.5", "many"])
         assert number == 2.5 and failure.message == "ValueError: could not convert string to float: 'many'"
         with pytest.raises(Lost, match="^the scheduler is gone$"):
-            list(as_they_come(found, float, [None]))
+            list(as_they_come(submit, width, float, [None]))
 
 
 def test_a_cluster_needs_its_package(monkeypatch):
     monkeypatch.setitem(sys.modules, "dask.distributed", None)
-    with pytest.raises(StudyError) as caught, engine(None, "tcp://127.0.0.1:1"):
+    with pytest.raises(StudyError) as caught, cluster_at("tcp://127.0.0.1:1", None):
         pass
     assert caught.value.messages == ("--scheduler needs the package distributed: pip install 'roughcoat[cluster]'",)
 

@@ -50,10 +50,10 @@ def test_an_interrupt_while_the_line_begins_or_ends_leaves_no_line(monkeypatch, 
 
 SLOW_POINT = """
 import sys, time
-from study.work import progress, share
+from study.work import cases, progress
 progress.SILENT = 0.05
-real = share.compute
-share.compute = lambda wanted: (time.sleep({seconds}), real(wanted))[1]
+real = cases.compute
+cases.compute = lambda wanted: (time.sleep({seconds}), real(wanted))[1]
 sys.argv = ["roughcoat", "point", "P=1e-5", "micro=smooth", "base=half_space"]
 from study.__main__ import main
 sys.exit(main())

@@ -3,6 +3,7 @@
 import os
 import signal
 import sys
+import threading
 from multiprocessing.process import BaseProcess as Run
 from pathlib import Path
 
@@ -12,9 +13,10 @@ from line_study import load, present
 from same import assert_same
 from tasks import note_and_die, note_and_wait
 
+from study.work import engine
 from study.work.cases import Failure
-from study.work.processes import ATTEMPTS, KILLED
-from study.work.workers import AHEAD, engine, processes_for
+from study.work.engine import processes_for
+from study.work.processes import ATTEMPTS, KILLED, Processes
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="reads /proc")
 BEFORE, CASES = 5, 40  # cases in blocks of one; those from BEFORE on are held
@@ -81,28 +83,27 @@ def test_processes_compute_what_threads_compute(opened, tmp_path):
 
 
 def test_how_many_processes():
-    """None for few blocks or a single worker, and never more than there are blocks."""
-    assert [processes_for(*each) for each in ((2, 7), (2, 8), (1, 100), (16, 9))] == [0, 2, 0, 9]
+    """None for a single worker, and never more than there are blocks."""
+    alone = [processes_for(*each, here=False) for each in ((2, 8), (16, 9))]
+    beside = [processes_for(*each, here=True) for each in ((2, 7), (1, 100), (16, 9))]
+    assert (alone, beside) == ([2, 9], [1, 0, 8])
 
 
-@pytest.mark.parametrize(("workers", "blocks", "apart"), [(2, 8, True), (2, 7, False), (1, 8, False)])
-def test_where_blocks_are_computed(workers, blocks, apart):
-    with engine(workers, None, blocks) as found:
-        assert (found.submit(os.getpid).result(PATIENCE) != os.getpid()) == apart
-        assert found.width() == AHEAD * workers
+@pytest.fixture
+def processes():
+    found = Processes()
+    yield found
+    found.end()
 
 
-def test_what_a_task_prints_is_no_answer():
-    with engine(2, None, 8) as found:
-        assert [found.submit(print, word).result(PATIENCE) for word in ("one", "two")] == [None, None]
+def test_what_a_task_prints_is_no_answer(processes):
+    assert [processes.call(print, word) for word in ("one", "two")] == [None, None]
 
 
-def test_what_a_process_does_not_know_is_said(monkeypatch):
+def test_what_a_process_does_not_know_is_said(processes, monkeypatch):
     monkeypatch.delenv("PYTHONPATH", raising=False)
-    with engine(2, None, 8) as found:
-        failure = found.submit(note_and_die, Path()).result(PATIENCE)
-        assert failure.message == "ModuleNotFoundError: No module named 'tasks'"
-        assert found.submit(abs, -1).result(PATIENCE) == 1
+    assert processes.call(note_and_die, Path()).message == "ModuleNotFoundError: No module named 'tasks'"
+    assert processes.call(abs, -1) == 1
 
 
 @pytest.fixture
@@ -111,19 +112,20 @@ def importable(monkeypatch):
     monkeypatch.setenv("PYTHONPATH", os.pathsep.join(sys.path))
 
 
-def test_a_task_that_kills_its_process_is_given_up_and_others_are_not(importable, tmp_path):
+def test_a_task_that_kills_its_process_is_given_up_and_others_are_not(importable, processes, tmp_path):
     """Its process is started again each time, and once more for the next task."""
     log = tmp_path / "log"
-    with engine(2, None, 8) as found:
-        assert found.submit(note_and_die, log).result(PATIENCE) == Failure(KILLED, "")
-        assert len(lines(log)) == ATTEMPTS
-        assert found.submit(abs, -1).result(PATIENCE) == 1
+    assert processes.call(note_and_die, log) == Failure(KILLED, "")
+    assert len(lines(log)) == ATTEMPTS
+    assert processes.call(abs, -1) == 1
 
 
-def test_a_process_does_not_end_what_nobody_waits_for(importable, tmp_path):
-    with engine(2, None, 8) as found:
-        found.submit(note_and_wait, tmp_path / "log")
-        wait_for(lambda: lines(tmp_path / "log"))
+def test_a_process_does_not_end_what_nobody_waits_for(importable, processes, tmp_path):
+    caller = threading.Thread(target=processes.call, args=(note_and_wait, tmp_path / "log"))
+    caller.start()
+    wait_for(lambda: lines(tmp_path / "log"))
+    processes.end()
+    caller.join(PATIENCE)
     (process,) = lines(tmp_path / "log")
     assert not Path("/proc", process).exists()
 
@@ -163,3 +165,29 @@ def test_an_interrupt_of_all_processes_is_the_runs_alone(opened, moment):
     assert text in ("", "interrupted; finished blocks are kept, the same command goes on from there\n"), "or it began"
     wait_for(lambda: not workers_of(process))
     assert_ends_well(opened, BEFORE if moment == "at work" else present(opened))
+
+
+class Recorder:
+    """In place of threads or processes of a pool: whether they were ended."""
+
+    def __init__(self):
+        self.ended = False
+
+    def shutdown(self, **_):
+        self.ended = True
+
+    end = shutdown
+
+
+def test_a_forked_process_has_no_workers_and_leaves_those_of_its_parent_alone(monkeypatch):
+    """It would write into the pipes of its parent's workers, or kill them when it ends."""
+    pool, mine = engine._Pool(), engine.os.getpid()
+    pool.count, pool._owner, pool._threads, pool._processes = 3, mine, Recorder(), Recorder()
+    assert [pool.reuse(most) for most in (2, 5)] == [2, 3]
+    with monkeypatch.context() as forked:
+        forked.setattr(engine.os, "getpid", lambda: mine + 1)
+        pool.end()
+        assert not (pool._threads.ended or pool._processes.ended) and pool.reuse(5) == 0
+    pool.count = 3
+    pool.end()
+    assert pool._threads.ended and pool._processes.ended and pool.reuse(5) == 0

@@ -4,7 +4,7 @@ import multiprocessing
 import subprocess
 import sys
 import threading
-from concurrent.futures import Future, ThreadPoolExecutor, wait
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 
 import numpy as np
@@ -13,22 +13,19 @@ from children import PATIENCE
 
 import study
 from solver import laws
-from study.files.child import python_command
-from study.inputs.definition import LARGE, StudyError, complete
-from study.inputs.given import Draft
-from study.work import share
+from study.inputs.definition import StudyError
+from study.inputs.reading import from_call
+from study.work import engine
 from study.work.cases import guarded
+from study.work.processes import python_command
 
 SMOOTH = {"micro": "smooth", "base": "half_space"}
 
 
 def definition(size=30, **parameters):
     """A grid of so many loads."""
-    draft = Draft()
-    draft.laws([parameters.get("micro")])
-    for name, value in ({"P": np.geomspace(1e-6, 1e-4, size).tolist()} | parameters).items():
-        draft.of_any_form(name, value)
-    return complete(draft, {"title": "", "output": {"x": 3, "profiles": True}}, "solve", "", "solve", LARGE)
+    loads = {"P": np.geomspace(1e-6, 1e-4, size).tolist()}
+    return from_call(loads | parameters, [], False, {"title": "", "output": {"x": 3, "profiles": True}})
 
 
 @pytest.mark.parametrize(
@@ -41,7 +38,7 @@ def definition(size=30, **parameters):
     ],
 )
 def test_blocks_follow_from_the_grid_alone(size, scheme, expected):
-    blocks = share.blocks_of_grid(definition(size, base="half_space", Nbar=250000.0, Ra=0.004, scheme=scheme))
+    blocks = engine.blocks_of_grid(definition(size, base="half_space", Nbar=250000.0, Ra=0.004, scheme=scheme))
     assert [len(block) for block in blocks] == expected
     np.testing.assert_array_equal(np.concatenate(blocks), np.arange(size))
 
@@ -57,11 +54,9 @@ class Threads:
 
     def feed(self, feeder, count):
         self.asked.append(count)
-        found = Future()
         for _ in range(count):
             feeder(self.call)  # all that waits
-        found.set_result(None)
-        return [found] * count
+        return [None] * count
 
     def end(self):
         self.ended = True
@@ -72,7 +67,7 @@ def threads(monkeypatch):
     """Blocks of ten cases, which it always pays to compute apart."""
     kept = Threads(lambda function, given: function(given))
     for name, value in {"BLOCK": 10, "START": 1e-9, "_pool": kept}.items():
-        monkeypatch.setattr(share, name, value)
+        monkeypatch.setattr(engine, name, value)
     return kept
 
 
@@ -83,9 +78,9 @@ def assert_same_bits(found, expected):
 
 
 def test_what_is_computed_apart_is_put_in_its_place(threads):
-    expected = share.solved(definition(**SMOOTH), 1)
+    expected = engine.solved(definition(**SMOOTH), 1)
     assert not threads.asked
-    assert_same_bits(share.solved(definition(**SMOOTH), 2), expected)
+    assert_same_bits(engine.solved(definition(**SMOOTH), 2), expected)
     assert threads.asked == [1]
 
 
@@ -96,81 +91,100 @@ def fails(*_):
 @pytest.mark.parametrize("call", [fails, lambda function, given: guarded(replace(given, numerics="0"))])
 def test_what_no_process_can_compute_is_computed_here(threads, call):
     threads.call = call
-    assert_same_bits(share.solved(definition(**SMOOTH), 2), share.solved(definition(**SMOOTH), 1))
+    assert_same_bits(engine.solved(definition(**SMOOTH), 2), engine.solved(definition(**SMOOTH), 1))
     assert threads.asked == [1]
 
 
-def test_a_feeder_that_fails_leaves_no_gaps(monkeypatch):
-    """Its block would be what the memory held before."""
-    here, apart = share.parcel, ThreadPoolExecutor(1)
-    monkeypatch.setattr(share, "BLOCK", 10)
-    monkeypatch.setattr(share, "START", 1e-9)
+def test_results_do_not_wait_in_great_number(monkeypatch):
+    """The calling thread is in its first block; the process has solved AHEAD others, and then waits too."""
+    monkeypatch.setattr(engine, "BLOCK", 1)
+    solved, begun, go, apart, real = [], threading.Event(), threading.Event(), ThreadPoolExecutor(1), guarded
 
-    def parcel(*given):
-        if threading.current_thread() is threading.main_thread():
-            return here(*given)
-        raise MemoryError("no room for a block")
+    def here(wanted):
+        begun.set()
+        go.wait(PATIENCE)
+        return real(wanted)
+
+    def call(function, wanted):
+        begun.wait(PATIENCE)
+        solved.append(wanted.first)
+        if len(solved) == engine.AHEAD:
+            go.set()
+        return real(wanted)
 
     class Pool(Threads):
-        def feed(self, feeder, count):
-            if not count or self.asked:
-                return []
-            self.asked.append(count)
-            found = apart.submit(feeder, self.call)
-            wait([found])
-            return [found]
+        def reuse(self, most):
+            return 1
 
-    monkeypatch.setattr(share, "_pool", kept := Pool(None))
-    monkeypatch.setattr(share, "parcel", parcel)
-    with pytest.raises(MemoryError, match="no room"):
-        share.solved(definition(**SMOOTH), 2)
-    assert kept.ended
+        def feed(self, feeder, count):
+            return [apart.submit(feeder, call)]
+
+    monkeypatch.setattr(engine, "_pool", Pool(None))
+    monkeypatch.setattr(engine, "guarded", here)
+    results = engine.computed(definition(**SMOOTH), engine.blocks_of_grid(definition(**SMOOTH)), 2)
+    next(results)
+    assert engine.AHEAD <= len(solved) <= engine.AHEAD + 1
+    assert sorted(number for number, _ in results) != [] and len(solved) < 30
+    apart.shutdown()
 
 
 def test_no_more_processes_than_have_work_for_their_start(threads, monkeypatch):
-    monkeypatch.setattr(share, "START", 1e9)
-    share.solved(definition(**SMOOTH), 2)
+    monkeypatch.setattr(engine, "START", 1e9)
+    engine.solved(definition(**SMOOTH), 2)
     assert set(threads.asked) == {0}
-    monkeypatch.setattr(share, "START", 1e-9)
-    share.solved(definition(**SMOOTH), 64)
+    monkeypatch.setattr(engine, "START", 1e-9)
+    engine.solved(definition(**SMOOTH), 64)
     assert threads.asked[-1] == 2, "a block each, of the three"
+
+
+def test_processes_compute_all_of_many_blocks_that_are_stored(threads, monkeypatch):
+    """Of a run; of few blocks, and without processors for two, the calling thread computes."""
+    monkeypatch.setattr(engine, "MANY", 3)
+    monkeypatch.setattr(engine, "available_workers", lambda: 4)
+    wanted = definition(**SMOOTH)
+    for size, workers, asked in ((10, None, [3]), (10, 2, [2]), (10, 1, []), (30, 1, [])):
+        threads.asked.clear()
+        blocks = np.array_split(np.arange(30), 30 // size)
+        found = dict(engine.computed(wanted, blocks, workers, storing=True))
+        assert sorted(found) == list(range(len(blocks))) and threads.asked == asked
+        assert all((result["status"] == 0).all() for result in found.values())
 
 
 def test_an_interrupt_ends_the_processes(threads, monkeypatch):
     def interrupted(_):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(share, "compute", interrupted)
+    monkeypatch.setattr(engine, "guarded", interrupted)
     with pytest.raises(KeyboardInterrupt):
-        share.solved(definition(**SMOOTH), 2)
-    assert threads.ended and not share._in_use.locked()
+        engine.solved(definition(**SMOOTH), 2)
+    assert threads.ended and not engine._in_use.locked()
 
 
 def test_where_there_are_no_processes(monkeypatch):
     """With one worker, in threads (those of dask among them) and in processes of multiprocessing, which divide work
     themselves, in a program that is not Python, and for laws that only this program knows."""
     ordinary = definition(**SMOOTH)
-    monkeypatch.setattr(share, "available_workers", lambda: 4)
-    assert [share._processes_allowed(ordinary, workers) for workers in (None, 1, 2)] == [3, 0, 1]
+    monkeypatch.setattr(engine, "available_workers", lambda: 4)
+    assert [engine._processors_allowed(ordinary, workers) for workers in (None, 1, 2)] == [4, 1, 2]
     found = []
-    thread = threading.Thread(target=lambda: found.extend(share._processes_allowed(ordinary, n) for n in (None, 2)))
+    thread = threading.Thread(target=lambda: found.extend(engine._processors_allowed(ordinary, n) for n in (None, 2)))
     thread.start()
     thread.join()
-    assert found == [0, 1]
+    assert found == [1, 2]
     with monkeypatch.context() as patch:
         patch.setattr(multiprocessing, "parent_process", lambda: "a process")
-        assert share._processes_allowed(ordinary, None) == 0
+        assert engine._processors_allowed(ordinary, None) == 1
     for name, value in {"executable": "/usr/bin/blender", "frozen": True}.items():
         with monkeypatch.context() as patch:
             patch.setattr(sys, name, value, raising=False)
-            assert share._processes_allowed(ordinary, 2) == 0
+            assert engine._processors_allowed(ordinary, 2) == 1
     named = {"curve": own_curve, "edge": own_edge, "area": own_area}
     mine = replace(laws.LAWS["disc_cell"], name="mine_alone", version="1", **named)
     rough = definition(micro=mine, base="half_space", Nbar=250000.0, Ra=0.004)
-    assert share._processes_allowed(rough, 2) == 1
+    assert engine._processors_allowed(rough, 2) == 2
     monkeypatch.setattr(own_curve, "__module__", "__main__")
     monkeypatch.setattr(sys.modules["__main__"], "own_curve", own_curve, raising=False)  # so it can be sent
-    assert share._processes_allowed(rough, 2) == 0
+    assert engine._processors_allowed(rough, 2) == 1
 
 
 def own_curve(y):
@@ -188,14 +202,14 @@ def own_area(y, q):
 SCRIPT = """
 import numpy as np
 import study
-from study.work import share
+from study.work import engine
 
 print("begun")
-share.BLOCK, share.START = 10, 1e-9
+engine.BLOCK, engine.START = 10, 1e-9
 grid = {"P": np.geomspace(1e-6, 1e-4, 40), "micro": "smooth", "base": "thin_layer", "h": 0.02, "n": 0.5}
 here, found = (study.solve(**grid, workers=count) for count in (1, 2))
-assert share._pool.count == 1
-assert share._pool.feed(lambda call: call(str, 1), 1)[0].result() == "1"
+assert engine._pool.count == 1
+assert engine._pool.feed(lambda call: call(str, 1), 1)[0].result() == "1"
 for name in here.variables:
     assert here[name].values.tobytes() == found[name].values.tobytes(), name
 print("ended")
@@ -223,29 +237,3 @@ def test_a_process_that_nobody_asks_ends():
 def test_workers_are_counted(workers):
     with pytest.raises(StudyError, match=r"^workers = .*: must be a whole number, 1 or more$"):
         study.solve(P=1e-5, **SMOOTH, workers=workers)
-
-
-class Recorder:
-    """In place of threads or processes of a pool: whether they were ended."""
-
-    def __init__(self):
-        self.ended = False
-
-    def shutdown(self, **_):
-        self.ended = True
-
-    end = shutdown
-
-
-def test_a_forked_process_has_no_workers_and_leaves_those_of_its_parent_alone(monkeypatch):
-    """It would write into the pipes of its parent's workers, or kill them when it ends."""
-    pool, mine = share._Pool(), share.os.getpid()
-    pool.count, pool._owner, pool._threads, pool._processes = 3, mine, Recorder(), Recorder()
-    assert [pool.reuse(most) for most in (2, 5)] == [2, 3]
-    with monkeypatch.context() as forked:
-        forked.setattr(share.os, "getpid", lambda: mine + 1)
-        pool.end()
-        assert not (pool._threads.ended or pool._processes.ended) and pool.reuse(5) == 0
-    pool.count = 3
-    pool.end()
-    assert pool._threads.ended and pool._processes.ended and pool.reuse(5) == 0

@@ -1,0 +1,176 @@
+"""Sensitivities of results: d ln result/d ln input, over the dimensions of the results and `input`."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver import Problem, solve
+from solver import sensitivities as derivatives
+from solver.laws import LAWS
+from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
+from solver.parameters import uses
+from solver.sensitivity import is_ratio
+
+from .data.assumptions import has_units
+from .inputs.definition import StudyError
+from .inputs.laws import recall
+from .inputs.scene.scales import make_dimensionless
+from .inputs.scene.scene import Scene
+from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
+from .terminal import shown
+
+#: Results that have sensitivities.
+QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
+#: By which part of itself an input in SI units is moved, and a Poisson ratio by how much, to see what the solver's
+#: inputs make of it: closed forms, so that the error is the square of this. Poisson ratios stay this far below 0.5.
+_STEP = 1e-4
+#: The logarithms of the scales stand beside the solver's inputs: the radius and the modulus that are 1 for the solver.
+_SCALES = ("length", "modulus")
+_RATIOS = ("nu1", "nu2", "nu_punch")
+_COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
+
+
+def sensitivities(contact: xr.Dataset) -> xr.Dataset:
+    """Derivatives of results by their inputs: d ln result/d ln input; by a Poisson ratio d ln result/d ratio.
+
+    The cases are solved again from the inputs that the dataset has. Held fixed are all other inputs: the one of P, a
+    and D that is given, and with it B and beta that were fitted, and the model that `base = "auto"` took.
+
+    Parameters
+    ----------
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
+
+    Returns
+    -------
+    xarray.Dataset : `a_sensitivity`, and so on of P, D, p0, p_max, Ar_An and dP_dD, over the dimensions of the contact
+        and `input`, the names of its inputs that are numbers; NaN of cases that have not converged. 0 where an input
+        does not act or is 0
+
+    Raises
+    ------
+    StudyError : a dataset that is no result of `study.solve`, has lost an input or SI units, or has an unknown law
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=[1e-5, 2e-5], micro="smooth", base="half_space")
+    >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
+    0.333333
+    """
+    inputs = _checked(contact)
+    dims, shape = contact["status"].dims, contact["status"].shape
+    scene = _scene(inputs) if "R" in inputs else None
+    numbers = scene.parameters if scene else inputs
+    problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
+    solution = solve(problem)
+    solved = derivatives(problem, solution, inputs=(problem.control, *used))
+    logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
+    if scene:
+        changes = _in_si(scene, dims, shape)
+        logs = {name: _by_si(logs[name], changes, VOCABULARY[name].powers) for name in QUANTITIES}
+    # of the control they are known, to the last bit
+    control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
+    logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
+    variables = {}
+    for name in QUANTITIES:
+        values = np.where(good[:, None], np.stack(list(logs[name].values()), axis=-1), np.nan)
+        about = {"long_name": f"sensitivity of {name}", "comment": _COMMENT}
+        variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
+    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
+    return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
+
+
+def _checked(contact: xr.Dataset) -> dict[str, Any]:
+    """The inputs of the cases: numbers and texts, or DataArrays without coordinates. Raises StudyError."""
+    if not isinstance(contact, xr.Dataset) or "status" not in contact:
+        raise StudyError(["sensitivities takes a dataset of study.solve or of a results file, with its status"])
+    recall(contact.attrs.get("micro_laws", ""))
+    settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
+    there = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
+    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in there]
+    wrong += ["must have one of P, a and D as a coordinate"] * (len({*there} & {*CONTROLS}) != 1)
+    if wrong:
+        raise StudyError([f"sensitivities: the dataset {wrong[0]}: its cases cannot be solved again"])
+    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in there if ROWS[name].unit != "1"}
+    if units == {True, False} or has_units(contact) != ("R" in there and "E2" in there):
+        raise StudyError(["sensitivities needs all in SI units, as study.solve gives them, or all without units"])
+    unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
+    if unknown:
+        raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
+    return settings | {name: _without_coordinates(contact[name]) for name in there}
+
+
+def _without_coordinates(array: xr.DataArray) -> Any:
+    values = array.values.astype(str) if array.dtype.kind == "O" else array.values
+    return xr.DataArray(values, dims=array.dims) if array.dims else values.item()
+
+
+def _scene(inputs: dict[str, Any]) -> Scene:
+    """The scene of inputs in SI units. What follows from others is computed again."""
+    follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
+    in_si = [name for name in inputs if name in SCENE or name in _RATIOS or VOCABULARY[name].powers != (0, 0)]
+    others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
+    scene = Scene(given={name: inputs[name] for name in in_si}, parameters=others)
+    make_dimensionless(scene)
+    return scene
+
+
+def _counts(problem: Problem, name: str) -> bool:
+    """Whether an input is a number on which the answer of some case depends, and no setting."""
+    own = SOLVER_PARAMETERS[name]
+    setting = VOCABULARY[name].role == "numerics" if name in VOCABULARY else False
+    counts = own.interval and not own.whole and not setting
+    return bool(counts and np.any(uses(name, lambda key: getattr(problem, key))))
+
+
+def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
+    """Input -> what changes with its logarithm, or with a Poisson ratio itself: the logarithms of the solver's inputs
+    and of the scales, (B,) each, and Poisson ratios themselves."""
+    given = scene.given
+    names = [name for name in given if np.any(np.isfinite(given[name])) and not (name == "R" and "R1" in given)]
+    own = [name for name in PARAMETERS if name in scene.parameters and name not in given and name not in ("n", "m")]
+    own += ["n"] * ("E1" not in given) + ["m"] * ("E_punch" not in given)
+    ones = np.ones(int(np.prod(shape)))
+    return {name: _changes(scene, name, dims, shape) for name in names} | {name: {name: ones} for name in own}
+
+
+def _changes(scene: Scene, name: str, dims: tuple, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
+    value, ends = scene.given[name], []
+    value = np.minimum(value, 0.5 - 2 * _STEP) if name in _RATIOS else value
+    for sign in (1, -1):
+        new = value + sign * _STEP * (1.0 if name in _RATIOS else value)
+        moved = replace(scene, given=scene.given | {name: new}, parameters=dict(scene.parameters))
+        make_dimensionless(moved)
+        numbers = {key: moved.parameters[key] for key in ("n", "m") if key in moved.parameters}
+        numbers |= {key: moved.parameters[key] for key in moved.given if key not in SCENE}
+        ends.append(numbers | dict(zip(_SCALES, (moved.R, moved.unit), strict=True)))
+    found = {}
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for key, up in ends[0].items():
+            up, down = (_flat(end, dims, shape) for end in (up, ends[1][key]))
+            change = (up - down if is_ratio(key) else np.log(up / down)) / (2 * _STEP)
+            found[key] = np.nan_to_num(change)  # NaN: of 0, or of a rigid body
+    return found
+
+
+def _flat(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
+    """A number, a text or a DataArray for all cases, (B,)."""
+    if not isinstance(value, xr.DataArray):
+        return np.full(int(np.prod(shape)), value)
+    sizes, ordered = value.sizes, value.transpose(*(dim for dim in dims if dim in value.dims))
+    return np.broadcast_to(ordered.values.reshape([sizes.get(dim, 1) for dim in dims]), shape).ravel()
+
+
+def _by_si(logs: dict, inputs: dict, powers: tuple[int, int]) -> dict[str, np.ndarray]:
+    """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j."""
+    scales = dict(zip(_SCALES, powers[::-1], strict=True))
+    still = 0 * next(iter(logs.values()))
+
+    def by(changes: dict) -> np.ndarray:
+        parts = [logs[key] * change for key, change in changes.items() if key in logs]
+        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in _SCALES)
+
+    return {name: by(changes) for name, changes in inputs.items() if any(key in logs for key in changes)}

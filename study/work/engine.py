@@ -1,0 +1,213 @@
+"""The engine: blocks of cases are solved by the calling thread and processes beside it, or by the workers of a cluster.
+
+`study.solve` and the `run` of a study are served alike. A block has the same numbers wherever it is computed, so one
+worker and many give the same bits. The processes are those of `study.work.processes`. They import this package and not
+the program that calls, so a script needs no `if __name__ == "__main__"`. They stay for a while, for the next call.
+"""
+
+import atexit
+import logging
+import multiprocessing
+import os
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterator
+from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import closing
+from pathlib import Path
+from queue import SimpleQueue
+from typing import TextIO
+
+import numpy as np
+from dask.system import cpu_count as available_workers  # no more than the limit of a container is worth
+
+from ..data.dataset import failed_cases
+from ..inputs.definition import Definition
+from ..inputs.grid import USUAL, usual_block
+from ..terminal import counted
+from . import cases
+from .cases import Failure, can_travel, guarded, parcel
+from .cluster import computed_there
+from .processes import Processes
+from .progress import Progress
+
+log = logging.getLogger(__name__)
+#: About how many cases a block of a call has. In blocks of 8000 or more, 60,000 layered cases take at most 5 % more
+#: processor time than in a single batch; in blocks of 4000 they take 15 % more.
+BLOCK = 10_000
+SLOW_BLOCK = 2000  # the same where a case may take some milliseconds
+#: Seconds of work that must be left for each process that is started. It answers after up to 2 s (`processes.py`), and
+#: meanwhile the calling thread goes on.
+START = 1.0
+MANY = 8  # blocks of a run from which on processes compute all of them
+#: Results of each process that may wait until the calling thread takes them: it has a block of its own to solve.
+AHEAD = 4
+
+
+class _Pool:
+    """Worker processes that stay between calls, with a thread for each that feeds it. A fork does not inherit them."""
+
+    def __init__(self):
+        self.count, self._threads, self._processes, self._owner = 0, None, None, 0
+
+    def reuse(self, most: int) -> int:
+        """How many processes are there already, `most` at most."""
+        if self._owner != os.getpid():  # there are none, or they belong to the process from which this one was forked
+            self.count = 0
+        return min(self.count, most)
+
+    def feed(self, feeder: Callable, count: int) -> list[Future]:
+        """Start feeder(call) in `count` threads; call(function, given) computes in the process of the thread."""
+        if self.reuse(count) < count:
+            self.end()
+            self.count, self._owner, self._processes = count, os.getpid(), Processes()
+            self._threads = ThreadPoolExecutor(count)
+        return [self._threads.submit(feeder, self._processes.call) for _ in range(count)]
+
+    def end(self) -> None:
+        """End all processes, whatever they compute."""
+        if self.reuse(1):
+            self._threads.shutdown(wait=False, cancel_futures=True)
+            self._processes.end()
+        self.count = 0
+
+
+_pool, _in_use = _Pool(), threading.Lock()
+atexit.register(_pool.end)
+
+
+def computed(
+    definition: Definition,
+    blocks: list[np.ndarray],
+    workers: int | None = None,
+    scheduler: str | None = None,
+    storing: bool = False,
+) -> Iterator[tuple[int, dict[str, np.ndarray] | Failure]]:
+    """(number of a block, its columns or why it failed) for each block, in the order in which they end.
+
+    workers : most processors to be used, or threads of a cluster; 1: the calling thread alone; None: all, or one, see
+        `_processors_allowed`
+    scheduler : the address of the scheduler of a dask cluster, whose workers compute in place of this machine
+    storing : the calling thread stores each block, so that if there are MANY, processes compute all of them from the
+        beginning, and none waits to be stored until it has solved one itself
+
+    When the iterator is closed, what waits is not computed, and processes end. Raises StudyError when no scheduler
+    answers, `cluster.Lost` when it is gone.
+    """
+    if scheduler is not None:
+        yield from computed_there(scheduler, workers, guarded, (parcel(definition, index) for index in blocks))
+        return
+    allowed = 1 if len(blocks) == 1 else _processors_allowed(definition, workers)
+    here = not (storing and len(blocks) >= MANY and allowed > 1)
+    most = processes_for(allowed, len(blocks), here)
+    if not most or not _in_use.acquire(blocking=False):  # another thread is using the processes
+        for number, index in enumerate(blocks):
+            yield number, guarded(parcel(definition, index))
+        return
+    try:
+        yield from _shared(definition, blocks, most, here)
+    except BaseException:
+        _pool.end()
+        raise
+    finally:
+        _in_use.release()
+
+
+def _shared(
+    definition: Definition, blocks: list[np.ndarray], most: int, here: bool
+) -> Iterator[tuple[int, dict | Failure]]:
+    """`computed` in at most `most` processes and, if `here`, in this thread: then processes are started only if much
+    work is left."""
+    waiting, ended, room = deque(enumerate(blocks)), SimpleQueue(), threading.Semaphore(AHEAD * most)
+
+    def feeder(call: Callable) -> None:
+        while room.acquire() and (block := _next(waiting)):
+            number, index = block
+            try:
+                result = call(guarded, parcel(definition, index))
+            except Exception as error:
+                result = Failure(str(error), "")
+            ended.put((number, result))
+
+    begun, feeders = time.perf_counter(), 0
+    if ready := _pool.reuse(most) if here else most:
+        feeders = len(_pool.feed(feeder, ready))
+    try:
+        for _ in blocks:
+            block = _next(waiting) if here and ended.empty() else None
+            if block is None:  # results of processes are there, or all blocks that are left are in work there
+                result = ended.get()
+                room.release()
+            else:
+                number, index = block
+                result = number, guarded(parcel(definition, index))
+                if not feeders:
+                    seconds = (time.perf_counter() - begun) / (len(blocks) - len(waiting)) * len(waiting)
+                    feeders = len(_pool.feed(feeder, min(most, int(seconds / START))))
+            yield result
+    finally:
+        waiting.clear()
+        room.release(most)
+
+
+def _next(waiting: deque) -> tuple[int, np.ndarray] | None:
+    """The next block, None when there is none left. Other threads take blocks too, so one cannot look first."""
+    try:
+        return waiting.popleft()
+    except IndexError:
+        return None
+
+
+def solved(
+    definition: Definition, workers: int | None = None, stream: TextIO | None = None, begun: float | None = None
+) -> dict[str, np.ndarray]:
+    """The columns of all cases of a grid: name -> (B, ...).
+
+    workers : see `computed`; stream : where a call of more than two seconds says how far it is; begun : when it began,
+        by time.monotonic, if that was before: reading what was given may take a second of the two
+    """
+    size, times, blocks = definition.grid.size, definition.times, blocks_of_grid(definition)
+    moved = f", {'each ' * (size > times)}{times} times for the spreads" * (times > 1)
+    name = f"solving {counted(size // times, 'contact')}{moved}"
+    begun = time.monotonic() if begun is None else begun
+    with Progress(name, size, stream, begun=begun, passing=True) as shown:
+        columns = {}
+        with closing(computed(definition, blocks, workers)) as results:
+            for number, result in results:
+                index = blocks[number]
+                if isinstance(result, Failure):  # of a process that was killed, or of the solver: then it is raised
+                    log.debug("cases %d to %d: %s", index[0], index[-1], result.message)
+                    result = cases.compute(parcel(definition, index))
+                for column, array in result.items():
+                    whole = columns.setdefault(column, np.empty((size, *array.shape[1:]), array.dtype))
+                    whole[index[0] : index[-1] + 1] = array
+                shown.update(len(index), len(failed_cases(result["status"])))
+        return columns
+
+
+def blocks_of_grid(definition: Definition) -> list[np.ndarray]:
+    """The numbers of the cases of each block of a call; the blocks are of about equal sizes."""
+    size = definition.grid.size
+    slow = size > SLOW_BLOCK and usual_block(definition.grid) < USUAL
+    return np.array_split(np.arange(size), max(1, round(size / (SLOW_BLOCK if slow else BLOCK))))
+
+
+def processes_for(workers: int, blocks: int, here: bool) -> int:
+    """How many processes compute so many blocks; `here`: beside the calling thread."""
+    return max(0, min(workers, blocks) - here)
+
+
+def _processors_allowed(definition: Definition, workers: int | None) -> int:
+    """How many processors may be used.
+
+    It is 1 where Python cannot start another Python, and for a micro law that it cannot have. If the user does
+    not say `workers`, it is 1 in threads and processes of programs that divide work themselves, such as dask.
+    """
+    # a program that has Python inside would start itself anew
+    python = "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
+    if not python or not can_travel(definition):
+        return 1
+    divided = multiprocessing.parent_process() or threading.current_thread() is not threading.main_thread()
+    return workers or (1 if divided else available_workers())

@@ -24,9 +24,9 @@ lists of two kinds.
 The lists in tests/mutants/fresh were written before their authors looked at the tests. All tests that run the file of a
 mutant were tried, once, at the commit of the table, without the mutants whose line had changed. A list is never mended,
 and no test is written for one of its mutants alone: so these are the figures that say what the tests notice. `make
-fresh_mutants` tries the latest list again. A list that has not been tried to its end has no row: that of 2026-11-25 was
-first tried with a few seconds of tests a mutant (`fresh.py --seconds`), which killed 71 of 99 in solver/ and 96 of 123
-in study/; 2026-11-25b waits for a machine with time.
+fresh_mutants` tries the latest list again. Where not all of these tests were tried the row says so, and its figures are
+lower bounds. That of 2026-11-25 has no row: it was first tried with a few seconds of tests a mutant (`fresh.py
+--seconds`), which killed 71 of 99 in solver/ and 96 of 123 in study/. 2026-11-25b waits for a machine with time.
 
 {fresh}
 

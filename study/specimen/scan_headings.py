@@ -30,6 +30,7 @@ _PAIR = re.compile(
 _SCALE = re.compile(
     r"scale\b|scaling|scale[\s_-]*(?:data|z|height)|skalier|échelle|fa[ck]t(?:o|eu)r|multipl|\bmult\b|amplif|bit2|\blsb\b"
     r"|\b1\s*(?:bit|digit|count)\b|quanti[sz]|^units?$|units? of$|[a-z]\s*[*×]$"
+    r"|(?:per|/)[\s_-]*(?:bit|digit|count|lsb)s?\b"
     r"|\b(?:z|heights?|values?|data)\s*[\[(]\s*[x×*]?$"
     r"|\b(?:z|height|vertical|value|data)[\s_.-]*(?:axis[\s_.-]*)?(?:calib|conver|sens|gain|quant|units?$)",
     re.IGNORECASE,

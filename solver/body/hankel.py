@@ -75,7 +75,7 @@ class Hankel(NamedTuple):
         return Hankel(self.kernel.take(index), self.h[index], self.m[index])
 
     def at(self, a, mesh, near=None):
-        """Cases whose radius is that of `near` have its kernel."""
+        """A case whose radius has not changed since `near` keeps the values of L that `near` has."""
         parts, far = [], np.ones(len(a), dtype=bool)
         for part in () if near is None else near.parts:
             same = np.flatnonzero(a[part.index] == part.radius)

@@ -8,10 +8,10 @@ from .changes import moved_along, slope_of
 from .points import at_points
 
 
-def of_added(ev, changes, found, problem, unit, x):
+def of_added(ev, changes, derivatives, problem, unit, x):
     """Quantity -> (k, B), derivatives of ln A0, ln p_max and ln Ar/An; and of λ at the radii x (m,), (k, B, m).
 
-    found : :class:`.state.Implicit` of the smooth solutions `ev`; problem : the 2 k B moved cases with their
+    derivatives : :class:`.state.Implicit` of the smooth solutions `ev`; problem : the 2 k B moved cases with their
     asperities, in units R = E2* = 1; unit : (2, ...), the modulus E2 (B,) that is 1 for `ev`, and the derivatives (k,
     B) of its logarithm
     """
@@ -19,7 +19,7 @@ def of_added(ev, changes, found, problem, unit, x):
     law, (s, _) = law_of(problem), area_rule()
     points = np.concatenate([s, np.sqrt((1 - x) * (1 + x)), [1.0]])
     inner = points > 0
-    at = at_points(ev, changes, found, points[inner])
+    at = at_points(ev, changes, derivatives, points[inner])
     p, d_p = np.zeros((len(E2), len(points))), np.zeros((*d_E2.shape, len(points)))
     p[:, inner] = E2[:, None] * at.p
     d_p[..., inner] = E2[:, None] * (at.d_p + d_E2[..., None] * at.p)

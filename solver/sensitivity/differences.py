@@ -17,7 +17,7 @@ def by_differences(problem, inputs, quantities, x):
     """Quantity -> (k, B), derivatives of its logarithm; and those of p and λ at the radii x, (2, k, B, m). `problem` is
     in units R = E2* = 1; NaN where a moved case has no numbers."""
     cases = moved(problem, inputs, _STEP)
-    found = solve(cases.but(rtol=np.minimum(cases.rtol, _RTOL)), x)
+    solution = solve(cases.but(rtol=np.minimum(cases.rtol, _RTOL)), x)
     k = len(inputs)
-    logs = {name: slope_of(np.log(getattr(found, name)), k, _STEP) for name in quantities}
-    return logs, np.stack([slope_of(values, k, _STEP) for values in (found.p, found.lam)])
+    logs = {name: slope_of(np.log(getattr(solution, name)), k, _STEP) for name in quantities}
+    return logs, np.stack([slope_of(values, k, _STEP) for values in (solution.p, solution.lam)])

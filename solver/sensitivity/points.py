@@ -22,8 +22,8 @@ class Points(NamedTuple):
     d_lam: np.ndarray
 
 
-def at_points(ev, changes, found, s):
-    """:class:`Points` at s (m,) > 0. `found`: :class:`.state.Implicit` of the solutions `ev`.
+def at_points(ev, changes, derivatives, s):
+    """:class:`Points` at s (m,) > 0. `derivatives`: :class:`.state.Implicit` of the solutions `ev`.
 
     Under asperities the logarithm of q changes smoothly from node to node, also next to the edge, where q itself does
     not; so its change is interpolated. Without them q is a polynomial in s, and so is its change.
@@ -32,26 +32,26 @@ def at_points(ev, changes, found, s):
     basis, y = ev.mesh.basis(s).T, interpolate(ev, s)
     curve = law.evaluate(y)
     if law.rough:
-        q = curve.q * (np.where(ev.curve.q > 0, found.q / ev.curve.q, 0.0) @ basis)
+        q = curve.q * (np.where(ev.curve.q > 0, derivatives.q / ev.curve.q, 0.0) @ basis)
     else:
-        q = s * ((found.q / ev.mesh.s) @ basis)
+        q = s * ((derivatives.q / ev.mesh.s) @ basis)
     d_lam = along(ev, changes, of_law(law, y, curve, moving_numbers(changes)), q)[1]
     p_star = law.p_star[:, None]
     return Points(p_star * curve.q, law.area(y, curve.q), p_star * (q + changes.p_star[..., None] * curve.q), d_lam)
 
 
-def of_corners(ev, changes, found):
+def of_corners(ev, changes, derivatives):
     """Derivatives (k, B) of ln Ar/An of a law whose λ has corners."""
     s, w = gauss_rule(_FEW, (0.0, *ev.mesh.s.tolist()))
-    at = at_points(ev, changes, found, s)
+    at = at_points(ev, changes, derivatives, s)
     return (at.d_lam @ (w * s)) / (at.lam @ (w * s))
 
 
-def profiles(ev, changes, found, x):
+def profiles(ev, changes, derivatives, x):
     """:class:`Points` at the radii x (m,); 0 at the edge."""
     s = np.sqrt((1 - x) * (1 + x))
     inner = s > 0
-    return Points(*(_with_edge(values, inner) for values in at_points(ev, changes, found, s[inner])))
+    return Points(*(_with_edge(values, inner) for values in at_points(ev, changes, derivatives, s[inner])))
 
 
 def _with_edge(values, inner):

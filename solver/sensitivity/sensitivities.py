@@ -108,15 +108,15 @@ def _of_solved(scaled, solution, inputs, x):
     for index, nodes in _stacks(now.written, meshes(solution, scaled), solution.a):
         rows = (np.arange(2 * k)[:, None] * size + index).ravel()
         part = now.take(index), beside.take(rows), above.take(rows)
-        good, found, at_x = _of_stack(*part, solution.take(index), nodes, x)
+        good, derivatives, at_x = _of_stack(*part, solution.take(index), nodes, x)
         left[index[good]] = False
-        for name, values in found.items():
+        for name, values in derivatives.items():
             logs[name][:, index[good]] = values[:, good]
         shapes[:, :, index[good]] = at_x[:, :, good]
     rest = np.flatnonzero(left & ~now.added)
     if len(rest):
-        found, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x)
-        for name, values in found.items():
+        derivatives, shapes[:, :, rest] = by_differences(now.named.take(rest), inputs, QUANTITIES, x)
+        for name, values in derivatives.items():
             logs[name][:, rest] = values
     return logs, shapes
 
@@ -141,15 +141,15 @@ def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
     ev, d_E2 = iterated.at, slope_of(np.log(beside.E2), k)
     changes = changes_of(beside.written, ev.state.eta, k)
     operators = operators_of(ev, changes)
-    found = implicit(ev, changes, operators)
-    logs = found.logs | {"dP_dD": of_stiffness(ev, beside.written, found, operators)}
+    derivatives = implicit(ev, changes, operators)
+    logs = derivatives.logs | {"dP_dD": of_stiffness(ev, beside.written, derivatives, operators)}
     if ev.cases.law.law.corners:
-        logs["Ar_An"] = of_corners(ev, changes, found)
+        logs["Ar_An"] = of_corners(ev, changes, derivatives)
     logs |= {name: logs[name] + d_E2 for name in _OF_MODULUS}
-    at = profiles(ev, changes, found, x)
+    at = profiles(ev, changes, derivatives, x)
     d_p, d_lam = now.E2[:, None] * (at.d_p + d_E2[..., None] * at.p), at.d_lam
     if now.added.any():
-        spots, lam = of_added(ev, changes, found, above, (now.E2, d_E2), x)
+        spots, lam = of_added(ev, changes, derivatives, above, (now.E2, d_E2), x)
         logs = {name: np.where(now.added, spots.get(name, values), values) for name, values in logs.items()}
         d_lam = np.where(now.added[:, None], lam, d_lam)
     finite = np.all([np.isfinite(values).all(axis=0) for values in logs.values()], axis=0)

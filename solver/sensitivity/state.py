@@ -160,21 +160,21 @@ def implicit(ev, changes, operators):
 
 def _of_spots(ev, changes, law, q):
     """Quantity -> derivatives of its logarithm (k, B), of those that the law makes of q."""
-    own = quantities(ev)
+    results = quantities(ev)
     change = along(ev, changes, law, q)
     centre = [part[..., -1] for part in change]
     with np.errstate(all="ignore"):
-        peak = own.p_max / ev.cases.law.p_star
-        A0 = np.where(own.A0 == 0, 0.0, changes.A_star + centre[0] / ev.curve.g[:, -1])
+        peak = results.p_max / ev.cases.law.p_star
+        A0 = np.where(results.A0 == 0, 0.0, changes.A_star + centre[0] / ev.curve.g[:, -1])
     p0 = changes.p_star + q[..., -1] / ev.curve.q[:, -1]
-    area = 2 * (change[1] @ ev.mesh.w) / own.Ar_An
+    area = 2 * (change[1] @ ev.mesh.w) / results.Ar_An
     return {"p0": p0, "p_max": changes.p_star + centre[2] / peak, "Ar_An": area, "A0": A0}
 
 
 def along(ev, changes, law, q):
     """Derivatives (k, B, m) of g, λ and p_max/p* at points where q has the derivatives `q` (k, B, m)."""
-    found = [slope * q for slope in law.by_q]
+    changed = [slope * q for slope in law.by_q]
     for i, own in law.by_own.items():
         relative = _relative(changes, ev, i)[..., None]
-        found = [change + relative * more for change, more in zip(found, own, strict=True)]
-    return found
+        changed = [change + relative * more for change, more in zip(changed, own, strict=True)]
+    return changed

@@ -18,24 +18,24 @@ from .state import explicit, moving_numbers, of_law
 STEP = 3e-4
 
 
-def of_stiffness(ev, part, found, operators):
-    """Derivatives (k, B) of ln dP/dD. `part`: the moved cases; `found`: :class:`.state.Implicit` of the solutions `ev`;
+def of_stiffness(ev, part, derivatives, operators):
+    """Derivatives (k, B) of ln dP/dD. `part`: the moved cases; `derivatives`: :class:`.state.Implicit` of `ev`;
     `operators`: input -> :class:`.state.OperatorChange` at the radii of the solutions."""
     by_depth = control_gradient("D", ev)
-    D_eta = (by_depth[0] * found.tangent).sum(axis=1) + by_depth[1]
-    ends = [_beside(ev, part, found, operators, sign * STEP) for sign in (1, -1)]
+    D_eta = (by_depth[0] * derivatives.tangent).sum(axis=1) + by_depth[1]
+    ends = [_beside(ev, part, derivatives, operators, sign * STEP) for sign in (1, -1)]
     loads, slopes = (np.subtract(*both) / (2 * STEP * D_eta) for both in zip(*ends, strict=True))
     S = (ends[0][1] + ends[1][1]) / 2
-    logs = found.logs
+    logs = derivatives.logs
     return (loads + slopes * logs["D"]) / S + logs["P"] - logs["D"]
 
 
-def _beside(ev, part, found, operators, step):
+def _beside(ev, part, derivatives, operators, step):
     """d ln P/dθ at a fixed depth (k, B), and S (B,), at the state with η + `step` on the tangent of the branch."""
-    tangent = found.tangent
+    tangent = derivatives.tangent
     y = ev.state.y + step * tangent / ev.curve.dq
     at = evaluate(ev.cases, State(y, ev.state.eta + step), ev.mesh)
-    changes = changes_of(part, at.state.eta, len(found.eta))
+    changes = changes_of(part, at.state.eta, len(derivatives.eta))
     law = of_law(at.cases.law, y, at.curve, moving_numbers(changes))
     moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
     fixed = explicit(at, changes, {i: own[0] for i, own in law.by_own.items()}, moved)

@@ -75,32 +75,32 @@ def examine(path, most: float = inf) -> Condition:
     """
     path = Path(path)
     seen = stamp(path)
-    found = Condition(path, "damaged", "is damaged: its bytes are not those that were written")
+    state = Condition(path, "damaged", "is damaged: its bytes are not those that were written")
     try:
         check_regular(path)
         if path.stat().st_size > most or is_whole(path) is not False:
             with File(path) as file:
-                found = _described(file)
-                if found.kind == "sound" and found.unpacked <= most and contents(file) != file.attribute(ATTRIBUTE):
-                    found = replace(found, kind="damaged", reason=CHANGED)
+                state = _described(file)
+                if state.kind == "sound" and state.unpacked <= most and contents(file) != file.attribute(ATTRIBUTE):
+                    state = replace(state, kind="damaged", reason=CHANGED)
     except FileNotFoundError:
-        found = Condition(path, "missing")
+        state = Condition(path, "missing")
     except Unusable as error:
-        found = replace(found, kind=error.kind, reason=error.reason)
+        state = replace(state, kind=error.kind, reason=error.reason)
     except OSError as error:
-        found = Condition(path, "unreadable", f"cannot be read: {error.strerror}")
+        state = Condition(path, "unreadable", f"cannot be read: {error.strerror}")
     except BROKEN as error:
-        found = replace(found, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
-    return replace(found, seen=seen)
+        state = replace(state, kind="damaged", reason=f"is damaged: no results are laid out like this ({error})")
+    return replace(state, seen=seen)
 
 
 def stamp(path: Path) -> tuple | None:
     """What changes when a file is replaced or written to; None when there is none."""
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return None
-    return found.st_ino, found.st_size, found.st_mtime_ns
+    return status.st_ino, status.st_size, status.st_mtime_ns
 
 
 def statuses(path: Path) -> np.ndarray:
@@ -136,7 +136,7 @@ class Sums:
 
     def digest(self, file: File) -> str:
         """The digest of a file whose variables have all been added."""
-        sums = {name: found.hexdigest() for name, found in sorted(self._sums.items())}
+        sums = {name: total.hexdigest() for name, total in sorted(self._sums.items())}
         return hashlib.sha256(json.dumps([_head(file), sums], sort_keys=True).encode()).hexdigest()
 
 
@@ -157,13 +157,13 @@ def _pieces(sizes: dict[str, int]) -> Iterator[dict[str, slice]]:
 
 def _head(file: File) -> list:
     """Dimensions, types and attributes of all variables, and attributes of the file but those of the run."""
-    found, sizes = {}, file.sizes
+    described, sizes = {}, file.sizes
     for name, dims in file.variables.items():
         kind = "str" if file.dtype(name) is str else file.dtype(name).str
         attributes = {key: _typed(file.attribute(key, name)) for key in file.attributes(name)}
-        found[name] = [kind, dims, [sizes[dim] for dim in dims], attributes]
+        described[name] = [kind, dims, [sizes[dim] for dim in dims], attributes]
     kept = [name for name in file.attributes() if name not in (ATTRIBUTE, *OF_THE_RUN)]
-    return [found, {name: _typed(file.attribute(name)) for name in kept}]
+    return [described, {name: _typed(file.attribute(name)) for name in kept}]
 
 
 def _typed(value) -> list:

@@ -15,7 +15,7 @@ from solver.laws import Law
 from .data.dataset import labelled, not_run, parts
 from .data.si import dataset_of
 from .inputs.definition import Definition, StudyError
-from .inputs.grid import MOVED, cut_out
+from .inputs.grid import cut_out
 from .terminal import shown
 from .work.cases import compute, own_laws, parcel
 from .work.engine import blocks_of_grid
@@ -35,7 +35,7 @@ class Chunks(NamedTuple):
 
     def within(self, place: tuple[int, ...]) -> Definition:
         """The definition of the cases in the chunk at a place, which has one number for each dimension."""
-        window = {MOVED: slice(None)} if MOVED in self.definition.grid.sizes else {}
+        window = {}
         for (dim, ends), number in zip(self.ends.items(), place, strict=True):
             window[dim] = slice(int(ends[number]), int(ends[number + 1]))
         scene = self.definition.scene and self.definition.scene.within(window)

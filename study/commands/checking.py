@@ -3,7 +3,6 @@
 import numpy as np
 
 from ..inputs.definition import Definition
-from ..inputs.grid import MOVED
 from ..inputs.places import study_file
 from ..inputs.reading import read
 from ..inputs.vocabulary import VOCABULARY
@@ -34,7 +33,6 @@ def doubtful_lines(definition: Definition) -> list[str]:
     from ..inputs.scene.bounds import INPUTS, absurd  # here: it imports xarray
 
     given = {name: value for name, value in definition.scene.given.items() if name in INPUTS}
-    given = {name: v.isel({MOVED: 0}) if MOVED in getattr(v, "dims", ()) else v for name, v in given.items()}
     spreads = {name: one for name, one in definition.scene.spreads.items() if name in INPUTS}
     return [f"{definition.name}: beware: {text}" for text in (*absurd(given, spreads), *far_outside(definition))]
 

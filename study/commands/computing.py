@@ -106,16 +106,11 @@ def completed(study: Study, **options) -> int:
 
 
 def state_line(definition: Definition, state: dict) -> str:
-    """ "fig04      2000 cases  partial (500 of 2000 cases)  title".
-
-    Of a study with spreads the first number counts every solution, as `run` does. The statuses of complete results are
-    those of the inputs as they were given: so the line says how many these are.
-    """
+    """ "fig04      2000 cases  partial (500 of 2000 cases)  title"."""
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
     text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
     done = text.format(cases - missing, cases) if state["counts"] else ""
-    each = f" ({cases // definition.times}, each {definition.times} times for ±)" if definition.times > 1 else ""
-    line = f"{definition.name:<16} {cases:>8} cases{each}  {state['state']}{done}  {on_one_line(definition.title, 200)}"
+    line = f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 

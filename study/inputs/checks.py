@@ -11,7 +11,7 @@ from solver.scaling import dimensionless, law_of
 
 from ..terminal import shown
 from .given import Given
-from .grid import MOVED, Grid, along, same_labels, twins
+from .grid import Grid, along, same_labels, twins
 from .laws import smooth_laws
 from .vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, VOCABULARY, cases_with
 
@@ -97,9 +97,7 @@ def _taken(given: Given, name: str) -> list[str]:
             continue
         parameter = dim in PARAMETERS or of_scene
         of_units = given.physical and dim in ROWS and ROWS[dim].unit != "1"
-        if dim == MOVED:
-            found.append(f'{name}: a dimension cannot be called "{dim}" here')
-        elif parameter and dim not in given.sections:
+        if parameter and dim not in given.sections:
             found.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
         elif owner and owner.dims != (dim,):
             found.append(f"{dim} is a dimension and a parameter over other dimensions")

@@ -61,8 +61,10 @@ def digest_of(definition) -> str:
 def _digest_of_scene(of_numbers: str, scene) -> str:
     """sha256 of the digest of dimensionless numbers, and of the SI values from which they follow."""
     content = [of_numbers, scene.labels, sorted(scene.names.items())]
-    for name, value in sorted(scene.given.items()):
-        content.append((name, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
+    correlations = {f"{one} and {other}": value for (one, other), value in scene.correlations.items()}
+    for table, end in ((scene.given, ""), (scene.spreads, "_spread"), (correlations, "")):
+        for name, value in sorted(table.items()):
+            content.append((name + end, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

@@ -1,6 +1,8 @@
 """Micro laws: those that users register, with parameters in the vocabulary, and power laws that are fitted."""
 
 from contextlib import suppress
+from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -103,3 +105,21 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
         wrong = [(value, fit) for value, fit in fits.items() if not allowed(own, fit)]
         errors += [f"{name} fitted to Nbar Ra^2 = {v:g} is {fit:g}: must be in {own.interval}" for v, fit in wrong[:1]]
     return found, errors
+
+
+#: By which part of itself Nbar Ra^2 is moved: fits are good to some 1e-12 (their root is sought to 1e-15), so that the
+#: slopes have an error of some 1e-9, as that of the curvature is.
+_STEP = 1e-3
+
+
+def slopes_of_fit(products: Any) -> dict[str, Any]:
+    """Of B and beta that are fitted to Nbar Ra^2, a number or a DataArray: d ln B/d ln(Nbar Ra^2), and so of beta."""
+    values = np.array([_slopes_of_fit(one) if one > 0 else (0.0, 0.0) for one in np.ravel(products).tolist()]).T
+    zero = 0.0 * products
+    return {name: zero + own.reshape(np.shape(products)) for name, own in zip(("B", "beta"), values, strict=True)}
+
+
+@cache
+def _slopes_of_fit(product: float) -> tuple[float, float]:
+    up, down = (fit_power_law(product * (1 + step)) for step in (_STEP, -_STEP))
+    return float(np.log(up.B / down.B) / (2 * _STEP)), float(np.log(up.beta / down.beta) / (2 * _STEP))

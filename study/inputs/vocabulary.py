@@ -22,6 +22,10 @@ from ..terminal import shown
 __all__ = ["SCENE", "VOCABULARY", "names"]
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
+WITH_SPREADS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0", "lam0")
+"""Results that have spreads, besides the profiles; the others say how well the case is solved."""
+BY_INPUT = "_by_input"
+"""NAME_by_input: derivatives of the result NAME by logarithms of the solver's inputs, by Poisson ratios themselves."""
 NOT_RUN = 127
 """Value of `status` for a case that was never computed (the solver's own statuses are 0, 1, 2, ...)."""
 

@@ -238,7 +238,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
 
     known = inspect.signature(study.solve).parameters
     beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks"}
-    beside |= {"sensitivities", "parameters"}
+    beside |= {"sensitivities", "correlations", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

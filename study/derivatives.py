@@ -127,8 +127,9 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     own = [name for name in PARAMETERS if name in scene.parameters and name not in given and name not in ("n", "m")]
     own += ["n"] * ("E1" not in given) + ["m"] * ("E_punch" not in given)
     ones = np.ones(int(np.prod(shape)))
-    of_given = {name: changes(scene, name).items() for name in names}
-    flat = {name: {key: _flat(change, dims, shape) for key, change in own.items()} for name, own in of_given.items()}
+    flat = {}
+    for name in names:
+        flat[name] = {key: _flat(change, dims, shape) for key, change in changes(scene, name).items()}
     return flat | {name: {name: ones} for name in own}
 
 

@@ -28,13 +28,11 @@ def spreads_of(definition: Definition, parts: Parts) -> dict[str, np.ndarray]:
     correlation = matrix(scene, dims) if scene.correlations else None
     found = {}
     for name in parts.by_input.keys() & parts.variables.keys():  # the control has the spread that was given
-        values, by_input, powers = parts.variables[name].values, parts.by_input[name], VOCABULARY[name].powers
-        values, by_input = (
-            array.reshape(*grid.shape, count, -1) for array, count in ((values, 1), (by_input, len(names)))
-        )
-        change = np.swapaxes(of_inputs, -1, -2) @ by_input
-        change = change + values * np.einsum("...si,s->...i", of_scales, powers[::-1])[..., None]
+        own, count = parts.variables[name], len(names)
+        values, by_input = own.values.reshape(*grid.shape, 1, -1), parts.by_input[name].reshape(*grid.shape, count, -1)
+        of_unit = np.einsum("...si,s->...i", of_scales, VOCABULARY[name].powers[::-1])
+        change = np.swapaxes(of_inputs, -1, -2) @ by_input + of_unit[..., None] * values
         other = change if correlation is None else correlation @ change
-        # of inputs that cancel the sum may be a little below 0
-        found[name] = np.sqrt(np.maximum((change * other).sum(axis=-2), 0.0)).reshape(parts.variables[name].shape)
+        variance = np.maximum((change * other).sum(axis=-2), 0.0)  # of inputs that cancel it may be a little below 0
+        found[name] = np.sqrt(variance).reshape(own.shape).astype(own.dtype, copy=False)
     return found

@@ -62,10 +62,11 @@ def test_what_is_known_of_an_edited_study(results, tmp_path):
     wider = edited.replace("± 0.1 mm", "± 0.2 mm").replace("+- 10", "+- 20").replace("± 5", "± 10")
     assert of(wider, tmp_path).status()["state"] == "outdated"
     assert of(wider, tmp_path).run(workers=1).computed == 0
-    fewer = wider.replace(" +- 20", "").replace("1 ± 0.1 GPa", "1 GPa")  # n has no derivative: a part of the derivatives that the blocks have
+    # without derivatives by n: a part of those that the blocks have
+    fewer = wider.replace(" +- 20", "").replace("1 ± 0.1 GPa", "1 GPa")
     assert of(fewer, tmp_path).run(workers=1).computed == 0
-    alone = study.solve(**BALL | {"R": "5.0 ± 0.2 mm", "E2": "210 GPa"}, E1=["1 GPa", "4 GPa"], h="100 ± 10 um", P="10 N", x=3)
-    same_as(of(fewer, tmp_path).open().sel(h="100 um", P="10 N"), alone)
+    given = BALL | {"R": "5.0 ± 0.2 mm", "E2": "210 GPa", "E1": ["1 GPa", "4 GPa"], "h": "100 ± 10 um", "P": "10 N"}
+    same_as(of(fewer, tmp_path).open().sel(h="100 um", P="10 N"), study.solve(**given, x=3))
     plain = edited + "spreads = false\n"
     assert of(plain, tmp_path).run(workers=1).computed == 0 and "a_spread" not in of(plain, tmp_path).open()
 

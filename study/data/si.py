@@ -51,7 +51,9 @@ def results(definition: Definition, parts: Parts) -> xr.Dataset:
         coords["label"] = xr.Variable("case", scene.labels)
     for name in scene.assumed:
         coords[name].attrs["comment"] = ASSUMED
-    attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
+    pairs = [f"{one} and {other}: {v:g}" for (one, other), v in scene.correlations.items() if np.ndim(v) == 0]
+    given = {"correlations": "; ".join(pairs)} if pairs else {}
+    attributes = parts.attributes | given | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
     return searchable(Parts(_renamed(scene, results), _renamed(scene, coords), attributes).dataset())
 
 

@@ -18,9 +18,9 @@ from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .drawable import check_size, drawable
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
-from .marks import as_points, shades, spaced_by_factors, tick_decades
 from .registry import Columns, joined
-from .style import StyledFigure, style
+from .style import StyledFigure, as_points, shades, spaced_by_factors, style, tick_decades
+from .tornado import ORDINATE, tornado
 
 MOST_PANELS, MOST_NAMES = 12, 12  # of a figure, of its legend
 BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
@@ -37,7 +37,8 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where: Any) -> Fi
     Parameters
     ----------
     dataset : of `study.solve`, or the results of a study
-    x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it
+    x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it; y = "input": how
+        much each input changes x, a, P, D, p0, p_max, Ar_An or dP_dD of one contact, as bars
     hue : name of a dimension, or "label" of the cases
     where : values to be drawn alone, such as bonding="bonded"
 
@@ -61,6 +62,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
         raise StudyError([f'{stacked[0]} is several axes in one: give dataset.unstack("{stacked[0]}")'])
     bare = [dim for dim in dataset.dims if dim in (x, y, hue, *where) and dim not in dataset.coords]
     dataset = dataset.assign_coords({dim: np.arange(dataset.sizes[dim]) for dim in bare})  # they are numbered
+    if y == ORDINATE and y not in dataset.variables:
+        return tornado(chosen(dataset, where), x, new)
     dataset = drawable(dataset, (x, y, hue, *where))
     found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
     check_size(found, x, y)

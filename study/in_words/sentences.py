@@ -8,6 +8,7 @@ from ..data.dataset import decode
 from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
 from .beyond import doubts
+from .influence import influence
 from .pressures import RUBBER, not_checked
 
 _BASES = {
@@ -36,6 +37,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         *first, last = (VOCABULARY[name].symbol for name in judged)
         within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
         found = [f"Solved: {within} of the model's solution."]
+        found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
     else:
         known = {one.name.lower(): one.meaning for one in Status}
         meaning = known.get(word, "the case has not been computed")

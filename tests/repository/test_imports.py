@@ -28,8 +28,8 @@ ROOMS = {
         "sensitivity",
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "data", "in_words", "files", "store", "work"),
-        *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("terminal", "specimen", "inputs", "data", "derivatives", "in_words", "files", "store", "work"),
+        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

@@ -1,4 +1,4 @@
-"""Contacts whose inputs have spreads, of every law, base and control. See tests/references/make_moved_spreads.py."""
+"""Contacts whose inputs have spreads, of every law, base and control. See tools/references/make_moved_spreads.py."""
 
 from pathlib import Path
 

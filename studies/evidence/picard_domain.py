@@ -22,14 +22,14 @@ DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
 
 
 @figure("picard_domain", "picard_domain", long=True, size=(TWO_COLUMNS, 4.8), panels=(2, 3))
-def domain(panels, found: xr.Dataset) -> Columns:
+def domain(panels, approximations: xr.Dataset) -> Columns:
     """Size of the cycle in which the paper's successive approximations (8) end, over the compliance C of the layer and
     the relaxation 1 + 2k, and the lines of the linear theory. Last panel: two successive iterates near the edge, and
     the solution."""
     *maps, last = panels.ravel()
     parts = []
     for axes, (beta, nodes) in zip(maps, MAPS, strict=True):
-        part = found.sel(beta=beta, nodes=nodes).transpose("k", "h", ...)
+        part = approximations.sel(beta=beta, nodes=nodes).transpose("k", "h", ...)
         image = draw_map(axes, part)
         parts.append(map_columns(part))
         axes.set_title(rf"$\beta = {'2/3' if beta > 0.6 else beta}$, {nodes} nodes", fontsize=8)
@@ -104,10 +104,10 @@ def map_columns(part: xr.Dataset) -> Columns:
     """β, nodes, C, k, size of the cycle and status of each case of a map that has numbers."""
     size, status = cycle_size(part), part["status"].values
     k, C = np.meshgrid(part["k"].values, compliance(part), indexing="ij")
-    known = np.isfinite(size)
+    finite = np.isfinite(size)
     whole = {"beta": np.full(size.shape, float(part["beta"])), "nodes": np.full(size.shape, int(part["nodes"]))}
     whole |= {"C": C, "k": k, "cycle/p(0)": size, "status": status}
-    return {name: values[known] for name, values in whole.items()}
+    return {name: values[finite] for name, values in whole.items()}
 
 
 def legend(panels) -> None:

@@ -84,7 +84,7 @@ def read(path: Path, _: tuple) -> Text:
 
 
 def _calls(nodes: list[ast.AST], called: dict[str, str]) -> Iterator[tuple[tuple[str, str], bool]]:
-    """(kind, name) and `long` of each call of a decorator. called : what the file calls it -> its own name"""
+    """(kind, name) and `long` of each call of a decorator. called : its name in the file -> its name in KINDS"""
     for node in nodes:
         if isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
             decorator = called.get(getattr(node.func, "id", None), getattr(node.func, "attr", None))

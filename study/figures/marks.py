@@ -15,25 +15,25 @@ def shades(count: int) -> list:
 
 
 def as_points(lines: list[Line2D], fill: str) -> None:
-    """Points in place of curves: of single cases, one has nothing to do with the next. fill : "full" or "none" """
+    """Points in place of curves, for cases that have nothing to do with each other. fill : "full" or "none" """
     for line in lines:
         line.set(linestyle="none", marker="o", markersize=3, fillstyle=fill)
 
 
 def spaced_by_factors(values: np.ndarray) -> bool:
     """Whether values grow by factors rather than by steps: their median is nearer to the geometric mean."""
-    known = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
-    if not len(known) or known.min() <= 0 or known.max() < 10 * known.min():
+    finite = values[np.isfinite(values)] if values.dtype.kind in "fi" else np.zeros(1)
+    if not len(finite) or finite.min() <= 0 or finite.max() < 10 * finite.min():
         return False
-    middle = np.log(np.median(known))
-    return abs(middle - np.log(known).mean()) < abs(middle - np.log(known.mean()))
+    middle = np.log(np.median(finite))
+    return abs(middle - np.log(finite).mean()) < abs(middle - np.log(finite.mean()))
 
 
 def tick_decades(axis: Axis) -> None:
     """Ticks of a logarithmic axis at each decade, up to six; also at 3 times each if there are fewer than two.
 
-    Of few decades matplotlib has one number, or writes those at 2, 3, 4 and 6 over each other; of four in a narrow
-    panel it leaves out two, and all ticks between them.
+    On few decades matplotlib writes one number, or writes those at 2, 3, 4 and 6 over each other. Of four decades in a
+    narrow panel it leaves out two, and all ticks between them.
     """
     if axis.get_scale() != "log":
         return

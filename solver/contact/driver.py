@@ -16,7 +16,7 @@ _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
 #: that are made for it alone. Unlike seconds, it is the same on every machine. Of the 3,000 cases of the study
 #: extremes_layered none spends this budget, and about 1 % would spend half of it (`make extremes`).
-#: `python tests/fuzz/fuzz_solver.py` prints the longest time of a lone case.
+#: `python tools/fuzz/fuzz_solver.py` prints the longest time of a lone case.
 BUDGET = 1_500_000
 
 

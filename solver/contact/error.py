@@ -16,14 +16,14 @@ from .results import cornered, difference, interpolate, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
 #: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
-#: (`python tests/contact/errors/error_bars.py`; one such case is "ring" of tests/contact/errors/test_error_bars.py).
+#: (`python tools/errors/error_bars.py`; one such case is "ring" of tests/contact/errors/test_error_bars.py).
 #: The estimate is at least _UNSEEN times λ s²/2.
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
 #: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
-#: with it 3 % (`python tests/contact/errors/error_bars.py`); one that needs it is "blind" of
+#: with it 3 % (`python tools/errors/error_bars.py`); one that needs it is "blind" of
 #: tests/contact/errors/test_error_bars.py.
 _BLIND = 3.0
 #: There both meshes may also place the edge alike by chance, but not the pressures near it: :func:`_moved_edge`. Where
@@ -39,7 +39,7 @@ _NEAR = 1e-8
 #: The quadratures of two meshes may agree by chance, if λ rises sharply inside the contact. It may, if λ in the centre
 #: is above _SATURATED or the exponent of the displacement below _SHARP. Then Ar/An is compared with another rule, which
 #: has _TIMES as many points on each panel as the mesh has nodes, and _MORE: "saturated" and "quadratures" of
-#: tests/contact/errors/test_error_bars.py. With _SATURATED = 0.3 `python tests/contact/errors/error_bars.py` prints
+#: tests/contact/errors/test_error_bars.py. With _SATURATED = 0.3 `python tools/errors/error_bars.py` prints
 #: the same.
 _SATURATED, _SHARP = 0.7, 0.45
 _TIMES, _MORE = 2, 4

@@ -6,7 +6,7 @@ t = Y/X = pi C/(4 a), X q = V (c/(κ + t)): load, depth and central pressure are
 are (n, B) here, with a column for each case: sums over the nodes then run along whole rows.
 
 Newton's method solves these cases too. It takes 7 times as long for a batch of 16,000, and twice as long for
-lone cases (`python tests/bench/benchmark_smooth.py`).
+lone cases (`python tools/bench/benchmark_smooth.py`).
 """
 
 from dataclasses import replace

@@ -19,7 +19,7 @@ from ..solution import Model, Solution
 from ..status import Status
 from .named import closed_form, solve_named, with_model_error
 
-#: In random cases the true error is at most 0.86 of each bound that follows (`python tests/models/margins.py 3000 2`).
+#: In random cases the true error is at most 0.86 of each bound that follows (`python tools/errors/margins.py 3000 2`).
 #: The error of the thin layer is at most _THIN times its closed form, which is that of a smooth punch.
 _THIN = 4.0
 #: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times

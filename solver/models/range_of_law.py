@@ -10,8 +10,8 @@ from ..laws import LAWS
 _S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
 RADII = np.sqrt((1 - _S) * (1 + _S))
 #: Near the edge p is below the first row of a table, p1, and A and λ are guesses. That changes a, P, D, p(0), p_max and
-#: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tests/laws/own_tables.py`) need at most 0.205
-#: for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
+#: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`) need at most
+#: 0.205 for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
 
 

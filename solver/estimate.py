@@ -20,13 +20,13 @@ def estimate(problem):
     300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
     """
     scaled = dimensionless(problem.but(base="layered"))
-    usable, found = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}
+    usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}
     for law in BUILT_IN:
         index = np.flatnonzero(usable & (problem.micro == law.name))
         if len(index):
             for name, values in _of_one_law(as_cases(scaled.take(index))).items():
-                found[name][index] = values
-    return found
+                estimates[name][index] = values
+    return estimates
 
 
 def _of_one_law(cases):

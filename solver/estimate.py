@@ -11,8 +11,8 @@ _QUANTITIES = ("a", "D", "p0", "p_max", "lam0", "A0")
 
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def estimate(problem):
-    """Name -> (B,) of a, D, p0, p_max, lam0, A0 in units R = E2* = 1: those of the state with which the iteration
-    begins. D is the least that it can be, the height of the punch at r = a.
+    """Name -> (B,) of a, D, p0, p_max, lam0, A0 in units R = E2* = 1, as they are where the iteration begins. D is the
+    least that it can be, the height of the punch at r = a.
 
     problem : :class:`~solver.problem.Problem` with R = E2 = 1; all bases count as "layered"
 

@@ -70,7 +70,7 @@ def answer(*lines) -> int:
 
 
 def open_closed_streams() -> None:
-    """Open to /dev/null those of stdin, stdout and stderr that the shell has closed (`>&-`).
+    """Open to /dev/null whichever of stdin, stdout and stderr the shell has closed (`>&-`).
 
     Otherwise the next file that is opened, even results, would get the number of the stream and what is printed to it.
     """

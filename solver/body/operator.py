@@ -70,7 +70,7 @@ class Body(Protocol):
         on another mesh; what of it still holds is used again."""
 
     def softness(self, a):
-        """About the compliance (B,) that a contact of radius a feels, over that of a half-space of E."""
+        """About the compliance (B,) that a contact of radius a feels, over the compliance of a half-space of E."""
 
     def error(self, a, nodes):
         """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""

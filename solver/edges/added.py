@@ -32,9 +32,9 @@ FLAT = Shape(
 
 
 class WithAdded(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of q and of a `shape` of the given `strength` together: `plain` is
-    that of q. `growth` is the derivative of the strength by ln a, (B,) both. `column`, `d_column` (B, n + 1): K of the
-    shape, the last one its displacement of the edge, and the derivative by ln a."""
+    """The :class:`~solver.body.operator.Operator` of q, which is `plain`, and of a `shape` together. The shape has the
+    `strength`, whose derivative by ln a is `growth`, (B,) both. `column`, `d_column` (B, n + 1): K of the shape at the
+    nodes, at last the displacement of the edge; and the derivative by ln a."""
 
     plain: Operator
     shape: Shape

@@ -136,7 +136,7 @@ def _relief(density, sigma, cut):
 
 
 def _looked_up(density, field, which, y, sigma, cut):
-    """q (B, m) if `which` is 0, λ if it is 1; and d ln q/d ln y, or that of λ."""
+    """q (B, m) if `which` is 0, λ if it is 1; and the derivative of its logarithm by ln y."""
     table, group = _tables(density, field, np.where(sigma > 0, sigma, 1.0), cut)
     step = spread.STEP * spread.KNOTS / table.shape[-1]
     value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, step)

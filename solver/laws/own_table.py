@@ -26,7 +26,7 @@ HEIGHTS, _MOST = ("z", "share"), 32
 #: A table of a law: its fewest rows, and the highest degree of a polynomial. A polynomial within _NEAR of the rows is
 #: near enough, and needs no higher degree; one farther than _FAR from a row is refused. Both are relative distances.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
-#: The lowest degree counts whose distance is below this times that of the best degree: higher ones follow the noise.
+#: The lowest degree is taken that is at most this times as far from the rows as the best: higher ones follow the noise.
 _HARDLY = 1.5
 #: The error of a curve between the rows is taken to be this times its distance from the curve one degree lower, at
 #: _STEPS points a gap. p may rise by the factor _GAP from row to row: in wider gaps both curves are wrong alike

@@ -15,7 +15,7 @@ _LEAST, _LOST = 1e-295, 1e-270
 
 
 def _scales(E, Nbar, Ra, B, beta):
-    """p*, A*; and further β, and p* over that of the law that is fitted."""
+    """p*, A*, β, and the ratio of p* to the p* of the fitted law."""
     return E, B * Ra, beta, E / disc_cell.scales(E, Nbar, Ra)[0]
 
 

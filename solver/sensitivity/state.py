@@ -160,7 +160,7 @@ def implicit(ev, changes, operators):
 
 
 def _of_spots(ev, changes, law, q):
-    """Quantity -> derivatives of its logarithm (k, B), of those that the law makes of q."""
+    """Quantity -> derivatives of its logarithm (k, B), of the quantities that the law makes of q."""
     results = quantities(ev)
     change = along(ev, changes, law, q)
     centre = [part[..., -1] for part in change]

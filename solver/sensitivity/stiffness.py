@@ -1,8 +1,8 @@
 """Derivatives of the contact stiffness dP/dD by inputs: of the slope S = d ln P/d ln D of the curve.
 
-At a fixed depth the derivative of S by an input θ is that of d ln P/dθ by ln D. So d ln P/dθ at a fixed depth is formed
-at two states next to the solution, on the tangent of the branch: their error is even in the distance and cancels. At
-such a state one transposed system serves all inputs. Then, under the control,
+At a fixed depth the derivative dS/dθ by an input θ is the derivative of d ln P/dθ by ln D. So d ln P/dθ at a fixed
+depth is formed at two states next to the solution, on the tangent of the branch: their error is even in the distance
+and cancels. At such a state one transposed system serves all inputs. Then, under the control,
 
     d ln S/dθ = [d(d ln P/dθ)/d ln D + (dS/d ln D) (d ln D/dθ)]/S,    dP/dD = S P/D.
 """

@@ -76,8 +76,8 @@ def draw_map(axes, part: xr.Dataset):
 def theory(part: xr.Dataset) -> list[np.ndarray]:
     """Smallest 1 + 2k for which small errors shrink, an array over h for each line.
 
-    The first is that of the whole contact, by its half-space part alone. The others are those of the asperities alone,
-    A'(p)/C, where p/p(0) is one of SHARES. p(0) is taken from the largest k, which is 5e-7 off at most.
+    The first is for the whole contact, by its half-space part alone. The others are for the asperities alone, A'(p)/C
+    where p/p(0) is one of SHARES. p(0) is taken at the largest k, where it is 5e-7 off at most.
     """
     C, p0 = compliance(part), part["p0"].values[-1]
     a, n, B, Ra, beta = (float(part[name]) for name in ("a", "n", "B", "Ra", "beta"))

@@ -39,7 +39,7 @@ class Way:
     """One way to solve: `run(cases, setting)` for each of its `settings`.
 
     varied : what the settings are, in a word
-    sets : names of the problem sets on which it is measured; most : it takes at most so many cases of a set
+    sets : names of the problem sets on which it is measured; most : it takes at most this many cases of a set
     copies : of each of the paper's cases in a batch; several for ways so quick that a hundred cases cannot be timed
     prepare(setting) : is called before, and not timed, as any number of cases can use what it prepares
     """

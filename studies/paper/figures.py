@@ -1,4 +1,4 @@
-"""The figures and tables of the paper: those of results stand in the files that are imported here."""
+"""The figures and tables of the paper. Those that show results stand in the files that are imported here."""
 
 from pathlib import Path
 

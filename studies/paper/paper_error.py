@@ -51,8 +51,8 @@ def nearest_pair(iterates: xr.Dataset) -> dict[str, int]:
 def explained(iterates: xr.Dataset) -> xr.Dataset:
     """The paper's numbers of Section 5, converged and by the nearest pair of iterates.
 
-    The load is that of the first iterate of the pair, what is printed for the rough layered contact that of the
-    second, and the other contacts are converged ones under the load of the second.
+    Of the pair the first iterate gives the load, and the second what is printed for the rough layered contact. The
+    other contacts are converged ones under the load of the second.
     """
     pair = nearest_pair(iterates)
     first, second = iterates.isel(pair), iterates.isel(pair | {"iterate": pair["iterate"] + 1})

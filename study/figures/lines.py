@@ -102,7 +102,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
 
 
 def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
-    """The dataset, with those of the names added that have to be derived. Raises StudyError for an unknown name."""
+    """The dataset with the derived quantities among the names added. Raises StudyError for an unknown name."""
     errors = []
     for name in names:
         if name in QUANTITIES and name not in dataset:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 
-from .law import Curve, Law, inverse, of_positive
+from .law import Curve, Law, inverse, where_positive
 
 #: Above this q, y is q to rounding.
 _LARGE = 1e30
@@ -146,7 +146,7 @@ def _edge(table):
 def _from_pressure(table, q):
     start = np.maximum(q, 0.0)
     if table.s == 2:
-        return of_positive(q, _root(start))
+        return where_positive(q, _root(start))
     return inverse(lambda y: table.pressure(y)[1:], q, start ** (1 / (1 + table.s)) + start)
 
 

@@ -75,14 +75,8 @@ def _quantity(t, q, X, power, rate, limit, first):
 
 
 def _law(name):
-    rest = {
-        "parameters": disc_cell.PARAMETERS,
-        "scales": disc_cell.scales,
-        "error": ERROR,
-        "smears": False,
-        "rise": 1.1,
-    }
-    return law_of(_table(name), name=f"{name}_lattice", **rest)
+    words = {"name": f"{name}_lattice", "parameters": disc_cell.PARAMETERS, "scales": disc_cell.scales}
+    return law_of(_table(name), **words, error=ERROR, smears=False, rise=1.1)
 
 
 SQUARE, HEX = _law("square"), _law("hex")

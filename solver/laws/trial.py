@@ -93,10 +93,8 @@ def tried(law, E, given):
 
 def _shapes(law, E, given):
     """The law bound to its cases, and curve and area at _Y, if all of its functions return what they must."""
-    numbers = _called(law, "scales", E, **given)
-    if not (
-        isinstance(numbers, (tuple, list)) and len(numbers) >= 2 and all(np.shape(v) in ((), E.shape) for v in numbers)
-    ):
+    parts = _called(law, "scales", E, **given)
+    if not (isinstance(parts, (tuple, list)) and len(parts) >= 2 and all(np.shape(v) in ((), E.shape) for v in parts)):
         _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")
     bound = law.bind(E, **given)
     curve, edge = _curve(law, _Y, bound.own), _called(law, "edge", *bound.own)

@@ -26,11 +26,7 @@ def is_ratio(name):
 
 def inputs_of(control):
     """Names of all inputs, the control first: numbers that have an interval."""
-    numbers = [
-        name
-        for name, parameter in PARAMETERS.items()
-        if parameter.interval and not parameter.whole and name not in _NO_INPUTS
-    ]
+    numbers = [name for name, row in PARAMETERS.items() if row.interval and not row.whole and name not in _NO_INPUTS]
     return (control, *numbers)
 
 

@@ -60,20 +60,16 @@ def explained(iterates: xr.Dataset) -> xr.Dataset:
     theirs = contacts(float(second["iterate_P"]))
     theirs |= {name: float(second[f"iterate_{name}"]) for name in SHARED} | {"P": float(first["iterate_P"])}
     variables = {"converged": [converged[key] for key in theirs], "by_iterates": list(theirs.values())}
-    explanation = xr.Dataset(
-        {name: ("quantity", values) for name, values in variables.items()}, {"quantity": list(theirs)}
-    )
-    return explanation.assign(pair=("end", [int(first["intervals"]), int(first["iterate"])]))
+    table = xr.Dataset({name: ("quantity", values) for name, values in variables.items()}, {"quantity": list(theirs)})
+    return table.assign(pair=("end", [int(first["intervals"]), int(first["iterate"])]))
 
 
 def contacts(load: float) -> dict[str, float]:
     """The numbers of Section 5 by converged solutions under one load, keys of `numbers.NUMBERS`."""
     changes = {}, {"base": "half_space"}, {"micro": "smooth"}
     layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
-    quantities = {name: float(getattr(layered, name)[0]) for name in SHARED} | {
-        "An_ratio": float(bare.a[0] / RADIUS) ** 2
-    }
-    return quantities | {"D smooth layered": float(smooth.D[0]), "D smooth homogeneous": float(hertz(P=load).D)}
+    ours = {name: float(getattr(layered, name)[0]) for name in SHARED} | {"An_ratio": float(bare.a[0] / RADIUS) ** 2}
+    return ours | {"D smooth layered": float(smooth.D[0]), "D smooth homogeneous": float(hertz(P=load).D)}
 
 
 @table(
@@ -82,13 +78,11 @@ def contacts(load: float) -> dict[str, float]:
     long=True,
     columns="quantity; paper | .4g; converged | .5g; converged off | +.2%; iterates | .5g; iterates off | +.2%",
 )
-def rows(measurements: xr.Dataset) -> list[tuple]:
+def rows(study: xr.Dataset) -> list[tuple]:
     """The paper's numbers, the converged ones, and those by two successive iterates of Eq. (8) with k = 0: the load by
     the first, the rest by the second, or under its load."""
     table = []
-    for key, *ours in zip(
-        *(measurements[name].values for name in ("quantity", "converged", "by_iterates")), strict=True
-    ):
+    for key, *ours in zip(*(study[name].values for name in ("quantity", "converged", "by_iterates")), strict=True):
         quantity, printed = numbers.NUMBERS[str(key)]
         table.append((quantity, printed, *(float(v) for value in ours for v in (value, value / printed - 1))))
     return table

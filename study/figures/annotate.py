@@ -60,12 +60,10 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 
     A results file of an earlier version has fewer masks.
     """
-    broken_where = {name: broken(flags) for name, flags in validity.items()}
+    masks = {name: broken(flags) for name, flags in validity.items()}
     curves_of = {
-        meaning: {
-            name: where[meaning] for name, where in broken_where.items() if meaning in where and where[meaning].any()
-        }
-        for meaning in dict.fromkeys(meaning for where in broken_where.values() for meaning in where)
+        meaning: {name: where[meaning] for name, where in masks.items() if meaning in where and where[meaning].any()}
+        for meaning in dict.fromkeys(meaning for where in masks.values() for meaning in where)
     }
     return {meaning: curves for meaning, curves in curves_of.items() if curves}
 

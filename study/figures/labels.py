@@ -63,9 +63,7 @@ def axis_label(name: str, array: xr.DataArray) -> str:
 def with_units(columns: dict, dataset: xr.Dataset) -> dict:
     """Columns of numbers of a dataset whose names say the unit of physical numbers: "P", or "P [N]"."""
     units = {name: dataset[name].attrs.get("units", "1") for name in columns if name in dataset}
-    return {
-        name if units.get(name, "1") == "1" else f"{name} [{units[name]}]": numbers for name, numbers in columns.items()
-    }
+    return {name if units.get(name, "1") == "1" else f"{name} [{units[name]}]": v for name, v in columns.items()}
 
 
 def value_text(name: str, array: xr.DataArray, value) -> str:

@@ -120,9 +120,8 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
 def check_roles(contacts: xr.Dataset, x: str, y: str, hue: str) -> None:
     """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or as abscissa and hue."""
     errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(contacts[name])]
-    if y in contacts.dims and (
-        x in contacts.dims or y not in contacts[x].dims
-    ):  # else the load may be drawn against the depth
+    # where x depends on the axis y, such as the depth on the load, its curve may be drawn
+    if y in contacts.dims and (x in contacts.dims or y not in contacts[x].dims):
         errors.append(f"y = {y} is an axis of these results: it may be x or the hue")
     if x == hue:
         errors.append(f"x and hue are both {x}")
@@ -221,12 +220,8 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
 def decorate(figure: Figure, panels, contacts: xr.Dataset, names: tuple) -> None:
     """Labels, scales, the legend, and the parameters above the figure."""
     x, y, hue, along = names
-    log_x = spaced_by_factors(contacts[x].values)
-    log_y = (
-        log_x
-        and np.nanmin(contacts[y].values) > 0
-        and np.nanmax(contacts[y].values) > 30 * np.nanmin(contacts[y].values)
-    )
+    log_x, values = spaced_by_factors(contacts[x].values), contacts[y].values
+    log_y = log_x and np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values)
     for axes in panels:
         grid = axes.get_subplotspec()
         axes.set(xscale="log" if log_x else "linear", yscale="log" if log_y else "linear")

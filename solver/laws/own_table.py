@@ -90,7 +90,7 @@ def _of_text(name, text):
         return _histogram(name, **_columns(text, HEIGHTS, 2))
     columns = _columns(text, COLUMNS, _FEWEST)
     _check(**columns)
-    return of_columns(name, **columns)
+    return fitted_law(name, **columns)
 
 
 def _histogram(name, z, share):
@@ -162,7 +162,7 @@ def _check(p, A, lam, p_max):
         raise ValueError(f"columns lam and p_max, rows 1 to {last + 1}: {words}")
 
 
-def of_columns(name, p, A, lam, p_max):
+def fitted_law(name, p, A, lam, p_max):
     """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked."""
     beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
     s, q = 2 / beta - 1, p / p[-1]

@@ -220,7 +220,7 @@ def code_of(kind: str, name: str) -> list[Path]:
 def study_beside(kind: str, name: str) -> Path | None:
     """The folder of a figure or table of the user, where the studies that it needs are looked for first."""
     place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
-    return place[0].parent if place and place[0] not in beside.of_the_book() else None
+    return place[0].parent if place and place[0] not in beside.book_files() else None
 
 
 def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Dataset]:

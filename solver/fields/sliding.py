@@ -1,0 +1,62 @@
+"""The field of sliding, the traction q = p along x (times mu): docs/stresses.md, Sliding.
+
+Its fields have factors cos and sin of the polar angle, so that amplitudes in (r, z) suffice.
+"""
+
+import numpy as np
+
+from .half_space import integrals, on_surface
+from .transfer import Kind, antiplane, radial_sum
+from .waves import Load
+
+
+def amplitudes(kind, bodies, X, x, v):
+    """Of the nine integrals from which :func:`components` come."""
+    u, w, S, T = v
+    Q, across = antiplane(kind, bodies, X, x)
+    both, less = u + across, u - across
+    M = radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1)
+    return M, both, -less, S, T + Q, T - Q, w, both, less
+
+
+def closed(pressure, r, z, nu):
+    """The same (9, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
+    nu, depth = nu[:, None, None], z[:, None]
+    E, F, D = integrals(pressure, r, z, 3)
+    surface = z == 0
+    if surface.any():
+        E[0][:, surface] = pressure.at(r)[:, None]
+        E[1::2, :, surface] = on_surface(pressure, r)[:, :, None]
+    return np.stack(
+        [
+            F[1] - 2 * (1 + nu) * E[1],
+            F[1] - 2 * (2 - nu) * E[1],
+            -F[3] - 2 * nu * E[3],
+            -F[1],
+            2 * E[0] - F[0],
+            -F[2],
+            depth * E[1] + (1 - 2 * nu) * D[1],
+            depth * E[0] - 2 * (2 - nu) * D[0],
+            depth * E[2] + 2 * nu * D[2],
+        ]
+    )
+
+
+SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, closed)
+
+
+def components(whole, G2):
+    """The amplitudes of the field of those nine integrals for mu = 1; G2 : 2 G."""
+    total, first, third, sz, even, odd, uz, ux, across = whole
+    difference = (first + third) / 2
+    return {
+        "sr_c": (total + difference) / 2,
+        "st_c": (total - difference) / 2,
+        "sz_c": sz,
+        "srt_s": (third - first) / 4,
+        "sxz_0": -even / 2,
+        "sxz_2": odd / 2,
+        "uz_c": uz / G2,
+        "ux_0": -ux / (2 * G2),
+        "ux_2": across / (2 * G2),
+    }

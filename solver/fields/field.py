@@ -19,18 +19,24 @@ def integrals(load, layers, h, pressure, r, z, body):
     layers : :class:`~solver.kernels.two_layers.TwoLayers` of B cases
     h : (B,), thickness in a; all of one octave
     pressure : :class:`~.pressure.Pressure` of the cases
-    r : (R,), radii in a; z : (Z,), depths; body : (Z,) bool, in the body. There it is NaN below a rigid base
+    r : (R,), radii in a; z : (B, Z), depths; body : (Z,) bool, in the body. There it is NaN below a rigid base
     """
     same = np.all((layers.n == 1) & (layers.nu1 == layers.nu2) & layers.bonded)
     z = np.where(z < _SURFACE, 0.0, z)
-    near = np.full(len(z), True) if same else ~body & (z < _NEAR * (1 + r.max()) / 2)
+    if same:  # no layer is felt; a thick one takes the fewest waves
+        h, body = np.full(len(h), 2 * max(1.0, z.max())), np.zeros(len(body), dtype=bool)
+    near = ~body & (z.min(axis=0) < _NEAR * (1 + r.max()) / 2)
     kinds = np.where(body, Kind.BODY, np.where(near, Kind.DIFFERENCE, Kind.LAYER))
-    whole = np.zeros((len(load.orders), len(h), len(z), len(r)))
-    if not same:
-        rows = [Row(Kind(kind), depth + 0 * h) for kind, depth in zip(kinds, z, strict=True)]
-        whole = of_waves(load, layers, h, pressure, r, rows)
-    closed = np.flatnonzero(near)
-    if len(closed):
-        whole[:, :, closed] += load.closed(pressure, r, z[closed], layers.nu1)
+    whole = np.zeros((len(load.orders), len(h), z.shape[1], len(r)))
+    waves, closed = np.flatnonzero(~(near & same)), np.flatnonzero(near)
+    if len(waves):
+        rows = [Row(Kind(kinds[i]), z[:, i]) for i in waves]
+        whole[:, :, waves] = of_waves(load, layers, h, pressure, r, rows)
+    alike = np.all(z[:, closed] == z[:1, closed])  # depths that all cases share are one batch
+    for case in [slice(None)] if alike else map(slice, range(len(h)), range(1, len(h) + 1)):
+        if len(closed):
+            own = pressure._replace(values=pressure.values[case])
+            added = load.in_closed_form(own, r, z[case][0, closed], layers.nu1[case])
+            whole[:, case, closed] += added
     whole[:, (layers.n == 0)[:, None] & body] = np.nan
     return whole

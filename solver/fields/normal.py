@@ -13,7 +13,7 @@ def amplitudes(kind, bodies, X, x, v):
     return radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1), -u, S, T, u, w
 
 
-def closed(pressure, r, z, nu):
+def in_closed_form(pressure, r, z, nu):
     """The same (6, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
     E, F, D = integrals(pressure, r, z)
@@ -34,17 +34,19 @@ def closed(pressure, r, z, nu):
     return whole
 
 
-NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, closed)
+NAMES = ("sr", "st", "sz", "trz", "ur", "uz")
+NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
 
 
 def components(whole, G2):
     """sr, st, sz, trz, ur, uz of these six; G2 : 2 G (B,) or what broadcasts."""
     total, difference, sz, trz, ur, uz = whole
-    return {
-        "sr": (total + difference) / 2,
-        "st": (total - difference) / 2,
-        "sz": sz,
-        "trz": trz,
-        "ur": ur / G2,
-        "uz": uz / G2,
-    }
+    parts = (
+        (total + difference) / 2,
+        (total - difference) / 2,
+        sz,
+        trz,
+        ur / G2,
+        uz / G2,
+    )
+    return dict(zip(NAMES, parts, strict=True))

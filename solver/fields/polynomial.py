@@ -146,7 +146,7 @@ def _at_points(load, layers, h, pressure, r, z, body):
     rows, row = np.unique(np.stack([z, body]), axis=1, return_inverse=True)
     radii, column = np.unique(r, return_inverse=True)
     if rows.shape[1] * len(radii) <= 4 * len(r) or len(r) <= _SOME:
-        whole = integrals(load, layers, h, pressure, radii, rows[0], rows[1] > 0)
+        whole = integrals(load, layers, h, pressure, radii, rows[:1], rows[1] > 0)
         return whole[:, 0, row.ravel(), column.ravel()]
     order = np.lexsort((r, z))
     made = np.zeros((len(load.orders), len(r)))

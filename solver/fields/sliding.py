@@ -19,7 +19,7 @@ def amplitudes(kind, bodies, X, x, v):
     return M, both, -less, S, T + Q, T - Q, w, both, less
 
 
-def closed(pressure, r, z, nu):
+def in_closed_form(pressure, r, z, nu):
     """The same (9, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
     E, F, D = integrals(pressure, r, z, 3)
@@ -42,21 +42,33 @@ def closed(pressure, r, z, nu):
     )
 
 
-SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, closed)
+NAMES = ("sr_c", "st_c", "sz_c", "srt_s", "sxz_0", "sxz_2", "uz_c", "ux_0", "ux_2")
+SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in_closed_form)
 
 
 def components(whole, G2):
     """The amplitudes of the field of those nine integrals for mu = 1; G2 : 2 G."""
     total, first, third, sz, even, odd, uz, ux, across = whole
     difference = (first + third) / 2
-    return {
-        "sr_c": (total + difference) / 2,
-        "st_c": (total - difference) / 2,
-        "sz_c": sz,
-        "srt_s": (third - first) / 4,
-        "sxz_0": -even / 2,
-        "sxz_2": odd / 2,
-        "uz_c": uz / G2,
-        "ux_0": -ux / (2 * G2),
-        "ux_2": across / (2 * G2),
-    }
+    parts = (
+        (total + difference) / 2,
+        (total - difference) / 2,
+        sz,
+        (third - first) / 4,
+        -even / 2,
+        odd / 2,
+        uz / G2,
+        -ux / (2 * G2),
+        across / (2 * G2),
+    )
+    return dict(zip(NAMES, parts, strict=True))
+
+
+def in_plane(names, behind):
+    """The field of pressure and friction together in the plane y = 0, where nothing shears across it: sr, st, sz, trz
+    (which is sxz), ur (ux), uz, of the mapping `names` of both; `behind` : bool, where x < 0, the trailing side."""
+    sign = np.where(behind, -1.0, 1.0)
+    along = {name: names[name] + sign * names[f"{name}_c"] for name in ("sr", "st", "sz", "uz")}
+    along["trz"] = sign * names["trz"] + names["sxz_0"] + names["sxz_2"]
+    along["ur"] = sign * names["ur"] + names["ux_0"] + names["ux_2"]
+    return along

@@ -126,7 +126,7 @@ def thick_waves(bodies, X, S, T):
     return tuple(-v for v in growing(X, nu, *b)[2:]), b
 
 
-def state(kind, bodies, X, x, load, thin):
+def wave_state(kind, bodies, X, x, load, thin):
     """State (u, w, S, T) under a unit wave.
 
     kind : :class:`Kind`; bodies : :class:`Bodies`; X, x : kh and kz; all broadcast
@@ -134,7 +134,7 @@ def state(kind, bodies, X, x, load, thin):
     thin : bool, whether X is below about 1 (:data:`THIN`)
     """
     if kind == Kind.BODY:
-        _, _, S, T = state(Kind.LAYER, bodies, X, X, load, thin)
+        _, _, S, T = wave_state(Kind.LAYER, bodies, X, X, load, thin)
         return decaying(x - X, bodies.nu2, S, np.where(bodies.bonded, T, 0.0))
     nu, less = bodies.nu1, kind == Kind.DIFFERENCE
     if thin:

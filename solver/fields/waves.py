@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import j0, j1
 
 from ..numerics.quadrature import gauss_legendre
-from .transfer import THIN, Bodies, Kind, state
+from .transfer import THIN, Bodies, Kind, wave_state
 
 #: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
 #: over which the state is smooth however stiff the layer is. Half of the radians change no stress by more than 1e-15 of
@@ -33,14 +33,14 @@ class Load(NamedTuple):
     traction : (S, T) of its unit wave
     orders : of the Bessel function of each integral; the first `stresses` of them have a factor k
     amplitudes : ``amplitudes(kind, bodies, X, x, state)``, the other factor of each integrand, but for p^
-    closed : ``closed(pressure, r, z, nu)``, the integrals of half-spaces (fields, B, Z, R)
+    in_closed_form : ``in_closed_form(pressure, r, z, nu)``, the integrals of half-spaces (fields, B, Z, R)
     """
 
     traction: tuple
     orders: tuple
     stresses: int
     amplitudes: Callable
-    closed: Callable
+    in_closed_form: Callable
 
 
 class Row(NamedTuple):
@@ -87,7 +87,7 @@ def integrals(load, layers, h, pressure, r, rows):
             index = np.flatnonzero((kinds == kind) & (last > k[part.start]))
             if len(index):
                 x = k[part] * z[:, index, None]
-                v = state(kind, bodies, X, x, load.traction, thin[part.start])
+                v = wave_state(kind, bodies, X, x, load.traction, thin[part.start])
                 for i, amplitude in enumerate(load.amplitudes(kind, bodies, X, x, v)):
                     weights = p[..., part] * k[part] if i < load.stresses else p[..., part]
                     whole[i][:, index] += (amplitude * weights) @ J[load.orders[i]]

@@ -20,7 +20,7 @@ def test_hertz(mesh):
     pressure, r, z = Pressure(mesh, mesh.s[None]), np.unique(rows["r"]), np.unique(rows["z"])
     for nu in np.unique(rows["nu"]):
         here = rows[rows["nu"] == nu]
-        field = normal.components(normal.closed(pressure, r, z, np.array([nu])), 1 - nu)
+        field = normal.components(normal.in_closed_form(pressure, r, z, np.array([nu])), 1 - nu)
         for name, values in field.items():
             at_rows = values[0][np.searchsorted(z, here["z"]), np.searchsorted(r, here["r"])]
             some = np.isfinite(here[name])
@@ -43,9 +43,9 @@ def test_what_the_closed_form_takes_of_a_power_of_s(mesh):
 def test_near_the_surface_it_is_that_of_the_surface():
     """At the edge stresses differ by the root of the depth."""
     pressure, r = Pressure(MESHES[1], MESHES[1].s[None]), np.array([0.0, 1e-9, 0.5, 1 - 1e-9, 1.0, 1 + 1e-9, 1.5])
-    for closed in (normal.closed, sliding.closed):
+    for closed_form in (normal.in_closed_form, sliding.in_closed_form):
         for z in (1e-20, 1e-14, 1e-8):
-            deep, surface = closed(pressure, r, np.array([z, 0.0]), np.array([0.3]))[:, 0].swapaxes(0, 1)
+            deep, surface = closed_form(pressure, r, np.array([z, 0.0]), np.array([0.3]))[:, 0].swapaxes(0, 1)
             assert_allclose(deep, surface, rtol=0, atol=4 * np.sqrt(z) + 1e-13)
 
 

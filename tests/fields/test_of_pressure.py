@@ -108,11 +108,8 @@ def test_extreme_bodies_warn_of_nothing(n, bonding):
         for nu in (0.0, 0.5):
             field = of_pressure(HERTZ, r, z, h=0.05, n=n, nu1=nu, nu2=0.5 - nu, bonding=bonding, mu=0.2)
             for name, values in field.items():
-                absent = name == "ux_0" and bonding == "frictionless"
-                assert np.all(
-                    np.isnan(values) == (absent | ((n == 0) & (z > 0.05)) & (values == values) | (values != values))
-                )
-                assert np.isfinite(values[:, z <= 0.05]).all() != absent
+                absent = (name == "ux_0" and bonding == "frictionless") | ((n == 0) & (z > 0.05))
+                assert np.all(np.isnan(values) == absent) and not np.isinf(values).any()
 
 
 @pytest.mark.parametrize(
@@ -132,7 +129,7 @@ def test_extreme_bodies_warn_of_nothing(n, bonding):
         ({"mu": np.nan}, "mu = nan"),
         ({"side": "body"}, 'side = "body": must be None, "layer" or "base"'),
         ({"p": lambda x: np.sqrt(1 - x)}, "p: must be a polynomial of up to 60 degrees"),
-        ({"p": lambda x: 1 / np.sqrt(1 - x)}, "p: must give a finite number"),
+        ({"p": lambda x: np.nan * x}, "p: must give a finite number"),
         ({"p": lambda x: 1.0}, "p: must give a finite number for each radius"),
     ],
 )

@@ -5,7 +5,7 @@ import pytest
 from field_rows import table
 from numpy.testing import assert_allclose
 
-from solver.fields.transfer import Bodies, Kind, antiplane, decaying, radial_sum, state
+from solver.fields.transfer import Bodies, Kind, antiplane, decaying, radial_sum, wave_state
 from solver.kernels.closed_form import layered_kernel
 from solver.kernels.two_layers import TwoLayers
 
@@ -26,7 +26,7 @@ def test_reference(load, kind, thin):
     """u, w, S, T and M, relative to the largest of a state. Its last digit, and rounding of e^(-100) = 4e-44, count."""
     rows = ROWS[(ROWS["load"] == load) & (ROWS["side"] == (kind == Kind.BODY)) & ((ROWS["kh"] < 1) == thin)]
     bodies = Bodies.of(TwoLayers(rows["n"], rows["nu1"], rows["nu2"], rows["bonded"] == 1))
-    v = state(kind, bodies, rows["kh"], rows["kh"] * rows["zh"], NORMAL if load == "normal" else TANGENTIAL, thin)
+    v = wave_state(kind, bodies, rows["kh"], rows["kh"] * rows["zh"], NORMAL if load == "normal" else TANGENTIAL, thin)
     computed = np.array([*v, radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1)])
     wanted = np.array([rows[name] for name in "uwSTM"])
     assert len(rows) > 50
@@ -41,7 +41,7 @@ def test_the_kernel():
     for thin in (True, False):
         here = (X < 1) == thin
         bodies = Bodies.of(layers.take(here))
-        w = state(Kind.LAYER, bodies, X[here], 0 * X[here], NORMAL, thin)[1]
+        w = wave_state(Kind.LAYER, bodies, X[here], 0 * X[here], NORMAL, thin)[1]
         assert_allclose(w / (2 * (1 - bodies.nu1)), wanted[here], rtol=2e-12, atol=1e-15)
 
 
@@ -52,7 +52,8 @@ def test_reciprocity():
     for thin in (True, False):
         here = (X < 1) == thin
         ends = [
-            state(Kind.LAYER, Bodies.of(layers.take(here)), X[here], 0.0, load, thin) for load in (NORMAL, TANGENTIAL)
+            wave_state(Kind.LAYER, Bodies.of(layers.take(here)), X[here], 0.0, load, thin)
+            for load in (NORMAL, TANGENTIAL)
         ]
         assert_allclose(-ends[0][0], ends[1][1], rtol=1e-12, atol=1e-14)
 
@@ -63,7 +64,7 @@ def test_thin_and_thick_agree_where_they_meet(load, kind):
     random = np.random.default_rng(3)
     bodies, X = Bodies.of(some_bodies(random, 300)), random.uniform(0.6, 1.5, 300)
     x = X * (1 + random.random(300) if kind == Kind.BODY else random.random(300))
-    thin, thick = (np.array(state(kind, bodies, X, x, load, way)) for way in (True, False))
+    thin, thick = (np.array(wave_state(kind, bodies, X, x, load, way)) for way in (True, False))
     assert np.all(np.abs(thin - thick) <= 1e-13 * (1 + np.abs(thick).max(axis=0)))
 
 
@@ -76,7 +77,7 @@ def test_the_difference_is_that_to_a_half_space(load):
         here = (X < 1) == thin
         some = Bodies(*(v[here] for v in bodies))
         whole, less = (
-            np.array(state(kind, some, X[here], x[here], load, thin)) for kind in (Kind.LAYER, Kind.DIFFERENCE)
+            np.array(wave_state(kind, some, X[here], x[here], load, thin)) for kind in (Kind.LAYER, Kind.DIFFERENCE)
         )
         half_space = np.array(decaying(x[here], some.nu1, *load))
         assert np.all(np.abs(less + half_space - whole) <= 1e-13 * (1 + np.abs(whole).max(axis=0)))

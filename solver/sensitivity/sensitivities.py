@@ -19,7 +19,7 @@ from ..solution import Solution
 from ..status import Status
 from ..threads import one_blas_thread
 from .added import added_slopes
-from .again import found_again, meshes, same
+from .again import found_again, meshes, same, stacks
 from .changes import changes_of, inputs_of, moved, slope_of
 from .differences import by_differences
 from .held import Held, held
@@ -105,7 +105,7 @@ def _of_solved(scaled, solution, inputs, x):
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
     now, above = held(scaled, solution.model_used), moved(scaled, inputs)
     beside = held(above, np.tile(solution.model_used, 2 * k))
-    for index, nodes in _stacks(now.written, meshes(solution, scaled), solution.a):
+    for index, nodes in stacks(now.written, meshes(solution, scaled), solution.a, _STACK):
         rows = (np.arange(2 * k)[:, None] * size + index).ravel()
         part = now.take(index), beside.take(rows), above.take(rows)
         good, derivatives, at_x = _of_stack(*part, solution.take(index), nodes, x)
@@ -119,16 +119,6 @@ def _of_solved(scaled, solution, inputs, x):
         for name, values in derivatives.items():
             logs[name][:, rest] = values
     return logs, shapes
-
-
-def _stacks(problem, nodes, a):
-    """Yield the indices of cases of one law, base and mesh, and their number of nodes; 0: of one case on panels."""
-    kinds = np.stack([problem.micro, problem.base, nodes.astype(str)])
-    for kind in np.unique(kinds, axis=1).T:
-        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[2])
-        order = as_cases(problem.take(index)).body.order(a[index])
-        index = index if order is None else index[order]
-        yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // _STACK) or len(index)))
 
 
 def _of_stack(now: Held, beside: Held, above, solution, nodes, x):

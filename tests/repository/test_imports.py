@@ -159,13 +159,13 @@ def test_rooms_are_named(package):
     } == {*ROOMS[package], "__init__"}
 
 
-@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests"])
+@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests", "tools"])
 def test_folders_are_small(top):
     sizes = {folder: len(list(folder.glob("*.py"))) for folder in [ROOT / top, *(ROOT / top).rglob("*")]}
     assert {folder.name: size for folder, size in sizes.items() if size > 12} == {}
 
 
-@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests"])
+@pytest.mark.parametrize("top", ["solver", "study", "studies", "tests", "tools"])
 def test_files_are_short(top):
     sizes = {name(path): path.read_bytes().count(b"\n") for path in (ROOT / top).rglob("*.py")}
     assert {file: size for file, size in sizes.items() if size > 260} == {}

@@ -1,0 +1,167 @@
+"""The largest stresses in layer and body and at the interface, with their places: docs/stresses.md, Extremes."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..fields.invariants import invariants, mises
+from .loaded import Loaded
+from .peaks import peak
+
+#: Name -> the function of sr, st, sz, trz whose largest value it is. sz_interface_min is minus the largest of -sz.
+VALUES = {
+    "mises": mises,
+    "tresca": lambda *stresses: invariants(*stresses).tresca,
+    "s1": lambda *stresses: invariants(*stresses).s1,
+    "sr": lambda sr, st, sz, trz: sr + 0 * sz,
+    "tau": lambda sr, st, sz, trz: np.abs(trz),
+    "tension": lambda sr, st, sz, trz: +sz,
+    "compression": lambda sr, st, sz, trz: -sz,
+}
+#: Name of an extreme -> its function, and the regions in which it is looked for, with a layer and without.
+EXTREMES = {
+    "mises1": ("mises", ("inside", "outside", "layer", "above"), ()),
+    "mises2": ("mises", ("body",), ("inside", "outside", "body")),
+    "tresca1": ("tresca", ("inside", "outside", "layer", "above"), ()),
+    "tresca2": ("tresca", ("body",), ("inside", "outside", "body")),
+    "s1_surface": ("s1", ("inside", "outside"), ("inside", "outside")),
+    "s1_layer": ("s1", ("inside", "outside", "layer", "above"), ()),
+    "sr_interface1": ("sr", ("above",), ()),
+    "tau_interface": ("tau", ("above",), ()),
+    "sz_interface_max": ("tension", ("above",), ()),
+    "sz_interface_min": ("compression", ("above",), ()),
+}
+#: Extremes that may not exist: below _NOTHING of the largest pressure they are rounding, and 0.
+_MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface1", "tau_interface", "sz_interface_max"), 1e-11
+#: A second place of the coarse grid is looked at too where it has this part of the best.
+_RIVAL = 0.9
+#: The coarse grid, of STRESS 3.3 with more radii beyond the edge: radii in a; beyond the edge in lengths over which
+#: a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
+_RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
+_BEYOND = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5])
+_DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
+_OF_OCTAVE = np.array([0.25, 0.4, 0.55, 0.7, 0.85, 1, 1.2, 1.4, 1.6])
+_BELOW = np.array([0, 0.05, 0.15, 0.3, 0.48, 0.65, 0.9, 1.3])
+#: No place is farther away than this, in a + h.
+_FARTHEST = 10.0
+
+
+class Grid(NamedTuple):
+    """The coarse grid of a region: u (U,) and v (B, V), bounds of both ((2,), (B, 2)), and whether it is the body.
+
+    The radius is u, or on the surface, `root`, sqrt(1 - u |u|), in which stresses are smooth up to the edge; v is the
+    depth.
+    """
+
+    u: np.ndarray
+    v: np.ndarray
+    u_bounds: tuple
+    v_bounds: np.ndarray
+    body: bool
+    root: bool = False
+
+    def radius(self, u):
+        return np.sqrt(np.maximum(1 - u * np.abs(u), 0.0)) if self.root else u
+
+
+def extremes(loaded, names=EXTREMES):
+    """Of each name of :data:`EXTREMES`: its value (B,) in units of the pressure, and its place r (signed if mu > 0) and
+    z in a; mapping name -> (3, B). NaN where there is no such body."""
+    made = {name: np.full((3, len(loaded.h)), np.nan) for name in names}
+    wanted = {name: EXTREMES[name][2 if loaded.bare else 1] for name in names}
+    grids = regions(loaded)
+    grids = {name: grid for name, grid in grids.items() if any(name in kinds for kinds in wanted.values())}
+    coarse = {
+        region: loaded.stresses(grid.radius(grid.u), grid.v, grid.body).swapaxes(0, 1) for region, grid in grids.items()
+    }
+    for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
+        alone, largest = loaded.take([i]), np.abs(loaded.pressure.values[i]).max()
+        fine = {region: _Fine(alone, grid) for region, grid in grids.items()}
+        for name, kinds in wanted.items():
+            kinds = [region for region in kinds if region in grids]
+            if not kinds:
+                continue
+            value = VALUES[EXTREMES[name][0]]
+            peaks = [p for start in _starts(i, value, kinds, coarse, grids) for p in [_refined(i, value, start, grids, fine)]]
+            best = np.array(max(peaks, key=lambda found: found[0]))
+            if name == "sz_interface_min":
+                best[0] *= -1
+            if name in _MAY_LACK and best[0] <= _NOTHING * largest:
+                best[:] = 0.0, np.nan, np.nan
+            made[name][:, i] = best
+    return made
+
+
+def regions(loaded):
+    """Name -> :class:`Grid` of each region that the cases have."""
+    h, B = loaded.h, len(loaded.h)
+    octave = 2.0 ** np.floor(np.log2(h[0]))
+    far = _FARTHEST * (1 + (0.0 if loaded.bare else h.max()))
+    bending = 0.5 if loaded.bare else octave * max(1.0, np.cbrt(loaded.layers.n.max()))
+    beyond = np.minimum(1 + bending * _BEYOND, far)
+    thick = [] if loaded.bare else octave * np.array([0.25, 0.5, 0.75, 1]) * (octave > 1)
+    radii = np.unique(np.concatenate([_RADII, beyond[:5], thick]))
+    wide = np.unique(np.concatenate([_RADII, beyond, thick]))
+    surface = np.zeros((B, 1))
+    inner, outer = np.linspace(0, 1, 12), -np.sqrt(wide[wide >= 1] ** 2 - 1)[::-1]
+    made = {
+        "inside": Grid(inner, surface, (0.0, 1.0), np.zeros((B, 2)), loaded.bare, True),
+        "outside": Grid(outer, surface, (-far, 0.0), np.zeros((B, 2)), loaded.bare, True),
+    }
+    if loaded.bare:
+        depths = np.tile(np.append(_DEPTHS, [1.5, 2.5]), (B, 1))
+        return made | {"body": Grid(radii, depths, (0.0, far), np.tile([0.0, far], (B, 1)), True)}
+    depths = np.unique(np.concatenate([_DEPTHS[_DEPTHS < 2 * octave], octave * _OF_OCTAVE]))
+    made["layer"] = Grid(radii, np.tile(depths, (B, 1)), (0.0, far), np.stack([0 * h, h], axis=1), False)
+    made["above"] = Grid(wide, h[:, None], (0.0, far), np.stack([h, h], axis=1), False)
+    if np.all(loaded.layers.n > 0):
+        made["body"] = Grid(radii, h[:, None] + _BELOW, (0.0, far), np.stack([h, 0 * h + far], axis=1), True)
+    return made
+
+
+def _starts(i, value, kinds, coarse, grids):
+    """(region, side, row, column) of the coarse points of a case that are larger than their neighbours, and not much
+    smaller than the largest."""
+    starts = []
+    for region in kinds:
+        values = value(*coarse[region][i])
+        inside = grids[region].v[i] <= grids[region].v_bounds[i, 1]
+        values = np.where(inside[:, None], values, -np.inf)
+        padded = np.pad(values, ((0, 0), (1, 1), (1, 1)), constant_values=-np.inf)
+        rows, columns = values.shape[1:]
+        around = [padded[:, a : a + rows, b : b + columns] for a in range(3) for b in range(3)]
+        peaks = (values >= np.max(around, axis=0)) & np.isfinite(values)
+        starts += [(values[at], (region, *at)) for at in map(tuple, np.argwhere(peaks))]
+    best = max((value for value, _ in starts), default=np.nan)
+    return [start for value, start in starts if value >= best - (1 - _RIVAL) * abs(best)]
+
+
+def _refined(i, value, start, grids, fine):
+    """The value of a peak, and its r and z, from a coarse point."""
+    region, side, row, column = start
+    grid = grids[region]
+    half = [_spacing(grid.u, column), _spacing(grid.v[i], row)]
+    at = grid.u[column], grid.v[i, row]
+    stresses = fine[region]
+    largest, (u, v) = peak(lambda u, v: stresses(u, v)[:, side], value, at, half, (grid.u_bounds, grid.v_bounds[i]))
+    return largest, float(grid.radius(u)) * stresses.loaded.signs[side], v
+
+
+def _spacing(axis, at):
+    """To the neighbours of a point of a coarse axis, the larger."""
+    return np.abs(np.diff(axis[max(at - 1, 0) : at + 2])).max() if len(axis) > 1 else 1.0
+
+
+class _Fine:
+    """Stresses of one case in a region, (4, S, V, U) at u (U,), v (V,). Those of a patch are kept: several extremes
+    begin with the same."""
+
+    def __init__(self, loaded: Loaded, grid: Grid):
+        self.loaded, self.grid, self._kept = loaded, grid, {}
+
+    def __call__(self, u, v):
+        key = np.asarray(u).tobytes(), np.asarray(v).tobytes()
+        if key not in self._kept:
+            made = self.loaded.stresses(self.grid.radius(u), np.asarray(v)[None], self.grid.body)
+            self._kept[key] = made[:, 0]
+        return self._kept[key]

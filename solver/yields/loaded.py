@@ -1,0 +1,56 @@
+"""Bodies under a pressure, and their stresses at points of a region: docs/stresses.md, Extremes."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..fields import normal, sliding
+from ..fields.field import integrals
+from ..fields.pressure import Pressure
+from ..kernels.two_layers import TwoLayers
+
+STRESSES = ("sr", "st", "sz", "trz")
+
+
+class Loaded(NamedTuple):
+    """Cases of one mesh, one octave of h, and all with a layer or all without.
+
+    layers : :class:`~solver.kernels.two_layers.TwoLayers` of B cases
+    h : (B,), thickness in a; any without a layer
+    pressure : :class:`~solver.fields.pressure.Pressure`
+    bare : bool, without a layer
+    mu : >= 0, friction; residual : (B,), the residual stress of the layer, in units of the pressure
+    """
+
+    layers: TwoLayers
+    h: np.ndarray
+    pressure: Pressure
+    bare: bool
+    mu: float
+    residual: np.ndarray
+
+    @property
+    def signs(self):
+        """Of x in the plane y = 0, where sliding tells ahead from behind."""
+        return (1.0, -1.0) if self.mu > 0 else (1.0,)
+
+    def take(self, index):
+        pressure = self.pressure._replace(values=self.pressure.values[index])
+        return self._replace(
+            layers=self.layers.take(index), h=self.h[index], pressure=pressure, residual=self.residual[index]
+        )
+
+    def stresses(self, r, z, body):
+        """sr, st, sz, trz (4, B, S, Z, R), for each sign of x, at radii r (R,) and depths z (B, Z) or (Z,) in a of the
+        layer or of the `body`. A depth beyond the layer has what its field would be if it went on."""
+        z = np.broadcast_to(z, (len(self.h), np.shape(z)[-1]))
+        here = self.layers, self.h, self.pressure, r, z, np.full(z.shape[1], body and not self.bare)
+        field = normal.components(integrals(normal.NORMAL, *here), 1.0)
+        if self.mu > 0:
+            rubbed = sliding.components(integrals(sliding.SLIDING, *here), 1.0)
+            field |= {name: self.mu * values for name, values in rubbed.items()}
+        sides = [sliding.in_plane(field, sign < 0) for sign in self.signs] if self.mu > 0 else [field]
+        made = np.stack([[side[name] for side in sides] for name in STRESSES]).swapaxes(1, 2)
+        if not body:
+            made[:2] += self.residual[:, None, None, None]
+        return made

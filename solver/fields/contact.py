@@ -61,7 +61,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     if len(index):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
-        for rows, pressure, missed in _pressures(scaled, ended, a):
+        for rows, pressure, missed in pressures(scaled, ended, a):
             here = index[rows]
             error[here] = missed
             for some, field in _of_pressures(scaled.take(rows), a[rows], pressure, r, z, mu):
@@ -72,7 +72,7 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     return Fields(*({name: values[:, part] for name, values in made.items()} for part in parts), error)
 
 
-def _pressures(scaled, solution, a):
+def pressures(scaled, solution, a):
     """Yield indices of cases, their :class:`~.pressure.Pressure` in units of E2*, and its error (b,)."""
     named = held(scaled, solution.model_used).named
     fine = np.minimum(named.rtol, _RTOL)

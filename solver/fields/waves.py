@@ -31,9 +31,11 @@ class Load(NamedTuple):
     """What presses or rubs on the surface, and which integrals make its field.
 
     traction : (S, T) of its unit wave
-    orders : of the Bessel function of each integral; the first `stresses` of them have a factor k
+    orders : of the Bessel function of each integral; the first `stresses` of them have a factor k, the rest, if there,
+        makes the displacements
     amplitudes : ``amplitudes(kind, bodies, X, x, state)``, the other factor of each integrand, but for p^
-    in_closed_form : ``in_closed_form(pressure, r, z, nu)``, the integrals of half-spaces (fields, B, Z, R)
+    in_closed_form : ``in_closed_form(pressure, r, z, nu, displacements)``, the integrals of half-spaces (fields, B, Z,
+        R), all or those of stresses
     """
 
     traction: tuple
@@ -41,6 +43,10 @@ class Load(NamedTuple):
     stresses: int
     amplitudes: Callable
     in_closed_form: Callable
+
+    def of_stresses(self):
+        """The same without displacements, which take the most time on the surface."""
+        return self._replace(orders=self.orders[: self.stresses])
 
 
 class Row(NamedTuple):
@@ -88,9 +94,10 @@ def integrals(load, layers, h, pressure, r, rows):
             if len(index):
                 x = k[part] * z[:, index, None]
                 v = wave_state(kind, bodies, X, x, load.traction, thin[part.start])
-                for i, amplitude in enumerate(load.amplitudes(kind, bodies, X, x, v)):
+                amplitudes = load.amplitudes(kind, bodies, X, x, v)
+                for i, order in enumerate(load.orders):
                     weights = p[..., part] * k[part] if i < load.stresses else p[..., part]
-                    whole[i][:, index] += (amplitude * weights) @ J[load.orders[i]]
+                    whole[i][:, index] += (amplitudes[i] * weights) @ J[order]
     return whole
 
 

@@ -45,9 +45,9 @@ class Loaded(NamedTuple):
         layer or of the `body`. A depth beyond the layer has what its field would be if it went on."""
         z = np.broadcast_to(z, (len(self.h), np.shape(z)[-1]))
         here = self.layers, self.h, self.pressure, r, z, np.full(z.shape[1], body and not self.bare)
-        field = normal.components(integrals(normal.NORMAL, *here), 1.0)
+        field = normal.components(integrals(normal.NORMAL.of_stresses(), *here))
         if self.mu > 0:
-            rubbed = sliding.components(integrals(sliding.SLIDING, *here), 1.0)
+            rubbed = sliding.components(integrals(sliding.SLIDING.of_stresses(), *here))
             field |= {name: self.mu * values for name, values in rubbed.items()}
         sides = [sliding.in_plane(field, sign < 0) for sign in self.signs] if self.mu > 0 else [field]
         made = np.stack([[side[name] for side in sides] for name in STRESSES]).swapaxes(1, 2)

@@ -1,0 +1,57 @@
+"""The largest stresses of solved contacts."""
+
+import numpy as np
+
+from ..fields.contact import pressures
+from ..kernels.two_layers import TwoLayers
+from ..scaling import dimensionless
+from ..status import Status
+from ..threads import one_blas_thread
+from .extremes import EXTREMES, extremes
+from .loaded import Loaded
+
+#: Cases whose coarse grids are in memory together: each has some 1,000 points and as many waves.
+_TOGETHER = 64
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")  # a number that goes wrong is a NaN
+def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES)):
+    """Extremes of solved contacts, a batch of any mixture: name -> (3, B), the value in the unit of E2, and its place r
+    (signed if mu > 0) and z in a. NaN where the contact is not solved, or has no such body.
+
+    problem, solution : B cases and their :class:`~solver.solution.Solution`, of which a, status and model_used count
+    mu : >= 0, the coefficient of friction
+    residual : (B,) or a number, biaxial stress of the layer, in the unit of E2
+    names : of :data:`~.extremes.EXTREMES`
+    """
+    made = {name: np.full((3, len(problem)), np.nan) for name in names}
+    index = np.flatnonzero(solution.status == Status.CONVERGED)
+    residual = np.broadcast_to(residual, len(problem)) / problem.E2
+    if len(index):
+        part, ended = problem.take(index), solution.take(index)
+        scaled, a = dimensionless(part), ended.a / part.R
+        for rows, pressure, _ in pressures(scaled, ended, a):
+            for some, loaded in _alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
+                for name, values in extremes(loaded, names).items():
+                    values[0] *= problem.E2[index[rows[some]]]
+                    made[name][:, index[rows[some]]] = values
+    return made
+
+
+def _alike(scaled, a, pressure, mu, residual):
+    """Yield indices of cases that have one coarse grid, and their :class:`~.loaded.Loaded`."""
+    bare = scaled.base == "half_space"
+    h = np.where(bare, 1.0, scaled.h / a)
+    n = np.where(bare, 1.0, scaled.n)
+    kinds = np.stack([bare, n == 0, np.floor(np.log2(h)), np.floor(np.log2(np.maximum(n, 1.0)))], axis=1)
+    _, kind = np.unique(kinds, axis=0, return_inverse=True)
+    for one in range(kind.max() + 1):
+        index = np.flatnonzero(kind.ravel() == one)
+        for some in np.array_split(index, -(-len(index) // _TOGETHER)):
+            part = scaled.take(some)
+            layers = TwoLayers.of(part)
+            if bare[some[0]]:
+                layers = TwoLayers(np.ones(len(some)), part.nu2, part.nu2, np.ones(len(some), dtype=bool))
+            own = pressure._replace(values=pressure.values[some])
+            yield some, Loaded(layers, h[some], own, bool(bare[some[0]]), mu, residual[some])

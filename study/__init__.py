@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from .data.dataset import decode
     from .data.units import from_physical, readable, reduced_modulus, to_physical
     from .derivatives import sensitivities
+    from .fields import extremes, stresses
     from .figures.lines import plot
     from .figures.registry import drawing, figure, table
     from .files.results_file import open_results
@@ -40,6 +41,7 @@ __all__ = [
     "decode",
     "derived",
     "drawing",
+    "extremes",
     "figure",
     "from_physical",
     "load",
@@ -51,6 +53,7 @@ __all__ = [
     "roughness",
     "sensitivities",
     "solve",
+    "stresses",
     "summary",
     "table",
     "to_physical",
@@ -60,6 +63,8 @@ __all__ = [
 _HOME = {
     "solve": "solving",
     "sensitivities": "derivatives",
+    "extremes": "fields",
+    "stresses": "fields",
     "load": "api",
     "Study": "api",
     "open_results": "files.results_file",

@@ -1,24 +1,17 @@
 """Sensitivities of results: d ln result/d ln input, over the dimensions of the results and `input`."""
 
-from typing import Any
-
 import numpy as np
 import xarray as xr
 
 from solver import Problem, solve
 from solver import sensitivities as derivatives
-from solver.laws import LAWS
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import uses
 
-from .inputs.definition import StudyError
-from .inputs.laws import recall
-from .inputs.scene.changes import RATIOS, SCALES, changes
-from .inputs.scene.scales import make_dimensionless
-from .inputs.scene.scene import Scene, over
-from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
-from .rules.rule import has_units
-from .terminal import shown
+from .again import Again, of_all_cases
+from .inputs.scene.changes import SCALES, changes
+from .inputs.scene.scene import Scene
+from .inputs.vocabulary import PARAMETERS, VOCABULARY
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
@@ -52,14 +45,8 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
     0.333333
     """
-    inputs = _checked(contact)
-    dims, shape = contact["status"].dims, contact["status"].shape
-    scene = _scene(inputs) if "R" in inputs else None
-    numbers = scene.parameters if scene else inputs
-    try:
-        problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
-    except ValueError as error:
-        raise StudyError([f"sensitivities: {error}"]) from None
+    again = Again.of(contact, "sensitivities")
+    problem, numbers, scene, dims, shape = again
     used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
     solution = solve(problem)
     solved = derivatives(problem, solution, inputs=(problem.control, *used))
@@ -77,41 +64,6 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
         variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
     left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
     return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
-
-
-def _checked(contact: xr.Dataset) -> dict[str, Any]:
-    """The inputs of the cases: numbers and texts, or DataArrays without coordinates. Raises StudyError."""
-    if not isinstance(contact, xr.Dataset) or "status" not in contact:
-        raise StudyError(["sensitivities takes a dataset of study.solve or of a results file, with its status"])
-    recall(contact.attrs.get("micro_laws", ""))
-    settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
-    there = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
-    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in there]
-    wrong += ["must have one of P, a and D as a coordinate"] * (len({*there} & {*CONTROLS}) != 1)
-    if wrong:
-        raise StudyError([f"sensitivities: the dataset {wrong[0]}: its cases cannot be solved again"])
-    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in there if ROWS[name].unit != "1"}
-    if units == {True, False} or has_units(contact) != ("R" in there and "E2" in there):
-        raise StudyError(["sensitivities needs all in SI units, as study.solve gives them, or all without units"])
-    unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
-    if unknown:
-        raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
-    return settings | {name: _without_coordinates(contact[name]) for name in there}
-
-
-def _without_coordinates(array: xr.DataArray) -> Any:
-    values = array.values.astype(str) if array.dtype.kind == "O" else array.values
-    return xr.DataArray(values, dims=array.dims) if array.dims else values.item()
-
-
-def _scene(inputs: dict[str, Any]) -> Scene:
-    """The scene of inputs in SI units. What follows from others is computed again."""
-    follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
-    in_si = [name for name in inputs if name in SCENE or name in RATIOS or VOCABULARY[name].powers != (0, 0)]
-    others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
-    scene = Scene(given={name: inputs[name] for name in in_si}, parameters=others)
-    make_dimensionless(scene)
-    return scene
 
 
 def _counts(problem: Problem, name: str) -> bool:
@@ -132,13 +84,8 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     ones = np.ones(int(np.prod(shape)))
     flat = {}
     for name in names:
-        flat[name] = {key: _flat(change, dims, shape) for key, change in changes(scene, name).items()}
+        flat[name] = {key: of_all_cases(change, dims, shape) for key, change in changes(scene, name).items()}
     return flat | {name: {name: ones} for name in own}
-
-
-def _flat(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
-    """A number, a text or a DataArray for all cases, (B,)."""
-    return np.broadcast_to(over(value, dims), shape).ravel()
 
 
 def _by_si(logs: dict, inputs: dict, powers: tuple[int, int]) -> dict[str, np.ndarray]:

@@ -82,7 +82,9 @@ def extremes(loaded, names=EXTREMES):
             if not kinds:
                 continue
             value = VALUES[EXTREMES[name][0]]
-            peaks = [p for start in _starts(i, value, kinds, coarse, grids) for p in [_refined(i, value, start, grids, fine)]]
+            peaks = [
+                p for start in _starts(i, value, kinds, coarse, grids) for p in [_refined(i, value, start, grids, fine)]
+            ]
             best = np.array(max(peaks, key=lambda found: found[0]))
             if name == "sz_interface_min":
                 best[0] *= -1
@@ -111,7 +113,7 @@ def regions(loaded):
     if loaded.bare:
         depths = np.tile(np.append(_DEPTHS, [1.5, 2.5]), (B, 1))
         return made | {"body": Grid(radii, depths, (0.0, far), np.tile([0.0, far], (B, 1)), True)}
-    depths = np.unique(np.concatenate([_DEPTHS[_DEPTHS < 2 * octave], octave * _OF_OCTAVE]))
+    depths = np.unique(np.concatenate([_DEPTHS[2 * octave > _DEPTHS], octave * _OF_OCTAVE]))
     made["layer"] = Grid(radii, np.tile(depths, (B, 1)), (0.0, far), np.stack([0 * h, h], axis=1), False)
     made["above"] = Grid(wide, h[:, None], (0.0, far), np.stack([h, h], axis=1), False)
     if np.all(loaded.layers.n > 0):

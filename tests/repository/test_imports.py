@@ -28,8 +28,8 @@ ROOMS = {
         *("sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "rules", "data", "derivatives", "in_words", "files", "store", "work"),
-        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("terminal", "specimen", "inputs", "rules", "data", "again", "derivatives", "fields", "in_words", "files"),
+        *("store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

@@ -1,0 +1,238 @@
+"""Stresses of contacts: at points of layer and body, and where they are largest."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from numpy.typing import ArrayLike
+
+from solver import Status, solve
+from solver.fields.contact import of_contacts as fields_of
+from solver.fields.invariants import invariants
+from solver.fields.sliding import in_plane
+from solver.yields.contact import of_contacts as extremes_of
+
+from .again import Again, of_all_cases
+from .inputs.definition import StudyError
+from .specimen.foreign import plain
+from .specimen.quantities import has_unit, quantity
+from .terminal import shown
+
+SIGNS = "tension is positive; z points down from the surface"
+#: Radii and depths in a that are taken where none are given: r = 1, where p ends, is among them.
+_RADII, _DEPTHS = np.linspace(0, 2, 41), np.linspace(0, 2, 41)
+_LONG_NAMES = {
+    "sr": "radial stress",
+    "st": "circumferential stress",
+    "sz": "axial stress",
+    "trz": "shear stress",
+    "ur": "radial displacement",
+    "uz": "axial displacement",
+    "s1": "largest principal stress",
+    "s2": "middle principal stress",
+    "s3": "smallest principal stress",
+    "mises": "von Mises stress",
+    "tresca": "Tresca stress, s1 - s3",
+}
+_EXTREMES = {
+    "mises1": "largest von Mises stress of the layer",
+    "mises2": "largest von Mises stress of the body",
+    "tresca1": "largest Tresca stress of the layer",
+    "tresca2": "largest Tresca stress of the body",
+    "s1_surface": "largest tension on the surface",
+    "s1_layer": "largest tension in the layer",
+    "sr_interface1": "largest radial tension in the layer at the interface",
+    "tau_interface": "largest shear stress at the interface",
+    "sz_interface_max": "largest axial tension at the interface",
+    "sz_interface_min": "largest axial compression at the interface",
+}
+
+
+def stresses(
+    contact: xr.Dataset,
+    r: ArrayLike | None = None,
+    z: ArrayLike | None = None,
+    mu: float = 0.0,
+    sigma_res: float | str = 0.0,
+) -> xr.Dataset:
+    """Stresses and displacements in layer and body of contacts that are solved: docs/stresses.md.
+
+    z points down from the surface; tension is positive. The contacts are solved again from the inputs that the dataset
+    has. A thin layer has the field of the exact layer under its pressure.
+
+    Parameters
+    ----------
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
+    r, z : radii and depths >= 0 in units of a, one-dimensional; with mu > 0 r may be negative: behind the contact
+    mu : >= 0; with mu > 0 the punch slides in full, and the plane y = 0 is given: r is x, trz is sxz, ur is ux
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
+
+    Returns
+    -------
+    xarray.Dataset : over the dimensions of the contact, `r` and `z`: sr, st, sz, trz, ur, uz, the principal stresses
+        s1, s2, s3, mises, tresca; NAME_above and NAME_below at the interface, in the layer and in the body; and
+        `stress_error`, of any stress relative to the largest. NaN of cases that have not converged, in a rigid body,
+        and at an interface that is not there
+
+    Raises
+    ------
+    StudyError : an argument that is out of its bounds or not finite; a dataset that cannot be solved again
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, micro="smooth", base="half_space")
+    >>> study.stresses(contact, r=[0.0], z=[0.0]).sz.item() == -contact.p0.item()
+    True
+    """
+    mu = _friction(mu)
+    r = _axis("r", _mirrored(_RADII) if r is None and mu > 0 else _RADII if r is None else r, mu > 0)
+    z = _axis("z", _DEPTHS if z is None else z, False)
+    again = Again.of(contact, "stresses")
+    unit, size = _units(again)
+    solution = _solved(again, contact)
+    fields = fields_of(again.problem, solution, np.abs(r), z, mu)
+    residual, bare = _residual(sigma_res, again) / unit, again.problem.base == "half_space"
+    within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
+    variables = {}
+    places = ("", "r", "z"), ("_above", "r"), ("_below", "r")
+    for (end, *axes), field in zip(places, fields[:3], strict=True):
+        field = in_plane(field, r < 0) if mu > 0 else field
+        layer = within[..., None] if not end else np.full((len(bare), 1), end == "_above")
+        for name in ("sr", "st"):
+            field[name] = field[name] + np.where(layer, residual[:, None, None] if not end else residual[:, None], 0.0)
+        field |= invariants(*(field[name] for name in ("sr", "st", "sz", "trz")))._asdict()
+        for name, long_name in _LONG_NAMES.items():
+            length = name.startswith("u")
+            values = field[name] * ((size if length else 1) * (1 if length else unit))[(...,) + (None,) * len(axes)]
+            about = _about(again, long_name + _WHERE[end], "m" if length else "Pa")
+            variables[f"{name}{end}"] = _labelled(again, values.swapaxes(1, -1), axes, about)
+    about = {"long_name": "error of any stress, relative to the largest"}
+    variables["stress_error"] = _labelled(again, fields.error, (), about)
+    coords = {"r": ("r", r, {"long_name": "radius over a" if mu == 0 else "x over a, behind the contact < 0"})}
+    coords["z"] = ("z", z, {"long_name": "depth over a"})
+    if again.scene:
+        lengths = (solution.a * size)[:, None]
+        for name, axis in (("r", r), ("z", z)):
+            about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
+            coords[f"{name}_length"] = _labelled(again, lengths * axis, (name,), about)
+    return _carried(contact, variables).assign_coords(coords)
+
+
+_WHERE = {"": "", "_above": ", in the layer at the interface", "_below": ", in the body at the interface"}
+
+
+def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0) -> xr.Dataset:
+    """Where and how large the stresses of contacts are at most: docs/stresses.md.
+
+    z points down from the surface; tension is positive; 1 is the layer, 2 the body under it. Without a layer the body
+    is 2. The contacts are solved again from the inputs that the dataset has.
+
+    Parameters
+    ----------
+    contact : results of `study.solve` or of a results file, in SI units or dimensionless; a selected part too
+    mu : >= 0; with mu > 0 the punch slides in full, and the extremes are those in the plane y = 0
+    sigma_res : residual biaxial stress of the layer, tension positive; "-2 GPa" where the contact has units
+
+    Returns
+    -------
+    xarray.Dataset : over the dimensions of the contact: mises1, mises2, tresca1, tresca2, s1_surface, s1_layer,
+        sr_interface1 (which cracks a layer that bends), tau_interface, sz_interface_max, sz_interface_min; each with
+        its place NAME_r and NAME_z in units of a, where NAME_r is x, and behind the contact < 0, if mu > 0. Tension or
+        shear that is not there is 0 at the place NaN. NaN of cases that have not converged and of bodies that are
+        rigid or not there
+
+    Raises
+    ------
+    StudyError : an argument that is out of its bounds or not finite; a dataset that cannot be solved again
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, micro="smooth", base="half_space", nu2=0.3)
+    >>> round(study.extremes(contact).mises2.item() / contact.p0.item(), 5)
+    0.62004
+    """
+    mu, again = _friction(mu), Again.of(contact, "extremes")
+    unit, _ = _units(again)
+    residual = _residual(sigma_res, again) / unit
+    values = extremes_of(again.problem, _solved(again, contact), mu, residual)
+    variables = {}
+    for name, long_name in _EXTREMES.items():
+        value, r, z = values[name]
+        place = {"long_name": f"{long_name}: its {'radius' if mu == 0 else 'x, behind the contact < 0,'} over a"}
+        variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))
+        variables[f"{name}_r"] = _labelled(again, r, (), place)
+        variables[f"{name}_z"] = _labelled(again, z, (), {"long_name": f"{long_name}: its depth over a"})
+    return _carried(contact, variables)
+
+
+def _solved(again: Again, contact: xr.Dataset) -> Any:
+    """The solution of the cases; one that is not converged in the dataset is not either."""
+    solution = solve(again.problem)
+    there = contact["status"].values.ravel() == Status.CONVERGED
+    return replace(solution, status=np.where(there, solution.status, Status.INVALID_INPUT))
+
+
+def _units(again: Again) -> tuple[np.ndarray, np.ndarray]:
+    """The stress and the length that are 1 for the solver, (B,)."""
+    scene = again.scene
+    values = (scene.unit, scene.R) if scene else (1.0, 1.0)
+    return tuple(of_all_cases(value, again.dims, again.shape).astype(float) for value in values)
+
+
+def _friction(mu: Any) -> float:
+    if np.ndim(mu) or isinstance(mu, (str, bool)) or not (np.isfinite(mu) and mu >= 0):
+        raise StudyError([f"mu = {shown(mu)}: must be a finite number, at least 0"])
+    return float(mu)
+
+
+def _mirrored(r: np.ndarray) -> np.ndarray:
+    return np.concatenate([-r[:0:-1], r])
+
+
+def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
+    try:
+        values = np.atleast_1d(np.asarray(values, dtype=float))
+    except (TypeError, ValueError):
+        raise StudyError([f"{name} = {shown(values)}: must be numbers, in units of a"]) from None
+    bad = values[~np.isfinite(values) | ((values < 0) & (not signed))]
+    if values.ndim != 1 or not values.size or bad.size:
+        wrong = f"{name} = {bad[0]:g}" if bad.size else f"{name} of shape {values.shape}"
+        bound = "" if signed else ", and at least 0" + (" where mu is 0" if name == "r" else "")
+        raise StudyError([f"{wrong}: must be one-dimensional, of finite numbers in units of a{bound}"])
+    return values
+
+
+def _residual(sigma_res: Any, again: Again) -> float:
+    """In Pa, or without a unit where the contact has none."""
+    sigma_res = plain(sigma_res)
+    try:
+        if again.scene and not (np.isscalar(sigma_res) and not isinstance(sigma_res, str) and sigma_res == 0):
+            value = quantity("sigma_res", sigma_res, "Pa").value
+        elif isinstance(sigma_res, str) or has_unit(sigma_res):
+            raise ValueError(f"sigma_res = {shown(sigma_res)}: the contact has no units: must be a number, over E2*")
+        else:
+            value = float(sigma_res)
+    except (TypeError, ValueError) as error:
+        raise StudyError([str(error)]) from None
+    if not np.isfinite(value):
+        raise StudyError([f"sigma_res = {shown(sigma_res)}: must be finite"])
+    return value
+
+
+def _about(again: Again, long_name: str, unit: str) -> dict[str, str]:
+    scale = {"Pa": "E2*, E1* on a rigid body", "m": "R"}[unit]
+    return {"long_name": long_name, "comment": SIGNS} | ({"units": unit} if again.scene else {"scale": scale})
+
+
+def _labelled(again: Again, values: np.ndarray, axes: Any, about: dict[str, str]) -> xr.Variable:
+    return xr.Variable((*again.dims, *axes), values.reshape((*again.shape, *values.shape[1:])), about)
+
+
+def _carried(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:
+    """A dataset of these variables with the coordinates of the contact; `x` is dropped."""
+    dims = {*contact["status"].dims}
+    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - dims]
+    return contact.drop_vars(left_out).assign(variables)

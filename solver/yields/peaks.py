@@ -13,15 +13,15 @@ _NODES, _POINTS = 7, 33
 _SHRINK, _SAME, _SMALLEST, _MOST = 5.0, 1e-9, 1e-7, 40
 
 
-def peak(stresses, value, start, half, bounds):
+def peak(stresses, value, start, half, region):
     """The largest value, and its place (u, v).
 
     stresses : ``stresses(u, v)`` at u (U,) and v (V,), (4, V, U)
     value : ``value(sr, st, sz, trz)``, elementwise
     start, half : (u, v), the centre of the first patch and half of its widths
-    bounds : ((least u, largest u), (least v, largest v)); the same twice is a line
+    region : ((least u, largest u), (least v, largest v)); the same twice is a line
     """
-    centre, half, (low, high) = np.array(start, dtype=float), np.array(half, dtype=float), np.array(bounds).T
+    centre, half, (low, high) = np.array(start, dtype=float), np.array(half, dtype=float), np.array(region).T
     before = np.nan
     for _ in range(_MOST):
         ends = np.maximum(centre - half, low), np.minimum(centre + half, high)

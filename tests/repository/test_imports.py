@@ -28,7 +28,7 @@ ROOMS = {
         "sensitivity",
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "data", "in_words", "files", "store", "work"),
+        *("terminal", "specimen", "inputs", "rules", "data", "in_words", "files", "store", "work"),
         *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }

@@ -118,8 +118,8 @@ def numbers_digest(path: Path) -> str:
     check_regular(path)
     try:
         with File(path) as file:
-            if ATTRIBUTE in file.attributes():
-                return str(file.attribute(ATTRIBUTE))
+            if ATTRIBUTE in file.attributes:
+                return str(file.attributes[ATTRIBUTE])
     except Unusable:
         pass
     return hashlib.sha256(path.read_bytes()).hexdigest()

@@ -42,7 +42,7 @@ def judged(base: str, law: str, size: int) -> dict[int, np.ndarray]:
         at = solve_on(evaluate(cases, first_guess(cases, mesh_of(n)), mesh_of(n)))
         own = quantities(at.at)
         refined = refine(at.at, own)
-        return at, own, difference(own, refined.found), estimate(at.at, own, refined)
+        return at, own, difference(own, refined.numbers), estimate(at.at, own, refined)
 
     fine, true, _, own_error = solved(96)
     for n in NODES:

@@ -56,7 +56,10 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     dims, shape = contact["status"].dims, contact["status"].shape
     scene = _scene(inputs) if "R" in inputs else None
     numbers = scene.parameters if scene else inputs
-    problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    try:
+        problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    except ValueError as error:
+        raise StudyError([f"sensitivities: {error}"]) from None
     used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
     solution = solve(problem)
     solved = derivatives(problem, solution, inputs=(problem.control, *used))

@@ -82,13 +82,13 @@ def tried(law, E, given):
         if falls.any():
             _refuse(law, f"curve: {name} must increase from 0 at y = 0", given, falls)
         slope = np.log(getattr(above, name) / getattr(below, name)) / (2 * _STEP)  # of ln q over ln y
-        numbers, judged = (slope, _Y * getattr(curve, f"d{name}") / at, _WRONG), here & (at > _TINY)
-        rising = judged & (slope > _FLAT / _STEP)
+        numbers, checked = (slope, _Y * getattr(curve, f"d{name}") / at, _WRONG), here & (at > _TINY)
+        rising = checked & (slope > _FLAT / _STEP)
         _compare(law, f"curve: d{name} must be the derivative of {name} by y", numbers, rising, given)
         if getattr(law, inverse):
             again = _curve(law, _of_shape(law, inverse, at, *bound.own), bound.own)
             numbers = at, getattr(again, name), _INVERSE
-            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, judged, given)
+            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, checked, given)
 
 
 def _shapes(law, E, given):
@@ -108,12 +108,12 @@ def _shapes(law, E, given):
     return bound, curve, _of_shape(law, "area", _Y, curve.q, *bound.own)
 
 
-def _compare(law, rule, numbers, judged, given):
-    """Refuse a law if two arrays differ at too many of the points that are `judged`."""
+def _compare(law, rule, numbers, checked, given):
+    """Refuse a law if two arrays differ at too many of the points that are `checked`."""
     right, stated, most = numbers
-    judged = judged & np.isfinite(right) & np.isfinite(stated)
-    wrong = judged & (np.abs(stated - right) > most * np.abs(right))
-    if wrong.sum() > _PART * judged.sum():
+    checked = checked & np.isfinite(right) & np.isfinite(stated)
+    wrong = checked & (np.abs(stated - right) > most * np.abs(right))
+    if wrong.sum() > _PART * checked.sum():
         _refuse(law, rule, given, wrong)
 
 

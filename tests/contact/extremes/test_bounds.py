@@ -144,3 +144,10 @@ def test_what_no_floating_point_carries_is_not_solved(base, micro):
         case = MAIN | {"a": 0.04, "base": base, "micro": micro, "rtol": 1e-3}
         s = solve(Problem.of(**case | {name: [case[name], value]}))
         assert s.status.tolist() == [Status.CONVERGED, Status.INVALID_INPUT], name
+
+
+@pytest.mark.parametrize("name", [name for name, own in PARAMETERS.items() if own.choices])
+def test_a_word_that_is_no_choice_is_answered_with_all(name):
+    with pytest.raises(ValueError, match="must be one of") as error:
+        Problem.of(P=LOAD, **MAIN | {name: "nothing"})
+    assert all(choice in str(error.value) for choice in PARAMETERS[name].choices)

@@ -71,7 +71,7 @@ def of_pressure(
     >>> hertz = lambda x: np.sqrt(1 - x**2)
     >>> field = of_pressure(hertz, 0.0, [0.0, 0.48], h=1.0, n=1.0, nu1=0.3, nu2=0.3, bonding="bonded")
     >>> (field["sr"] - field["sz"]).round(6).tolist()
-    [0.2, 0.620038]
+    [0.2, 0.62004]
     """
     layers = _layers(h, n, nu1, nu2, bonding)
     r, z = (_checked(name, value) for name, value in (("r", r), ("z", z)))

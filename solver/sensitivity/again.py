@@ -42,7 +42,7 @@ def found_again(cases, nodes, a, rtol):
 
 
 def same(ev, solution, rtol):
-    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It is not where there
-    are two solutions, or where it was solved on other panels."""
+    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It may be another where
+    there are two solutions, or other panels."""
     results = quantities(ev)
     return np.maximum(np.abs(results.a / solution.a - 1), np.abs(results.D / solution.D - 1)) <= rtol

@@ -18,17 +18,17 @@ from ..scaling import as_cases, dimensionless
 from ..solution import Solution
 from ..status import Status
 from ..threads import one_blas_thread
-from .added import of_added
+from .added import added_slopes
 from .again import found_again, meshes, same, stacks
 from .changes import changes_of, inputs_of, moved, slope_of
 from .differences import by_differences
 from .held import Held, held
 from .points import of_corners, profiles
 from .state import implicit, operators_of
-from .stiffness import of_stiffness
+from .stiffness import stiffness_slopes
 
-#: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`, and those of them whose unit
-#: has the modulus as a factor.
+#: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`; and those among them whose
+#: unit has the modulus as a factor.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
 _OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
 #: Most unknowns of a stack: with k inputs it has k right-hand sides.
@@ -132,14 +132,14 @@ def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
     changes = changes_of(beside.written, ev.state.eta, k)
     operators = operators_of(ev, changes)
     derivatives = implicit(ev, changes, operators)
-    logs = derivatives.logs | {"dP_dD": of_stiffness(ev, beside.written, derivatives, operators)}
+    logs = derivatives.logs | {"dP_dD": stiffness_slopes(ev, beside.written, derivatives, operators)}
     if ev.cases.law.law.corners:
         logs["Ar_An"] = of_corners(ev, changes, derivatives)
     logs |= {name: logs[name] + d_E2 for name in _OF_MODULUS}
     at = profiles(ev, changes, derivatives, x)
     d_p, d_lam = now.E2[:, None] * (at.d_p + d_E2[..., None] * at.p), at.d_lam
     if now.added.any():
-        spots, lam = of_added(ev, changes, derivatives, above, (now.E2, d_E2), x)
+        spots, lam = added_slopes(ev, changes, derivatives, above, (now.E2, d_E2), x)
         logs = {name: np.where(now.added, spots.get(name, values), values) for name, values in logs.items()}
         d_lam = np.where(now.added[:, None], lam, d_lam)
     finite = np.all([np.isfinite(values).all(axis=0) for values in logs.values()], axis=0)

@@ -11,20 +11,9 @@ from solver.parameters import ends
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
 from ..given import Input
-from ..grid import MOVED
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
 from .scene import Scene
-
-#: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
-#: 10 Pa, diamond 1.2 TPa; the sharpest tips have some nm, and layers are not thinner than an atom.
-_REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
-_REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
-_REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
-
-_RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
-#: What has a unit and cannot be zero.
-INPUTS = ("P", "a", "D", "h", "Nbar", "Ra", "sigma", "R", "R1", "R2", "E1", "E2", "E_punch")
 
 Place = dict[str, int]
 """Dimension -> index along it."""
@@ -43,33 +32,6 @@ def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
             understood = f"{modulus} = {readable(_at(scene.given[modulus], place), 'Pa')}"
             messages.append(f"{understood}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
     return messages
-
-
-def absurd(given: dict, spreads: dict) -> list[str]:
-    """A sentence for each input in SI units that no body has, or whose spread is too wide. They are solved.
-
-    given, spreads : name -> numbers, labelled (DataArray or Variable) where they are several
-    """
-    found = []
-    for name, (low, high, words) in _REAL.items():
-        values = np.ravel(given.get(name, np.nan))
-        outside = ((values < low) | (values > high)) & np.isfinite(values)
-        if outside.any():
-            one = readable(float(values[outside][0]), ROWS[name].unit)
-            found.append(f"{name} = {one}: {words}; is its unit right?")
-    for name, spread in spreads.items():
-        value = given[name]
-        limit = 0.5 - value if name in _RATIOS else abs(value)
-        if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
-            limit = limit * np.minimum(abs(value / given["R"]), 1)
-        with np.errstate(invalid="ignore"):  # a rigid body has inf, and 0 inf is NaN
-            zero = 0 * (value + spread + limit)  # over all their dimensions
-            value, spread, limit = (np.ravel(zero + one) for one in (value, spread, limit))
-        wide = np.flatnonzero((spread > 0) & (spread >= limit))
-        if len(wide):
-            text = readable(float(value[wide[0]]), ROWS[name].unit, float(spread[wide[0]]))
-            found.append(f"{name} = {text}: too wide a spread for the ± of results, which is to first order")
-    return found
 
 
 def _first_outside(scene: Scene, name: str) -> list[Place]:
@@ -91,11 +53,9 @@ def _message(scene: Scene, given: Input, place: Place) -> str:
     """The message for the value of an input at a place."""
     name = given.name
     value, entry = scene.given[name], VOCABULARY[name]
-    as_given = place | ({MOVED: 0} if MOVED in place else {})
-    index = [as_given[dim] for dim in getattr(value, "dims", ()) if dim != MOVED]
+    index = [place[dim] for dim in getattr(value, "dims", ())]
     called = f"{name}{index}" if index else name
-    text, word, size = _written(given, index, _at(value, as_given), ROWS[name].unit)
-    moved = "with its spread it " if place != as_given else ""
+    text, word, size = _written(given, index, _at(value, place), ROWS[name].unit)
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     # the bounds in the unit of the value
     low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
@@ -105,7 +65,7 @@ def _message(scene: Scene, given: Input, place: Place) -> str:
     units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
     here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
     bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
-    return f"{called} = {on_one_line(str(text))}: {moved}{bounds}"
+    return f"{called} = {on_one_line(str(text))}: {bounds}"
 
 
 def _written(given: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:

@@ -36,7 +36,7 @@ def integrals(load, layers, h, pressure, r, z, body):
     for case in [slice(None)] if alike else map(slice, range(len(h)), range(1, len(h) + 1)):
         if len(closed):
             own = pressure._replace(values=pressure.values[case])
-            added = load.in_closed_form(own, r, z[case][0, closed], layers.nu1[case])
-            whole[:, case, closed] += added
+            displacements = len(load.orders) > load.stresses
+            whole[:, case, closed] += load.in_closed_form(own, r, z[case][0, closed], layers.nu1[case], displacements)
     whole[:, (layers.n == 0)[:, None] & body] = np.nan
     return whole

@@ -31,18 +31,21 @@ class Integrals(NamedTuple):
     D: np.ndarray
 
 
-def integrals(pressure, r, z, most=2):
+def integrals(pressure, r, z, most=2, displacements=True):
     """:class:`Integrals` of a :class:`~.pressure.Pressure` at radii r (R,) and depths z (Z,), both in a.
 
-    most : largest order m of E and F. On the surface, z = 0, E and F are 0: only D is an integral there.
+    most : largest order m of E and F. On the surface, z = 0, E and F are 0: only D is an integral there
+    displacements : without them D is 0
     """
     B = len(pressure.values)
     E, F, D = (np.zeros((count, B, len(z), len(r))) for count in (most + 1, most + 1, 3))
     halvings = _halvings(r, z)
-    for count in np.unique(halvings):
+    if not displacements:
+        halvings = np.where(z == 0, -1, halvings)
+    for count in np.unique(halvings[halvings >= 0]):
         nodes = _Nodes.of(pressure, r, count)
         for i in np.flatnonzero(halvings == count):
-            for whole, of_order in zip((E, F, D), _kernels(nodes, r[:, None], z[i], most), strict=True):
+            for whole, of_order in zip((E, F, D), _kernels(nodes, r[:, None], z[i], most, displacements), strict=True):
                 for m, kernel in enumerate(of_order):
                     whole[m, :, i] = np.einsum("brt,rt->br", nodes.weight, kernel)
     return Integrals(E, F, D)
@@ -87,7 +90,7 @@ def _halvings(r, z):
     return np.clip(needed * _STEP, 0, most)
 
 
-def _kernels(nodes, r, z, most):
+def _kernels(nodes, r, z, most, displacements):
     """Kernels (R, T) of E, F, D, lists over the order, at the depth z."""
     t = nodes.t
     real, imaginary = z * z - nodes.beyond * (t + r), z * t  # of rho², the latter over -2
@@ -96,9 +99,8 @@ def _kernels(nodes, r, z, most):
     rho = np.where(real >= 0, large - 1j * small, small - 1j * large)
     ze = z - 1j * t
     g = r / (rho + ze + _TINY)
-    power, D = [np.ones_like(g), g], [np.arctan2(t - rho.imag, rho.real + z), g.imag]
-    power.append(g * g)
-    D.append(power[2].imag / 2)
+    power = [1.0, g, g * g]
+    D = [np.arctan2(t - rho.imag, rho.real + z), g.imag, power[2].imag / 2] if displacements else []
     if z == 0:
         return [], [], D
     power += [power[2] * g] if most > 2 else []

@@ -13,20 +13,14 @@ def amplitudes(kind, bodies, X, x, v):
     return radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1), -u, S, T, u, w
 
 
-def in_closed_form(pressure, r, z, nu):
-    """The same (6, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
+def in_closed_form(pressure, r, z, nu, displacements=True):
+    """The same (6 or 4, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
     nu, depth = nu[:, None, None], z[:, None]
-    E, F, D = integrals(pressure, r, z)
-    whole = np.stack(
-        [
-            F[0] - (1 + 2 * nu) * E[0],
-            (1 - 2 * nu) * E[2] - F[2],
-            -(E[0] + F[0]),
-            -F[1],
-            depth * E[1] - (1 - 2 * nu) * D[1],
-            2 * (1 - nu) * D[0] + depth * E[0],
-        ]
-    )
+    E, F, D = integrals(pressure, r, z, displacements=displacements)
+    parts = [F[0] - (1 + 2 * nu) * E[0], (1 - 2 * nu) * E[2] - F[2], -(E[0] + F[0]), -F[1]]
+    if displacements:
+        parts += [depth * E[1] - (1 - 2 * nu) * D[1], 2 * (1 - nu) * D[0] + depth * E[0]]
+    whole = np.stack(parts)
     surface = z == 0
     if surface.any():
         p, mean = pressure.at(r)[:, None], pressure.mean(r)[:, None]
@@ -38,15 +32,8 @@ NAMES = ("sr", "st", "sz", "trz", "ur", "uz")
 NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
 
 
-def components(whole, G2):
-    """sr, st, sz, trz, ur, uz of these six; G2 : 2 G (B,) or what broadcasts."""
-    total, difference, sz, trz, ur, uz = whole
-    parts = (
-        (total + difference) / 2,
-        (total - difference) / 2,
-        sz,
-        trz,
-        ur / G2,
-        uz / G2,
-    )
-    return dict(zip(NAMES, parts, strict=True))
+def components(whole, G2=None):
+    """sr, st, sz, trz, and if there ur, uz of these; G2 : 2 G, what broadcasts."""
+    total, difference, sz, trz, *displacements = whole
+    parts = [(total + difference) / 2, (total - difference) / 2, sz, trz, *(v / G2 for v in displacements)]
+    return dict(zip(NAMES, parts, strict=False))

@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.legendre import legder, legvander
+from scipy.special import j0, ndtr
 
 from ..body.tables import transform
 from ..numerics.mesh import Mesh
@@ -16,6 +17,10 @@ from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
 #: Gauss points of ∫ p' db on a panel beyond half its number of nodes. With 16 a polynomial of degree 63 is right to
 #: rounding, which grows like the square of the degree in p' (tests/fields/test_half_space.py).
 _MORE = 16
+#: Of waves above _LONG only what is within _WINDOW/k of the edge makes any: there a smooth window ends, the normal
+#: distribution with the width _WIDE/k, whose own waves and tails are 1e-14. So p^ takes as long at any k
+#: (tests/fields/test_half_space.py).
+_LONG, _WINDOW, _WIDE = 500.0, 120.0, 8.0
 #: An edge pressure below this part of the largest is rounding, and would make stresses infinite at the edge.
 _ROUNDING = 1e-12
 
@@ -27,8 +32,24 @@ class Pressure(NamedTuple):
     values: np.ndarray
 
     def transform(self, k):
-        """p^(k) = ∫ p J0(kr) r dr (B, K) at k (K,)."""
-        return self.values @ transform(self.mesh, k).T
+        """p^(k) = ∫ p J0(kr) r dr (B, K) at ascending k (K,)."""
+        first = max(_LONG, self.mesh.order**2 / 50)  # of shorter waves the polynomial has none but at the edge
+        octaves = first * 2.0 ** np.arange(max(np.ceil(np.log2(k[-1] / first)), 0))
+        pieces = [piece for piece in np.split(k, np.searchsorted(k, octaves)) if len(piece)]
+        return np.concatenate([self._transform(piece) for piece in pieces], axis=1)
+
+    def _transform(self, k):
+        """The same at k of one octave, from the edge alone where that is enough."""
+        deep = _deep(self.mesh, k[0])
+        if k[0] < _LONG or deep > 0.5:
+            return self.values @ transform(self.mesh, k).T
+        s, weight = _edge_rule(self.mesh, k[-1], deep)
+        x, middle = np.sqrt((1 - s) * (1 + s)), 1 - _WINDOW / (2 * k[0]) - (deep - _WINDOW / k[0])
+        window = ndtr((x - middle) * (k[0] / _WIDE))
+        weights = (self.values @ self.mesh.basis(s).T) * (weight * s * window)
+        return np.concatenate(
+            [weights @ j0(x[:, None] * part) for part in np.array_split(k, len(k) // 1000 + 1)], axis=1
+        )
 
     def at(self, r):
         """p at radii r (R,), (B, R); 0 outside."""
@@ -58,6 +79,24 @@ class Pressure(NamedTuple):
         """φ/t of Abel's φ(t) (B, ...) at s = sqrt(1 - t²) (...), without what :meth:`at_edge` adds."""
         nodal = self.values @ _density(self.mesh).T
         return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
+
+
+def _deep(mesh, k):
+    """How far from the edge waves of k and shorter ones are felt, in x: a window, beyond panels that may have such."""
+    x = np.sqrt(1 - np.array(mesh.breaks) ** 2)
+    narrow = np.flatnonzero(-np.diff(x) < 40 / k)
+    return _WINDOW / k + (1 - x[narrow[-1] + 1] if len(narrow) else 0.0)
+
+
+def _edge_rule(mesh, k, deep):
+    """Rule of ∫ · ds from the edge to the depth `deep` in x, for waves of at most k: points and weights (m,)."""
+    pieces = int(np.ceil(deep * k / 16))
+    ends = np.arccos(1 - deep * np.arange(pieces + 1) / pieces)
+    breaks = np.arcsin(np.array(mesh.breaks))
+    ends = np.union1d(ends, breaks[breaks < ends[-1]])
+    t, weight = gauss_legendre(20)
+    angle, width = (ends[:-1, None] + np.diff(ends)[:, None] * t).ravel(), np.diff(ends)[:, None]
+    return np.sin(angle), (width * weight).ravel() * np.cos(angle)
 
 
 @lru_cache(maxsize=16)

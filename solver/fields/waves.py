@@ -21,6 +21,10 @@ _POINTS, _RADIANS = 20, 20.0
 _FIRST = 1e-4
 #: A field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
+#: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to the
+#: edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
+SHORTEST, MISSED = 1.5e5, 1e-3
+THINNEST = _END / SHORTEST
 #: Below _SMALL, J3 is a series of _TERMS terms: from J1 and J2 it loses digits.
 _SMALL, _TERMS = 3.0, 14
 #: Numbers in an array of states: so many waves are taken at once.
@@ -31,9 +35,11 @@ class Load(NamedTuple):
     """What presses or rubs on the surface, and which integrals make its field.
 
     traction : (S, T) of its unit wave
-    orders : of the Bessel function of each integral; the first `stresses` of them have a factor k
+    orders : of the Bessel function of each integral; the first `stresses` of them have a factor k, the rest, if there,
+        makes the displacements
     amplitudes : ``amplitudes(kind, bodies, X, x, state)``, the other factor of each integrand, but for p^
-    in_closed_form : ``in_closed_form(pressure, r, z, nu)``, the integrals of half-spaces (fields, B, Z, R)
+    in_closed_form : ``in_closed_form(pressure, r, z, nu, displacements)``, the integrals of half-spaces (fields, B, Z,
+        R), all or those of stresses
     """
 
     traction: tuple
@@ -41,6 +47,10 @@ class Load(NamedTuple):
     stresses: int
     amplitudes: Callable
     in_closed_form: Callable
+
+    def of_stresses(self):
+        """The same without displacements, which take the most time on the surface."""
+        return self._replace(orders=self.orders[: self.stresses])
 
 
 class Row(NamedTuple):
@@ -74,7 +84,7 @@ def integrals(load, layers, h, pressure, r, rows):
     """
     z = np.array([row.z for row in rows]).T
     kinds = np.array([row.kind for row in rows])
-    last = _END / np.array([row.reach(h) for row in rows]).min(axis=1)
+    last = np.minimum(_END / np.array([row.reach(h) for row in rows]).min(axis=1), SHORTEST)
     first = _FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
     k, weight = quadrature(first, last.max(), 1 + r.max())
     bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))
@@ -88,9 +98,10 @@ def integrals(load, layers, h, pressure, r, rows):
             if len(index):
                 x = k[part] * z[:, index, None]
                 v = wave_state(kind, bodies, X, x, load.traction, thin[part.start])
-                for i, amplitude in enumerate(load.amplitudes(kind, bodies, X, x, v)):
+                amplitudes = load.amplitudes(kind, bodies, X, x, v)
+                for i, order in enumerate(load.orders):
                     weights = p[..., part] * k[part] if i < load.stresses else p[..., part]
-                    whole[i][:, index] += (amplitude * weights) @ J[load.orders[i]]
+                    whole[i][:, index] += (amplitudes[i] * weights) @ J[order]
     return whole
 
 

@@ -5,9 +5,12 @@ import pytest
 from field_rows import table
 from numpy.testing import assert_allclose
 
+from solver.body.tables import transform
 from solver.fields import normal, sliding
+from solver.fields.field import integrals
 from solver.fields.half_space import on_surface
 from solver.fields.pressure import Pressure
+from solver.kernels.two_layers import TwoLayers
 from solver.numerics.mesh import mesh_of, panel_mesh
 
 MESHES = [mesh_of(6), mesh_of(64), panel_mesh(12, (0.0, 0.0625, 0.25, 0.5, 0.75, 1.0))]
@@ -57,3 +60,32 @@ def test_on_the_surface_friction_has_hertz_closed_form():
     assert_allclose(E1, np.where(r <= 1, np.pi * r / 4, r * (f - np.sin(f) * np.cos(f)) / 2), rtol=0, atol=1e-14)
     outside = r * (np.sin(2 * f) / 4 - np.sin(4 * f) / 8)
     assert_allclose(E3, np.where(r <= 1, 0.0, outside), rtol=0, atol=1e-14)
+
+
+STEEP = panel_mesh(12, (0.0, 2.0**-8, 2.0**-6, 0.0625, 0.25, 0.5, 0.75, 0.875, 0.9375, 1.0))
+
+
+@pytest.mark.parametrize("mesh", [*MESHES, STEEP], ids=["few", "many", "panels", "steep"])
+def test_short_waves_come_from_the_edge(mesh):
+    """p^ of a window at the edge is that of all of p, with a jump there or with the smoothest edge."""
+    k = np.concatenate([np.linspace(3, 490, 20), np.geomspace(501, 4000, 60)])
+    for j in (0, 1, 3, 5):
+        pressure = Pressure(mesh, mesh.s[None] ** j)
+        assert_allclose(pressure.transform(k), pressure.values @ transform(mesh, k).T, rtol=0, atol=1e-15)
+
+
+@pytest.mark.parametrize("load", [normal.NORMAL, sliding.SLIDING], ids=["normal", "sliding"])
+def test_rows_near_the_surface_are_those_of_the_waves(load):
+    """Where the two ways meet they agree, for any pressure: a larger radius beside others makes rows near. And stresses
+    are the same without displacements."""
+    random = np.random.default_rng(0)
+    mesh, h = MESHES[1], np.array([0.6, 0.9])
+    values = np.array([mesh.s * np.polynomial.chebyshev.chebval(2 * mesh.s - 1, random.normal(size=20)) for _ in h])
+    layers = TwoLayers(np.array([0.2, 6.0]), np.array([0.5, 0.1]), np.array([0.2, 0.3]), np.array([True, False]))
+    r, z = np.array([0.0, 0.7, 0.999, 1.0, 1.2]), np.array([[0.07, 0.1, 0.2], [0.08, 0.1, 0.2]])
+    pressure, body = Pressure(mesh, values), np.zeros(3, dtype=bool)
+    waves = integrals(load, layers, h, pressure, r, z, body)
+    near = integrals(load, layers, h, pressure, np.append(r, 20.0), z, body)
+    assert_allclose(near[..., :-1], waves, rtol=0, atol=1e-11 * np.abs(waves).max())
+    stresses = integrals(load.of_stresses(), layers, h, pressure, np.append(r, 20.0), z, body)
+    assert_allclose(stresses, near[: load.stresses], rtol=0, atol=1e-14 * np.abs(waves).max())

@@ -141,9 +141,11 @@ def test_workers_of_dask_take_our_study_too(python, beside):
     folder = beside(CALLED_STUDY["modules"] | {"many.toml": MANY})
     script = "from distributed import LocalCluster; import roughcoat as rc\n"
     script += "with LocalCluster(n_workers=1, threads_per_worker=1, dashboard_address=None) as cluster:\n"
+    script += "    with cluster.get_client():\n"
+    script += f"        print(rc.solve({CONTACT.replace('1e-5', '[1e-6, 1e-5]')}, chunks={{'P': 1}}).a.values.size)\n"
     script += "    print(rc.load('many.toml').run(scheduler=cluster.scheduler_address).computed)"
     done = run(folder, python, "-c", script)
-    assert (done.returncode, done.stdout) == (0, "8\n"), done.stderr
+    assert (done.returncode, done.stdout) == (0, "2\n8\n"), done.stderr
     assert not (folder / "it-ran").exists()
 
 

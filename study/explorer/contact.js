@@ -158,6 +158,7 @@ const Contact = ((Core, DATA) => {
     contact.Q = Object.fromEntries(Object.entries(case_.units).map(([name, unit]) => [name, solved.Q[name] * unit]));
     contact.Q[inputs.control] = inputs.v[inputs.control].value;
     contact.lam0 = solved.Q.lam0;
+    contact.ring = ring(contact);
     contact.lights = lights(contact, solved.Q);
     if (quick) return contact;
     // twice what the meshes differ by; the quadrature of the layer and J0 leave 1e-6 at most (tests/explorer)
@@ -167,10 +168,10 @@ const Contact = ((Core, DATA) => {
     contact.spread = {};
     for (const name of Object.keys(RESULTS)) {
       const parts = Object.values(contact.sensitivities).map((own) => own[name] * own.relative);
-      contact.spread[name] = contact.Q[name] * Math.hypot(...parts);
+      const relative = Math.hypot(...parts);
+      contact.spread[name] = relative > 1e-5 ? contact.Q[name] * relative : 0; // as study.summary
     }
     contact.limits = limits(contact);
-    contact.ring = ring(contact);
     return contact;
   }
 
@@ -226,7 +227,7 @@ const Contact = ((Core, DATA) => {
 
   /** One row for each assumption that is looked at: {name, state "good" | "near" | "beyond", size: words}. The masks are
       those of study/data/assumptions.py; near: beyond half of a limit. `q`: results without units. */
-  function lights({ inputs, case_ }, q) {
+  function lights({ inputs, case_, ring }, q) {
     const { p, unit } = case_, L = DATA.limits, E1 = p.layered ? p.n || 1 : 1, rows = [];
     const light = (name, title, ratio, size) => rows.push({ name, title, size, state: ratio > 1 ? "beyond" : ratio > 0.5 ? "near" : "good" });
     light("strain_not_small", "Small against the ball", q.a / L.STEEP,
@@ -254,11 +255,15 @@ const Contact = ((Core, DATA) => {
           `pitch 1/√N̄ = ${pitch.toPrecision(2)} h, limit ${L.PITCH_OVER_LAYER} h. ${bySeen(pitch, p.n)}`);
       }
     }
-    const metals = Object.values(BODIES).map(([modulus]) => inputs.v[modulus]?.value).filter((E) => E >= L.STIFF && Number.isFinite(E));
-    if (metals.length) {
-      const share = q.p_max * unit / Math.min(...metals);
-      light("yielding", "Below what metals bear", share / L.YIELD,
-        `The pressure comes to ${percent(share)} of the smallest Young's modulus, limit ${percent(L.YIELD)}: metals yield before that.`);
+    const real = ring ? ring.p_peak : q.p_max * unit, nominal = ring ? ring.p : q.p0 * unit;
+    const under = !p.layered ? real : q.a > p.h ? nominal : 0, pressed = { punch: real, layer: p.layered ? real : 0, body: under };
+    const shares = Object.entries(BODIES).map(([body, [modulus]]) => {
+      const E = inputs.v[modulus]?.value;
+      return { body, share: E >= L.STIFF && Number.isFinite(E) ? pressed[body] / E : 0 };
+    }).sort((one, two) => two.share - one.share);
+    if (shares[0].share > 0) {
+      light("metals_yield", "Below what metals bear", shares[0].share / L.YIELD,
+        `The pressure on the ${shares[0].body === "punch" ? "ball" : shares[0].body} comes to ${percent(shares[0].share)} of its Young's modulus, limit ${percent(L.YIELD)}: metals yield before that.`);
     }
     return rows;
   }

@@ -86,7 +86,7 @@ const Drawing = ((Core, Contact) => {
     const [word, size] = Contact.UNITS.m.write.find((row) => Q.a >= row[1]) || ["nm", 1e-9], power = 10 ** Math.floor(Math.log10(Q.a / size));
     const bar = power * (Q.a / size >= 5 * power ? 5 : Q.a / size >= 2 * power ? 2 : 1), long = bar * size / Q.a * d.perA;
     out += `<path d="M${left} ${low + 10}h${long}m0 -4v8m${-long} 0v-8" fill="none" stroke="var(--ink)"/>`;
-    return out + text(left + long + 8, low + 14, `${Number(bar.toPrecision(3))} ${word}, in both directions; dashed: before loading`, { soft: true });
+    return out + text(left + long + 8, low + 14, `${Number(bar.toPrecision(3))} ${word}${d.narrow ? " (dashed: unloaded)" : ", in both directions; dashed: before loading"}`, { soft: true });
   }
 
   function describe(contact) {

@@ -69,7 +69,7 @@ const ContactMap = ((Contact, Drawing) => {
         const value = found.status === "converged" ? found.Q[chosen.of] : NaN;
         now.cells[i] = { value, beyond: (found.lights || []).filter((row) => row.state === "beyond").map((row) => row.title), status: found.status, numbers };
       }
-      if (next === order.length) { paint(); said(box); } else setTimeout(some, 0);
+      if (next === order.length) { paint(); said(box); box.ariaBusy = "false"; } else setTimeout(some, 0);
       if (next < order.length && next % 96 < 8) paint();
     }
     some();

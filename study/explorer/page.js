@@ -134,6 +134,7 @@
     $("words").hidden = $("numbers").hidden = !solved;
     if (Object.keys(found.problems).length === 0) history.replaceState(null, "", Contact.toHash(texts));
     clearTimeout(later);
+    $("brief").textContent = solved ? ["a", "D", "p0"].map((name) => `${Contact.RESULTS[name].symbol} ${Contact.shown({ ...found, spread: {} }, name).whole}`).join(" · ") : "no solution";
     if (!solved) return;
     const words = Contact.words(found);
     $("words").innerHTML = "";
@@ -148,6 +149,7 @@
     lights(found);
     $("tornado").innerHTML = Drawing.tornado(found, $("tornado-of").value, $("tornado-by").value, width);
     $("time").textContent = `Solved and drawn in ${(performance.now() - begin).toFixed(0)} ms.`;
+    $("map").ariaBusy = "true"; // until it is whole
     later = setTimeout(() => map(found), 150);
   }
 
@@ -217,7 +219,7 @@
     });
     if ($("map-x").value === $("map-y").value) $("map-y").value = names.find((name) => name !== $("map-x").value);
     const key = [Contact.toHash(texts), ...["map-of", "map-x", "map-y", "map-wide"].map((id) => $(id).value)].join(" ");
-    if (key === drawn) return;
+    if (key === drawn) { $("map").ariaBusy = "false"; return; }
     drawn = key;
     const chosen = { of: $("map-of").value, x: $("map-x").value, y: $("map-y").value, wide: Number($("map-wide").value) };
     ContactMap.draw($("map"), found, chosen, (next) => change(next));

@@ -9,15 +9,24 @@ import numpy as np
 from solver.numerics.mesh import mesh_of
 from solver.parameters import ends
 
-from ..data import assumptions
 from ..data.provenance import package_version
-from ..in_words import beyond, pressures
+from ..in_words import pressures
 from ..inputs.vocabulary import VOCABULARY
+from ..rules import assumptions, doubts
 from ..specimen import materials
 
+#: How the page begins: by this a file is known to be one.
+MARK = b"<!-- a page of roughcoat explore -->"
 #: Nodes of the two meshes that the page solves on; their difference is its error (tests/explorer/test_core.py).
 NODES = (16, 22)
 _SCRIPTS = ("core.js", "contact.js", "drawing.js", "map.js", "page.js")
+#: Limits of assumptions and doubts, which the page looks at as the program does.
+_LIMITS = {
+    assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT", "SPOT_OVER_LAYER")
+    + ("PITCH_OVER_LAYER", "HARDEST"),
+    doubts: ("YIELD", "STIFF"),
+    pressures: ("STRENGTHS", "RUBBER", "RING"),
+}
 #: λ(0) -> by how much disc_cell overestimates what the asperities yield, against a square lattice
 #: (docs/model.md, Microscale; tests/laws/lattice/test_lattice.py).
 _MERGING = ((0.0, 0.0), (0.04, 0.02), (0.17, 0.05), (0.4, 0.10), (1.0, 0.27))
@@ -35,19 +44,16 @@ def page() -> str:
 
 def contents() -> dict:
     """What the scripts take from the program: meshes, materials, bounds, limits of assumptions."""
-    names = ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT", "SPOT_OVER_LAYER")
-    limits = {name: getattr(assumptions, name) for name in (*names, "PITCH_OVER_LAYER")}
-    limits |= {name: getattr(beyond, name) for name in ("YIELD", "STIFF", "HARDEST")}
-    limits |= {name: getattr(pressures, name) for name in ("STRENGTHS", "RUBBER", "RING")}
     known = (materials.get(name) for name in materials.names())
-    numbers = ("name", "also", "E", "nu", "E_spread", "nu_spread", "condition", "source")
+    numbers = ("name", "E", "nu", "E_spread", "nu_spread", "condition", "source")
+    bounded = ("P", "a", "D", "h", "n", "m", "Nbar", "Ra")
     return {
         "version": package_version("roughcoat"),
         "meshes": {n: mesh(n) for n in NODES},
         "materials": [{key: getattr(own, key) for key in numbers} for own in known],
-        "bounds": {name: ends(VOCABULARY[name].own.interval)[:2] for name in ("P", "a", "D", "h", "n", "m", "Nbar", "Ra")},
-        "limits": limits,
-        "seen": [(pitch, *errors) for pitch, errors in beyond.SEEN.items()],
+        "bounds": {name: ends(VOCABULARY[name].own.interval)[:2] for name in bounded},
+        "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
+        "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
         "merging": _MERGING,
     }
 

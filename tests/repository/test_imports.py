@@ -29,7 +29,8 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "rules", "data", "in_words", "files", "store", "work"),
-        *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "explorer", "commands"),
+        "__main__",
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

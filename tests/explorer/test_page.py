@@ -158,7 +158,7 @@ def test_copies_are_the_same_contact(page, form, tmp_path):
 
 
 def test_a_new_user_is_answered_told_and_led(page):
-    """The first screen is the answer; a wrong unit is told at its field; no layer, materials and the map are at hand."""
+    """The first screen is the answer; a wrong unit is told at its field; no layer, materials and the map serve."""
     page.evaluate(SHOWN, "")
     page.click("#restart")
     page.wait_for_function("document.querySelector('#words').textContent.includes('69.36 ± 0.32 µm')")

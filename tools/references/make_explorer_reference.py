@@ -1,4 +1,4 @@
-"""Write explorer.npz: what the solver answers to the 24,000 contacts of tests/shared/explorer_cases.py.
+"""Write explorer.npz: what the solver answers to the 24,000 contacts of explorer_cases.py.
 
 Status quo, not independent: the page of the explorer solves the same equation (tests/explorer/test_core.py). NaN where
 the program has no solution. float32 has a rounding of 6e-8, far below what is tested. It takes some minutes:

@@ -13,13 +13,13 @@ RUN := $(VENV)/bin/python -m study
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: always $(shell sed -n 's/^\([a-z0-9_]*\): .*/\1/p' Makefile)
+.PHONY: always $(shell sed -n 's/^\([a-z0-9_-]*\): .*/\1/p' Makefile)
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .PRECIOUS: results/%.nc
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z0-9_]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9_-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
 
 setup: $(READY) ## install the pinned packages and roughcoat into .venv
 
@@ -54,6 +54,13 @@ validate: $(READY) ## rough spheres with every asperity resolved beside the two 
 
 test: $(READY) ## all tests
 	$(PYTEST)
+
+# Debian's node and chromium; without them these tests are skipped.
+explorer-test: $(READY) ## install node, chromium and playwright, and test the page of `roughcoat explore` with them
+	@command -v node >/dev/null && command -v chromium >/dev/null || \
+	  apt-get install --yes --no-install-recommends nodejs chromium
+	$(VENV)/bin/python -m pip install --quiet --editable '.[explorer]' --no-build-isolation
+	$(VENV)/bin/python -m pytest -q -s tests/explorer
 
 # Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
 # the shrunken results of all studies, which are twenty seconds of computing.

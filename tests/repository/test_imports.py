@@ -29,7 +29,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "rules", "data", "derivatives", "in_words", "files", "store", "work"),
-        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("carried", "lazy", "solving", "figures", "api", "catalogue", "explorer", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

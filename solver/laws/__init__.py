@@ -6,8 +6,8 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..parameters import CONTROL, PARAMETERS
-from . import disc_cell, heights, lattice, own_table, power_law, smooth, trial
+from ..parameters import BONDED, CONTROL, LAYERED, PARAMETERS
+from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, smooth, trial
 from .law import Bound, Curve, Law, Spots
 
 __all__ = [
@@ -29,7 +29,7 @@ __all__ = [
 GROUP = "roughcoat.laws"
 #: Names that no parameter of a law can have: those of attributes of a Problem, and E, which `scales` gets. The package
 #: `study` adds those of results, and of what else it is told.
-RESERVED = {*CONTROL, "E", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
+RESERVED = {*CONTROL, "E", "nu", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
 
@@ -102,6 +102,9 @@ def _declare(laws):
         del PARAMETERS[name]  # of a law that has been replaced
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
+    of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
+    PARAMETERS["nu1"] = PARAMETERS["nu1"]._replace(used_by=(*BONDED, *of_laws))
+    PARAMETERS["nu2"] = PARAMETERS["nu2"]._replace(needed_by=(*LAYERED, *of_laws), used_by=(*BONDED, *of_laws))
     return laws
 
 
@@ -168,6 +171,9 @@ def name_in(identity):
     return identity.rpartition(" ")[0] if identity.startswith(own_table.PREFIX) else identity.partition(" ")[0]
 
 
-BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW)
+BUILT_IN = (
+    *(smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW),
+    elastic_plastic.LAW,
+)
 #: Name -> Law.
 LAWS = _declare({law.name: law for law in BUILT_IN})

@@ -86,7 +86,7 @@ def bounds(part):
 def _on_model(model, part, x):
     """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
-    base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n))
+    base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n), nu2=part.nu1)
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
         return solve_named(base, x)
     s, _ = area_rule()

@@ -43,6 +43,7 @@ def held(scaled, used):
         base=np.where(auto, of_model, scaled.base),
         micro=np.where(added, smooth.LAW.name, scaled.micro),
         E2=np.where(alone, layer_modulus(scaled.n), 1.0),
+        nu2=np.where(alone, scaled.nu1, scaled.nu2),
         scheme="newton",
         model_check="closed_form",
     )

@@ -162,6 +162,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         if stated.get(law.name, identity(law.name)) != identity(law.name):
             continue
         given = [without_unit(dataset.get(name, np.nan), VOCABULARY[name].powers, unit, R) for name in law.parameters]
+        given += [xr.where(dataset["base"] == "half_space", dataset["nu2"], dataset["nu1"])] if law.poisson else []
         p = pressures / unit
         spots = xr.apply_ufunc(_largest(law), p, E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
@@ -238,7 +239,7 @@ def _scales(dataset: xr.Dataset, name: str) -> tuple:
 
 def _largest(law):
     """p_max of nominal pressures, of the modulus that the asperities feel, and of the parameters of the law."""
-    return lambda p, E, *given: law.at(p, E, **dict(zip(law.parameters, given, strict=True))).p_max
+    return lambda p, E, *given: law.at(p, E, **dict(zip(law.arguments, given, strict=True))).p_max
 
 
 @quantity("E_eff")

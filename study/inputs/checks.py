@@ -31,8 +31,8 @@ def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: 
     neither = not {*FITTED} & {*given}  # is given: then both are fitted, and it is said once to what
     for name in PARAMETERS:
         own = VOCABULARY[name].own
-        selector, words = own.needed_by
-        if name in given or name in CONTROLS or own.default is not None:
+        selector, words, *_ = own.needed_by
+        if {name, own.instead} & {*given} or name in CONTROLS or own.default is not None or own.instead == "":
             continue
         values = texts(selector)
         found = " or ".join(shown(word) for word in words if word in values)
@@ -40,7 +40,8 @@ def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: 
             if found and name == FITTED[0] and not {"Nbar", "Ra"} <= {*given}:
                 messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
         elif found:
-            messages.append(f"{name} is missing: {selector} = {found} needs it")
+            either = f" or {own.instead}" * bool(own.instead)
+            messages.append(f"{name}{either} is missing: {selector} = {found} needs it")
     if messages and "micro = " in messages[-1] and "micro" not in given:
         messages[-1] += ' (without asperities: micro = "smooth")'
     return messages
@@ -113,11 +114,13 @@ def _taken(given: Given, name: str) -> list[str]:
 def missing_parameters(grid: Grid) -> list[str]:
     """Messages for parameters that are given, but not in some case that needs them."""
     messages = []
-    for name in grid.values:
-        gaps = np.isnan(along(grid, name)) if VOCABULARY[name].own.default is None else np.False_
+    for name in (name for name in PARAMETERS if {name, VOCABULARY[name].own.instead} & {*grid.values}):
+        own = VOCABULARY[name].own
+        gaps = np.isnan(along(grid, name)) if own.default is None and own.instead != "" else np.False_
+        gaps = gaps & np.isnan(along(grid, own.instead)) if own.instead else gaps
         gaps = gaps & cases_with(name, partial(along, grid)) if gaps.any() else gaps
         if gaps.any():
-            selector, words = VOCABULARY[name].own.needed_by
+            selector, words, *_ = own.needed_by
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
             found = [shown(word) for word in words if word in along(grid, selector)]
             reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
@@ -147,6 +150,17 @@ def picard_for_nothing(grid: Grid) -> list[str]:
     others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
     names = " or ".join(map(shown, smooth))
     return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']
+
+
+def heights_that_yield(grid: Grid) -> list[str]:
+    """A message if heights are given for asperities that yield, and no other case has a use for them."""
+    micro = along(grid, "micro")
+    heights = [name for name in ("sigma", "cut") if name in grid.values]
+    if not heights or not (micro == "elastic_plastic").any() or cases_with(heights[0], partial(along, grid)).any():
+        return []
+    of_heights = " or ".join(map(shown, VOCABULARY[heights[0]].own.needed_by[1]))
+    text = "asperities that yield have one height; random heights, elastic, are micro ="
+    return [f'{heights[0]} is given with micro = "elastic_plastic": {text} {of_heights}']
 
 
 def slips_of_laws(grid: Grid) -> list[str]:

@@ -40,6 +40,7 @@ class Definition:
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
     laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
+    results : names of the results, without profiles and flags
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
     """
 
@@ -54,6 +55,7 @@ class Definition:
     digest: str
     laws: tuple[str, ...] = ()
     scene: Any = None
+    results: tuple[str, ...] = names("result")
 
     def __repr__(self) -> str:
         return f'Definition("{self.name}", {self.cases})'

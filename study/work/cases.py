@@ -16,7 +16,7 @@ from solver.laws.trial import going_on
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
-from ..inputs.vocabulary import CONTROLS, INTEGERS, names
+from ..inputs.vocabulary import CONTROLS, INTEGERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Parcel:
 
     first, last : numbers of the first and the last case
     parameters : name -> (n,), or (1,) for all cases
-    x : (m,) points of the profiles; profiles : names of those that are wanted
+    x : (m,) points of the profiles; results, profiles : names of those that are wanted
     numerics : version of the solver's numerics that is wanted
     laws : micro laws that the worker may not have registered
     """
@@ -34,6 +34,7 @@ class Parcel:
     last: int
     parameters: dict[str, np.ndarray]
     x: np.ndarray
+    results: tuple[str, ...]
     profiles: tuple[str, ...]
     numerics: str
     laws: tuple[Law, ...] = ()
@@ -52,7 +53,8 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
     own = tuple(own_laws(found["micro"]))
-    return Parcel(int(index[0]), int(index[-1]), found, definition.x, definition.profiles, NUMERICS_VERSION, own)
+    wanted = definition.x, definition.results, definition.profiles
+    return Parcel(int(index[0]), int(index[-1]), found, *wanted, NUMERICS_VERSION, own)
 
 
 def own_laws(micro: np.ndarray) -> list[Law]:
@@ -78,13 +80,13 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
     for law in wanted.laws:
         laws.register(law)
     with going_on():  # the functions of a law of one's own
-        return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.profiles)
+        return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.results, wanted.profiles)
 
 
-def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
+def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
     """What is stored of a solution: name in the vocabulary -> (B,), and (B, m) of the wanted profiles."""
     special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
-    kept = (*CONTROLS, *names("result"), *INTEGERS)
+    kept = (*CONTROLS, *results, *INTEGERS)
     found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
     found |= {name: getattr(solution, name) for name in profiles}
     return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}

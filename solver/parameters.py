@@ -25,7 +25,8 @@ class Parameter(NamedTuple):
         (tests/fuzz/fuzz_solver.py): each case is solved, or has a status.
     also : single values allowed outside the interval.
     needed_by : (name of another parameter, some of its choices), a condition: the cases that meet it need this
-        parameter. Several such pairs one after the other: the cases that meet one of them. For these it is checked, and must be given if it has no default. EVERY: all need it.
+        parameter. Several such pairs one after the other: the cases that meet one of them. For these it is checked, and
+        must be given if it has no default. EVERY: all need it.
     used_by : a second condition: the answer depends on the parameter in those cases only that meet both.
     powers : (i, j), its unit is E2*^i R^j.
     instead : of a parameter without a default, the name of another one that serves where it is not given; "": a case

@@ -50,8 +50,14 @@ class Parameters(TypedDict, total=False):
     Ra: Value
     micro: (
         Literal[
-            *("disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights"),
-            *("uniform_heights", "elastic_plastic"),
+            "disc_cell",
+            "power_law",
+            "smooth",
+            "square_lattice",
+            "hex_lattice",
+            "normal_heights",
+            "uniform_heights",
+            "elastic_plastic",
         ]
         | str
         | Law
@@ -116,8 +122,8 @@ def solve(
         Nbar and Ra, as the paper's is
     sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
         "uniform_heights" has sigma alone
-    hardness, yield_strength : of micro = "elastic_plastic", of the softer of asperity and what it presses on; of the two
-        that is not given the hardness is 2.84 times the yield strength
+    hardness, yield_strength : of micro = "elastic_plastic", of the softer of asperity and what it presses on. One of
+        both is enough: the hardness is then 2.84 times the yield strength
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative, a flat body "flat"

@@ -72,8 +72,9 @@ class Refined(NamedTuple):
 def refine(ev, own):
     """:class:`Refined` of the equation at a solution with the quantities `own`.
 
-    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is that of `own` plus what the step changes on the finer mesh. That the two meshes see
-    the bends differently is no error of the quadrature that such cases have (:func:`~.results.cornered`).
+    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is that of `own` plus what the step changes on the finer
+    mesh. That the two meshes see the bends differently is no error of the quadrature that such cases have
+    (:func:`~.results.cornered`).
     """
     fine, law = finer_mesh(ev.mesh), ev.cases.law
     bent = law.bent(ev.state.y, ev.curve.q)

@@ -70,8 +70,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         (X κ + Y) q + Z g(q) = drop - X (K[q_L] - κ q_L).
 
     Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
-    nothing it is q_L. Newton's method solves it to the relative `tolerance` (a number, or (B, 1)), from a closed form for two terms, times
-    the factor by which that is wrong at the nodes, interpolated.
+    nothing it is q_L. Newton's method solves it to the relative `tolerance`, a number or (B, 1), from a closed form for
+    two terms, times the factor by which that is wrong at the nodes, interpolated.
     """
     s = np.ascontiguousarray(s, dtype=float)
     L, H, kappa, node_kappa = _between(ev.mesh, s.tobytes())

@@ -7,7 +7,7 @@ from weakref import WeakSet
 import numpy as np
 
 from ..parameters import BONDED, CONTROL, LAYERED, PARAMETERS
-from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, smooth, trial
+from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
 from .law import Bound, Curve, Law, Spots
 
 __all__ = [
@@ -29,7 +29,20 @@ __all__ = [
 GROUP = "roughcoat.laws"
 #: Names that no parameter of a law can have: those of attributes of a Problem, and E, which `scales` gets. The package
 #: `study` adds those of results, and of what else it is told.
-RESERVED = {*CONTROL, "E", "nu", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
+RESERVED = {
+    *CONTROL,
+    "E",
+    "nu",
+    "control",
+    "value",
+    "parameters",
+    "of",
+    "take",
+    "but",
+    "rough",
+    "invalid",
+    "without_scheme",
+}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
 
@@ -172,7 +185,7 @@ def name_in(identity):
 
 
 BUILT_IN = (
-    *(smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW),
+    *(disc_cell.SMOOTH, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW),
     elastic_plastic.LAW,
 )
 #: Name -> Law.

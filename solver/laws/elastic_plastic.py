@@ -8,8 +8,8 @@ With x = 4 E b/(3 pi Ra H), the mean Hertz pressure over the hardness H, that is
     approach                    δ = (b²/Ra)/(1 + χ), χ = τ²/(τ² + 2.5 τ + 2): b² grows from Ra δ to 2 Ra δ,
     peak of the spot            p_s (1 + 0.5/(1 + τ)), from 3/2 p_s to p_s.
 
-The neighbours of a spot act on it as in :mod:`.disc_cell`, with y = cot θ as there. So with t = b/B̄ = cosθ, X = 2 p*/(pi
-H), x = X t and f = p_s/(H x),
+The neighbours of a spot act on it as in :mod:`.disc_cell`, with y = cot θ as there. So with t = b/B̄ = cosθ,
+X = 2 p*/(pi H), x = X t and f = p_s/(H x),
 
     q = f cos³θ/(θ + sinθ cosθ),  g = t²/(1 + χ) - (4/3) q sinθ,  λ = t²,
     p_max/p* = (2 t/pi) f (1 + 0.5/(1 + τ)) + (2 q/pi) arcsin t.
@@ -59,7 +59,7 @@ def _allows(hardness, yield_strength, nu, **_):
 
 
 class Spot(NamedTuple):
-    """A spot of t = b/B̄: x; τ; f, its derivative by x, and 1 - f without cancellation. 1, 0 and 0 where it is elastic."""
+    """x and τ of a spot; f, its derivative by x, and `lost`, 1 - f without cancellation: 1, 0, 0 where it is elastic."""
 
     x: np.ndarray
     tau: np.ndarray
@@ -78,7 +78,7 @@ def _spot(y, X, x_y):
 
 def _curve(y, X, x_y):
     """That of the disc cell, and what yielding adds: exactly nothing where a spot is elastic."""
-    elastic, (x, tau, f, slope, lost) = disc_cell.spot_curve(y), _spot(y, X, x_y)
+    elastic, (_, tau, f, slope, lost) = disc_cell.spot_curve(y), _spot(y, X, x_y)
     sin = 1 / np.sqrt(1 + y * y)
     t, dx = y * sin, X * sin**3
     N = tau**2 + 2.5 * tau + 2

@@ -172,7 +172,7 @@ class Bound(NamedTuple):
         return self.law.area(y, q, *self.own)
 
     def bent(self, y, q):
-        """(B,) bool: the cases whose λ has corners, or whose spots have yielded at some y and q (B, m): λ bends there."""
+        """(B,) bool: the cases whose λ bends, in corners or where spots begin to yield, at their y and q (B, m)."""
         if self.law.yielded is None:
             return np.full(len(y), self.law.corners)
         return np.any(self.area(y, q) > self.law.yielded(*self.own), axis=1)

@@ -12,7 +12,8 @@ import numpy as np
 from ..contact.start import guess_radius
 from ..kernels.closed_form import decaying_part, whole
 from ..kernels.two_layers import layer_modulus
-from ..laws import LAWS, smooth
+from ..laws import LAWS
+from ..laws.disc_cell import SMOOTH
 from ..numerics.quadrature import gauss_legendre
 from ..scaling import as_cases, dimensionless, law_of, restore
 from ..solution import Model, Solution
@@ -91,7 +92,7 @@ def _on_model(model, part, x):
         return solve_named(base, x)
     s, _ = area_rule()
     radii = np.concatenate([x, np.sqrt((1 - s) * (1 + s))])
-    found = solve_named(base.but(micro=smooth.LAW.name, scheme="newton"), radii)
+    found = solve_named(base.but(micro=SMOOTH.name, scheme="newton"), radii)
     p, p_area = np.split(found.p, [len(x)], axis=1)
     law = law_of(part)
     return replace(found, **spots_under(law, found.p0, p_area), p=p, lam=law.at(p).lam)

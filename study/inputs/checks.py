@@ -124,7 +124,7 @@ def missing_parameters(grid: Grid) -> list[str]:
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
             found = [shown(word) for word in words if word in along(grid, selector)]
             reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
-            messages.append(f"{name} is missing in case {case}{reason}")
+            messages.append(f"{name}{f' or {own.instead}' * bool(own.instead)} is missing in case {case}{reason}")
     return messages
 
 

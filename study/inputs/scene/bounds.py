@@ -24,7 +24,23 @@ _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
 
 _RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
 #: What has a unit and cannot be zero.
-INPUTS = ("P", "a", "D", "h", "Nbar", "Ra", "sigma", "hardness", "yield_strength", "R", "R1", "R2", "E1", "E2", "E_punch")
+INPUTS = (
+    "P",
+    "a",
+    "D",
+    "h",
+    "Nbar",
+    "Ra",
+    "sigma",
+    "hardness",
+    "yield_strength",
+    "R",
+    "R1",
+    "R2",
+    "E1",
+    "E2",
+    "E_punch",
+)
 
 Place = dict[str, int]
 """Dimension -> index along it."""

@@ -47,10 +47,10 @@ picard_domain: figures/picard_domain.pdf ## where the paper's successive approxi
 literature: figures/literature.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
 	$(RUN) table --run literature literature_coatings literature_decided literature_rough
 	@cp figures/literature.png docs/
-	$(VENV)/bin/python tests/literature/literature_page.py docs/literature.md
+	$(VENV)/bin/python tools/literature_page.py docs/literature.md
 
 validate: $(READY) ## rough spheres with every asperity resolved beside the two scales: docs/validate.md, .nc, .png
-	$(VENV)/bin/python tests/resolved/validate.py docs
+	$(VENV)/bin/python tools/resolved/validate.py docs
 
 test: $(READY) ## all tests
 	$(PYTEST)
@@ -67,35 +67,35 @@ kernels: $(READY) ## the tests in tests/computing.txt under the BLAS kernels of 
 
 lowest: ## all tests with the lowest versions that pyproject.toml allows, installed into .venv-lowest
 	$(PYTHON) -m venv .venv-lowest
-	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: $$($(PYTHON) tests/repository/lowest.py)
+	.venv-lowest/bin/python -m pip install --quiet --only-binary :all: $$($(PYTHON) tools/lowest.py)
 	.venv-lowest/bin/python -m pip install --quiet --no-deps --no-build-isolation --editable .
 	@touch .venv-lowest/.ready
 	@$(MAKE) --no-print-directory test VENV=.venv-lowest
 
 mutants: $(READY) ## which of some 500 small mistakes in the code the tests notice: docs/mutants.md
-	$(VENV)/bin/python tests/mutants/mutate.py --table docs/mutants.md
+	$(VENV)/bin/python tools/mutants/mutate.py --table docs/mutants.md
 
 fresh_mutants: $(READY) ## which mistakes of the latest list in tests/mutants/fresh all the tests notice: hours
-	$(VENV)/bin/python tests/mutants/fresh.py
+	$(VENV)/bin/python tools/mutants/fresh.py
 
 fuzz: $(READY) ## random calls, mutated study files, flipped bits: nothing crashes, nothing is silently wrong (minutes)
-	$(VENV)/bin/python tests/fuzz/fuzz_solver.py --cases 4800
-	$(VENV)/bin/python tests/fuzz/fuzz_studies.py 2000
-	$(VENV)/bin/python tests/fuzz/fuzz_files.py 400
-	$(VENV)/bin/python tests/fuzz/kill_runs.py 10
+	$(VENV)/bin/python tools/fuzz/fuzz_solver.py --cases 4800
+	$(VENV)/bin/python tools/fuzz/fuzz_studies.py 2000
+	$(VENV)/bin/python tools/fuzz/fuzz_files.py 400
+	$(VENV)/bin/python tools/fuzz/kill_runs.py 10
 
 bench: $(READY) ## speed of the solver: bench.json
-	$(VENV)/bin/python tests/bench/benchmark.py bench.json
+	$(VENV)/bin/python tools/bench/benchmark.py bench.json
 
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
-	$(VENV)/bin/python tests/bench/benchmark.py --page docs/speed.md
+	$(VENV)/bin/python tools/bench/benchmark.py --page docs/speed.md
 
 lint: $(READY) ## ruff, and mypy for the public names
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/mypy
 
 clean: ## remove figures and tables that the program draws, and caches; results and .venv stay
-	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tests/repository/clean.py; fi
+	@if [ -x $(VENV)/bin/python ]; then $(VENV)/bin/python tools/clean.py; fi
 
 # Wheels only: nothing is compiled on the user's machine. setuptools is one of the pinned packages. A Python newer than
 # the lock has no wheels of some pinned versions; there pip takes the newest ones, and needs no compiler either.

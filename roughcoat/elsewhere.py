@@ -1,4 +1,4 @@
-"""A call that travels to a process which somebody else has started, such as a worker of dask.
+"""A call that may travel to a process which somebody else has started, such as a worker of dask.
 
 A function arrives there as the name of its module. Python may look for `study` in the working folder of the worker
 first, and would run a study.py that is there. So the call travels as bytes, which are read when `roughcoat` has been
@@ -12,12 +12,19 @@ from typing import Any
 import cloudpickle  # of dask: it also packs functions that a script defines
 
 
-def packed(function: Callable, *arguments: Any) -> tuple[Callable, bytes]:
-    """What computes function(*arguments) there, and its argument."""
-    return perform, cloudpickle.dumps((function, arguments))
+class Packed:
+    """function(*arguments, *more), when it is called with `more`. In the process that made it nothing is packed."""
 
+    def __init__(self, function: Callable, *arguments: Any):
+        self._call, self._bytes = (function, arguments), b""
 
-def perform(call: bytes) -> Any:
-    """The result of a call that has been packed."""
-    function, arguments = pickle.loads(call)
-    return function(*arguments)
+    def __call__(self, *more: Any) -> Any:
+        function, arguments = pickle.loads(self._bytes) if self._bytes else self._call
+        return function(*arguments, *more)
+
+    def __getstate__(self) -> bytes:
+        """The bytes; also those that came and were never read, as in a scheduler that passes the call on."""
+        return self._bytes or cloudpickle.dumps(self._call)
+
+    def __setstate__(self, state: bytes) -> None:
+        self._bytes = state

@@ -22,7 +22,7 @@ class Parameter(NamedTuple):
     choices : the words that a text may be; () for a number.
     whole : whether the number is an integer.
     interval : the numbers allowed, in units R = E2* = 1 and mathematical notation. Within it the solver is tested
-        (tests/fuzz/fuzz_solver.py): each case is solved, or has a status.
+        (tools/fuzz/fuzz_solver.py): each case is solved, or has a status.
     also : single values allowed outside the interval.
     needed_by : (name of another parameter, some of its choices), a condition: the cases that meet it need this
         parameter. Several such pairs one after the other: the cases that meet one of them. For these it is checked, and

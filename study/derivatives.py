@@ -13,12 +13,12 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import uses
 from solver.sensitivity import is_ratio
 
-from .data.assumptions import has_units
 from .inputs.definition import StudyError
 from .inputs.laws import recall
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
+from .rules.rule import has_units
 from .terminal import shown
 
 #: Results that have sensitivities.

@@ -1,6 +1,8 @@
 """A dataset of dask arrays: a chunk of the grid is solved when its numbers are asked for, wherever dask computes."""
 
+import operator
 from dataclasses import replace
+from math import prod
 from typing import NamedTuple
 from uuid import uuid4
 
@@ -33,11 +35,12 @@ class Chunks(NamedTuple):
     ends: dict[str, np.ndarray]
     laws: tuple[Law, ...]
 
-    def within(self, place: tuple[int, ...]) -> Definition:
-        """The definition of the cases in the chunk at a place, which has one number for each dimension."""
+    def within(self, number: int) -> Definition:
+        """The definition of the cases in the chunk of a number."""
+        place = np.unravel_index(number, [len(ends) - 1 for ends in self.ends.values()])
         window = {MOVED: slice(None)} if MOVED in self.definition.grid.sizes else {}
-        for (dim, ends), number in zip(self.ends.items(), place, strict=True):
-            window[dim] = slice(int(ends[number]), int(ends[number + 1]))
+        for (dim, ends), at in zip(self.ends.items(), place, strict=True):
+            window[dim] = slice(int(ends[at]), int(ends[at + 1]))
         scene = self.definition.scene and self.definition.scene.within(window)
         return replace(self.definition, grid=cut_out(self.definition.grid, window), scene=scene)
 
@@ -49,25 +52,29 @@ def lazily(definition: Definition, chunks: dict, command: str) -> xr.Dataset:
 
     Raises StudyError for chunks that do not fit the grid.
     """
+    from roughcoat.elsewhere import Packed  # no other call needs it
+
     dims = definition.in_results({dim: dim for dim in definition.grid.sizes})
     lengths = _lengths(chunks, definition.in_results(definition.grid.sizes))
-    ends = {dim: np.cumsum([0, *own]) for dim, own in zip(dims.values(), lengths, strict=True)}
+    ends = {dim: np.cumsum([0, *along]) for dim, along in zip(dims.values(), lengths, strict=True)}
     each = Chunks(definition, ends, tuple(own_laws(definition.grid.values["micro"][1])))
-    ones = tuple((1,) * len(own) for own in lengths)
-    results = np.empty((0,) * len(ones), dtype=object)
-    solved = dask.array.map_blocks(_solved, each, chunks=ones, meta=results, name=f"solve-{uuid4().hex}")
+    shape = tuple(map(len, lengths))
+    numbers = dask.array.from_array(np.arange(prod(shape)).reshape(shape), chunks=1)
+    # the grid is an item of dask of its own, which goes to a worker once and not with every chunk
+    call = dask.delayed(Packed(_solved, each), name=f"contacts-{uuid4().hex}", traverse=False)
+    empty = np.empty((0,) * len(shape), dtype=object)
+    solved = dask.array.map_blocks(operator.call, call, numbers, meta=empty, name=f"solve-{uuid4().hex}")
     # one case, not solved, has the names, types, dimensions and attributes of all results
-    first = each._replace(ends={dim: np.array([0, 1]) for dim in ends}).within((0,) * len(ends))
+    first = each._replace(ends={dim: np.array([0, 1]) for dim in ends}).within(0)
     first_case = _dataset(first, not_run(first, first.grid.size), command)
-    found = dataset_of(definition, labelled(definition, {}, command).settings_apart())
     variables = {}
     for name, array in first_case.data_vars.items():
-        more = {"new_axis": len(ones)} if "x" in array.dims else {}
+        more = {"new_axis": len(shape)} if "x" in array.dims else {}
         there = (*lengths, (len(definition.x),)) if more else lengths
-        nothing = np.empty((0,) * array.ndim, array.dtype)
-        results = solved.map_blocks(_taken, name, chunks=there, meta=nothing, **more)
-        variables[name] = xr.Variable(array.dims, results, array.attrs)
-    return found.assign(variables)
+        more["meta"] = np.empty((0,) * array.ndim, array.dtype)
+        values = solved.map_blocks(Packed(_values, name), chunks=there, name=f"{name}-{uuid4().hex}", **more)
+        variables[name] = xr.Variable(array.dims, values, array.attrs)
+    return dataset_of(definition, labelled(definition, {}, command).settings_apart()).assign(variables)
 
 
 def _lengths(chunks: dict, sizes: dict[str, int]) -> tuple[tuple[int, ...], ...]:
@@ -92,22 +99,22 @@ def _fits(length: object, size: int) -> bool:
     return length == -1 or (whole and (parts is not length or sum(parts) == size))
 
 
-def _solved(each: Chunks, block_id: tuple[int, ...]) -> np.ndarray:
-    """The results of a chunk, name -> values, as the only element of an array with as many dimensions as the grid."""
+def _solved(each: Chunks, number: np.ndarray) -> np.ndarray:
+    """The results of a chunk, name -> values, as the only element of an array of the shape of its number."""
     for law in each.laws:
         laws.register(law)
-    here = each.within(block_id)
+    here = each.within(number.item())
     blocks = [compute(parcel(here, index)) for index in blocks_of_grid(here)]
     arrays = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
-    found = np.empty((1,) * len(block_id), dtype=object)
-    found[(0,) * len(block_id)] = {name: own.values for name, own in _dataset(here, arrays, "").data_vars.items()}
-    return found
+    results = np.empty(number.shape, dtype=object)
+    results[...] = {name: array.values for name, array in _dataset(here, arrays, "").data_vars.items()}
+    return results
 
 
 def _dataset(here: Definition, arrays: dict[str, np.ndarray], command: str) -> xr.Dataset:
     return dataset_of(here, parts(here, arrays, command))
 
 
-def _taken(results: np.ndarray, name: str) -> np.ndarray:
+def _values(name: str, results: np.ndarray) -> np.ndarray:
     """The values of one result of a chunk."""
     return results.item()[name]

@@ -72,7 +72,7 @@ def results(tmp_path_factory) -> Path:
     with held(folder.with_name("lock")):
         if not folder.exists():
             unfinished = folder.with_name("unfinished")
-            if "ROUGHCOAT_RESULTS" in os.environ:  # of tests/mutants/mutate.py: this mutant does not change them
+            if "ROUGHCOAT_RESULTS" in os.environ:  # of tools/mutants/mutate.py: this mutant does not change them
                 shutil.copytree(os.environ["ROUGHCOAT_RESULTS"], unfinished)
             else:
                 compute_results(unfinished)

@@ -1,15 +1,15 @@
 """Films, layers far thinner than the contact: the part of the operator that only the edge of the contact feels.
 
-k is in 1/a, and cut is the largest k of the quadrature that all films share (CUT of :mod:`.wave_rule`). From L(kh/a)
-the constant n' = L(cut h/2a) is taken out: it is n' times a half-space. The rest, L(kh/a) - n', is split by a smooth
-step χ, which falls from 1 to 0 below k = cut. χ (L - n') is integrated over k as for any layer. For (1 - χ)(L - n') the
+k is in 1/a, and cut is the largest k of the quadrature that all films share (CUT of :mod:`.wave_rule`). The constant
+n' = L(cut h/2a) is taken out of L(kh/a): it acts as n' times a half-space. The rest, L(kh/a) - n', is split by a smooth
+step χ, which falls from 1 to 0 below k = cut. χ (L - n') is integrated over k as for any layer. In (1 - χ)(L - n') the
 Bessel functions are plane waves, and the kernel is a convolution: with κ = k/cut and τ = cut |x - x'|,
 
     ∫ (L(kh/a) - n')(1 - χ) J0(kx) J0(kx') dk ≈ c(τ)/sqrt(x x'),
     c(τ) = (1/π) ∫ (L(κ cut h/a) - n')(1 - χ) cos(κτ) dκ/κ.
 
-The relative error of that is of the order cut⁻². Inside the contact, where the pressure is smooth, the convolution is
-nothing. It is linear in c, so it is tabulated like the rest.
+Its relative error is of the order cut⁻². Inside the contact, where the pressure is smooth, the convolution vanishes.
+It is linear in c, so it is tabulated like the rest.
 """
 
 from functools import lru_cache
@@ -33,10 +33,10 @@ _KAPPA, _TAU = 14, 20
 _STEP = 3.4
 #: Beyond this τ the convolution is left out.
 REACH = 128.0
-#: c is smooth for τ up to this, except at 0. Beyond, it swings with the period of the step, and it ends at REACH: a
-#: panel there needs as many points as one that contains the point where c is wanted (tests/body/test_work.py).
+#: c is smooth for τ up to this, except at 0. Beyond, it swings with the period of the step, up to REACH: a panel there
+#: needs as many points as one that contains the point where c is wanted (tests/body/test_work.py).
 _SMOOTH = 12.0
-#: So many cases or more get their matrices as products with one table.
+#: This many cases or more get their matrices as products with one table.
 MANY = 8
 #: The Chebyshev nodes of an octave, from 0 to 1; and the matrix (_TAU, _TAU) from values there to the coefficients of
 #: their Chebyshev series.
@@ -81,8 +81,8 @@ def transform(f, end, p):
 
 
 class Share(NamedTuple):
-    """The part of a convolution of r pairs of a point and a panel, `row` and `panel` (r,). A pair has a rule of g
-    points; there the `weight` of c (r, g) and the basis of the panel, `columns` (r or 1, g, order)."""
+    """The part that r pairs of a point and a panel, `row` and `panel` (r,), have in a convolution. Each pair has a rule
+    of g points: there `weight` (r, g) is the weight of c, and `columns` (r or 1, g, order) the basis of the panel."""
 
     row: np.ndarray
     panel: np.ndarray
@@ -93,9 +93,9 @@ class Share(NamedTuple):
 class Convolution(NamedTuple):
     """The convolution at m points as a linear function of c: for each c a matrix (m, n).
 
-    `shape` is (m, p, order), for p panels; `shares` are all :class:`Share` that are not zero. The N points of all their
-    rules are sorted by octaves of τ: `place` (N,) is the index of each among the points of all shares, and `local` (N,)
-    where it is in its octave, from -1 to 1. In both, octave i begins at ends[i].
+    `shape` is (m, p, order), for p panels; `shares` has each :class:`Share` that is not zero. The N points of all their
+    rules are sorted by octaves of τ. `place` (N,) is the index of a point among those of all shares, and `local` (N,)
+    its place in its octave, from -1 to 1. In both, octave i begins at ends[i].
     """
 
     shape: tuple
@@ -112,8 +112,10 @@ class Convolution(NamedTuple):
         for octave, (low, high) in enumerate(pairwise(self.ends)):
             values[:, self.place[low:high]] = chebval(self.local[low:high], series[:, octave, :, 0].T)
         for share, rows in self._parts():
-            for one, value in zip(out, values[:, rows], strict=True):
-                one[share.row, share.panel] += against(share.weight * value.reshape(share.weight.shape), share.columns)
+            for matrix, at_points in zip(out, values[:, rows], strict=True):
+                matrix[share.row, share.panel] += against(
+                    share.weight * at_points.reshape(share.weight.shape), share.columns
+                )
         return out.reshape(size)
 
     def whole(self):
@@ -128,8 +130,8 @@ class Convolution(NamedTuple):
             place = (pair + first[rows])[:, None] + np.arange(_TAU)
             shape, ends = (len(row) * count, weight.size), np.arange(weight.size + 1) * _TAU
             spread = csc_array((basis[rows].ravel(), place.ravel(), ends), shape=shape)
-            own = spread @ (weight[..., None] * columns).reshape(weight.size, order)
-            out[:, row, panel] += own.reshape(len(row), count, order).transpose(1, 0, 2)
+            added = spread @ (weight[..., None] * columns).reshape(weight.size, order)
+            out[:, row, panel] += added.reshape(len(row), count, order).transpose(1, 0, 2)
         return Whole((m, panels * order), out.reshape(count, -1))
 
     def _parts(self):
@@ -162,8 +164,8 @@ def convolution(mesh, points, cut):
     s = points[:, None]
     nearest = np.clip(s, low, high)
     farthest, shares, taus = np.where(s - low > high - s, low, high), [], []
-    within, rough = _tau(s, nearest, nearest - s, cut) < REACH, _tau(s, farthest, farthest - s, cut) > _SMOOTH
-    for piece in pieces(points, mesh.breaks, mesh.order, within, rough):
+    within, swings = _tau(s, nearest, nearest - s, cut) < REACH, _tau(s, farthest, farthest - s, cut) > _SMOOTH
+    for piece in pieces(points, mesh.breaks, mesh.order, within, swings):
         s = points[piece.row, None]
         point = s + piece.sign * piece.gap
         tau = _tau(s, point, piece.gap, cut)

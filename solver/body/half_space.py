@@ -19,14 +19,14 @@ _FINE, _SECOND = 3e-5, 8
 #: Work of one Newton step of a lone case, in the unit of :meth:`~solver.body.operator.Body.work`.
 _STEP = 150
 #: n of a base that stands for a rigid one under the thin layer: the equation divides by the half-space's part X, which
-#: must not be 0. Then X is below 1e-20 of the springs' part Y for every h and a within the bounds, and n³ is no
-#: underflow.
+#: must not be 0. With this n, X is below 1e-20 of the springs' part Y for every h and a within the bounds, and n³ does
+#: not underflow.
 STIFF = 1e-50
 
 
 class HalfSpaceOperator(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of a half-space on a mesh: one for all cases and radii, so that its
-    sub-batches are itself and its slopes 0."""
+    """The :class:`~solver.body.operator.Operator` of a half-space on a mesh. It is one for all cases and radii: each
+    sub-batch is the operator itself, and its slopes are 0."""
 
     mesh: Mesh
 
@@ -51,8 +51,8 @@ class HalfSpaceOperator(NamedTuple):
         return q @ self.mesh.K.T, q @ self.mesh.edge
 
     def slopes(self, q):
-        none = np.broadcast_to(0.0, q.shape)  # takes no memory
-        return none, none[:, 0]
+        zeros = np.broadcast_to(0.0, q.shape)  # takes no memory
+        return zeros, zeros[:, 0]
 
     def between(self, q, s, half_space):
         return half_space
@@ -87,7 +87,8 @@ class HalfSpace(NamedTuple):
         return np.zeros_like(self.E)
 
     def unseen(self, a, s1):
-        """It has no length of its own. Smooth contacts on springs have a bound of :mod:`..contact.smooth`."""
+        """A half-space has no length, and so no short waves. Smooth contacts on springs have a bound of
+        :mod:`..contact.smooth`."""
         return np.zeros_like(a)
 
     def work(self, a, nodes):

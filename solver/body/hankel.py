@@ -24,21 +24,21 @@ from .wave_rule import CUT, FILM, place_of
 
 #: A layer thinner than this times the radius yields nearly as the thin layer does.
 _THIN = 0.02
-#: Work of a lone case in the unit of :meth:`.operator.Body.work`, for films and for thicker layers. _MESH: of a new
-#: mesh, for each node of a film, for each entry of the matrix of a thicker layer. _STEP and _ENTRY: of a Newton step,
-#: and more for each entry. They are ratios of processor times to a factor of two: BUDGET needs no more.
+#: Work of a lone case in the unit of :meth:`.operator.Body.work`, for films and for thicker layers. A new mesh takes
+#: _MESH for each node of a film, or for each entry of the matrix of a thicker layer. A Newton step takes _STEP, and
+#: _ENTRY for each entry. They are ratios of processor times, to a factor of two: BUDGET needs no more.
 _MESH, _STEP, _ENTRY = (1000.0, 2.0), (4000.0, 600.0), (0.3, 0.1)
-#: Rounding, 1e-14 for each node, is divided by L at this k, of films and of thicker layers: waves that a rigid base
-#: hardly lets yield are small differences of large terms, and in films of more of them. With k = 10 the depth of a film
-#: of nu1 = 1/2 on a rigid base was 30 times as far off as its error bar (test_rounding of
-#: tests/body/test_rigid_base.py).
+#: Rounding, 1e-14 for each node, is divided by L at this k, the first of films, the second of thicker layers. Where a
+#: rigid base hardly lets the layer yield to a wave, L is a small difference of large terms, of more terms in films.
+#: With k = 10 the depth of a film of nu1 = 1/2 on a rigid base is 30 times as far off as its error bar (test_rounding
+#: of tests/body/test_rigid_base.py).
 _ROUNDED = (2.5, 4.0)
 #: The kernel is rounded to _PLATE parts of its largest value, n. Short waves yield n times less, and so the pressure is
-#: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure, which
-#: was then up to a hundred times as far off as its error bar (tests/contact/errors/test_plates.py).
+#: rounded to n times that. A plate that nearly lifts off has a p(0) a hundred times below the largest pressure: without
+#: this p(0) is up to a hundred times as far off as its error bar (tests/contact/errors/test_plates.py).
 _PLATE = 3 * np.finfo(float).eps
-#: Waves u = kh above _SHORT feel the layer alone. The integral of a bound up to there has _POINTS points, evenly in
-#: ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/errors/test_accuracy.py).
+#: Waves u = kh above _SHORT feel the layer alone. The integral of :meth:`Hankel.unseen` up to there has _POINTS points,
+#: evenly in ln u (test_the_estimate_encloses_films_that_no_mesh_sees of tests/contact/errors/test_accuracy.py).
 _SHORT, _POINTS = 45.0, 64
 
 
@@ -121,7 +121,7 @@ class Hankel(NamedTuple):
 
     def work(self, a, nodes):
         film = place_of(self, a)[0] == FILM
-        mesh, least, entry = (np.where(film, *two) for two in (_MESH, _STEP, _ENTRY))
+        mesh, least, entry = (np.where(film, *pair) for pair in (_MESH, _STEP, _ENTRY))
         return mesh * np.where(film, nodes, nodes**2), least + entry * nodes**2
 
     def order(self, a):

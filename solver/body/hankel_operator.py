@@ -50,22 +50,22 @@ class HankelOperator(NamedTuple):
         return (self.edge * q).sum(axis=1)
 
     def products(self, q):
-        found = np.einsum("bij,bj->bi", self.rows, q)
-        return found[:, :-1], found[:, -1]
+        displacements = np.einsum("bij,bj->bi", self.rows, q)
+        return displacements[:, :-1], displacements[:, -1]
 
     def slopes(self, q):
         out = np.empty((len(q), self.mesh.n + 1))
         for part in self.parts:
             for tab, rows in part.tables(self.mesh):
                 index, uL = part.index[rows], part.uL[rows]
-                own = q[index]
+                pressures = q[index]
                 if tab.is_small:
-                    moved = (uL @ tab.product).reshape(len(own), -1, self.mesh.n)
-                    out[index] = np.einsum("bij,bj->bi", moved, own)
+                    matrices = (uL @ tab.product).reshape(len(pressures), -1, self.mesh.n)
+                    out[index] = np.einsum("bij,bj->bi", matrices, pressures)
                 else:
-                    out[index] = (tab.weights(uL) * (own @ tab.phi.T)) @ tab.J
+                    out[index] = (tab.weights(uL) * (pressures @ tab.phi.T)) @ tab.J
                 if part.film is not None:
-                    out[index] += np.matmul(_film(part.d_film[rows], tab, self.mesh.n), own[..., None])[..., 0]
+                    out[index] += np.matmul(_film(part.d_film[rows], tab, self.mesh.n), pressures[..., None])[..., 0]
         return out[:, :-1], out[:, -1]
 
     def between(self, q, s, half_space):
@@ -113,13 +113,13 @@ def rows_of(parts, mesh):
         begin = end
         for tab, rows in part.tables(mesh):
             low, end = end, end + rows.stop - rows.start
-            own, L1 = flat[:, low:end], part.L1[rows]
-            of_cases = own.reshape(n + 1, n, -1).transpose(2, 0, 1)
+            block, L1 = flat[:, low:end], part.L1[rows]
+            of_cases = block.reshape(n + 1, n, -1).transpose(2, 0, 1)
             if tab.product is None:
-                for one, w in zip(of_cases, tab.weights(L1), strict=True):
-                    one[:] = (tab.J * w[:, None]).T @ tab.phi
+                for matrix, w in zip(of_cases, tab.weights(L1), strict=True):
+                    matrix[:] = (tab.J * w[:, None]).T @ tab.phi
             else:
-                np.matmul(tab.product.T, L1.T, out=own)
+                np.matmul(tab.product.T, L1.T, out=block)
             if part.film is not None:
                 of_cases[:] += _film(part.film[rows], tab, n)
         flat[:, begin:end] += half_space * np.transpose(part.share)

@@ -1,6 +1,6 @@
-"""The protocol of a body: what lies under the punch. One file has one body: :mod:`.half_space`, :mod:`.layered`.
+"""The protocol of a body: what lies under the punch. One file has one body: :mod:`.half_space`, :mod:`.hankel`.
 
-The contact asks a body for nothing else, and never which one it is. Lengths are in R, moduli in E2*; a is the contact
+The contact asks a body for nothing else, nor which body it is. Lengths are in R, moduli in E2*; a is the contact
 radius, and x = r/a. The displacement of the surface under the pressure p = p* q, less that at the edge, is
 
     u(x) - u(1) = 4 a/(π E) p* (K q)(x) + C p* q(x).
@@ -44,10 +44,9 @@ class Operator(Protocol):
         half-space gives there."""
 
     def of_waves(self, waves, half_space):
-        """K of a pressure that is no polynomial in s, the displacement at the nodes and under it that of the edge, and
-        its derivatives by ln a: (2, B or 1, n + 1). ``waves(k)`` is the Hankel transform ∫₀¹ · J0(kx) x dx of the
-        pressure at k (G,), in 1/a, and `half_space` (n + 1,) what K of a half-space gives. NaN where it is not
-        known."""
+        """K of a pressure that is no polynomial in s, and its derivatives by ln a: (2, B or 1, n + 1), each at the
+        nodes and at last the displacement of the edge. ``waves(k)`` is the Hankel transform ∫₀¹ · J0(kx) x dx of the
+        pressure at k (G,), in 1/a, and `half_space` (n + 1,) what K of a half-space gives. NaN: it is not known."""
 
     def of_waves_between(self, waves, s, half_space):
         """The same (B or 1, m) at points s (m,) > 0 between the nodes, for `half_space` (m,) there."""
@@ -91,7 +90,8 @@ class Body(Protocol):
         """Permutation (B,) that puts cases that share work next to each other; None: the order does not matter."""
 
     def alike(self, a):
-        """A body that yields nearly as this one under contacts of radius a, and is much cheaper to solve; or None."""
+        """A body that yields nearly as this one does under contacts of radius a, and is much cheaper to solve; or
+        None."""
 
     def first_nodes(self, rtol, a, rise=None):
         """Number of nodes (B,) that just about meet rtol (B,) for contacts of radius a. `rise` (B,), from 0 to about 1,

@@ -18,12 +18,12 @@ _BLOCK = 16384
 
 
 class Part(NamedTuple):
-    """The kernel of b cases of one family and one class of stiffness, all of them films or none; without a `sampler` of
-    the family, all of one octave too.
+    """The kernel of b cases of one family and one class of stiffness, which are all films or all thicker. If the family
+    has no `sampler`, they are of one octave too.
 
     `index` (b,): their places in the batch; `octave` (b,) of h/a, equal ones next to each other; `radius` (b,): a.
     L1, uL (b, M): L - 1 and -u dL/du at the few nodes k of the tables, or at all of them. Films have χ (L - n') in
-    place of L - 1, and further their convolution c and its derivative by ln a, `film` and `d_film` (b, T), and n',
+    place of L - 1, and besides the convolution c and its derivative by ln a, `film` and `d_film` (b, T), and n',
     `level` (b, 1): :mod:`.film` says what these are.
     """
 
@@ -39,13 +39,13 @@ class Part(NamedTuple):
     level: np.ndarray | None = None
 
     def tables(self, mesh):
-        """Pairs of a :class:`~solver.body.tables.Table` on a mesh and the rows (slice) of the cases that it is for."""
+        """Pairs of a :class:`~solver.body.tables.OctaveTable` on a mesh and the rows (slice) of its cases."""
         for octave, rows in runs(self.octave):
             yield table(mesh, self.sampler, octave, self.stiffness, rows.stop - rows.start >= film.MANY), rows
 
     @property
     def kind(self):
-        """Parts of one kind can be one part."""
+        """What parts have in common that :func:`join` makes one."""
         return self.stiffness, self.film is None, self.sampler or int(self.octave[0])
 
     @property
@@ -59,7 +59,7 @@ class Part(NamedTuple):
 
 
 def runs(kinds):
-    """Pairs of a number and the slice of its equal neighbours, of `kinds` (b,) int, such as octaves; b > 0."""
+    """Pairs of a number in `kinds` (b,) int, such as octaves, and the slice of its equal neighbours; b > 0."""
     ends = (kinds[1:] != kinds[:-1]).nonzero()[0] + 1  # np.diff takes as long as what is done with a small slice
     for low, high in pairwise([0, *ends.tolist(), len(kinds)]):
         yield int(kinds[low]), slice(low, high)
@@ -82,17 +82,17 @@ def parts_of(body, a, index):
     if sampler is None:  # each octave has its own number of nodes
         kinds += 2 * len(STIFFEST) * (octave - FILM)
     for _, rows in runs(kinds) if len(index) else ():
-        own, of_class = index[rows], int(stiffness[rows][0])
+        cases, stiffness_class = index[rows], int(stiffness[rows][0])
         make = _film_part if octave[rows][0] == FILM else _plain_part
-        kernel = make(body.take(own), body.h[own] / a[own], octave[rows], of_class)
-        parts.append(Part(sampler, of_class, own, octave[rows], a[own], *kernel))
+        kernel = make(body.take(cases), body.h[cases] / a[cases], octave[rows], stiffness_class)
+        parts.append(Part(sampler, stiffness_class, cases, octave[rows], a[cases], *kernel))
     return parts
 
 
 def _plain_part(body, h_a, octave, stiffness):
     if body.kernel.sampler is None:
         return _kernel(body, h_a, quadrature(int(octave[0]), stiffness)[0])
-    k = [few(body.kernel.sampler, one, stiffness).k for one, _ in runs(octave)]
+    k = [few(body.kernel.sampler, first, stiffness).k for first, _ in runs(octave)]
     return _kernel(body, h_a, np.repeat(k, [rows.stop - rows.start for _, rows in runs(octave)], axis=0))
 
 
@@ -112,9 +112,9 @@ def _kernel(body, h_a, k, level=None, factor=1.0):
     size, count = len(h_a), k.shape[-1]
     L1, uL = np.empty((2, size, count))
     many, yields = max(1, _BLOCK // count), body.m.any()  # whether a punch yields; few do
-    for of_formula in body.kernel.formulas():
-        for low in range(0, len(of_formula), many):
-            rows = of_formula[low : low + many]
+    for group in body.kernel.formulas():
+        for low in range(0, len(group), many):
+            rows = group[low : low + many]
             u = (k if k.ndim == 1 else k[rows]) * h_a[rows, None]
             above, slope = body.kernel.take(rows).decaying_part(u)
             if yields:

@@ -13,8 +13,8 @@ from ..numerics.quadrature import gauss_legendre, radau_nodes
 from . import film
 from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
 
-#: Largest array of a table, in numbers. If it were larger, the product of J0 and φ (of films) is formed case by case,
-#: and J0 between the nodes is formed anew each time.
+#: Largest array of a table, in numbers. In place of a larger one the product of J0 and φ (of films) is formed case by
+#: case, and J0 between the nodes anew each time.
 _KEEP = 4e6
 #: All tables that are kept take at most so many bytes.
 _MOST_BYTES = 4e8
@@ -22,30 +22,29 @@ _MOST_BYTES = 4e8
 _SMALL = 22
 #: The same for the convolution of films.
 _WHOLE = 64
-#: The integral of the transform φ is taken in pieces, along each of which the argument of J0 grows by at most so many
-#: radians.
+#: The integral of the transform φ is taken in pieces. Along each the argument of J0 grows by at most this, in radians.
 _PHASE = 120.0
 #: φ is formed, and its moments kept, in parts of so many nodes k.
 _ROWS = 250
-#: The moments of a panel are formed for one of these numbers of polynomials at once. J0 costs the most, and so meshes
-#: of all orders have its values in common.
+#: The moments of a panel are formed for the first of these numbers of polynomials that is enough. J0 costs the most: so
+#: meshes of many orders share its values.
 _COUNTS = (16, 48, 144)
-#: Where s is below _NEAR, J0(kx) - J0(k) is a Taylor series of _TERMS terms: k (1 - x) is at most 0.03 there. As a
-#: difference it is rounded by 2e-16/s² of itself, and the load of films of n = 300 to 3e6 on narrow panels was off by
+#: Where s is below _NEAR, J0(kx) - J0(k) is a Taylor series of _TERMS terms: k (1 - x) is at most 0.03 there. The
+#: difference itself is rounded by 2e-16/s², and then the load of films of n = 300 to 3e6 on narrow panels is off by
 #: 1e-10 to 6e-8 (tests/contact/errors/test_plates.py).
 _NEAR, _TERMS = 3e-3, 5
 
 
 class FilmTable(NamedTuple):
-    """What makes the operator of a convolution c (b, T) on one mesh of n nodes: the `nodes` (m,) where it is felt,
-    :func:`film_rows` there, and `edge` (T, n): c @ edge is the row of the edge."""
+    """What makes the operator of a convolution c (b, T) on one mesh of n nodes: the `nodes` (m,) where it is felt;
+    `rows`, :func:`film_rows` there; and `edge` (T, n), c @ edge being the row of the edge."""
 
     nodes: np.ndarray
     rows: film.Whole | film.Convolution
     edge: np.ndarray
 
 
-class Table(NamedTuple):
+class OctaveTable(NamedTuple):
     """What makes the operator, in one octave on one mesh of n nodes, from L - 1 (b, M) at the few nodes k.
 
     L - 1 times `product` (M, (n + 1) n) is the matrix and, under it, the row of the edge; None for few cases, or if it
@@ -79,16 +78,16 @@ def _kept(make):
     """A function of hashable arguments whose latest results are kept in `_tables`."""
 
     @wraps(make)
-    def found(*key):
+    def cached(*key):
         return _tables.get((make.__name__, *key), lambda: make(*key))
 
-    return found
+    return cached
 
 
 @_kept
 def table(mesh, sampler, octave, stiffness, many):
-    """The :class:`Table` of a mesh, for the kernels of a :class:`~solver.kernels.kernel.Sampler` or for those without
-    one, in an octave and a class of stiffness; `many` bool: for many cases, or for few."""
+    """The :class:`OctaveTable` of a mesh in an octave and a class of stiffness, for the kernels of a
+    :class:`~solver.kernels.kernel.Sampler` or for those without one; `many` bool: for many cases, or for few."""
     J, phi = _waves(mesh, octave, stiffness % len(STIFFEST))
     product, is_film = None, octave == FILM
     at_all = is_film or sampler is None
@@ -97,19 +96,19 @@ def table(mesh, sampler, octave, stiffness, many):
         product = ((spread[:, None] * J)[:, :, None] * phi[:, None, :]).reshape(len(J), -1)
     elif not at_all and (many or mesh.n <= _SMALL):
         product = np.array([((J * row[:, None]).T @ phi).ravel() for row in spread])
-    return Table(J, phi, spread, product, _film_table(mesh, many) if is_film else None)
+    return OctaveTable(J, phi, spread, product, _film_table(mesh, many) if is_film else None)
 
 
 @_kept
 def _waves(mesh, octave, stiffness):
-    """J and φ of a :class:`Table`, the same for many cases and for few."""
+    """J and φ of a :class:`OctaveTable`, the same for many cases and for few."""
     k, _ = quadrature(octave, stiffness)
     return np.hstack([less_edge(k, mesh.s), j0(k)[:, None]]), transform(mesh, k)
 
 
 @_kept
 def _spread(sampler, octave, stiffness):
-    """The `spread` of a :class:`Table`, the same for all meshes."""
+    """The `spread` of a :class:`OctaveTable`, the same for all meshes."""
     return np.pi / 2 * few(sampler, octave, stiffness).spread
 
 
@@ -124,8 +123,8 @@ def _film_table(mesh, many):
 def film_rows(mesh, s_bytes, many):
     """The convolution at points s between the nodes: a :class:`film.Whole` for many cases or on few nodes, where it
     serves all later cases, else a :class:`film.Convolution`."""
-    found = film.convolution(mesh, np.frombuffer(s_bytes), CUT)
-    return found.whole() if many or mesh.n <= _WHOLE else found
+    convolution = film.convolution(mesh, np.frombuffer(s_bytes), CUT)
+    return convolution.whole() if many or mesh.n <= _WHOLE else convolution
 
 
 def felt(mesh, x):
@@ -180,8 +179,8 @@ def less_edge(k, s):
     edge, near = j0(k), s < _NEAR
     if not near.any():
         return j0(k[:, None] * np.sqrt((1 - s) * (1 + s))) - edge[:, None]
-    found, far, s = np.empty((len(k), len(s))), s[~near], s[near]
-    found[:, ~near] = j0(k[:, None] * np.sqrt((1 - far) * (1 + far))) - edge[:, None]
+    values, far, s = np.empty((len(k), len(s))), s[~near], s[near]
+    values[:, ~near] = j0(k[:, None] * np.sqrt((1 - far) * (1 + far))) - edge[:, None]
     # coefficients of t^-1, t^0, t^1, ... in J0(k + t), from Bessel's equation (k + t) y'' + y' + (k + t) y = 0
     terms = [0 * k, edge, -j1(k)]
     for m in range(_TERMS - 1):
@@ -190,8 +189,8 @@ def less_edge(k, s):
     series = 0 * t
     for term in terms[:1:-1]:
         series = (series + term[:, None]) * t
-    found[:, near] = series
-    return found
+    values[:, near] = series
+    return values
 
 
 def between(octave, stiffness, s):

@@ -27,8 +27,8 @@ STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
 #: of any of these functions is at most this part of the largest of them, which is rounding.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
-#: u = 1/2, the second above, with u = kh/a at the lower end of the octave. For each digit by which L - 1 has decayed
-#: where the panel begins it has _LESS points fewer. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
+#: u = 1/2, the second above, with u = kh/a at the lower end of the octave. It has _LESS points fewer for each digit by
+#: which L - 1 has decayed at its beginning. The operator is then right to 1e-11 (tests/body/test_wave_rule.py).
 _MORE, _ROOT, _LEAST, _LESS = 9, 3.0, (11, 15), 0.8
 #: The integral over u ends at _END_MIDDLE in octave 0, in each further octave 0.7 later, at most at _END. Beyond,
 #: L - 1 ~ u² e^(-2u) and J0 φ ~ 1/k² (k > 1) are too small to count, under stiff layers too, where the pressure feels
@@ -75,8 +75,8 @@ def quadrature(octave, stiffness):
 
 
 class Few(NamedTuple):
-    """The few nodes k (M,) of a quadrature of G nodes, M by the class of stiffness; and the matrix `spread` (M, G):
-    L - 1 at the few nodes times it is w (L - 1) at all of them, w the weights."""
+    """The few nodes k (M,) of a quadrature of G nodes, where M depends on the class of stiffness; and the matrix
+    `spread` (M, G), which makes w (L - 1) at all nodes of L - 1 at the few, w being the weights."""
 
     k: np.ndarray
     spread: np.ndarray
@@ -112,12 +112,12 @@ def _samples(sampler, octave, stiffness, k, scale):
     """L - 1 and u dL/du (2 _SAMPLES, G), times `scale` (G,), of random kernels of a class with h/a in an octave. Where
     the sum of |L - 1| over the nodes, about the size of the operator, is above 1, both are divided by it."""
     random, size = np.random.default_rng(0), _SAMPLES
-    of_n, of_h_a = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
+    share_n, share_h_a = 1.1 * np.sin(np.pi / 2 * random.random((2, size))) ** 2 - 0.05  # most at the ends, some beyond
     low, high = np.log([1e-9, *STIFFEST][stiffness : stiffness + 2])
-    n = np.exp(low + (high - low) * of_n)
+    n = np.exp(low + (high - low) * share_n)
     if stiffness == 0:
         n = np.where(random.random(size) < 0.5, random.uniform(0, 2, size), n)
-    L1, uL = sampler.draw(random, n).decaying_part(k * 2.0 ** (octave + of_h_a)[:, None])
+    L1, uL = sampler.draw(random, n).decaying_part(k * 2.0 ** (octave + share_h_a)[:, None])
     L1, uL = scale * L1, scale * uL
     whole = np.maximum(np.abs(L1).sum(axis=1), 1.0)
     return np.concatenate([L1, uL]) / np.tile(whole, 2)[:, None]

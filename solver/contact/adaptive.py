@@ -73,8 +73,8 @@ def _together(rungs, size, points):
 def _ended(solution, verdict):
     """The solution with its final status: that of the `verdict` (B,), :class:`.answer.Verdict`."""
     status, has_numbers = solution.status.copy(), solution.status != Status.DIVERGED
-    for of_case, by in _ENDS.items():
-        status[(verdict == of_case) & has_numbers] = by
+    for ending, last_status in _ENDS.items():
+        status[(verdict == ending) & has_numbers] = last_status
     over = (status == Status.ITERATION_LIMIT) & (solution.iterations >= newton_steps(solution.nodes))
     status[over] = Status.BUDGET_SPENT
     return replace(solution, status=status).refused(verdict == Verdict.LIFTED, Status.LIFT_OFF)
@@ -108,9 +108,9 @@ def _on_panels(case, before, rtol, x, left):
         if not answered.gap[0] and error[0] < np.nan_to_num(best.error[0], nan=np.inf):
             best = answered.solution
         missed = (best.status == Status.CONVERGED) & (best.error > rtol)
-        # finer panels hardly lower an error
-        useless = at_floor(error, True, at.floor, rtol) & ~may_be_error(answered.tension, error)
-        if best.status[0] == Status.CONVERGED and (not missed[0] or useless[0]):
+        # True: finer panels hardly lower an error
+        floor = at_floor(error, True, at.floor, rtol) & ~may_be_error(answered.tension, error)
+        if best.status[0] == Status.CONVERGED and (not missed[0] or floor[0]):
             spent = False
             break
     best = replace(best, iterations=count.astype(np.int32))

@@ -11,7 +11,7 @@ from ..solution import Solution
 from ..status import Status
 from . import newton
 from .equation import State
-from .error import completed, estimate, of_profiles, refine
+from .error import completed, estimate, profile_error, refine
 from .results import profiles, quantities
 
 #: A ring of tension may lie between two nodes: so the pressure is looked at in this many times as many points.
@@ -174,7 +174,7 @@ def answer(iterated, x, goal=None):
     p, lam = np.full((2, size, len(x)), np.nan)
     p[done], lam[done] = profiles(ev, x, done)
     between = np.full(size, np.nan)
-    between[done] = of_profiles(ev, refined, done)
+    between[done] = profile_error(ev, refined, done)
     status = np.where(closed, Status.CONVERGED, Status.ITERATION_LIMIT)
     errors = {"residual": ev.residual, "error": error, "profile_error": np.maximum(error, between)}
     rest = {"dP_dD": slope, "p": p, "lam": lam, "status": status, "nodes": ev.mesh.n, "iterations": count}

@@ -14,9 +14,9 @@ from .start import guess_radius, smooth_start
 #: (tests/contact/errors/test_counts.py).
 _STEPS, _NODES, _FEWEST = 1000, 96, 60
 #: Most work of one case (:meth:`~solver.body.operator.Body.work`): its steps on all meshes, and the meshes of panels
-#: that are made for it alone. It is not counted in seconds, so that it is the same on every machine. With half of it,
-#: about 1 % of the 3,000 cases of the study extremes_layered spend it; with all of it, none (`make extremes`).
-#: `python tests/fuzz/fuzz_solver.py` prints the longest time of a lone case.
+#: that are made for it alone. Unlike seconds, it is the same on every machine. Of the 3,000 cases of the study
+#: extremes_layered none spends this budget, and about 1 % would spend half of it (`make extremes`).
+#: `python tools/fuzz/fuzz_solver.py` prints the longest time of a lone case.
 BUDGET = 1_500_000
 
 
@@ -67,22 +67,22 @@ def solve_on(start, limit=0, budget=BUDGET):
     """:class:`Iterated` of Newton's method from the equation at its `start`; where that fails, of a search for the
     radius.
 
-    limit : most steps; 0: the method's own limit, and the search. budget : float, or (B,), the work left to each case;
-        the last step may spend a little more
+    limit : most steps, and no search; 0: the limit of Newton's method, and the search
+    budget : float, or (B,), the work left to each case; the last step may spend a little more
     """
     cases, mesh = start.cases, start.mesh
     left = np.where(budget > 0, budget // cases.body.work(np.exp(start.state.eta), mesh.n)[1] + 1, 0)
     most = np.minimum(newton_steps(mesh.n), left).astype(int)
-    found = iterate(start, newton.step, np.minimum(limit or newton.LIMIT, most))
-    failed = np.flatnonzero(~found.closed)
+    iterated = iterate(start, newton.step, np.minimum(limit or newton.LIMIT, most))
+    failed = np.flatnonzero(~iterated.closed)
     if limit or not len(failed):
-        return found
-    rest = np.flatnonzero(found.closed)
-    again = _by_radius(cases.take(failed), mesh, (most - found.count)[failed])
-    ends = [found.at.take(rest), again.at], [rest, failed]
-    found.closed[failed] = again.closed
-    found.count[failed] += again.count
-    return found._replace(at=found.at.join(cases, *ends))
+        return iterated
+    rest = np.flatnonzero(iterated.closed)
+    again = _by_radius(cases.take(failed), mesh, (most - iterated.count)[failed])
+    ends = [iterated.at.take(rest), again.at], [rest, failed]
+    iterated.closed[failed] = again.closed
+    iterated.count[failed] += again.count
+    return iterated._replace(at=iterated.at.join(cases, *ends))
 
 
 def _by_radius(cases, mesh, most):
@@ -96,20 +96,20 @@ def _by_radius(cases, mesh, most):
 
     def at_radius(eta, index):
         fixed = cases.take(index)._replace(control="a", value=np.exp(eta))
-        found = iterate(smooth_start(fixed, mesh), newton.step, np.minimum(newton.LIMIT, (most - spent)[index]))
-        np.add.at(spent, index, found.count)
-        return found
+        iterated = iterate(smooth_start(fixed, mesh), newton.step, np.minimum(newton.LIMIT, (most - spent)[index]))
+        np.add.at(spent, index, iterated.count)
+        return iterated
 
     def control_at(eta, index):
-        found = at_radius(eta, index)
-        known = found.closed & (spent[index] < most[index])  # NaN ends the search where the budget is spent
-        return np.where(known, replace(found.at, cases=cases.take(index)).G, np.nan)
+        iterated = at_radius(eta, index)
+        valid = iterated.closed & (spent[index] < most[index])  # NaN ends the search where the budget is spent
+        return np.where(valid, replace(iterated.at, cases=cases.take(index)).G, np.nan)
 
     eta = np.log(radius)
     if cases.control != "a":
         eta, _ = false_position(control_at, eta, np.full(len(eta), 1e-9))
-    found = at_radius(eta, np.arange(len(eta)))
+    iterated = at_radius(eta, np.arange(len(eta)))
     if cases.control == "a":
-        return Iterated(replace(found.at, cases=cases), found.closed, spent)
-    found = iterate(replace(found.at, cases=cases), newton.step, np.minimum(newton.LIMIT, most - spent))
-    return Iterated(found.at, found.closed, spent + found.count)
+        return Iterated(replace(iterated.at, cases=cases), iterated.closed, spent)
+    iterated = iterate(replace(iterated.at, cases=cases), newton.step, np.minimum(newton.LIMIT, most - spent))
+    return Iterated(iterated.at, iterated.closed, spent + iterated.count)

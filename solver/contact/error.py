@@ -16,64 +16,67 @@ from .results import cornered, difference, interpolate, quantities
 
 #: No mesh sees how λ rises between the edge and the node next to it. With λ and s at that node, this ring adds about λ
 #: s² to Ar/An. Where that matters, the error of Ar/An is at most 5.3 times λ s²/2
-#: (`python tests/contact/errors/error_bars.py`; one such case is "ring" of tests/contact/errors/test_error_bars.py).
+#: (`python tools/errors/error_bars.py`; one such case is "ring" of tests/contact/errors/test_error_bars.py).
 #: The estimate is at least _UNSEEN times λ s²/2.
 _UNSEEN = 8.0
 #: This error is counted if λ at the node next to the edge is above this.
 _RISEN = 0.05
 #: Near the edge asperities yield more than the body, in a ring that both meshes may miss. Where they may, the estimate
 #: is multiplied by this. Without the factor 10 % of such extreme cases on 6 nodes have an error above the estimate,
-#: with it 3 % (`python tests/contact/errors/error_bars.py`); one that needs it is "blind" of
+#: with it 3 % (`python tools/errors/error_bars.py`); one that needs it is "blind" of
 #: tests/contact/errors/test_error_bars.py.
 _BLIND = 3.0
 #: There both meshes may also place the edge alike by chance, but not the pressures near it: :func:`_moved_edge`. Where
-#: this and the estimate are of one size, both may be too small: of what moves the edge by δ a, Ar/An and P change by
-#: 2 δ and 3 δ. So the smaller of them counts _BOTH times: "edge" and "edge, a given" of the same tests.
+#: this and the estimate are of one size, both may be too small: where the edge moves by δ a, Ar/An and P change by 2 δ
+#: and 3 δ. So the smaller of the two counts _BOTH times: "edge" and "edge, a given" of the same tests.
 _BOTH = 2.0
 #: In the centre the pressures of two meshes may agree by chance: those of "centre" of
-#: tests/contact/errors/test_error_bars.py do, to a twentieth of their error. So any change of the pressure where s is
-#: above this counts; not on panels, which may enclose a corner there.
+#: tests/contact/errors/test_error_bars.py do, to a twentieth of their error. So on meshes of one panel any change of
+#: the pressure where s is above this counts. Several panels may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
 _NEAR = 1e-8
 #: The quadratures of two meshes may agree by chance, if λ rises sharply inside the contact. It may, if λ in the centre
 #: is above _SATURATED or the exponent of the displacement below _SHARP. Then Ar/An is compared with another rule, which
 #: has _TIMES as many points on each panel as the mesh has nodes, and _MORE: "saturated" and "quadratures" of
-#: tests/contact/errors/test_error_bars.py. With _SATURATED = 0.3 `python tests/contact/errors/error_bars.py` prints
+#: tests/contact/errors/test_error_bars.py. With _SATURATED = 0.3 `python tools/errors/error_bars.py` prints
 #: the same.
 _SATURATED, _SHARP = 0.7, 0.45
 _TIMES, _MORE = 2, 4
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
 #: that of a law with corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
 _STEEP = 0.1
-#: On a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses between
-#: its nodes: its sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from the edge
-#: to any radius (test_random_heights of tests/contact/errors/test_error_bars.py).
+#: Under a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses
+#: between its nodes: the sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from
+#: the edge to any radius (test_random_heights of tests/contact/errors/test_error_bars.py).
 _CHANCE = 1 / 2
-#: For each control: the largest relative change of the quantities that are judged, over that of the radius of a smooth
-#: contact.
+#: For each control: the largest relative change of the judged quantities of a smooth contact, over that of its radius.
 _OF_RADIUS = {"a": 3.0, "P": 1.0, "D": 1.0}
 #: Both meshes miss a ring at the edge where asperities or springs yield more than the body, if their compliance over
-#: the body's is below RING s² at the first node s. The error is then at most this times :func:`of_ring`, for each
+#: the body's is below RING s² at the first node s. The error is then at most this times :func:`added_in_ring`, for each
 #: control (tests/contact/errors/test_rings.py; test_accuracy.py for smooth punches on springs).
 RING, ENCLOSING = 16.0, {"a": 0.5, "P": 0.2, "D": 0.25}
 
 
 class Refined(NamedTuple):
-    """One Newton step on the next finer mesh: the equation there at its start, to which the solution is interpolated,
-    and at its end, of :func:`nearby`; the quantities at the end, and dP/dD (B,) in E2* R."""
+    """One Newton step on the next finer mesh.
+
+    start, end : the equation there at the interpolated solution, and after the step, by :func:`nearby`
+    numbers : the quantities after the step
+    dP_dD : (B,), in E2* R
+    """
 
     start: Evaluation
     end: Evaluation
-    found: NamedTuple
+    numbers: NamedTuple
     dP_dD: np.ndarray
 
 
-def refine(ev, own):
-    """:class:`Refined` of the equation at a solution with the quantities `own`.
+def refine(ev, coarse):
+    """:class:`Refined` of the equation at a solution with the quantities `coarse`.
 
-    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is that of `own` plus what the step changes on the finer
-    mesh. That the two meshes see the bends differently is no error of the quadrature that such cases have
+    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is the coarse one plus what the step changes on the finer
+    mesh. That the two meshes see the bends differently is no error: such cases have another quadrature
     (:func:`~.results.cornered`).
     """
     fine, law = finer_mesh(ev.mesh), ev.cases.law
@@ -82,11 +85,11 @@ def refine(ev, own):
     start = evaluate(ev.cases, State(y, ev.state.eta), fine, ev.operator)
     state, dq_deta = newton.advance(start)
     end = nearby(start, state)
-    found = quantities(end)
+    numbers = quantities(end)
     if bent.any():
         before = 2 * (law.area(start.state.y, start.curve.q) @ fine.w)
-        found = found._replace(Ar_An=np.where(bent, own.Ar_An + found.Ar_An - before, found.Ar_An))
-    return Refined(start, end, found, newton.stiffness(start, dq_deta, found.P, found.D))
+        numbers = numbers._replace(Ar_An=np.where(bent, coarse.Ar_An + numbers.Ar_An - before, numbers.Ar_An))
+    return Refined(start, end, numbers, newton.stiffness(start, dq_deta, numbers.P, numbers.D))
 
 
 def nearby(ev, state):
@@ -98,9 +101,9 @@ def nearby(ev, state):
     return replace(ev, state=state, X=groups(ev.cases, state.eta)[0], curve=curve, edge_q=edge_q)
 
 
-def estimate(ev, found, refined):
-    """Estimated relative error (B,) of a solution with the quantities `found`, from the two meshes alone."""
-    change, start = difference(found, refined.found), refined.start
+def estimate(ev, coarse, refined):
+    """Estimated relative error (B,) of a solution with the quantities `coarse`, from the two meshes alone."""
+    change, start = difference(coarse, refined.numbers), refined.start
     if ev.mesh.order == ev.mesh.n:
         first = np.searchsorted(start.mesh.s, _MIDDLE)
         around = np.abs(refined.end.curve.q - start.curve.q)[:, first:].max(axis=1) / ev.curve.q[:, -1]
@@ -125,11 +128,11 @@ def estimate(ev, found, refined):
 def _moved_edge(refined):
     """By how much of the radius (B,) the step on the finer mesh seems to move the edge, at the node where that is most.
 
-    Near an edge that moves by δ a the pressure, q ~ s, changes by δ/s² of itself where the body yields most. Where the
-    asperities do, their displacement, g ~ s², changes by 2 δ/s². So s² times both changes, each weighed by its share of
-    the right-hand side, is δ or a little more. From node to node these numbers cannot cancel, as they do in the radius.
-    Under a hard plate the pressure inside a ring is nearly 0, and its relative changes say nothing: there it counts as
-    s² of the largest.
+    Let the edge move by δ a. Near it the pressure, q ~ s, changes by δ/s² of itself where the body yields most. Where
+    the asperities yield most, their displacement, g ~ s², changes by 2 δ/s². So s² times both changes, each weighed by
+    its share of the right-hand side, is δ or a little more. From node to node these numbers cannot cancel, as they do
+    in the radius. Under a hard plate the pressure inside a ring is nearly 0, and its relative changes say nothing:
+    there the pressure is taken to be at least 0.02 s² of the largest.
     """
     start, end, s2 = refined.start.curve, refined.end.curve, refined.start.mesh.s**2
     share = np.clip(refined.start.Z * start.g / refined.start.drop, 0.0, 1.0)
@@ -147,17 +150,17 @@ def _missed_ring(ev):
     blind = np.flatnonzero(springs + asperities < RING * s1**2)
     if len(blind):
         _, beta = ev.cases.law.take(blind).edge()
-        ring = of_ring(springs[blind], s1) + of_ring(asperities[blind], s1, beta)
+        ring = added_in_ring(springs[blind], s1) + added_in_ring(asperities[blind], s1, beta)
         bound[blind] = ENCLOSING[ev.cases.control] * ring
     return bound
 
 
-def of_ring(t, s1, beta=1.0):
-    """What a compliance t (s/s1)^(β-1) over the body's, t (B,), adds to a and the like in the ring between the edge and
-    the first node s1.
+def added_in_ring(t, s1, beta=1.0):
+    """Relative change (B,) of a and the like by a compliance in the ring between the edge and the first node s1. Over
+    that of the body it is t (s/s1)^(β-1), with t (B,).
 
-    It is 2 ∫ t (s/s1)^(β-1) ds/s to s1 from about the s where the compliance is s². There the ring ends in which it is
-    more than the body's. With β = 1, for springs, it is t ln(1 + s1²/2t).
+    The change is 2 ∫ t (s/s1)^(β-1) ds/s from about the s where the compliance is s² to s1. Below that s, in a ring at
+    the edge, it is more than the body's. With β = 1, for springs, the change is t ln(1 + s1²/2t).
     """
     end = 2 * (t / s1**2) ** (2 / (3 - beta))
     wide, less = np.log1p(1 / end), (1 - beta) / 2
@@ -176,10 +179,10 @@ def _blind(ev):
     return ev.cases.law.rough & (ev.Z[:, 0] * ev.curve.g[:, 0] / ev.drop[:, 0] < 0.5)
 
 
-def of_profiles(ev, refined, rows):
-    """Estimated error (b,) of the profiles of the cases `rows` (b,): what the step on the finer mesh changes of p or λ
-    at its nodes, most of which lie between those of the mesh, over the largest p or λ. For a smooth punch also the
-    pressure at the edge, where there is none, of the polynomial through the nodes."""
+def profile_error(ev, refined, rows):
+    """Estimated error (b,) of the profiles of the cases `rows` (b,), over the largest p or λ. It is what the step on
+    the finer mesh changes at its nodes, most of which lie between the others. A smooth punch has no pressure at the
+    edge: so what the polynomial through the nodes has there is an error too."""
     law = ev.cases.law.take(rows)
     start, end = refined.start, refined.end
     q, new_q = start.curve.q[rows], end.curve.q[rows]
@@ -192,7 +195,7 @@ def of_profiles(ev, refined, rows):
 
 
 def completed(ev, Ar_An, error, rows):
-    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,) with what both meshes may miss alike.
+    """Ar/An (b,) of the cases `rows` (b,), and their relative error (b,), now with what both meshes may miss alike.
 
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`
 

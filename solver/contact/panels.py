@@ -27,8 +27,8 @@ _MOST = 32
 #: Tolerances of the rounds: each solves and then halves panels. A coarse solution cannot tell where a fine one will not
 #: be resolved, so rtol is approached in steps.
 _GOALS = (1e-5, 1e-7, 1e-9, 1e-11, 1e-13)
-#: A panel is resolved when what its last two coefficients add to the load and to the real area is, relative to these,
-#: below _SHARE times rtol, or below _FLOOR: for the smallest rtol the error of the operator is larger than that.
+#: A panel is resolved when its last two coefficients add less than _SHARE times rtol of the load and of the real area,
+#: or less than _FLOOR of them: for the smallest rtol the error of the operator is larger.
 _SHARE = 0.3
 _FLOOR = 1e-12
 
@@ -38,50 +38,57 @@ def solve_on_panels(case, rtol, budget, at=None):
 
     at : :class:`.equation.Evaluation` at a solution on panels, to go on from; None: begin anew.
 
-    Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before all was resolved.
+    Returns its :class:`.driver.Iterated`, and the work: more than the budget if that was spent before every panel was
+    resolved.
     """
-    found, work = _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0)
+    iterated, work = (
+        _first(case, rtol, budget) if at is None else (Iterated(at, at.closed, np.zeros(1, dtype=int)), 0.0)
+    )
     radius, count = guess_radius(case), 0
     least = max(rtol, case.body.error(radius, ORDER)[0])  # panels do not take the operator's own error away
     for goal in np.maximum(least, _GOALS):
-        count, found = count + found.count, found._replace(count=0 * found.count)
-        if found.at.lost[0]:
+        count, iterated = count + iterated.count, iterated._replace(count=0 * iterated.count)
+        if iterated.at.lost[0]:
             break
-        breaks, y = resolve(found.at, goal)
-        if breaks == found.at.mesh.breaks:
+        breaks, y = resolve(iterated.at, goal)
+        if breaks == iterated.at.mesh.breaks:
             continue
         nodes = ORDER * (len(breaks) - 1)
-        made, judged = (case.body.work(radius, n)[0][0] for n in (nodes, nodes + nodes // 3))
-        if work + made + judged > budget:  # what is left is for estimating the error of the solution so far
+        making, judging = (case.body.work(radius, n)[0][0] for n in (nodes, nodes + nodes // 3))
+        if work + making + judging > budget:  # what is left is for estimating the error of the solution so far
             work = np.inf
             break
-        work, mesh = work + made, panel_mesh(ORDER, breaks)
-        found = solve_on(evaluate(case, State(y, found.at.state.eta), mesh, found.at.operator), budget=budget - work)
-        work += found.count[0] * case.body.work(radius, mesh.n)[1][0]
-    return found._replace(count=count + found.count), work
+        work, mesh = work + making, panel_mesh(ORDER, breaks)
+        iterated = solve_on(
+            evaluate(case, State(y, iterated.at.state.eta), mesh, iterated.at.operator), budget=budget - work
+        )
+        work += iterated.count[0] * case.body.work(radius, mesh.n)[1][0]
+    return iterated._replace(count=count + iterated.count), work
 
 
 def _first(case, rtol, budget):
-    """:class:`.driver.Iterated` of one case on its first panels, and the work. If there is a body that is nearly the
-    same and far cheaper, the first panels are those that resolve the contact with it. That takes a seventh off the time
-    of the study extremes_layered. It stays for the cases that spend their budget otherwise, though they have a
-    solution: 2 of 600 of that study (:meth:`~solver.body.operator.Body.alike` returned None), one of which is
-    test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py."""
+    """:class:`.driver.Iterated` of one case on its first panels, and the work.
+
+    If a far cheaper body yields nearly alike, the first panels are those that resolve the contact with that body. This
+    saves a seventh of the time of the study extremes_layered. Without it (:meth:`~solver.body.operator.Body.alike`
+    returned None) 2 of 600 cases of that study spent their budget, though they have a solution. One of them is
+    test_a_film_that_begins_as_a_thin_layer of tests/contact/extremes/test_budget.py.
+    """
     alike, start, mesh, count, work = case.body.alike(guess_radius(case)), None, panel_mesh(ORDER, START), 0, 0.0
     if alike is not None:
-        found, work = solve_on_panels(case._replace(body=alike), rtol, budget)
-        count = found.count
-        if found.closed[0]:
-            mesh, start = found.at.mesh, found.at.state
+        iterated, work = solve_on_panels(case._replace(body=alike), rtol, budget)
+        count = iterated.count
+        if iterated.closed[0]:
+            mesh, start = iterated.at.mesh, iterated.at.state
     operator, step = case.body.work(guess_radius(case), mesh.n)
     work += operator[0]
-    found = solve_on(evaluate(case, start or first_guess(case, mesh), mesh), budget=budget - work)
-    return found._replace(count=count + found.count), work + found.count[0] * step[0]
+    iterated = solve_on(evaluate(case, start or first_guess(case, mesh), mesh), budget=budget - work)
+    return iterated._replace(count=count + iterated.count), work + iterated.count[0] * step[0]
 
 
 def resolve(ev, rtol):
-    """Ends of panels (tuple) that resolve q and λ of a solution, and y (1, n) at their nodes; its own panels, if these
-    do."""
+    """Ends of panels (tuple) that resolve q and λ of the solution `ev`, and y (1, n) at their nodes. If the panels of
+    `ev` do, it is these."""
     mesh, law = ev.mesh, ev.cases.law
     values = np.concatenate([ev.curve.q, law.area(ev.state.y, ev.curve.q)])
     scale = values @ mesh.w * max(_SHARE * rtol, _FLOOR)
@@ -107,6 +114,6 @@ def _between(ev, panels):
 
 
 def _tail(law, y):
-    """Sizes (2,) of those two coefficients together, of q and of λ, for y (1, ORDER) at the nodes of a panel."""
+    """Sum (2,) of the sizes of the last two coefficients, of q and of λ, for y (1, ORDER) at the nodes of a panel."""
     q = law.evaluate(y).q
     return np.abs(np.concatenate([q, law.area(y, q)]) @ _LAST).sum(axis=1)

@@ -85,11 +85,11 @@ def solve(cases, mesh, k, rtol, limit):
     count, last = np.zeros(size, dtype=int), [()] * size  # of each case the approximations at the latest radius
 
     def control_at(eta, index):
-        found = approximate(cases.take(index), eta, mesh, k[index], rtol[index], limit)
-        np.add.at(count, index, found.count)
+        iterated = approximate(cases.take(index), eta, mesh, k[index], rtol[index], limit)
+        np.add.at(count, index, iterated.count)
         for row, i in enumerate(index.tolist()):
-            last[i] = found.at.take([row])
-        return np.where(count[index] < APPROXIMATIONS, found.at.G, np.nan)
+            last[i] = iterated.at.take([row])
+        return np.where(count[index] < APPROXIMATIONS, iterated.at.G, np.nan)
 
     if cases.control == "a":
         control_at(np.log(cases.value), np.arange(size))

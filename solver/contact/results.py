@@ -14,8 +14,8 @@ _STEPS = 40
 #: Where s is below this, the pressure of a smooth punch is taken to be proportional to s. Nearer to the edge, rounding
 #: in the equation would be larger than this pressure.
 _APART = 1e-4
-#: Where λ bends: the number of Gauss points between two nodes to which y is interpolated, and that of points
-#: at which λ is looked up; and the relative `tolerance` of the interpolated y.
+#: Where λ bends: between two nodes y is interpolated to _FEW Gauss points, with the relative tolerance _NEAR,
+#: and λ is looked up at _MANY.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
 #: Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`.
 Quantities = namedtuple("Quantities", (*JUDGED, "A0"))
@@ -70,8 +70,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         (X κ + Y) q + Z g(q) = drop - X (K[q_L] - κ q_L).
 
     Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
-    nothing it is q_L. Newton's method solves it to the relative `tolerance`, a number or (B, 1), from a closed form for
-    two terms, times the factor by which that is wrong at the nodes, interpolated.
+    nothing it is q_L. Newton's method solves it to the relative `tolerance`, a number or (B, 1). It starts from a
+    closed form for two terms times the factor by which this form is wrong at the nodes, interpolated.
     """
     s = np.ascontiguousarray(s, dtype=float)
     L, H, kappa, node_kappa = _between(ev.mesh, s.tobytes())
@@ -80,8 +80,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     q, g = ev.curve.q[rows], ev.curve.g[rows]
     drop = ev.cases.punch.take(rows).drop(np.exp(ev.state.eta[rows]), s)
     stiff, q_L = X * kappa, q @ L.T
-    # The right-hand side is kept positive, but far below κ q_L, which is small under a stiff film; not where q may be
-    # negative, because the edge pulls.
+    # The least value keeps the right-hand side positive. It is far below κ q_L, which is small under a stiff film. An
+    # edge that pulls has no least value, since its q may be negative.
     least = -np.inf if ev.cases.edge.pulls else np.clip(1e-3 * stiff * np.abs(q_L), 1e-16 * drop, 1e-9 * drop)
     right = np.maximum(drop - X * Kq + stiff * q_L, least)
     linear, node_linear = stiff + Y, X * node_kappa + Y

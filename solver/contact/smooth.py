@@ -6,7 +6,7 @@ t = Y/X = pi C/(4 a), X q = V (c/(κ + t)): load, depth and central pressure are
 are (n, B) here, with a column for each case: sums over the nodes then run along whole rows.
 
 Newton's method solves these cases too. It takes 7 times as long for a batch of 16,000, and twice as long for
-lone cases (`python tests/bench/benchmark_smooth.py`).
+lone cases (`python tools/bench/benchmark_smooth.py`).
 """
 
 from dataclasses import replace
@@ -21,7 +21,7 @@ from ..numerics.mesh import mesh_of
 from ..numerics.quadrature import lagrange
 from ..solution import Solution
 from ..status import Status
-from .error import ENCLOSING, RING, of_ring
+from .error import ENCLOSING, RING, added_in_ring
 
 #: Quantity -> its value from the radius a and the sums S (3, B); each quantity has one row of S.
 _OF_SUMS = {
@@ -30,7 +30,7 @@ _OF_SUMS = {
     "p0": lambda a, S: np.pi / 8 * a * S[2],
 }
 _ROWS = {name: row for row, name in enumerate(_OF_SUMS)}
-#: The power of a in each quantity; and the part of each sum that is there without pressure: 1 in D = a²/2 (1 + ...).
+#: The power of a in each quantity; and the part of each sum that no pressure makes: 1 in D = a²/2 (1 + ...).
 _POWERS, _BARE = np.array([[3.0], [2.0], [1.0]]), np.array([[0.0], [1.0], [0.0]])
 #: First guess of the radius under a load: (a_H^m + a_L^m)^(1/m), of Hertz's radius a_H and the radius a_L on springs
 #: alone. With this m it is right to 0.3 % (tests/contact/test_smooth.py).
@@ -70,13 +70,13 @@ def thin_layer(control, value, C, rtol, nodes, x):
     (m,)."""
 
     def on_mesh(index, n, start):
-        found = _solution(_on_mesh(control, value[index], C[index], n, x))
-        return found.error, None, found
+        piece = _solution(_on_mesh(control, value[index], C[index], n, x))
+        return piece.error, None, piece
 
     rungs = climb(rtol, nodes, on_mesh)
     steps = np.zeros(len(value), dtype=np.int32)
-    for index, found in rungs:
-        steps[index] += found.iterations
+    for index, piece in rungs:
+        steps[index] += piece.iterations
     solution = Solution.join(len(value), len(x), rungs)
     status = np.where(np.isfinite(solution.error), Status.CONVERGED, Status.DIVERGED).astype(np.int8)
     return replace(solution, status=status, iterations=steps, **{control: value})
@@ -89,8 +89,8 @@ def _solution(arrays):
 
 
 def _on_mesh(control, value, C, n, x):
-    """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes; `error` is the distance, to first order, to the
-    solution on the next finer mesh, or that of a ring at the edge that neither sees, if it is larger."""
+    """Arrays of a :class:`~solver.solution.Solution` (dict) on n nodes. `error` is the larger of two: the distance, to
+    first order, to the solution on the next finer mesh, and what a ring at the edge adds that neither mesh sees."""
     mesh, modal = mesh_of(n), modes(n)
     a, steps = _radius(control, value, C, modal)
     t, S, slopes, fractions = _sums(a, C, modal)
@@ -99,7 +99,7 @@ def _on_mesh(control, value, C, n, x):
     residual = np.abs(mesh.K @ Xq + t * Xq - mesh.s[:, None] ** 2).max(axis=0)
     p = np.pi / 8 * a * np.maximum(_to_edge(mesh, np.sqrt((1 - x) * (1 + x))) @ Xq, 0.0)
     error = np.maximum(MARGIN * _distance(control, t, S, slopes, modes(next_rung(n))), 4 * n * np.finfo(float).eps)
-    ring = np.where(t < RING * mesh.s[0] ** 2, ENCLOSING[control] * of_ring(t, mesh.s[0]), 0.0)
+    ring = np.where(t < RING * mesh.s[0] ** 2, ENCLOSING[control] * added_in_ring(t, mesh.s[0]), 0.0)
     error = np.maximum(error, ring)
     between = np.maximum(error, MARGIN * _between(mesh, Xq, t, next_rung(n)))
     names = ("a", "P", "D", "p0", "dP_dD", "p", "error", "profile_error", "residual", "nodes", "iterations")

@@ -36,9 +36,9 @@ def layered_kernel(u, n, nu1, nu2, bonded):
     >>> print(f"{float(layered_kernel(0.01, 0.5, 0.3, 0.3, False).L):.6f}")
     0.505000
     """
-    given = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
-    flat = [np.atleast_1d(v) for v in given]
-    return Values(*(v.reshape(given[0].shape) for v in (whole(*flat), *decaying_part(*flat))))
+    arrays = np.broadcast_arrays(np.asarray(u, float), n, nu1, nu2, bonded)
+    flat = [np.atleast_1d(v) for v in arrays]
+    return Values(*(v.reshape(arrays[0].shape) for v in (whole(*flat), *decaying_part(*flat))))
 
 
 def whole(u, n, nu1, nu2, bonded):
@@ -52,7 +52,7 @@ def decaying_part(u, n, nu1, nu2, bonded):
 
 
 def _by_interface(bonded, of_bonded, of_frictionless):
-    """What either function gives, or that of each interface where both occur."""
+    """The values of the one function whose interface occurs, or of both, each for its cases."""
     if np.all(bonded):
         return of_bonded()
     return np.where(bonded, of_bonded(), of_frictionless()) if np.any(bonded) else of_frictionless()
@@ -82,8 +82,8 @@ def _frictionless_terms(u, n):
     gap, excess = rest * rest - u * ue4, wedge - 2 * ue4
     if np.any(n > 2):  # for smaller n what the gap and the excess lose by cancellation is small beside the wedge
         small = np.flatnonzero(u < _SERIES)
-        gap.reshape(-1)[small], own = _series(u.reshape(-1)[small], e.reshape(-1)[small])
-        excess.reshape(-1)[small] = 2 * own
+        gap.reshape(-1)[small], half_excess = _series(u.reshape(-1)[small], e.reshape(-1)[small])
+        excess.reshape(-1)[small] = 2 * half_excess
     return _Frictionless(e, rest, e4, ue4, wedge, gap, excess, wedge + n * gap)
 
 

@@ -20,7 +20,7 @@ class TwoLayers(NamedTuple):
 
     @classmethod
     def of(cls, problem):
-        """That of the cases of a :class:`~solver.problem.Problem`."""
+        """The kernel of the cases of a :class:`~solver.problem.Problem`."""
         return cls(problem.n, problem.nu1, problem.nu2, problem.bonding == "bonded")
 
     @property

@@ -59,7 +59,7 @@ def _allows(hardness, yield_strength, nu, **_):
 
 
 class Spot(NamedTuple):
-    """x and τ of a spot; f, its derivative by x, and `lost`, 1 - f without cancellation: 1, 0, 0 where it is elastic."""
+    """x and τ of a spot; f, its derivative by x, and 1 - f without cancellation: 1, 0, 0 where it is elastic."""
 
     x: np.ndarray
     tau: np.ndarray

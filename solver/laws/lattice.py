@@ -1,7 +1,7 @@
 """The micro laws of identical asperities on a square and on a hexagonal lattice.
 
 With l = 1/sqrt(Nbar), p^ = p Ra/(E l), A^ = A Ra/l² and p_max^ = p_max Ra/(E l), one curve each of A^, λ and p_max^
-over p^ serves every Nbar, Ra and E. They come from lattices.csv, which tests/references/make_lattices.py computes from
+over p^ serves every Nbar, Ra and E. They come from lattices.csv, which tools/references/make_lattices.py computes from
 the periodic contact problem. p* and A* are those of the disc cell. Both ends of the curves are known (docs/model.md).
 
 Full contact is a limit only. Between neighbouring summits the surface has a kink, here called a ridge, where its slope
@@ -26,7 +26,7 @@ _SPOT = np.cbrt(0.75 * P_STAR)
 #: Distance of neighbours on the hexagonal lattice, over l.
 _PITCH = (4 / 3) ** 0.25
 #: Full contact. J: the change of slope on a ridge, equal to the distance of neighbours. relief: the limit of A^. above:
-#: that of p_max^ - p^, from ``full_contact`` in tests/references/make_lattices.py. rate: both go as exp(-rate p^).
+#: that of p_max^ - p^, from ``full_contact`` in tools/references/make_lattices.py. rate: both go as exp(-rate p^).
 ENDS = {
     "square": {"J": 1.0, "relief": 1 / 12, "above": 0.2206356, "rate": 3 * np.pi},
     "hex": {"J": _PITCH, "relief": 5 / (36 * np.sqrt(3)), "above": 0.2177788, "rate": 4 * np.pi / _PITCH},

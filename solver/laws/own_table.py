@@ -35,7 +35,7 @@ _APART, _STEPS, _GAP = 2.0, 8, 30.0
 #: Curves of neighbouring degrees may be wrong alike. So the distance from the next _HIGHER degrees counts too, of those
 #: that are as near the rows and have less than _PART coefficients a row; and _OF_ENDS of how far the first and the last
 #: row are from the curve through the others. Chosen so that `error` encloses all tables of
-#: tests/laws/test_own_table_range.py; it encloses all 90 random ones of `python tests/laws/own_tables.py` too.
+#: tests/laws/test_own_table_range.py; it encloses all 90 random ones of `python tools/errors/own_tables.py` too.
 _HIGHER, _PART, _OF_ENDS = 3, 0.5, 0.15
 #: Largest exponent of A(p) over the rows. That of a contact is at most 1; the rest is left to noise.
 _BENT = 1.05

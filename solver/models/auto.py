@@ -20,7 +20,7 @@ from ..solution import Model, Solution
 from ..status import Status
 from .named import closed_form, solve_named, with_model_error
 
-#: In random cases the true error is at most 0.86 of each bound that follows (`python tests/models/margins.py 3000 2`).
+#: In random cases the true error is at most 0.86 of each bound that follows (`python tools/errors/margins.py 3000 2`).
 #: The error of the thin layer is at most _THIN times its closed form, which is that of a smooth punch.
 _THIN = 4.0
 #: Where h/a is above _THICKEST, the error of leaving out the body under a thick layer is at most _ALONE times
@@ -30,7 +30,7 @@ _ALONE, _THICKEST = 0.8, 1.0
 #: 2/(3 - β) where that is less, for asperities of A ~ p^β with β < 1/3: in a ring at the edge, (A/a²)^(2/(3 - β)) wide,
 #: they yield more than the body.
 _ASPERITIES = {"P": 5.0, "a": 7.0, "D": 4.0}
-#: A bound above this is not trusted, for it is of first order; so its model is not taken, whatever `accuracy` is.
+#: A bound is of first order: above this it is not trusted, and its model is not taken, whatever `accuracy` is.
 _TRUSTED = 0.3
 #: Nodes u and weights of ∫ · du by the trapezoidal rule in ln u. They are few: 10 % are enough for a bound.
 _U = np.exp(np.linspace(np.log(1e-3), np.log(25.0), 14))
@@ -74,14 +74,14 @@ def bounds(part):
     i = np.flatnonzero(h_a > _THICKEST)
     L1, _ = decaying_part(_U * np.ones((len(i), 1)), *(v[i, None] for v in material))
     alone[i] = _ALONE * (np.abs(L1) @ _WEIGHTS) / h_a[i]
-    found = {Model.LAYER_ALONE: alone + of_law, Model.THIN_LAYER: thin + of_law}
+    with_spots = {Model.LAYER_ALONE: alone + of_law, Model.THIN_LAYER: thin + of_law}
     if not cases.law.rough:
-        return {Model(model + 1): bound for model, bound in found.items()}
+        return {Model(model + 1): bound for model, bound in with_spots.items()}
     p0 = 2 / np.pi * a * layer_modulus(part.n) / whole(1.5 * h_a, *material)
     _, beta = cases.law.edge()
     share = cases.law.at(p0[:, None]).A[:, 0] / a**2
     asperities = _ASPERITIES[part.control] * share ** np.minimum(0.75, 2 / (3 - beta))
-    return {Model(model + 1): bound + asperities for model, bound in found.items()} | found
+    return {Model(model + 1): bound + asperities for model, bound in with_spots.items()} | with_spots
 
 
 def _on_model(model, part, x):
@@ -92,10 +92,10 @@ def _on_model(model, part, x):
         return solve_named(base, x)
     s, _ = area_rule()
     radii = np.concatenate([x, np.sqrt((1 - s) * (1 + s))])
-    found = solve_named(base.but(micro=SMOOTH.name, scheme="newton"), radii)
-    p, p_area = np.split(found.p, [len(x)], axis=1)
+    solution = solve_named(base.but(micro=SMOOTH.name, scheme="newton"), radii)
+    p, p_area = np.split(solution.p, [len(x)], axis=1)
     law = law_of(part)
-    return replace(found, **spots_under(law, found.p0, p_area), p=p, lam=law.at(p).lam)
+    return replace(solution, **spots_under(law, solution.p0, p_area), p=p, lam=law.at(p).lam)
 
 
 def area_rule():

@@ -1,8 +1,8 @@
-"""The error of a cheap model against the exact layer with its asperities, estimated from the solution of the cheap one.
+"""The error of a cheap model against the exact layer with its asperities, estimated from the cheap solution.
 
-From there Newton's method solves the exact equation, and the cheap one too, on a coarse mesh under the same control.
-The estimate is the largest relative difference of the first over a, P, D, p(0), p_max, Ar/An, plus that of the second,
-which is what the mesh misses.
+From this solution Newton's method solves two equations on a coarse mesh under the same control, the exact one and the
+cheap one. The estimate is the sum of the largest relative changes over a, P, D, p(0), p_max, Ar/An in both: the second
+is what the mesh misses.
 """
 
 from dataclasses import replace
@@ -43,11 +43,11 @@ def judged(problem, x):
 
 
 def distance(cases, cheap, p):
-    """Relative difference (B,) of a cheap solution from that of `cases` on NODES nodes; inf where Newton's method from
-    it finds none.
+    """Relative difference (B,) of a cheap solution from the solution of `cases` on NODES nodes; inf where Newton's
+    method, which starts from the cheap one, does not find it.
 
-    One step would not do: on a layer that is nearly incompressible the exact pressure at the edge is several times that
-    of the thin layer, and a step finds a part of this only (tests/models/test_first_order.py).
+    One step is not enough: on a layer that is nearly incompressible the exact pressure at the edge is several times
+    the thin layer's, and a step finds only a part of that (tests/models/test_first_order.py).
 
     cases : in units R = E2* = 1; cheap : the cheap solution in the same units
     p : (B, NODES), its nominal pressure at the nodes ``mesh_of(NODES).x``

@@ -49,8 +49,8 @@ def solve_named(problem, x):
 
 
 def with_model_error(problem, solution):
-    """The solution whose `model_error` is at least that of where its law begins, without the numbers of cases at
-    pressures that their law does not know; both in the units of the problem."""
+    """The solution with a `model_error` of at least :func:`~.range_of_law.edge_error`. Cases at pressures that their
+    law does not know lose their numbers. `solution` and result are in the units of the problem."""
     error = np.maximum(solution.model_error, edge_error(problem, solution))
     return replace(solution, model_error=error).refused(outside_law(problem, solution), Status.OUTSIDE_LAW)
 
@@ -80,7 +80,7 @@ def closed_form(problem, a):
 
 
 def _ways(problem, solvable):
-    """(mask (B,), way) of each way to solve: the mask is True for its cases."""
+    """Pairs of a mask (B,), True for some cases, and the way to solve these."""
     half_space, thin = problem.base == "half_space", problem.base == "thin_layer"
     is_smooth = ~problem.rough()
     yield solvable & is_smooth & half_space, _smooth_half_space
@@ -88,7 +88,7 @@ def _ways(problem, solvable):
     iterated = solvable & ~(is_smooth & (half_space | thin))
     # of each kind the words that occur, and the cases that have them
     kinds = (LAWS, problem.micro), (BODIES, problem.base), (SCHEMES, problem.scheme)
-    present = ([(word, words == word) for word in known if np.any(words == word)] for known, words in kinds)
+    present = ([(word, words == word) for word in names if np.any(words == word)] for names, words in kinds)
     for (_, of_law), (_, on_body), (scheme, by_scheme) in product(*present):
         chosen = iterated & of_law & on_body & by_scheme
         for limit in np.unique(problem.max_iterations[chosen]):
@@ -104,7 +104,7 @@ def _smooth_layer(part, x):
 
 
 def _with_model(problem, solution):
-    """The solution with its `model_used`, and its `model_error` but for the range of the law."""
+    """The solution with its `model_used`, and its `model_error` without that of the range of the law."""
     solved, thin = np.isfinite(solution.p0), problem.base == "thin_layer"
     error = np.where(solved & ~thin, 0.0, np.nan)
     judged = np.flatnonzero(solved & thin)

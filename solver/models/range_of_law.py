@@ -10,8 +10,8 @@ from ..laws import LAWS
 _S = np.append(np.geomspace(1e-5, 0.09, 40), np.linspace(0.1, 1, 41))
 RADII = np.sqrt((1 - _S) * (1 + _S))
 #: Near the edge p is below the first row of a table, p1, and A and λ are guesses. That changes a, P, D, p(0), p_max and
-#: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS: in random tables (`python tests/laws/own_tables.py`) the largest has
-#: 0.205 in its place; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
+#: Ar/An by at most _GUESSED (p1/p(0))^_STEEPNESS. Random tables (`python tools/errors/own_tables.py`) need at most
+#: 0.205 for _GUESSED; a table of random heights needs more than 0.25 (tests/laws/test_own_table_range.py).
 _GUESSED, _STEEPNESS = 0.4, 1.2
 
 
@@ -32,7 +32,7 @@ def outside_law(problem, solution):
 
 
 def edge_error(problem, solution):
-    """(B,): relative error of the contacts whose law begins at a pressure > 0, because it does; 0 of the others."""
+    """(B,): relative error of contacts because their law begins at a pressure > 0; 0 where it does not."""
     error = np.zeros(len(problem))
     for law in _laws(problem):
         index, p0, E = _of_law(problem, solution, law)

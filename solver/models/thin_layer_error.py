@@ -30,8 +30,8 @@ _NEAR = int(np.sum(_U < 45.0))
 _LEAST_LENGTH = 0.3
 #: The least |κ| of :func:`largest_error`, under a smooth punch and under asperities, over the integral of the absolute
 #: value: in some bonded materials long waves and short ones cancel in κ, but not in the terms of second order.
-#: Asperities weigh the waves differently. With it, and the factor that the base "auto" has, bounds are larger than the
-#: errors (test_kappa_of_waves_that_cancel in tests/models/test_waves_that_cancel.py).
+#: Asperities weigh the waves differently. With this least value, and the factor of the base "auto", bounds are larger
+#: than the errors (test_kappa_of_waves_that_cancel in tests/models/test_waves_that_cancel.py).
 _UNCANCELLED, _UNDER_ASPERITIES = 0.1, 0.25
 #: A bonded layer that is nearly incompressible is softer than its springs, for it is squeezed out sideways. Then the
 #: error is at least (L/(A1 + A2 u))^power - 1, at u = wave h/a: wave and power of each control, fitted to random layers
@@ -51,8 +51,8 @@ class ThinLayerError(NamedTuple):
 
 @one_blas_thread()
 def edge_shift(n, nu1, nu2, bonded):
-    """κ: by how many thicknesses h the contact of the thin layer is wider than that of the exact layer, for h << a; to
-    about 1e-6. Below 0 it is the narrower one. NaN where the thin-layer equation does not apply (A2 <= 0).
+    """κ: by how many thicknesses h the contact is wider on the thin layer than on the exact layer, for h << a; to about
+    1e-6. Where κ < 0 it is narrower. NaN where the thin-layer equation does not apply (A2 <= 0).
 
     Arguments as those of :func:`~solver.kernels.closed_form.layered_kernel`.
 
@@ -64,8 +64,8 @@ def edge_shift(n, nu1, nu2, bonded):
 
 def _shift_and_size(n, nu1, nu2, bonded):
     """κ, and the same integral over the absolute value."""
-    given = np.broadcast_arrays(np.asarray(n, float), nu1, nu2, bonded)
-    n, nu1, nu2, bonded = (v.ravel() for v in given)
+    arrays = np.broadcast_arrays(np.asarray(n, float), nu1, nu2, bonded)
+    n, nu1, nu2, bonded = (v.ravel() for v in arrays)
     with np.errstate(divide="ignore"):  # n = 0
         both, tabulated = np.empty((2, len(n))), (bonded == 0) & (np.abs(np.log(n)) < _RANGE)
     both[:, tabulated] = _without_friction()(np.log(n[tabulated]))  # its integrand is positive
@@ -73,7 +73,7 @@ def _shift_and_size(n, nu1, nu2, bonded):
     if len(rest):  # a batch has few materials: each is integrated once
         materials, places = np.unique([v[rest] for v in (n, nu1, nu2, bonded)], axis=1, return_inverse=True)
         both[:, rest] = _integrated(*materials)[:, places.ravel()]
-    return both.reshape(2, *given[0].shape)
+    return both.reshape(2, *arrays[0].shape)
 
 
 @lru_cache(maxsize=1)

@@ -11,8 +11,8 @@ _START = ((1e-3, 6), (1e-5, 8), (3e-7, 12), (3e-8, 16), (1e-9, 22))
 #: The estimated error is this times the distance to the next finer mesh, since the finer mesh has an error too
 #: ("margin" of tests/contact/errors/test_error_bars.py).
 MARGIN = 2.0
-#: Unknowns that are solved together: so many that the time of the calls does not count, so few that they stay in the
-#: processor's cache.
+#: Unknowns that are solved together. With more of them they would leave the processor's cache, with fewer the time of
+#: the calls would count.
 STACK = 40_000
 
 
@@ -42,13 +42,13 @@ def finer_mesh(mesh):
 def climb(rtol, nodes, solve_on, first=None, order=None):
     """Let every case climb to the mesh that meets its tolerance rtol (B,).
 
-    Returns a list of (index, found), one of each stack that was solved; the last one that has a case is its answer.
+    Returns a list of (index, answer), one for each stack that was solved. The last one with a case has its answer.
 
     nodes : (B,) int, a fixed mesh, or 0: begin on `first`
-    solve_on : ``solve_on(index, n, start) -> error, finer, found`` solves the cases `index` on n nodes. `start` is the
+    solve_on : ``solve_on(index, n, start) -> error, finer, answer`` solves the cases `index` on n nodes. `start` is the
         `finer` of the mesh before, None on the first. error (b,): estimated errors, NaN where there is no use in going
         on. finer: what the next finer mesh begins with, which has ``finer.take(rows)`` and ``finer.join(others)``; or
-        None. found: the answer, which is passed on
+        None. answer: passed on as it is
     first : (B,) int, the mesh to begin on; None: chosen by rtol
     order : (B,) int, permutation of the cases; neighbours in it are solved together
     """
@@ -58,23 +58,23 @@ def climb(rtol, nodes, solve_on, first=None, order=None):
     waiting = {n: [(index, None) for index in _stacks(batch, n)] for batch, n in batches}
     pieces = []
     while waiting:
-        n, on = min(waiting), []
+        n, climbing = min(waiting), []
         for index, start in waiting.pop(n):
-            error, finer, found = solve_on(index, n, start)
-            pieces.append((index, found))
+            error, finer, answer = solve_on(index, n, start)
+            pieces.append((index, answer))
             rows = np.flatnonzero((error > rtol[index]) & (nodes[index] == 0))
             if len(rows) and n < LADDER[-1]:
-                on.append((index[rows], None if finer is None else finer.take(rows)))
-        if on:
-            waiting.setdefault(next_rung(n), []).extend(_together(on, next_rung(n)))
+                climbing.append((index[rows], None if finer is None else finer.take(rows)))
+        if climbing:
+            waiting.setdefault(next_rung(n), []).extend(_together(climbing, next_rung(n)))
     return pieces
 
 
-def _together(on, n):
-    """The stacks (index, start) on n nodes of the cases `on`, (index, start), that go on from the mesh before."""
-    index, start = np.concatenate([one for one, _ in on]), on[0][1]
+def _together(climbing, n):
+    """The stacks (index, start) on n nodes of the `climbing` cases, (index, start), that come from the mesh before."""
+    index, start = np.concatenate([rows for rows, _ in climbing]), climbing[0][1]
     if start is not None:
-        start = start.join([one for _, one in on])
+        start = start.join([begin for _, begin in climbing])
     return [(index[rows], None if start is None else start.take(rows)) for rows in _stacks(np.arange(len(index)), n)]
 
 

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-#: Fewest systems that are eliminated together, and most unknowns of each. With fewer systems or more unknowns, LAPACK
-#: is faster, which solves one by one.
+#: Fewest systems that are eliminated together, and most unknowns of each. With fewer systems or more unknowns LAPACK,
+#: which solves one by one, is faster.
 _FEWEST, _LARGEST = 200, 32
 
 

@@ -109,10 +109,10 @@ def half_space_rows(nodes, s_out, breaks=WHOLE):
     """
     panels = len(breaks) - 1
     order = len(nodes) // panels
-    rows, own = np.zeros((len(s_out), panels, order)), nodes if panels == 1 else radau_nodes(order)
+    rows, local_nodes = np.zeros((len(s_out), panels, order)), nodes if panels == 1 else radau_nodes(order)
     for piece in pieces(s_out, breaks, order):
         values = piece.weight * _kernel(s_out[piece.row, None], piece.gap, piece.sign)
-        rows[piece.row, piece.panel] += against(values, piece.basis(own))
+        rows[piece.row, piece.panel] += against(values, piece.basis(local_nodes))
     return rows.reshape(len(s_out), len(nodes))
 
 

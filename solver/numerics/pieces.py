@@ -7,7 +7,7 @@ import numpy as np
 
 from .quadrature import gauss_legendre, lagrange, log_rule, panels_towards
 
-#: Most numbers of a piece, points times nodes of a panel: 1 MB, so many that the time of numpy's calls does not count.
+#: Most numbers of a piece, points times nodes of a panel: 1 MB, enough that the time of numpy's calls does not count.
 _TOGETHER = 131_072
 
 
@@ -37,7 +37,7 @@ def against(values, basis):
     return values @ basis[0] if len(basis) == 1 else np.matmul(values[:, None], basis)[:, 0]
 
 
-def pieces(s, breaks, order, near=None, rough=None):
+def pieces(s, breaks, order, near=None, swings=None):
     """Yield each :class:`Piece` of targets s (m,) and polynomials of `order` nodes on the p panels between `breaks`.
 
     A panel farther from the target than its own length has a plain Gauss rule. A nearer one, and each side of one that
@@ -45,8 +45,8 @@ def pieces(s, breaks, order, near=None, rough=None):
     distance asks for.
 
     near : (m, p) bool, the pairs that count; None: all
-    rough : (m, p) bool, the pairs for which another factor of the integrand is not smooth away from the target: they
-        have all subpanels. If it is given, the subpanels of all pairs have equally many points
+    swings : (m, p) bool, the pairs on whose panel another factor of the integrand swings, even far from the target.
+        Such a panel has all subpanels. With `swings`, the subpanels of every pair have equally many points
     """
     low, high = np.array(breaks[:-1]), np.array(breaks[1:])
     length = high - low
@@ -56,13 +56,15 @@ def pieces(s, breaks, order, near=None, rough=None):
         start, there = np.maximum(ahead, 0.0), far_end > 0
         if near is not None:
             there &= near
-        towards = panels_towards(start if rough is None else np.where(rough, 0.0, start), length)
+        towards = panels_towards(start if swings is None else np.where(swings, 0.0, start), length)
         kinds = 2 * np.where(ahead >= length, -1, towards) + (ahead < 0)
         for kind in np.unique(kinds[there]).tolist():
             rows, panels = np.nonzero(there & (kinds == kind))
             count, inside = divmod(kind, 2)  # of subpanels; -1 of a panel that is far
             # 12 or 14 points are for the singularity, the others for a polynomial of degree order - 1
-            rule = gauss_legendre(12 + order // 2) if count < 0 else log_rule(14 + order // 2, rough is not None, count)
+            rule = (
+                gauss_legendre(12 + order // 2) if count < 0 else log_rule(14 + order // 2, swings is not None, count)
+            )
             (distance, weight), many = rule, max(1, _TOGETHER // (len(rule[0]) * order))
             for at in range(0, len(rows), many):
                 row, panel = rows[at : at + many], panels[at : at + many]

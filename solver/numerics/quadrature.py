@@ -74,8 +74,8 @@ def log_rule(n, everywhere=False, panels=_PANELS):
     weights. Its relative error is below 3^(-2 _LEAST).
 
     Each subpanel is a quarter as long as the one before. The zeros of the polynomial lie densest at an end, so that it
-    changes its sign half as often on each next one: these have fewer and fewer points. If another factor of the
-    integrand varies near 0, as under a film, `everywhere` gives all of them `n` points. Fewer `panels` are enough if
+    changes its sign half as often on each next subpanel: so each next one has fewer points. If another factor of the
+    integrand varies near 0, as under a film, `everywhere` gives every subpanel `n` points. Fewer `panels` are enough if
     the singularity is before 0, by at least a third of the last subpanel, [0, 4^-panels].
     """
     least = n if everywhere else min(n, _LEAST)

@@ -88,7 +88,7 @@ def theory(part: xr.Dataset) -> list[np.ndarray]:
 def cycle(axes) -> None:
     """Draw two successive iterates near the edge, long after the load has settled, and the solution between them.
 
-    Results hold no iterates. These are in a file, which tests/references/make_picard_cycle.py has written.
+    Results hold no iterates. These are in a file, which tools/references/make_picard_cycle.py has written.
     """
     x, *iterates, solution = np.loadtxt(Path(__file__).with_name("picard_cycle.csv"), delimiter=",", skiprows=1).T
     for p, count, mark in zip(iterates, (1000, 1001), "os", strict=True):

@@ -146,6 +146,6 @@ STIFFNESSES = {
 _FILE = Path(__file__).with_name("greenwood_tripp.csv")
 GREENWOOD_TRIPP: dict[int, dict[float, tuple[float, float]]] = {}
 """μ -> α -> p(0) and effective radius over those of Hertz, of the equations of Greenwood and Tripp (1967):
-tests/references/make_greenwood_tripp.py solves them."""
+tools/references/make_greenwood_tripp.py solves them."""
 for _mu, _alpha, *_ratios in np.loadtxt(_FILE, delimiter=",", skiprows=1).tolist():
     GREENWOOD_TRIPP.setdefault(int(_mu), {})[_alpha] = tuple(_ratios)

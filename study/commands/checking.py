@@ -6,7 +6,7 @@ from ..inputs.definition import Definition
 from ..inputs.grid import MOVED
 from ..inputs.places import study_file
 from ..inputs.reading import read
-from ..inputs.vocabulary import VOCABULARY
+from ..inputs.vocabulary import ROWS, VOCABULARY
 from ..terminal import answer
 
 
@@ -31,12 +31,14 @@ def doubtful_lines(definition: Definition) -> list[str]:
     if not definition.scene:
         return []
     from ..in_words.early import far_outside
-    from ..inputs.scene.bounds import INPUTS, absurd  # here: it imports xarray
+    from ..inputs.scene.scene import bare_variable  # here: these import xarray
+    from ..rules.rule import sentences
 
-    given = {name: value for name, value in definition.scene.given.items() if name in INPUTS}
-    given = {name: v.isel({MOVED: 0}) if MOVED in getattr(v, "dims", ()) else v for name, v in given.items()}
-    spreads = {name: one for name, one in definition.scene.spreads.items() if name in INPUTS}
-    return [f"{definition.name}: beware: {text}" for text in (*absurd(given, spreads), *far_outside(definition))]
+    scene, v = definition.scene, {}
+    for name, value in (scene.given | {f"{name}_spread": spread for name, spread in scene.spreads.items()}).items():
+        value = value.isel({MOVED: 0}) if MOVED in getattr(value, "dims", ()) else value
+        v[name] = bare_variable(value, {"units": ROWS[name].unit} if name in ROWS else {})
+    return [f"{definition.name}: beware: {text}" for text in (*sentences(v), *far_outside(definition))]
 
 
 def law_lines(definition: Definition) -> list[str]:

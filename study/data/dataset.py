@@ -13,7 +13,7 @@ from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
 from ..inputs.laws import COMMENT
 from ..inputs.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
-from .assumptions import validity_attributes, validity_of
+from ..rules.rule import validity_attributes, validity_of, whole
 from .provenance import provenance
 
 
@@ -162,25 +162,3 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     if "flag_masks" in attributes and flags.dtype.kind == "f":  # the mask 0 would say that the case is a good one
         named = np.where(np.isfinite(flags.values), named, status_words()[NOT_RUN])
     return xr.DataArray(named, flags.coords, flags.dims, flags.name)
-
-
-def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
-    """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
-    attributes = validity.attrs
-    masks = zip(np.atleast_1d(attributes["flag_masks"]).tolist(), attributes["flag_meanings"].split(), strict=True)
-    values = whole(validity.values, attributes)
-    return {name: (values & mask) != 0 for mask, name in masks}
-
-
-def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
-    """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, NaN where no case is left.
-
-    For NaN the status is "not run", and other flags are 0. Raises ValueError for numbers that are flags of no case.
-    """
-    if flags.dtype.kind in "iu":
-        return flags
-    if flags.dtype.kind != "f" or (np.isfinite(flags) & (flags % 1 != 0)).any():
-        raise ValueError("these flags are of no case: they have been compared, averaged or interpolated")
-    words = attributes["flag_meanings"].split()
-    absent = np.atleast_1d(attributes["flag_values"])[words.index("not_run")] if "not_run" in words else 0
-    return np.where(np.isfinite(flags), flags, absent).astype(int)

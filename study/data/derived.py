@@ -16,9 +16,8 @@ from solver.laws import LAWS, identity, name_in
 
 from ..inputs.scene.scales import without_unit
 from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
-from . import assumptions
-from .assumptions import (  # noqa: F401 - names of study.derived
-    ASSUMPTIONS,
+from ..rules import rule
+from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     COMPRESSED,
     FEW_SPOTS,
     MERGING,
@@ -28,8 +27,8 @@ from .assumptions import (  # noqa: F401 - names of study.derived
     STEEP,
     STEEP_SPOT,
     STRETCHED,
-    validity,
 )
+from ..rules.rule import ASSUMPTIONS, validity  # noqa: F401 - names of study.derived
 from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12
@@ -80,7 +79,7 @@ def quantity(name: str) -> Callable:
                 unit = variable.attrs.get("units", "1")
                 if own in VOCABULARY and unit not in ("1", VOCABULARY[own].unit):  # of study.readable
                     raise ValueError(f"{own} is in {unit}: {name} follows from results in SI units, or without units")
-            return named(formula(dataset), name, assumptions.has_units(dataset))
+            return named(formula(dataset), name, rule.has_units(dataset))
 
         computed.__doc__ = cleandoc(formula.__doc__ or "") + SECTIONS_OF_QUANTITIES
         QUANTITIES[name] = computed
@@ -118,13 +117,13 @@ def mean_pressure(dataset: xr.Dataset) -> xr.DataArray:
 @quantity("spots")
 def number_of_spots(dataset: xr.Dataset) -> xr.DataArray:
     """Number of contact spots N̄ An; NaN where there is no roughness."""
-    return assumptions.spots(dataset).where(assumptions.have("rough", dataset["micro"]))
+    return rule.spots(dataset).where(rule.have("rough", dataset["micro"]))
 
 
 @quantity("b0")
 def spot_radius(dataset: xr.Dataset) -> xr.DataArray:
     """Radius of the central contact spot b = sqrt(λ/(π N̄)), Eq. (11), in R; NaN where there is no roughness."""
-    return assumptions.spot_radius(dataset).where(assumptions.have("rough", dataset["micro"]))
+    return rule.spot_radius(dataset).where(rule.have("rough", dataset["micro"]))
 
 
 @quantity("p_ring")
@@ -226,7 +225,7 @@ def _rough_model(used: xr.DataArray) -> xr.DataArray:
 
 def _scales(dataset: xr.Dataset, name: str) -> tuple:
     """The modulus and the radius that are 1 for the solver, in SI units: E2*, E1* on a rigid base, and R."""
-    if not assumptions.has_units(dataset):
+    if not rule.has_units(dataset):
         return 1.0, 1.0
     if any(name not in dataset or dataset[name].attrs.get("units") != ROWS[name].unit for name in ("R", "E2", "p")):
         raise ValueError(f"{name} needs R, E2 and p in SI units, as study.solve gives them, or all without units")

@@ -4,11 +4,9 @@ import numpy as np
 import xarray as xr
 from matplotlib.patheffects import withStroke
 
-from ..data.assumptions import assumption_texts
-from ..data.dataset import broken
+from ..rules.rule import RULES, broken
 
 MOST = 0.75  # of the axis: more is not shaded, the curves and the legend would stand on grey
-ASSUMPTION_TEXT, OF_WHICH, GREYS = (assumption_texts(key) for key in ("text", "of_which", "grey"))
 
 
 def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", align: str = "center") -> None:
@@ -45,9 +43,9 @@ def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> 
             loads = ", ".join(f"${low:.3g} < P < {high:.3g}$" if low else f"$P < {high:.3g}$" for low, high in along)
             noted.append((meaning, of_curves, "" if where.all() else f", {loads}"))
             continue
-        label = f"not valid: {ASSUMPTION_TEXT[meaning]} ({', '.join(of_curves)})"
+        label = f"not valid: {RULES[meaning].text} ({', '.join(of_curves)})"
         for start, stop in along:
-            axes.axvspan(start, stop, color=GREYS[meaning], linewidth=0, zorder=-1, label=label)
+            axes.axvspan(start, stop, color=RULES[meaning].grey, linewidth=0, zorder=-1, label=label)
             label = "_"  # one entry in the legend
     note(axes, noted)
 
@@ -73,7 +71,7 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 def note(axes, noted: list[tuple]) -> None:
     """Write above the axes a line for each assumption. noted : assumption, the curves that break it, and words that say
     where, if not everywhere."""
-    lines = [f"{', '.join(curves)}: {ASSUMPTION_TEXT[meaning]}{OF_WHICH[meaning]}{loads}"
+    lines = [f"{', '.join(curves)}: {RULES[meaning].text}{RULES[meaning].of_which}{loads}"
              for meaning, curves, loads in noted]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 

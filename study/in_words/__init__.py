@@ -1,13 +1,12 @@
 """A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
 
-from .beyond import BROKEN, doubts
+from .beyond import doubts
 from .early import FarOutside, far_outside
 from .pressures import STRENGTHS
 from .sentences import MODELS, NOT_VIOLATED
 from .text import MOST_CASES, SHOWN, Summary, summary
 
 __all__ = [
-    "BROKEN",
     "MODELS",
     "MOST_CASES",
     "NOT_VIOLATED",

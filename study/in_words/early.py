@@ -6,11 +6,10 @@ import xarray as xr
 from solver import Problem
 from solver.estimate import estimate
 
-from ..data.assumptions import have, validity_of
-from ..data.dataset import broken, model_attributes
+from ..data.dataset import model_attributes
 from ..inputs.definition import Definition
 from ..inputs.grid import MOVED, along, columns
-from .beyond import BROKEN
+from ..rules.rule import RULES, broken, have, validity_of
 
 #: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
 #: that factor: of 300 random contacts beyond no limit it takes none for far outside, and of 300 that exceed one 50
@@ -44,7 +43,7 @@ def far_outside(definition: Definition) -> list[str]:
     index = as_given.ravel()[:: -(-as_given.size // MOST)]
     looked_at = index[np.broadcast_to(slow, grid.shape).ravel()[index]]
     far = _exceeded(columns(grid, looked_at)) if len(looked_at) else {}
-    found = [BROKEN[word] for word, where in far.items() if 2 * where.sum() >= len(index)]
+    found = [RULES[word].sentence for word, where in far.items() if 2 * where.sum() >= len(index)]
     who = "this contact is" if as_given.size == 1 else "at least half of these contacts are"
     return [f"{who} {SAID}", *found] if found else []
 

@@ -1,6 +1,6 @@
 """Values as other packages hand them over: numpy, pandas, polars, dask, pint, pint-xarray, astropy, become plain ones.
 
-None of these packages but numpy is imported here: what a value is, is told by what it has.
+Of these packages only numpy is imported here: a value is told by the attributes that it has.
 """
 
 from typing import Any
@@ -10,30 +10,30 @@ import numpy as np
 _USUAL = {float, int, str}
 
 
-def plain(given: Any) -> Any:
-    """What several packages make of numbers, texts and lists as these; a DataArray of pint with the attribute `units`.
+def plain(value: Any) -> Any:
+    """The plain number, text or list of a value of other packages; a DataArray of pint with the attribute `units`.
 
     An array becomes a list, one without dimensions a single value, and a quantity of astropy or unyt the text of a
     number with a unit. All else is returned as it is.
     """
-    if type(given) in _USUAL:
-        return given
-    if type(given) in (list, tuple):
-        return given if _USUAL.issuperset(map(type, given)) else type(given)(map(plain, given))
-    if hasattr(given, "dims"):  # of xarray
-        return _plain_array(given)
-    if hasattr(given, "magnitude") and hasattr(given, "units"):  # of pint
-        return list(given) if np.ndim(given.magnitude) == 1 else given
-    if getattr(getattr(given, "dtype", None), "kind", "") in ("m", "M"):  # times, whose `tolist` may be numbers
-        return np.asarray(given).astype(str).tolist()
-    unit = getattr(given, "unit", getattr(given, "units", None))
-    if unit is not None and hasattr(given, "value") and hasattr(given, "to"):  # of astropy or unyt: with no `tolist`
-        return _with_unit(np.asarray(given.value).tolist(), str(unit))  # the unit would be lost
-    if hasattr(given, "tolist"):
-        return given.tolist()
-    if hasattr(given, "__array__") and hasattr(given, "shape"):  # of polars or dask
-        return np.asarray(given).tolist()
-    return given
+    if type(value) in _USUAL:
+        return value
+    if type(value) in (list, tuple):
+        return value if _USUAL.issuperset(map(type, value)) else type(value)(map(plain, value))
+    if hasattr(value, "dims"):  # of xarray
+        return _plain_array(value)
+    if hasattr(value, "magnitude") and hasattr(value, "units"):  # of pint
+        return list(value) if np.ndim(value.magnitude) == 1 else value
+    if getattr(getattr(value, "dtype", None), "kind", "") in ("m", "M"):  # times, whose `tolist` may be numbers
+        return np.asarray(value).astype(str).tolist()
+    unit = getattr(value, "unit", getattr(value, "units", None))
+    if unit is not None and hasattr(value, "value") and hasattr(value, "to"):  # of astropy or unyt: with no `tolist`
+        return _with_unit(np.asarray(value.value).tolist(), str(unit))  # the unit would be lost
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    if hasattr(value, "__array__") and hasattr(value, "shape"):  # of polars or dask
+        return np.asarray(value).tolist()
+    return value
 
 
 def _plain_array(array: Any) -> Any:
@@ -44,11 +44,17 @@ def _plain_array(array: Any) -> Any:
     if not hasattr(array, "shape"):
         return array
     if not hasattr(array, "coords"):
-        import xarray as xr  # has been imported: somebody has made a Variable with it
+        import xarray as xr  # imported already: `array` is a Variable of it
 
         array = xr.DataArray(array)
-    for name, own in [(name, own) for name, own in array.coords.items() if hasattr(own.data, "magnitude")]:
-        values = own.dims, own.data.magnitude, own.attrs | {"units": _name_of(own.data.units)}
+    for name, coordinate in [
+        (name, coordinate) for name, coordinate in array.coords.items() if hasattr(coordinate.data, "magnitude")
+    ]:
+        values = (
+            coordinate.dims,
+            coordinate.data.magnitude,
+            coordinate.attrs | {"units": _name_of(coordinate.data.units)},
+        )
         array = array.drop_vars(name).assign_coords({name: values})
     if hasattr(array.data, "magnitude"):
         array = array.copy(data=array.data.magnitude).assign_attrs(units=array.data.units)
@@ -65,8 +71,8 @@ def _name_of(units: Any) -> str:
         return str(units)
 
 
-def _with_unit(given: Any, unit: str) -> Any:
-    """A number, or each of a list, as the text of this number with a unit; without a unit as it is."""
-    if isinstance(given, list):
-        return [_with_unit(one, unit) for one in given]
-    return f"{given!r} {unit}" if unit not in ("", "dimensionless") else given
+def _with_unit(number: Any, unit: str) -> Any:
+    """The text of a number with its unit, or a list of such texts; without a unit the number as it is."""
+    if isinstance(number, list):
+        return [_with_unit(each, unit) for each in number]
+    return f"{number!r} {unit}" if unit not in ("", "dimensionless") else number

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import summits
 from .heights.asperities import Roughness, length, over
-from .heights.doubts import doubts, of_form, of_jumps
+from .heights.doubts import doubts, form_doubts, jump_doubts
 from .heights.form import without_form
 from .heights.rows import aligned
 from .scan import BLUNTEST, FEWEST, FLATTEST, Scan, number
@@ -59,7 +59,7 @@ def measure(
         raise ValueError(f'{scan.name}: method = {method!r}; allowed are "moments" and "summits"')
     cutoffs = _cutoffs(scan, cutoff)
     flat, said, notes = _flat(scan, form, rows)
-    answers = [_asperities(scan, *_filtered(scan, flat, said, one), method, notes) for one in cutoffs]
+    answers = [_asperities(scan, *_filtered(scan, flat, said, each), method, notes) for each in cutoffs]
     if np.ndim(cutoff) == 0:
         return answers[0]
     return over(cutoffs, answers, f"{said}; Gaussian low-pass (ISO 16610) with each cutoff, {_BORDERS}")
@@ -76,10 +76,10 @@ def _cutoffs(scan: Scan, cutoff) -> list[float | None]:
     values = [cutoff] if np.ndim(cutoff) == 0 else np.array(cutoff, dtype=object).ravel().tolist()
     if np.ndim(cutoff) > 1 or not values or len(set(values)) < len(values):
         raise ValueError(f"{scan.name}: cutoff = {cutoff}; a list must have one cutoff or more, each of them once")
-    for one in values:
-        if not least <= number(f"{scan.name}: cutoff", one, "m") < math.inf:
+    for value in values:
+        if not least <= number(f"{scan.name}: cutoff", value, "m") < math.inf:
             raise ValueError(
-                f"{scan.name}: cutoff = {one} m; it must be finite and at least three steps, {least:.4g} m"
+                f"{scan.name}: cutoff = {value} m; it must be finite and at least three steps, {least:.4g} m"
             )
     return values
 
@@ -90,7 +90,7 @@ def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
         rule = "a profile has no rows; leave it out" if scan.z.ndim == 1 else 'allowed are "median" and None'
         raise ValueError(f"{scan.name}: rows = {rows!r}; {rule}")
     z = aligned(scan.z) if rows else scan.z
-    notes = () if rows else tuple(of_jumps(scan.z))
+    notes = () if rows else tuple(jump_doubts(scan.z))
     z, said = without_form(z, scan.steps, form, scan.name)
     said = f"the median of the differences of neighbouring rows taken off; {said}" if rows else said
     _not_nothing(scan, z, said)
@@ -100,7 +100,7 @@ def _flat(scan: Scan, form, rows) -> tuple[np.ndarray, str, tuple[str, ...]]:
             f"{scan.name}: the heights spread by {rms:.3g} m (rms, {said}); no surface is smoother than "
             f"{FLATTEST:g} m, 1 pm. {_WAY_OUT}."
         )
-    return z, said, (*notes, *of_form(z, scan.steps, form))
+    return z, said, (*notes, *form_doubts(z, scan.steps, form))
 
 
 _WAY_OUT = "Give unit and height_unit as the scan has them, or huge=True beside them if it is so"
@@ -153,34 +153,34 @@ def _asperities(scan: Scan, z: np.ndarray, filtered: str, method: str, notes: tu
     """The answer of heights without form and short waves."""
     along = summits.moments(z, scan.steps)
     m = summits.mean_moments(along)
-    found = summits.of_moments(m) if method == "moments" else summits.of_summits(z, scan.steps)
-    if found is None or not (found.density > 0 and found.curvature > 0):
+    asperities = summits.gaussian_summits(m) if method == "moments" else summits.counted_summits(z, scan.steps)
+    if asperities is None or not (asperities.density > 0 and asperities.curvature > 0):
         raise ValueError(
             f"{scan.name}: no summits: none of {_points(z)} is higher than all around it. "
             "Take off the form, or measure a larger area."
         )
-    if not (scan.huge or 1 / found.curvature <= BLUNTEST):
+    if not (scan.huge or 1 / asperities.curvature <= BLUNTEST):
         raise ValueError(
-            f"{scan.name}: Ra = {1 / found.curvature:.3g} m, the radius of an asperity; at most {BLUNTEST:g} m is "
+            f"{scan.name}: Ra = {1 / asperities.curvature:.3g} m, the radius of an asperity; at most {BLUNTEST:g} m is "
             f"taken. The heights have an rms of {np.nanstd(z):.3g} m on {max(scan.sizes):.3g} m. {_WAY_OUT}."
         )
     how = {
         "moments": f"spectral moments (McCool 1987) of profiles, m0 = {m.m0:.4g} m², m2 = {m.m2:.4g}, "
         f"m4 = {m.m4:.4g} m⁻², α = {summits.bandwidth(m):.3g}; the surface is taken to be Gaussian and isotropic",
-        "summits": f"{found.found} summits found as points above their eight neighbours"
+        "summits": f"{asperities.counted} summits found as points above their eight neighbours"
         if z.ndim == 2
-        else f"{found.found} peaks found as points above their two neighbours, converted to summits of an isotropic "
-        "Gaussian surface",
+        else f"{asperities.counted} peaks found as points above their two neighbours, converted to summits of an "
+        "isotropic Gaussian surface",
     }
     iso_Ra = float(np.nanmean(np.abs(z - np.nanmean(z))))
-    count = summits.number_of(z, scan.steps, found.density)
+    count = summits.number_of(z, scan.steps, asperities.density)
     answer = Roughness(
-        *map(float, (found.density, 1 / found.curvature, found.spread, iso_Ra, count)),
+        *map(float, (asperities.density, 1 / asperities.curvature, asperities.spread, iso_Ra, count)),
         method=how[method],
         filter=filtered,
         resolution=_resolution(scan),
     )
-    doubted = doubts(z, scan.steps, along, found, count, notes)
+    doubted = doubts(z, scan.steps, along, asperities, count, notes)
     return replace(answer, notes=(*scan.notes, *notes, *doubted, answer.about_cut()))
 
 

@@ -25,7 +25,7 @@ READABLE = {
 }
 LONGEST = 100  # characters of a text with a unit, because pint computes any expression that is written there
 #: The digits that texts are read with, whatever the caller has set for its own `decimal`: 28, Python's default, is far
-#: more than a float holds. Every field is said, since what is left out is taken from `decimal.DefaultContext`.
+#: more than a float holds. Every field is set, since what is left out is taken from `decimal.DefaultContext`.
 _EXACT = Context(28, ROUND_HALF_EVEN, -999999, 999999, 1, 0, [], [DivisionByZero, InvalidOperation, Overflow])
 _SURE = 1e-5  # a smaller relative spread is not written
 _SPREAD = re.compile(r"\s*(?:±|\+/-|\+-)\s*")
@@ -33,16 +33,16 @@ _UNIT_OR_SPREAD = re.compile(rf"(?![eE][-+]?\d)[^\W\d_]|[%°]|{_SPREAD.pattern}"
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
 
 #: A number with a unit that is a product of powers: read without pint, as the number times the size of its unit. The 1
-#: of "1/um^2" must not be a digit of the number: "2.1/um^2" were "2." times 1/um^2.
+#: of "1/um^2" must not be a digit of the number: "2.1/um^2" would be "2." times 1/um^2.
 _PLAIN = re.compile(rf"({_NUMBER.pattern})\s*((?:(?<![\d.])1/)?[A-Za-zµ]+(?:(?:\^|\*|/)-?[A-Za-z0-9µ]+)*)")
 #: What pint would read as another number, without a word: signs that it does not know, which it drops or takes for a
-#: product ("5,0 mm" were 50 mm, "200–220 GPa" 44 TPa), a second decimal point, a number that it multiplies by the one
+#: product ("5,0 mm" as 50 mm, "200–220 GPa" as 44 TPa), a second decimal point, a number that it multiplies by the one
 #: before ("5 500 um", "5 1/2 in", "200 GPa (10)"), and two tolerances ("200 GPa +10/-5 GPa").
 _AMBIGUOUS = re.compile(
     r"[^\w\s.+\-*/^()·×%°±⁻]|[¼-¾⅐-⅞]|\.\d*\.|\d[eE][-+]?\d+\.|[\w)]\s*\(\s*[-+]?[\d.]|\)\s*[\d.]"
     r"|(?<!\+)/\s*-\s*[\d.]|(?<![-+±*/^(×·\s])\s+(?!1\s*/\s*[^\d\s.])[\d.]"
 )
-#: What a German data sheet means by 210 GPa, and pint by 210 MPa.
+#: A German data sheet writes 210 GPa as "210.000 MPa", which pint reads as 210 MPa.
 _THOUSANDS = re.compile(r"(\d{2,3})\.000[^A-Za-z\d]*(?:[\d.]+\s*)?(?:N/mm|MPa)")
 #: The minus sign of printed texts where it can be no dash of a range: before the number, or in an exponent.
 _MINUS = re.compile(r"^−|(?<=\d[eE])−|(?<=\^)−")
@@ -61,12 +61,12 @@ class Quantity:
         return f"{self.value:g}"
 
 
-def has_unit(given: Any) -> bool:
+def has_unit(entry: Any) -> bool:
     """Whether something is a quantity of pint, a `ufloat`, or a text of a number and, behind it, a unit or a spread."""
-    if isinstance(given, str):
-        number = _NUMBER.match(given.strip())
-        return bool(number) and bool(_UNIT_OR_SPREAD.search(given.strip(), number.end()))
-    return (hasattr(given, "magnitude") and hasattr(given, "to")) or _is_unsure(given)
+    if isinstance(entry, str):
+        number = _NUMBER.match(entry.strip())
+        return bool(number) and bool(_UNIT_OR_SPREAD.search(entry.strip(), number.end()))
+    return (hasattr(entry, "magnitude") and hasattr(entry, "to")) or _is_unsure(entry)
 
 
 def _is_unsure(number: Any) -> bool:
@@ -74,60 +74,60 @@ def _is_unsure(number: Any) -> bool:
     return hasattr(number, "nominal_value") and hasattr(number, "std_dev") and not hasattr(number, "magnitude")
 
 
-def unit_in(given: Any) -> str:
+def unit_in(entry: Any) -> str:
     """The unit of a text or of a quantity of pint, as it is written there; "" where it is no plain product of units."""
-    if not isinstance(given, str):
-        return str(getattr(given, "units", ""))
-    plain = [_PLAIN.fullmatch(part) for part in _SPREAD.split(given.strip())]
-    return next((found[2] for found in plain if found), "")
+    if not isinstance(entry, str):
+        return str(getattr(entry, "units", ""))
+    plain = [_PLAIN.fullmatch(part) for part in _SPREAD.split(entry.strip())]
+    return next((match[2] for match in plain if match), "")
 
 
-def quantity(name: str, given: Any, unit: str) -> Quantity:
+def quantity(name: str, entry: Any, unit: str) -> Quantity:
     """The SI value of a text ("5 mm", "200 ± 10 GPa"), a quantity of pint, or, for unit "1", of a number or a `ufloat`.
 
     name : what the number is called, for messages
-    given : text, number, `ufloat`, or quantity of pint; one that is measured (a `ufloat` with a unit) has a spread
+    entry : text, number, `ufloat`, or quantity of pint; one that is measured (a `ufloat` with a unit) has a spread
     unit : one of READABLE: the SI unit of the result
 
     Raises ValueError: there is no number or no unit, or the unit is of something else, which the message names.
     """
     with localcontext(_EXACT):
         try:
-            return _quantity(name, given, unit)
+            return _quantity(name, entry, unit)
         except (Overflow, InvalidOperation) as error:  # "1e999999 km" is beyond _EXACT too
-            raise ValueError(f"{name} = {shown(given)}: must be finite") from error
+            raise ValueError(f"{name} = {shown(entry)}: must be finite") from error
 
 
-def _quantity(name: str, given: Any, unit: str) -> Quantity:
+def _quantity(name: str, entry: Any, unit: str) -> Quantity:
     what, multiples = READABLE.get(unit, (f"a number of {unit}", ((unit, 1.0),)))
     example = f"2 {multiples[min(1, len(multiples) - 1)][0]}"
     wanted = f'must be {what}, such as "{example}"' if unit != "1" else "must be a number without a unit"
-    if isinstance(given, str):
-        return _from_text(name, _MINUS.sub("-", given.strip()), unit, wanted)
-    is_number = isinstance(given, (numbers.Real, Decimal)) and not isinstance(given, bool)
-    if unit != "1" and (is_number or _is_unsure(given)):
-        raise ValueError(f"{name} = {shown(given)} has no unit: {wanted}")
-    if not is_number and not has_unit(given):
-        raise ValueError(f"{name} = {shown(given)}: {wanted}")
+    if isinstance(entry, str):
+        return _from_text(name, _MINUS.sub("-", entry.strip()), unit, wanted)
+    is_number = isinstance(entry, (numbers.Real, Decimal)) and not isinstance(entry, bool)
+    if unit != "1" and (is_number or _is_unsure(entry)):
+        raise ValueError(f"{name} = {shown(entry)} has no unit: {wanted}")
+    if not is_number and not has_unit(entry):
+        raise ValueError(f"{name} = {shown(entry)}: {wanted}")
     try:
-        found = given if is_number or _is_unsure(given) else _of_pint(given, unit)
-        value, spread = (found.nominal_value, found.std_dev) if _is_unsure(found) else (found, 0.0)
+        magnitude = entry if is_number or _is_unsure(entry) else _of_pint(entry, unit)
+        value, spread = (magnitude.nominal_value, magnitude.std_dev) if _is_unsure(magnitude) else (magnitude, 0.0)
         value, spread = float(value), float(spread)
     except OverflowError as error:
-        raise ValueError(f"{name} = {shown(given)}: must be finite") from error
+        raise ValueError(f"{name} = {shown(entry)}: must be finite") from error
     except Exception as error:  # its class depends on the registry of the quantity
-        raise ValueError(f"{name} = {shown(given)}: {wanted}") from error
+        raise ValueError(f"{name} = {shown(entry)}: {wanted}") from error
     if not 0 <= spread < math.inf:
-        raise ValueError(f"the spread of {name} = {shown(given)}: must be finite and not below 0")
+        raise ValueError(f"the spread of {name} = {shown(entry)}: must be finite and not below 0")
     return Quantity(value, spread)
 
 
-def _of_pint(given: Any, unit: str) -> Any:
+def _of_pint(entry: Any, unit: str) -> Any:
     """The magnitude, a number or a `ufloat`, of a quantity of pint in `unit`."""
-    number = given.magnitude
+    number = entry.magnitude
     if hasattr(number, "dtype") and not _is_unsure(number):  # of numpy: 210 GPa of float16 would be infinite in Pa
-        given = type(given)(float(number), given.units)
-    return given.to(unit).magnitude
+        entry = type(entry)(float(number), entry.units)
+    return entry.to(unit).magnitude
 
 
 def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
@@ -142,8 +142,8 @@ def _from_text(name: str, text: str, unit: str, wanted: str) -> Quantity:
     if _AMBIGUOUS.search(text):
         raise ValueError(f"{said}: write one number, with a decimal point and without gaps: {wanted}")
     if thousands := _THOUSANDS.match(text):
-        one = thousands[1]
-        raise ValueError(f"{said}: the point may be one of thousands: write {one} or {one}e3: {wanted}")
+        digits = thousands[1]
+        raise ValueError(f"{said}: the point may be one of thousands: write {digits} or {digits}e3: {wanted}")
     if not spread:
         return Quantity(_si(name, text, unit, wanted))
     number = _NUMBER.match(spread[0])
@@ -180,16 +180,16 @@ def _si(name: str, text: str, unit: str, wanted: str) -> float:
         return value
     registry = _registry()  # outside `try`: an error of pint itself is not one of the unit
     try:
-        found = registry.Quantity(text)
+        parsed = registry.Quantity(text)
     except Exception as error:  # pint raises many kinds of errors
         raise ValueError(f'{name} = "{said}": no unit is called like this{_near(text, unit)}; {wanted}') from error
-    if unit != "1" and found.unitless:
+    if unit != "1" and parsed.unitless:
         raise ValueError(f'{name} = "{said}" has no unit: {wanted}')
-    if unit != "1" and "%" in text:  # "9 um %" were 0.09 um
+    if unit != "1" and "%" in text:  # pint reads "9 um %" as 0.09 um
         raise ValueError(f'{name} = "{said}": % may only stand behind ±: {wanted}')
-    if not found.is_compatible_with(unit):
-        raise ValueError(f'{name} = "{said}" is {_understood(found)}{_near(text, unit)}: {wanted}')
-    value = float(found.to(unit).magnitude)
+    if not parsed.is_compatible_with(unit):
+        raise ValueError(f'{name} = "{said}" is {_understood(parsed)}{_near(text, unit)}: {wanted}')
+    value = float(parsed.to(unit).magnitude)
     if not math.isfinite(value):
         raise ValueError(f'{name} = "{said}": must be finite')
     return value
@@ -208,18 +208,18 @@ def _size(word: str, unit: str) -> Decimal | None:
     """The size of a unit such as "um" or "1/mm^2" in the SI `unit`; None if it cannot be told."""
     registry = _registry()
     try:
-        found = registry.Quantity(word).to(unit).magnitude
+        magnitude = registry.Quantity(word).to(unit).magnitude
     except Exception:  # pint then reads the whole text, and the message says what is wrong
         return None
     # it is the integer 1 for the SI unit itself
-    return Decimal(found) if isinstance(found, (int, Decimal)) and unit != "1" else None
+    return Decimal(magnitude) if isinstance(magnitude, (int, Decimal)) and unit != "1" else None
 
 
-def _understood(found: Any) -> str:
+def _understood(parsed: Any) -> str:
     """What a quantity of the wrong dimension is, in words: "a force"."""
-    if found.dimensionless:
+    if parsed.dimensionless:
         return "an angle or a ratio"
-    return next((what for unit, (what, _) in READABLE.items() if found.is_compatible_with(unit)), f"in {found.units}")
+    return next((what for unit, (what, _) in READABLE.items() if parsed.is_compatible_with(unit)), f"in {parsed.units}")
 
 
 @cache

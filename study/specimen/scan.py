@@ -22,9 +22,9 @@ FEWEST = 16
 #: Largest rms slope, 72°. A stylus (cone of 60° or 90°) follows slopes up to 1.7, light up to about 1, the tip of an
 #: atomic force microscope up to 2.7. A steeper scan has other units than the caller says, or is full of spikes.
 STEEPEST = 3.0
-#: What no scan of a rough surface has, unless its unit is another: a size above 1 m, which no instrument reaches; an
-#: rms of the heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms
-#: of 1 nm have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_sizes.py).
+#: Beyond these limits the unit of a scan must be another: a size above 1 m, which no instrument reaches; an rms of the
+#: heights below 1 pm, a hundredth of an atom; and asperities of a radius above 1 km, which heights of an rms of 1 nm
+#: have in waves of 8 mm, as wide as a contact or wider (tests/specimen/heights/test_sizes.py).
 LONGEST, FLATTEST, BLUNTEST = 1.0, 1e-12, 1e3
 #: Largest distance of a position from the uniform grid, in steps. Curvatures err by about as much. Positions that are
 #: written to a tenth of the step pass.
@@ -128,10 +128,14 @@ def height_map(
         positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another
     """
     dx = number(f"{name}: dx", dx, unit)
-    known = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
-    own = [abs(float(one[1] - one[0])) for one in known if one.dtype.kind in "iuf" and one.size > 1]
-    if dy is None and len(own) == 2 and not np.isclose(own[0], own[1], rtol=UNEVEN, atol=0):
-        raise ValueError(f"{name}: the coordinates of z have steps of {own[0]:g} along x, {own[1]:g} along y: give dy")
+    coordinates = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
+    spacings = [
+        abs(float(values[1] - values[0])) for values in coordinates if values.dtype.kind in "iuf" and values.size > 1
+    ]
+    if dy is None and len(spacings) == 2 and not np.isclose(spacings[0], spacings[1], rtol=UNEVEN, atol=0):
+        raise ValueError(
+            f"{name}: the coordinates of z have steps of {spacings[0]:g} along x, {spacings[1]:g} along y: give dy"
+        )
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
     return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)
 
@@ -165,12 +169,12 @@ def number(name: str, value, unit: str) -> float:
 def _in_unit(name: str, values, unit: str):
     """The values. Raises ValueError for quantities of pint, and for a DataArray with another unit than `unit`.
 
-    Their numbers alone would be taken, of a unit that they do not have.
+    Without this check their numbers would be taken as they are, in a unit that they do not have.
     """
     quantity = hasattr(values, "magnitude")
-    own = values.units if quantity else getattr(values, "attrs", {}).get("units", unit)
-    if quantity or (own != unit and spelt(own) != spelt(unit)):
-        raise ValueError(f"{name} is in {own}, but must be numbers in {unit}: give the numbers, and their unit")
+    units = values.units if quantity else getattr(values, "attrs", {}).get("units", unit)
+    if quantity or (units != unit and spelt(units) != spelt(unit)):
+        raise ValueError(f"{name} is in {units}, but must be numbers in {unit}: give the numbers, and their unit")
     return values
 
 
@@ -246,7 +250,7 @@ def _plausible(scan: Scan, taken: str) -> None:
     """Raise ValueError for slopes that no instrument measures: the unit of heights or lengths must be wrong."""
     span = np.nanmax(scan.z) - np.nanmin(scan.z)
     differences = [np.diff(scan.z, axis=axis) / step for axis, step in enumerate(scan.steps)]
-    slope = max((math.sqrt(np.nanmean(one**2)) for one in differences if np.isfinite(one).any()), default=0.0)
+    slope = max((math.sqrt(np.nanmean(slopes**2)) for slopes in differences if np.isfinite(slopes).any()), default=0.0)
     if span > max(scan.sizes) or slope > STEEPEST:
         raise ValueError(
             f"{scan.name}: heights span {span:.3g} m on a scan {max(scan.sizes):.3g} m long, with an rms slope of "

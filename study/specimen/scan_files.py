@@ -14,7 +14,7 @@ import numpy as np
 from .scan import FEWEST, Scan, metres, number
 from .scan_grids import columns_of, npy_table, on_grid, scan_of
 from .scan_headings import check_units, height_metres, stated, without_no_data
-from .scan_texts import Table, table_of, text_of
+from .scan_texts import NumberTable, table_of, text_of
 
 #: Endings of files that are read as text if they are text, and by SurfaceTopography if they are none.
 TEXT = (".csv", ".txt", ".tsv", ".dat", ".asc", ".xyz", ".prf", ".smd", ".sdf", ".gz", "")
@@ -70,66 +70,66 @@ def read(
     ImportError : the format of an instrument, and SurfaceTopography is not installed
     """
     path = Path(path)
-    if path.exists() and not path.is_file() and not path.is_dir():  # which would be waited for, or has no end
+    if path.exists() and not path.is_file() and not path.is_dir():  # a pipe would be waited for, a device has no end
         raise ValueError(f"{path.name}: is no file but a pipe or device")
     ending, how = path.suffix.lower(), {"missing": missing, "steep": steep, "huge": huge}
-    given = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
-    given = {name: value for name, value in given.items() if value is not None}
+    arguments = {"unit": unit, "height_unit": height_unit, "dx": dx, "dy": dy, "columns": columns}
+    arguments = {name: value for name, value in arguments.items() if value is not None}
     text = text_of(path) if ending in TEXT else None
     if ending != ".npy" and text is None:
-        return _instrument(path, given, channel, crop, how)
+        return _instrument(path, arguments, channel, crop, how)
     if text is not None:
-        return _of_text(path.name, text, given, channel, crop, how)
+        return _of_text(path.name, text, arguments, channel, crop, how)
     if channel is not None:
         raise ValueError(f"{path.name}: channel = {channel!r}: .npy has no channels; leave it out")
-    return _of_table(path.name, npy_table(path), given, crop, how)
+    return _of_table(path.name, npy_table(path), arguments, crop, how)
 
 
-def _of_text(name: str, text: str, given: dict, channel: str | None, crop, how: dict) -> Scan:
+def _of_text(name: str, text: str, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
     """The scan in a text, of a format that states its lengths or a table of numbers."""
-    known = stated(text, name)
-    table = None if known else table_of(text, name, channel)
-    pixel = None if known else _zygo_pixel(table, "dx" in given, name)
-    if known or pixel:
-        if given or channel is not None:
-            more = ", ".join([*given, *["channel"] * (channel is not None)])
+    surface = stated(text, name)
+    table = None if surface else table_of(text, name, channel)
+    pixel = None if surface else _zygo_pixel(table, "dx" in arguments, name)
+    if surface or pixel:
+        if arguments or channel is not None:
+            more = ", ".join([*arguments, *["channel"] * (channel is not None)])
             raise ValueError(f"{name}: the file states its lengths itself; leave out {more}")
         if pixel:
             return _of_table(name, table, {"unit": "m", "height_unit": "um", "dx": pixel}, crop, how)
-        z, steps = known
+        z, steps = surface
         positions = [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
         return scan_of(name, z, positions, steps=steps, crop=crop, how=how)
-    return _of_table(name, table, given, crop, how)
+    return _of_table(name, table, arguments, crop, how)
 
 
-def _zygo_pixel(table: Table, given: bool, name: str) -> float | None:
+def _zygo_pixel(table: NumberTable, has_dx: bool, name: str) -> float | None:
     """Metres of a pixel in XYZ of Zygo, where x and y are numbers of pixels and z is in µm; None if it is no such file.
 
-    Raises ValueError: it is one that has no size of a pixel, and no dx is `given`.
+    Raises ValueError: such a file has no size of a pixel, and the caller gives no dx.
     """
     lines = dict(table.heading)
     if not lines.get(1, "").startswith("Zygo XYZ"):
         return None
     fields = lines.get(8, "").split()
     pixel = float(fields[6]) if len(fields) > 6 and re.fullmatch(r"[\d.]+(?:[eE][-+]?\d+)?", fields[6]) else 0.0
-    if not pixel and not given:
+    if not pixel and not has_dx:
         raise ValueError(f"{name}: x and y are numbers of pixels, and the heading has no size of one: give dx and unit")
     return pixel or None
 
 
-def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
+def _of_table(name: str, table: NumberTable, arguments: dict, crop, how: dict) -> Scan:
     """The scan in a table of numbers: a profile, a map, or x, y, z of one."""
-    if "unit" not in given:
+    if "unit" not in arguments:
         heading = table.heading[-1][1] if table.heading else ""
         said = f'. Its heading is "{heading[:80]}".' if heading else ""
         raise ValueError(
             f"{name}: give unit, such as unit='um', and height_unit if heights have another: units are not read from "
             f"text and .npy{said}"
         )
-    unit, height_unit = given["unit"], given.get("height_unit", given["unit"])
-    columns, places = columns_of(table, given, name)
-    dx = number(f"{name}: dx", given["dx"], unit) if "dx" in given else None
-    dy = number(f"{name}: dy", given["dy"], unit) if "dy" in given else dx
+    unit, height_unit = arguments["unit"], arguments.get("height_unit", arguments["unit"])
+    columns, places = columns_of(table, arguments, name)
+    dx = number(f"{name}: dx", arguments["dx"], unit) if "dx" in arguments else None
+    dy = number(f"{name}: dy", arguments["dy"], unit) if "dy" in arguments else dx
     check_units(table, unit, height_unit, places, name)
     size, notes = height_metres(table, height_unit, name)
     z, more = without_no_data(table, columns if columns.shape[1] >= FEWEST else columns[:, -1], name)
@@ -145,7 +145,7 @@ def _of_table(name: str, table: Table, given: dict, crop, how: dict) -> Scan:
     return scan_of(name, z, positions, steps=steps, units=(unit, height_unit), crop=crop, notes=notes, how=how)
 
 
-def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -> Scan:
+def _instrument(path: Path, arguments: dict, channel: str | None, crop, how: dict) -> Scan:
     """A scan in the format of an instrument, by SurfaceTopography. Its maps have x first, ours y."""
     name, ending = path.name, path.suffix.lower()
     try:
@@ -154,7 +154,7 @@ def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -
             import SurfaceTopography as library
     except ImportError as error:
         if ending not in TEXT and path.is_file() and (text := text_of(path)) is not None:
-            return _of_text(name, text, given, channel, crop, how)
+            return _of_text(name, text, arguments, channel, crop, how)
         if ending in TEXT:
             raise ValueError(
                 f"{name}: not a text file; text in UTF-8 or UTF-16, .npy and formats of instruments are read. If it is "
@@ -169,38 +169,38 @@ def _instrument(path: Path, given: dict, channel: str | None, crop, how: dict) -
     with _as_value_error(refused, ending):
         channels, default, kind = _channels(library, path)
     if kind in ("asc", "xyz"):
-        return _of_text(name, text_of(path), given, channel, crop, how)
+        return _of_text(name, text_of(path), arguments, channel, crop, how)
     chosen, notes = _chosen(channels, default, channel, name) if channels else (None, ())
     lacks = {"dx", "dy"} if chosen and chosen.physical_sizes is None else set()
     lacks |= {"height_unit"} if chosen and chosen.unit is None else set()
-    if more := [key for key in given if key not in {"unit"} | lacks]:
+    if more := [key for key in arguments if key not in {"unit"} | lacks]:
         raise ValueError(f"{name}: the format states its lengths itself; leave out {', '.join(more)}")
-    if "dx" in lacks and not {"dx", "unit"} <= given.keys():
+    if "dx" in lacks and not {"dx", "unit"} <= arguments.keys():
         raise ValueError(f"{name}: the file states no distance of its points: give dx (and dy) and unit")
     how_read = {"channel_index": chosen.index} if chosen and chosen is not default else {}
     if "dx" in lacks:
         steps = (
-            number(f"{name}: dx", given["dx"], given["unit"]),
-            number(f"{name}: dy", given.get("dy", given["dx"]), ""),
+            number(f"{name}: dx", arguments["dx"], arguments["unit"]),
+            number(f"{name}: dy", arguments.get("dy", arguments["dx"]), ""),
         )
         how_read["physical_sizes"] = tuple(n * step for n, step in zip(chosen.nb_grid_pts, steps, strict=False))
     with _as_value_error(refused, ending):
-        found = library.read_topography(_source(path), **how_read)
-    return _of_instrument(found, name, given, crop, notes, how, refused)
+        topography = library.read_topography(_source(path), **how_read)
+    return _of_instrument(topography, name, arguments, crop, notes, how, refused)
 
 
-def _of_instrument(found, name: str, given: dict, crop, notes: tuple, how: dict, refused: str) -> Scan:
-    """The scan of a topography of SurfaceTopography, in metres or, where the file has no unit, in those given."""
-    unit = given.get("unit")
-    if (found.unit is None) == (unit is None):
-        said = "no unit of length; give unit" if unit is None else f"the unit {found.unit!r}; leave out unit"
+def _of_instrument(topography, name: str, arguments: dict, crop, notes: tuple, how: dict, refused: str) -> Scan:
+    """The scan of a topography of SurfaceTopography, in metres or, where the file has no unit, in the caller's."""
+    unit = arguments.get("unit")
+    if (topography.unit is None) == (unit is None):
+        said = "no unit of length; give unit" if unit is None else f"the unit {topography.unit!r}; leave out unit"
         raise ValueError(f"{name}: the file states {said}")
     with _as_value_error(refused, ""):
-        found = found if unit else found.to_unit("m")
-        z = np.ma.filled(np.ma.asarray(found.heights()).astype(float), np.nan).T
-        steps = [float(step) for step in np.atleast_1d(found.pixel_size)][::-1] if found.is_uniform else None
-        positions = None if steps else [np.asarray(found.positions(), dtype=float)]
-    units = (unit, given.get("height_unit", unit)) if unit else ("m", "m")
+        topography = topography if unit else topography.to_unit("m")
+        z = np.ma.filled(np.ma.asarray(topography.heights()).astype(float), np.nan).T
+        steps = [float(step) for step in np.atleast_1d(topography.pixel_size)][::-1] if topography.is_uniform else None
+        positions = None if steps else [np.asarray(topography.positions(), dtype=float)]
+    units = (unit, arguments.get("height_unit", unit)) if unit else ("m", "m")
     positions = positions or [step * np.arange(points) for step, points in zip(steps, z.shape, strict=True)]
     return scan_of(name, z, positions, steps=steps, units=units, crop=crop, notes=notes, how=how)
 
@@ -214,7 +214,7 @@ def _source(path: Path):
 def _as_value_error(refused: str, ending: str):
     """Errors of SurfaceTopography, which are of many kinds, as one ValueError with their first line.
 
-    Where no format fits it lists what each reader says; that of the ending is taken, if it has one.
+    Where no format fits, its message lists what each reader says. The reader of the ending is quoted, if there is one.
     """
     try:
         yield
@@ -222,8 +222,8 @@ def _as_value_error(refused: str, ending: str):
         raise
     except Exception as error:
         tried = dict(re.findall(r"tried (\w+): *\n *(.*)", str(error)))
-        own = [reason for reader, reason in tried.items() if ending and reader.lower().startswith(ending[1:])]
-        fits = _NO_FORMAT + "".join(f"; as {ending}: {one}" for one in own)
+        reasons = [reason for reader, reason in tried.items() if ending and reader.lower().startswith(ending[1:])]
+        fits = _NO_FORMAT + "".join(f"; as {ending}: {of_ending}" for of_ending in reasons)
         reason = fits if tried else (str(error).strip().splitlines() or [type(error).__name__])[0]
         raise ValueError(f"{refused}: {reason}") from error
 
@@ -234,24 +234,24 @@ def _channels(library, path: Path) -> tuple[list, object, str]:
         return [], None, ""
     with library.open_topography(_source(path)) as reader:
         channels, default, kind = list(reader.channels), reader.default_channel, reader.format()
-    if kind in ("hgt", "nms") and path.suffix.lower() != f".{kind}":  # which take any bytes
+    if kind in ("hgt", "nms") and path.suffix.lower() != f".{kind}":  # these two readers take any bytes
         raise ValueError(_NO_FORMAT)
-    return channels, next((one for one in channels if one.index == default.index), default), kind
+    return channels, next((each for each in channels if each.index == default.index), default), kind
 
 
 def _chosen(channels: list, default, channel: str | None, name: str) -> tuple:
     """The channel of that name, or the first of heights, and a note that names it. Raises ValueError for none."""
-    named = {one.channel_id: one for one in channels}
+    named = {each.channel_id: each for each in channels}
     listed = ", ".join(map(repr, named))
     if channel is not None and channel not in named:
         raise ValueError(f"{name}: channel = {channel!r}, but the file has {listed}")
     curve = name.lower().endswith(".ibw") and default.dim == 1
-    if curve and any(word in one.name.lower() for one in channels for word in _FORCE):
+    if curve and any(word in each.name.lower() for each in channels for word in _FORCE):
         raise ValueError(f"{name}: a force curve ({listed}), not a map of heights; give the file of the image")
-    heights = [one for one in channels if one.is_height_channel]
+    heights = [each for each in channels if each.is_height_channel]
     chosen = named[channel] if channel is not None else default if default in heights else (*heights, None)[0]
     if chosen is None or not chosen.is_height_channel:
-        those = ", ".join(repr(one.channel_id) for one in heights) or "none"
+        those = ", ".join(repr(each.channel_id) for each in heights) or "none"
         what = f"channel {channel!r} has no heights" if chosen else f"the channels {listed} have no heights"
         raise ValueError(f"{name}: {what}; channels of heights: {those}")
     return chosen, (f"channel {chosen.channel_id!r}" + f" of {listed}" * (len(named) > 1),)

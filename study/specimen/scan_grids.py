@@ -11,15 +11,15 @@ from numpy.lib.format import MAGIC_PREFIX
 from .foreign import plain
 from .quantities import has_unit, quantity
 from .scan import FEWEST, UNEVEN, Scan, height_map, metres, number, profile
-from .scan_texts import Table
+from .scan_texts import NumberTable
 
-#: A grid that is found in x y z has heights at this share of its points at least: a disk in its square has 0.79.
+#: A grid of x y z must have heights at this share of its points: a disk in its square has them at 0.79.
 FULL = 0.25
-#: A position may be off the grid by the last digit that is written of it, if that is at most this share of all.
+#: A position may be off the grid by its last written digit, if that is at most this share of the whole length.
 COARSE = 0.01
 
 
-def npy_table(path: Path) -> Table:
+def npy_table(path: Path) -> NumberTable:
     """The numbers in a .npy file. Raises ValueError: it is none, whatever its name, or no array of real numbers."""
     refused = f"{path.name}: not a .npy file of real numbers"
     with open(path, "rb") as file:
@@ -33,19 +33,19 @@ def npy_table(path: Path) -> Table:
         raise ValueError(f"{refused}: {(str(error).splitlines() or [type(error).__name__])[0][:200]}") from error
     if numbers.ndim not in (1, 2) or not numbers.size:
         raise ValueError(f"{path.name}: an array of shape {numbers.shape}; allowed are one or two dimensions")
-    return Table(numbers.reshape(len(numbers), -1))
+    return NumberTable(numbers.reshape(len(numbers), -1))
 
 
-def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
+def columns_of(table: NumberTable, arguments: dict, name: str) -> tuple[np.ndarray, list]:
     """The columns of positions and heights, or all of a map, and where they stand; None where dx is the position."""
-    numbers, dx, picked = table.numbers, given.get("dx"), plain(given.get("columns"))
+    numbers, dx, picked = table.numbers, arguments.get("dx"), plain(arguments.get("columns"))
     places = [0, -1]
     if picked is not None:
         picked = list(picked) if isinstance(picked, (list, tuple)) else [picked]
         places = all(type(i) is int and 0 <= i < numbers.shape[1] for i in picked)
         if len(picked) not in (1, 2, 3) or not places or len(picked) > max(2, len(set(picked))):
             raise ValueError(
-                f"{name}: columns = {given['columns']}, but the file has the columns 0 to {numbers.shape[1] - 1}; "
+                f"{name}: columns = {arguments['columns']}, but the file has the columns 0 to {numbers.shape[1] - 1}; "
                 "allowed are two of them, for x and z, or one, for z, or three, for x, y and z"
             )
         numbers, places = numbers[:, picked], picked if len(picked) > 1 else picked * 2
@@ -58,8 +58,8 @@ def columns_of(table: Table, given: dict, name: str) -> tuple[np.ndarray, list]:
         _no_positions(numbers, name)
     if n >= FEWEST and dx is None:
         raise ValueError(f"{name}: a map of {numbers.shape[0]} × {n} heights: give dx (and dy), their distance")
-    if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in given))):
-        said = "".join(f" with {key} = {given[key]}" for key in ("dx", "dy") if key in given)
+    if n < FEWEST and (n > 3 or (n < 3 and ((n == 2) == (dx is not None) or "dy" in arguments))):
+        said = "".join(f" with {key} = {arguments[key]}" for key in ("dx", "dy") if key in arguments)
         raise ValueError(
             f"{name}: {numbers.shape[0]} rows of {n} column(s){said}; allowed are "
             f"two columns (x, z), one column (z) with dx, three (x, y, z of a grid), or {FEWEST} columns and more (a "
@@ -120,7 +120,7 @@ def on_grid(columns: np.ndarray, z: np.ndarray, steps: tuple | None, name: str) 
 
 
 def _axis(values: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-    """The uniform positions that the values have, rising, and the number of each value; None if there are none."""
+    """The uniform positions of the values, rising, and the place of each value among them; None if there are none."""
     unique = np.unique(values)
     span, gaps = unique[-1] - unique[0], np.sort(np.diff(unique))
     if not gaps.size:
@@ -148,7 +148,7 @@ def _last_digit(values: np.ndarray) -> float:
 
 
 def _rounded_step(x: np.ndarray) -> float | None:
-    """The mean step of positions of which only the rounding is uneven; None if they are even, or uneven without it.
+    """The mean step of positions that are uneven by rounding alone; None if they are even, or uneven beyond rounding.
 
     Instruments write x with few digits: 0.3, 0.7, 1.0 of a step of 1/3. Steps of mostly one last digit are left alone:
     there a point may be missing.

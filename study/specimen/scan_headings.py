@@ -8,7 +8,7 @@ import re
 import numpy as np
 
 from .scan import UNITS, WORDS, metres, spelt
-from .scan_texts import Table
+from .scan_texts import NumberTable
 
 _UNIT = rf"(?:(?i:{'|'.join(WORDS)})s?|{'|'.join(sorted(UNITS, key=len, reverse=True))}|Å|A)(?![^\W_])"
 _NUMBER = r"[-+]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eE][-+]?\d+)?(?![\w.,])"
@@ -26,7 +26,7 @@ _PAIR = re.compile(
     rf'(?P<key>[\w\\@][\w ./()\[\]>|\\@"×*-]*?)"?\s*(?:[=:;,\s]|(?<=[(\[×*]))\s*"?\s*(?P<value>{_NUMBER})'
     rf"\s*(?P<unit>{_UNIT})?(?P<per>\s*(?:/|per)\s*(?:bit|digit|count|lsb|step)s?\b)?"
 )
-#: Names of a scale of heights, and those that have one of these words and are none.
+#: Names of a scale of heights; and names that have such a word but are no scale.
 _SCALE = re.compile(
     r"scale\b|scaling|scale[\s_-]*(?:data|z|height)|skalier|échelle|fa[ck]t(?:o|eu)r|multipl|\bmult\b|amplif|bit2|\blsb\b"
     r"|\b1\s*(?:bit|digit|count)\b|quanti[sz]|^units?$|units? of$|[a-z]\s*[*×]$"
@@ -64,29 +64,29 @@ def length(word: str) -> float | None:
     return spelt(word) or {"A": 1e-10}.get(word)
 
 
-def check_units(table: Table, unit: str, height_unit: str, places: list, name: str) -> None:
-    """Raise ValueError for a unit that is none of those in the heading, such as "x [mm] z [nm]", if it has some.
+def check_units(table: NumberTable, unit: str, height_unit: str, places: list, name: str) -> None:
+    """Raise ValueError for a unit that the heading, if it has units ("x [mm] z [nm]"), does not have.
 
-    Where it has one for each column, those at `places` count: of the positions, and last of the heights; None where a
-    distance stands for a position. A single one is then that of the heights.
+    Where the heading has a unit for each column, those at `places` count: first of the positions, last of the heights.
+    A place is None where a distance stands for the positions; a single unit is then that of the heights.
     """
     width = table.numbers.shape[1]
     columns, line = _column_units(table, width)
     of_heights, its_line = _value_unit(table)
     for i, place in enumerate(places):
-        argument, given = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
-        own, said = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
-        if place is None and len(own) in (1, width):
+        argument, value = ("height_unit", height_unit) if i == len(places) - 1 else ("unit", unit)
+        words, said = ([of_heights], its_line) if of_heights and argument == "height_unit" else (columns, line)
+        if place is None and len(words) in (1, width):
             continue
-        own = [own[place]] if len(own) == width else own
-        if own and metres(given, name) not in [length(word) for word in own]:
+        words = [words[place]] if len(words) == width else words
+        if words and metres(value, name) not in [length(word) for word in words]:
             raise ValueError(
-                f'{name}: {argument} is {given}, but the heading has {" and ".join(own)}: "{said[:80]}". Give unit '
+                f'{name}: {argument} is {value}, but the heading has {" and ".join(words)}: "{said[:80]}". Give unit '
                 "and height_unit as the heading has them, or take its units out of it."
             )
 
 
-def _column_units(table: Table, width: int) -> tuple[list[str], str]:
+def _column_units(table: NumberTable, width: int) -> tuple[list[str], str]:
     """The units in the line that names the columns, or right below it, and that line; [] if there are none."""
     for i, (_, line) in enumerate(reversed(table.heading[-4:])):
         brackets = re.findall(r"[\[(]\s*([^\W\d_]+)\s*[\])]", line)
@@ -97,39 +97,39 @@ def _column_units(table: Table, width: int) -> tuple[list[str], str]:
             return (brackets if len(brackets) == width else fields), line
         if table.separator and len(fields) == width and all(ends):
             return [end[1] for end in ends], line
-        if i == 0 and (known := [word for word in brackets if length(word)]):
-            return known, line
+        if i == 0 and (units := [word for word in brackets if length(word)]):
+            return units, line
     return [], ""
 
 
-def _value_unit(table: Table) -> tuple[str, str]:
+def _value_unit(table: NumberTable) -> tuple[str, str]:
     """The unit of the heights where the heading names it so, and the line; ("", "") if it does not."""
     keyence = any("xy calibration" in line.lower() for _, line in table.heading)
     if table.heading and table.heading[0][1].startswith("Zygo XYZ"):
         return "um", table.heading[0][1]
     for _, line in table.heading:
-        found = _VALUE_UNIT.match(line) or (keyence and _KEYENCE_UNIT.match(line))
-        if found:
-            return found[1], line
+        match = _VALUE_UNIT.match(line) or (keyence and _KEYENCE_UNIT.match(line))
+        if match:
+            return match[1], line
     return "", ""
 
 
-def height_metres(table: Table, height_unit: str, name: str) -> tuple[float, tuple[str, ...]]:
+def height_metres(table: NumberTable, height_unit: str, name: str) -> tuple[float, tuple[str, ...]]:
     """Metres that the number 1 stands for as a height, and what was done about a factor in the heading.
 
-    A factor of which the heading says what it makes of the heights ("height conversion factor (-> m)=6.3e-008",
-    "Bit2nm = 0.012") is applied where height_unit is its unit. Another line that looks like a scale raises ValueError.
+    A factor that the heading states with its unit ("height conversion factor (-> m)=6.3e-008", "Bit2nm = 0.012") is
+    applied where height_unit is this unit. Any other line that looks like a scale raises ValueError.
     """
     size, notes = metres(height_unit, name), ()
-    stated = any(re.search(rf"\(\s*{_UNIT}\s*\)", line) for _, line in table.heading)
+    has_column_unit = any(re.search(rf"\(\s*{_UNIT}\s*\)", line) for _, line in table.heading)
     for number, line in table.heading:
-        if stated and line.lstrip('#%" ').startswith("\\"):  # of a Nanoscope, whose table has "Height(nm)"
+        if has_column_unit and line.lstrip('#%" ').startswith("\\"):  # of a Nanoscope, whose table has "Height(nm)"
             continue
-        said, found = f'{name}, line {number}: "{line[:80]}"', _factor(table, line)
-        if not found:
+        said, conversion = f'{name}, line {number}: "{line[:80]}"', _factor(table, line)
+        if not conversion:
             _no_scale(line[:300], size, said)
             continue
-        factor, unit = found
+        factor, unit = conversion
         if np.isclose(factor * length(unit), metres(height_unit, name), rtol=1e-9, atol=0):
             continue
         if length(unit) != metres(height_unit, name):
@@ -143,17 +143,17 @@ def height_metres(table: Table, height_unit: str, name: str) -> tuple[float, tup
     return size, notes
 
 
-def _factor(table: Table, line: str) -> tuple[float, str] | None:
+def _factor(table: NumberTable, line: str) -> tuple[float, str] | None:
     """The factor that a line states, and the unit that it leads to."""
     if table.heading[0][1].startswith("Wyko ASCII"):
         return _wyko(table) if re.match(r"wavelength\s", line, re.IGNORECASE) else (1.0, "nm")
-    found = next((found for pattern in _FACTORS if (found := pattern.search(line))), None)
-    if not found or (found["unit"] == "nm" and "2nm" in line.lower() and _value_unit(table)[0]):
+    match = next((match for pattern in _FACTORS if (match := pattern.search(line))), None)
+    if not match or (match["unit"] == "nm" and "2nm" in line.lower() and _value_unit(table)[0]):
         return None  # SPIP leaves open whether a file with a z-unit has been multiplied
-    return float(found["factor"].replace(",", ".")), found["unit"]
+    return float(match["factor"].replace(",", ".")), match["unit"]
 
 
-def _wyko(table: Table) -> tuple[float, str]:
+def _wyko(table: NumberTable) -> tuple[float, str]:
     """Heights of Wyko are in wavelengths (in nm) times Mult, or in nm if the second number of its first line is 1."""
     text = "\n".join(line for _, line in table.heading)
     values = [re.search(rf"^{key}\s+\d+\s+\d+\s+({_NUMBER})", text, re.MULTILINE) for key in ("Wavelength", "Mult")]
@@ -164,13 +164,13 @@ def _wyko(table: Table) -> tuple[float, str]:
 
 
 def _no_scale(line: str, size: float, said: str) -> None:
-    """Raise ValueError for a line that looks like a scale of the heights and is none that is known, or 1."""
-    for found in _PAIR.finditer(line):
-        key, value = found["key"], float(found["value"].replace(",", "."))
-        if not (found["per"] or _SCALE.search(key)) or _NO_SCALE.search(key):
+    """Raise ValueError for a line that looks like a scale of the heights, unless the scale is 1."""
+    for pair in _PAIR.finditer(line):
+        key, value = pair["key"], float(pair["value"].replace(",", "."))
+        if not (pair["per"] or _SCALE.search(key)) or _NO_SCALE.search(key):
             continue
-        unit = length(found["unit"]) if found["unit"] else None
-        grouped = re.fullmatch(r"\d{1,3},\d{3}", found["value"])
+        unit = length(pair["unit"]) if pair["unit"] else None
+        grouped = re.fullmatch(r"\d{1,3},\d{3}", pair["value"])
         if grouped or not np.isclose(value * unit / size if unit else value, 1.0, rtol=1e-9, atol=0):
             raise ValueError(
                 f"{said} looks like a scale of the heights and is not applied. Multiply the heights by it, unless that "
@@ -178,7 +178,7 @@ def _no_scale(line: str, size: float, said: str) -> None:
             )
 
 
-def without_no_data(table: Table, columns: np.ndarray, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
+def without_no_data(table: NumberTable, columns: np.ndarray, name: str) -> tuple[np.ndarray, tuple[str, ...]]:
     """The heights with NaN for the number that the heading has for no data ("NODATA_value -9999"), and a note.
 
     Raises ValueError: a map has other rows or columns than the heading says.
@@ -187,14 +187,14 @@ def without_no_data(table: Table, columns: np.ndarray, name: str) -> tuple[np.nd
     for number, line in table.heading:
         size = _SIZE.match(line)
         shape = dict(zip(("rows", "columns"), table.numbers.shape, strict=True))
-        for axis, own in shape.items():
-            if min(shape.values()) > 3 and size and size[axis] and int(size["number"]) != own:
+        for axis, count in shape.items():
+            if min(shape.values()) > 3 and size and size[axis] and int(size["number"]) != count:
                 raise ValueError(
-                    f'{name}, line {number}: "{line[:80]}", but {own} {axis} follow: the file may be cut off. If it is '
-                    "right, take the line out"
+                    f'{name}, line {number}: "{line[:80]}", but {count} {axis} follow: the file may be cut off. If it '
+                    "is right, take the line out"
                 )
-        if found := _NO_DATA.search(line):
-            value = float(found[1].replace(",", "."))
+        if match := _NO_DATA.search(line):
+            value = float(match[1].replace(",", "."))
             bad = np.isclose(columns, value, rtol=1e-6, atol=0)
             columns = np.where(bad, np.nan, columns)
             notes += (f"{bad.sum()} heights of {value:g} are missing points, as line {number} says",) * bool(bad.any())
@@ -202,7 +202,7 @@ def without_no_data(table: Table, columns: np.ndarray, name: str) -> tuple[np.nd
 
 
 def stated(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]] | None:
-    """Heights and steps in m of a format whose heading states all lengths, SDF, SMD or PRF; None if it is none."""
+    """Heights and steps in m of a format whose heading states all lengths, SDF, SMD or PRF; None for other text."""
     if re.match(r"a[\w .-]+\n", text) and re.search(r"^\s*zscale\s*=", text, re.IGNORECASE | re.MULTILINE):
         return _sdf(text, name)
     if re.search(r"^CZ\s+[A-Z]\s", text, re.MULTILINE) and re.search(r"^\s*(?:EOR|\x03)\s*$", text, re.MULTILINE):
@@ -234,7 +234,7 @@ def _records(text: str, name: str) -> tuple[np.ndarray, tuple[float, ...]]:
     x, z, y = (re.search(axis.format(of, *[_NUMBER] * 3), text, re.MULTILINE) for of in "XZY")
     spacing = re.search(rf"^SPACING\s+CX\s+({_NUMBER})", text, re.MULTILINE)
     step = (x and x[1] == "I" and x[5]) or (spacing and spacing[1])
-    sizes = [UNITS.get(found[3].lower()) for found in (x, z) if found]
+    sizes = [UNITS.get(match[3].lower()) for match in (x, z) if match]
     if not step or y or None in sizes or len(sizes) != 2:
         raise ValueError(f"{name}: a profile of ISO 5436-2 needs lines CX with a step and CZ, in mm, um or nm; no CY")
     records = [record.split() for record in re.split(r"^\s*(?:EOR|\x03)\s*$", text, flags=re.MULTILINE)[1:]]

@@ -33,12 +33,12 @@ _NO_DATA = re.compile(r"(?i)^(\s*[-+\d.,eE]+[\s;,]+[-+\d.,eE]+[\s;,]+)no\s+data[
 
 
 @dataclass(frozen=True, eq=False)
-class Table:
+class NumberTable:
     """The numbers of a text file, shape (rows, columns), NaN where a point is missing, and what stands around them.
 
     heading : (number, text) of each line that is no row, comments included
     separator : between the columns; None: spaces
-    channel : what the heading calls it, "" if it does not
+    channel : its name in the heading, or ""
     notes : what was taken for something else than a row, each a sentence
     """
 
@@ -57,7 +57,7 @@ def text_of(path: Path) -> str | None:
             raw = gzip.decompress(raw)
         except (OSError, EOFError, zlib.error) as error:
             raise ValueError(f"{path.name}: the packed file is damaged: {error}") from error
-    if raw.startswith(b"ISO 5436"):  # which separates by zeros
+    if raw.startswith(b"ISO 5436"):  # separated by zeros
         raw = raw.replace(b"\0", b" ")
     zeros = [raw[parity::2].count(0) for parity in (0, 1)]
     encodings = ["utf-8-sig", "latin-1"]  # older instruments write a µ of Latin-1 in the heading
@@ -74,7 +74,7 @@ def text_of(path: Path) -> str | None:
     return None
 
 
-def table_of(text: str, name: str, channel: str | None = None) -> Table:
+def table_of(text: str, name: str, channel: str | None = None) -> NumberTable:
     """The rows of numbers in a text, and its heading.
 
     A line before the first clean row that has as many fields, most of them numbers, is a row too.
@@ -95,7 +95,7 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
         if not any(fields) and len(fields) < FEWEST:
             continue
         values = _values(fields, dialect[1])
-        if None in values and _whole(rows) and not _THOUSAND.search(content):  # "0;0" has not shown it
+        if None in values and _whole(rows) and not _THOUSAND.search(content):  # rows such as "0;0" do not show the mark
             dialect = dialect[0], ","
             values = _values(fields, ",")
         if None in values:
@@ -120,15 +120,15 @@ def table_of(text: str, name: str, channel: str | None = None) -> Table:
             )
     for number, content in counts:
         _check_counts(number, content, table.shape, name)
-    notes = tuple(f"line {one}, {content.strip()!r}, is taken for the size of the table" for one, content in counts)
+    notes = tuple(f"line {line}, {content.strip()!r}, is taken for the size of the table" for line, content in counts)
     taken = set(numbers)
     heading = tuple((number, full.strip()) for number, full in lines if full.strip() and number not in taken)
-    return Table(table, heading, dialect[0], said, notes)
+    return NumberTable(table, heading, dialect[0], said, notes)
 
 
 def _of_channel(lines: list, name: str, channel: str | None) -> tuple[list, str]:
     """The lines of one channel, and its name: Gwyddion writes several into one file, one below the other."""
-    starts = [(i, found[1]) for i, (_, full) in enumerate(lines) if (found := _CHANNEL.match(full))]
+    starts = [(i, match[1]) for i, (_, full) in enumerate(lines) if (match := _CHANNEL.match(full))]
     names = [said for _, said in starts]
     if channel is not None and names.count(channel) != 1:
         listed = ", ".join(map(repr, names)) or "none by name; choose columns of text with columns="
@@ -164,7 +164,7 @@ def _fields(content: str, separator: str | None) -> list[str]:
 
 def _values(fields: list[str], mark: str) -> list[float | None]:
     """The number of each field, NaN where a point is missing, None where there is a word."""
-    if mark == ",":  # a point there were one of thousands
+    if mark == ",":  # there a point would separate thousands
         fields = [field.replace(",", ".") if "." not in field else "a point" for field in fields]
     return [
         float(field) if _NUMBER.fullmatch(field) else float("nan") if field.lower() in MISSING else None
@@ -173,7 +173,7 @@ def _values(fields: list[str], mark: str) -> list[float | None]:
 
 
 def _dialect(content: str) -> tuple | None:
-    """Separator and decimal mark of a clean row, one of numbers and missing points alone; None if it is none."""
+    """Separator and decimal mark of a clean row, of numbers and missing points alone; None for any other line."""
     for separator, mark in DIALECTS:
         if separator and separator not in content.strip(" "):
             continue
@@ -184,9 +184,9 @@ def _dialect(content: str) -> tuple | None:
 
 
 def _first_row(contents: list, name: str) -> tuple[int, tuple, list]:
-    """Where the rows begin, their dialect, and the lines of one or two numbers before them: of how many they are."""
+    """Where the rows begin, their dialect, and the lines of one or two numbers before them, which say how many."""
     counts = []
-    clean = ((i, one) for i, (_, content) in enumerate(contents) if (one := _dialect(content)))
+    clean = ((i, fits) for i, (_, content) in enumerate(contents) if (fits := _dialect(content)))
     for i, dialect in clean:
         later = next((content for _, content in contents[i + 1 :] if content.strip()), "")
         width, next_dialect = len(_fields(contents[i][1], dialect[0])), _dialect(later)

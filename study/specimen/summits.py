@@ -4,7 +4,7 @@ Heights z of a profile have shape (x), of a map (y, x); steps are the distances 
 function serves both. NaN is a missing point: what needs it is left out.
 
 Where the points of a map are not as far apart along x as along y, slopes and curvatures along both are those over the
-larger distance. N̄ and Ra depend on the distance, and means of two of them belong to neither.
+larger distance. N̄ and Ra depend on the distance: a mean over two distances would belong to neither.
 """
 
 import itertools
@@ -21,7 +21,7 @@ ALPHA = math.sqrt(math.log(2) / math.pi)
 #: The window reaches four standard deviations of the Gaussian, 0.75 cutoffs, to each side; 6e-5 of it lie beyond.
 REACH = 4 * ALPHA / math.sqrt(2 * math.pi)
 #: Least part of the window that has measured points; elsewhere the filter has no answer. Missing points are filled in
-#: first: N̄ and Ra are then off by less than 1 %, also where gaps as wide as two asperities take a fifth of the scan. Of
+#: first: N̄ and Ra are then off by less than 1 %, also where gaps as wide as two asperities take a fifth of the scan. By
 #: the mean of the points that are there N̄ would be 1.6 times too large (tests/specimen/heights/test_missing_points.py).
 MEASURED = 0.5
 #: Steps of filling gaps before a low-pass: what is deeper in a gap has no answer anyway.
@@ -51,15 +51,16 @@ class Moments(NamedTuple):
 
 
 class Asperities(NamedTuple):
-    """Number per area (m⁻²), mean curvature (m⁻¹), standard deviation of heights (m), how many were counted.
+    """Number per area (m⁻²), mean curvature (m⁻¹), standard deviation of heights (m).
 
+    counted : how many were counted; None where moments give them
     usual : the curvature by medians (m⁻¹), to which a few spikes add nothing
     """
 
     density: float
     curvature: float
     spread: float
-    found: int | None = None
+    counted: int | None = None
     usual: float = math.nan
 
 
@@ -100,8 +101,8 @@ def moments(z: np.ndarray, steps: tuple) -> list[Moments]:
 
 
 def _over(z: np.ndarray, axis: int, lag: float, order: int, mean) -> float:
-    """Mean of the squared first or second differences of points `lag` apart; that of the points whose partners are
-    there. Between two whole lags it is a power of the lag, as that of a self-affine surface is."""
+    """Mean of the squared first or second differences of points `lag` apart, over the points whose partners are there.
+    Between two whole lags it is a power of the lag, as on a self-affine surface."""
     low = math.floor(lag + 1e-6)
     values = [mean(_present(_differences(z, axis, whole, order)) ** 2) for whole in (low, low + 1)[: 1 + (lag > low)]]
     if lag <= low * (1 + 1e-6) or min(values) == 0:
@@ -116,14 +117,14 @@ def _differences(z: np.ndarray, axis: int, lag: int, order: int) -> np.ndarray:
 
 
 def _present(values: np.ndarray) -> np.ndarray:
-    """Those that are there, flat; a zero if none is."""
+    """The finite values, flat; a zero if there is none."""
     values = values[np.isfinite(values)]
     return values if values.size else np.zeros(1)
 
 
 def mean_moments(along: list[Moments]) -> Moments:
     """The moments of a profile in any direction: the means over the axes."""
-    return Moments(along[0].m0, *np.mean([one[1:] for one in along], axis=0).tolist())
+    return Moments(along[0].m0, *np.mean([m[1:] for m in along], axis=0).tolist())
 
 
 def number_of(z: np.ndarray, steps: tuple, density: float) -> float:
@@ -137,7 +138,7 @@ def bandwidth(m: Moments) -> float:
     return m.m0 * m.m4 / m.m2**2
 
 
-def of_moments(m: Moments) -> Asperities:
+def gaussian_summits(m: Moments) -> Asperities:
     """Summits of the isotropic Gaussian surface whose profiles have these moments (Nayak 1971, McCool 1987).
 
     N̄ = m4/(6π√3 m2), 1/Ra = (8/3) √(m4/π), σ_s² = (1 - 0.8968/α) m0.
@@ -146,14 +147,14 @@ def of_moments(m: Moments) -> Asperities:
     return Asperities(SUMMITS_PER_AREA * m.m4 / m.m2, CURVATURE * math.sqrt(m.m4), spread)
 
 
-def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
+def counted_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
     """Summits of a map, or peaks of a profile, found point by point; None if there are none.
 
     Of equal neighbours the last counts, so that a flat top is one summit. Neighbours are the larger step away, along
-    both axes; between two whole numbers of points all is a power of the distance. Near a border the last point stands
-    for one beyond it. Points with a missing neighbour are not counted, nor is their area. Peaks of a profile are lower,
-    and blunter, than the summits beside which they pass: they are converted by the ratios of an isotropic Gaussian
-    surface.
+    both axes. Where that is between two whole numbers of points, each result is a power of the distance. Near a border
+    the last point stands for one beyond it. Points with a missing neighbour are not counted, nor is their area. Peaks
+    of a profile are lower, and blunter, than the summits beside which they pass: they are converted by the ratios of an
+    isotropic Gaussian surface.
     """
     lags = [max(steps) / step for step in steps]
     low, high = ([max(1, math.floor(lag + add)) for lag in lags] for add in (1e-6, 1 - 1e-6))
@@ -162,12 +163,12 @@ def of_summits(z: np.ndarray, steps: tuple) -> Asperities | None:
     if near is None or far is None or near is far:
         return near and far
     share = max(math.log(lag / i) / math.log1p(1 / i) for lag, i in zip(lags, low, strict=True))
-    between = [one ** (1 - share) * other**share for one, other in zip(near, far, strict=True)]
+    between = [value ** (1 - share) * far_value**share for value, far_value in zip(near, far, strict=True)]
     return Asperities(*between[:3], round(between[3]), between[4])
 
 
 def _summits(z: np.ndarray, steps: tuple, lags: list[int]) -> Asperities | None:
-    """Those whose neighbours are so many points away along each axis."""
+    """The summits above neighbours that are `lags` points away along each axis."""
     padded = np.pad(z, [(lag - 1, lag - 1) for lag in lags], mode="edge")
     here = (0,) * z.ndim
     around = {
@@ -180,8 +181,8 @@ def _summits(z: np.ndarray, steps: tuple, lags: list[int]) -> Asperities | None:
     for offset, neighbour in around.items():
         highest &= centre > neighbour if offset > here else centre >= neighbour
         whole &= np.isfinite(neighbour)
-    found = int((highest & whole).sum())
-    if found == 0:
+    count = int((highest & whole).sum())
+    if count == 0:
         return None
     highest &= whole
     apart = [lag * step for lag, step in zip(lags, steps, strict=True)]
@@ -191,15 +192,15 @@ def _summits(z: np.ndarray, steps: tuple, lags: list[int]) -> Asperities | None:
     )
     curvatures = -sum(second) / z.ndim
     curvature, usual = float(curvatures.mean()), float(np.median(curvatures))
-    # a point of each of the grids whose points are `apart`, so that each of them has its summits
-    density = found / (whole.sum() * math.prod(apart))
+    # points that are `apart` form interleaved grids; each point has its summits and the cell of its grid
+    density = count / (whole.sum() * math.prod(apart))
     variance = float(np.var(centre[highest]))
     if z.ndim == 1:
         (m,) = moments(z, steps)
         density = density**2 * SUMMITS_PER_AREA / PEAKS_PER_LENGTH**2
-        curvature, usual = (CURVATURE / PEAK_CURVATURE * one for one in (curvature, usual))
+        curvature, usual = (CURVATURE / PEAK_CURVATURE * value for value in (curvature, usual))
         variance = max(0.0, variance - (HEIGHTS - PEAK_HEIGHTS) * m.m2**2 / m.m4)
-    return Asperities(density, curvature, math.sqrt(variance), found, usual)
+    return Asperities(density, curvature, math.sqrt(variance), count, usual)
 
 
 def whole(z: np.ndarray, steps: tuple) -> int:
@@ -212,7 +213,7 @@ def whole(z: np.ndarray, steps: tuple) -> int:
 
 
 def usual_curvature(z: np.ndarray, steps: tuple) -> float:
-    """The curvature of `of_moments` with m4 from the median of the second differences, a Gaussian one of √m4."""
+    """The curvature of `gaussian_summits` with m4 from the median of the second differences, a Gaussian one of √m4."""
     d = max(steps)
     medians = [_over(z, axis, d / step, 2, np.median) / d**4 for axis, step in enumerate(steps)]
     return CURVATURE * math.sqrt(np.mean(medians)) / MEDIAN

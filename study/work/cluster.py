@@ -90,10 +90,10 @@ class Cluster:
         return {address: threads for address, threads in self._there().items() if address not in self._left_out}
 
     def _place(self, block: Block) -> None:
-        from roughcoat.elsewhere import packed  # no other call needs it
+        from roughcoat.elsewhere import Packed  # no other call needs it
 
         where = {"workers": list(block.workers)} if block.workers else {}
-        future = self._client.submit(*packed(block.function, block.task), pure=False, **where)
+        future = self._client.submit(Packed(block.function, block.task), pure=False, **where)
         self._under_way[block] = future
         future.add_done_callback(partial(self._hand_over, block))
 

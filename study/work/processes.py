@@ -1,7 +1,7 @@
 """Worker processes of one machine, each fed by a thread of the process that runs the study.
 
 `dask.distributed.LocalCluster` is not used: a run of 100,000 thin rough cases takes 1.3 to 1.6 times as long with it
-(`python tests/bench/benchmark_engine.py 3 100`, three runs by turns on 2 busy processors). Dask's process
+(`python tools/bench/benchmark_engine.py 3 100`, three runs by turns on 2 busy processors). Dask's process
 scheduler is a pool of `concurrent.futures`: it holds all results in memory, and one killed process ends it.
 """
 

@@ -8,7 +8,7 @@ import pytest
 import study
 from study import solving
 from study.__main__ import main
-from study.in_words import BROKEN
+from study.rules.rule import RULES
 
 BALL = {"R": "5 mm", "E_punch": "210 GPa", "E2": "70 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
 
@@ -55,7 +55,7 @@ def test_what_validity_has_no_mask_for_is_in_the_numbers_too(capsys):
 def test_what_the_model_does_not_describe_is_said_and_is_no_traceback(capsys):
     assert main(["point", "--json", *words(P=1e-5, h=0.02, n=0.5, Nbar=25000, Ra=0.004)]) == 0
     printed = json.loads(capsys.readouterr().out)
-    assert printed["validity"] == ["few_spots"] and printed["beware"] == [BROKEN["few_spots"]]
+    assert printed["validity"] == ["few_spots"] and printed["beware"] == [RULES["few_spots"].sentence]
     steep = words(**BALL, P="1 MN")
     assert main(["point", *steep]) == 0
     assert "Beware: The strain is not small" in capsys.readouterr().out
@@ -128,7 +128,7 @@ def test_what_is_far_outside_is_said_before_it_is_solved(capsys, monkeypatch):
     assert main(["point", "--json", *words(**film)]) == 130
     answer = capsys.readouterr()
     assert answer.out == "" and answer.err.startswith("beware: this contact is far outside what the model describes")
-    assert BROKEN["pitch_not_small_against_h"] in answer.err
+    assert RULES["pitch_not_small_against_h"].sentence in answer.err
 
 
 def test_run_and_check_say_what_is_far_outside(tmp_path, capsys):

@@ -7,8 +7,9 @@ from drawn import NOTED, WORDS, bands, legend
 from matplotlib.figure import Figure
 
 from study.data.derived import ASSUMPTIONS
-from study.figures.annotate import ASSUMPTION_TEXT, GREYS, name_curve, note_violations, shade_violations
 from study.figures.annotate import bands as intervals
+from study.figures.annotate import name_curve, note_violations, shade_violations
+from study.rules.rule import RULES
 
 
 def test_bands_begin_at_zero_and_end_halfway():
@@ -70,7 +71,8 @@ def test_each_assumption_has_its_words_and_its_grey(mask):
     axes.legend()
     assert list(legend(axes.get_legend())) == [f"not valid: {WORDS[mask]} (7)"]
     assert axes.patches[0].get_zorder() < 0, "under the curves"
-    assert list(ASSUMPTION_TEXT) == words.split() and len(set(GREYS.values())) == len(WORDS)
+    assert list(ASSUMPTIONS.values()) == words.split()
+    assert len({RULES[word].grey for word in words.split()}) == len(WORDS)
 
 
 def test_one_entry_of_the_legend_stands_for_all_bands_of_the_curves_that_have_some():

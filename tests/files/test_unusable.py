@@ -125,6 +125,6 @@ def test_full_disk_while_a_small_dataset_is_written(tmp_path):
 
 def test_eight_threads_at_once():
     """They solve, run, open, read lazily and ask for the state of studies; a crash ends the process by a signal."""
-    command = [sys.executable, str(ROOT / "tests/fuzz/stress_threads.py"), "3"]
+    command = [sys.executable, str(ROOT / "tools/fuzz/stress_threads.py"), "3"]
     found = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT)})
     assert (found.returncode, found.stdout.strip()) == (0, ""), found.stderr

@@ -206,7 +206,7 @@ def test_a_damaged_file_behind_a_symbolic_link_is_kept_and_mended_there(one, ope
 
 def test_a_sample_of_random_flips():
     """The whole of it is `make fuzz`."""
-    command = [sys.executable, "-W", "ignore", str(ROOT / "tests/fuzz/fuzz_files.py"), "20", "3"]
+    command = [sys.executable, "-W", "ignore", str(ROOT / "tools/fuzz/fuzz_files.py"), "20", "3"]
     found = subprocess.run(command, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT)})
     assert found.returncode == 0, found.stdout + found.stderr
     assert "0 faults in 20 flips" in found.stdout and "'damaged'" in found.stdout and "'block'" in found.stdout

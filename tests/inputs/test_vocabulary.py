@@ -47,8 +47,8 @@ UNITS = {
 PURE = {
     "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "cut", "scheme", "k", "rtol", "accuracy",
     "model_check", "nodes", "max_iterations", "Ar_An", "plastic_share", "lam0", "lam", "status", "error",
-    "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio", "spots",
-    "x", "case", "label",
+    "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio",
+    "spots", "x", "case", "label",
 }
 # fmt: on
 

@@ -48,7 +48,7 @@ def test_the_runner_chooses_the_tests(tmp_path):
         file = tmp_path / "tree" / name
         file.parent.mkdir(parents=True, exist_ok=True)
         file.write_text(text)
-    environment = {"PYTHONPATH": str(ROOT / "tests/mutants")}
+    environment = {"PYTHONPATH": str(ROOT / "tools/mutants")}
     command = [sys.executable, "-c", RUN]
     found = subprocess.run(command, cwd=tmp_path, env=environment, capture_output=True, text=True)
     said = re.findall(r"^\d of \d: (\S+) (.*)$", found.stdout, flags=re.MULTILINE)

@@ -50,7 +50,7 @@ def run(folder: Path, *arguments: str, patience: float = 60.0) -> tuple[int, dic
         file.write_text(text)
     (folder / "tree/study").mkdir(exist_ok=True)
     command = [sys.executable, "-c", RUN, str(patience), *arguments]
-    environment = {"PYTHONPATH": str(ROOT / "tests/mutants")}
+    environment = {"PYTHONPATH": str(ROOT / "tools/mutants")}
     found = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True)
     said = re.findall(r"^\d of \d: solver\.one\.(\S+) (.*)$", found.stdout, flags=re.MULTILINE)
     assert said, found.stderr

@@ -1,4 +1,4 @@
-"""Spreads to first order against draws: a small sample of `python tests/physical/monte_carlo.py`. What has none."""
+"""Spreads to first order against draws: a small sample of `python tools/errors/monte_carlo.py`. What has none."""
 
 import numpy as np
 import pytest

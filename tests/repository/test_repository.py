@@ -100,7 +100,7 @@ def test_clean_removes_what_the_program_draws_alone(tmp_path):
     for name in (*kept, *ours):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).touch()
-    subprocess.run([sys.executable, ROOT / "tests/repository/clean.py"], cwd=tmp_path, check=True, timeout=60)
+    subprocess.run([sys.executable, ROOT / "tools/clean.py"], cwd=tmp_path, check=True, timeout=60)
     assert {str(path.relative_to(tmp_path)) for path in tmp_path.rglob("*.*") if path.is_file()} == set(kept)
 
 

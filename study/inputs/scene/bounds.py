@@ -16,32 +16,6 @@ from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
 from .scene import Scene
 
-#: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
-#: 10 Pa, diamond 1.2 TPa; the sharpest tips have some nm, and layers are not thinner than an atom.
-_REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
-_REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
-_REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
-
-_RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
-#: What has a unit and cannot be zero.
-INPUTS = (
-    "P",
-    "a",
-    "D",
-    "h",
-    "Nbar",
-    "Ra",
-    "sigma",
-    "hardness",
-    "yield_strength",
-    "R",
-    "R1",
-    "R2",
-    "E1",
-    "E2",
-    "E_punch",
-)
-
 Place = dict[str, int]
 """Dimension -> index along it."""
 
@@ -59,33 +33,6 @@ def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
             understood = f"{modulus} = {readable(_at(scene.given[modulus], place), 'Pa')}"
             messages.append(f"{understood}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
     return messages
-
-
-def absurd(given: dict, spreads: dict) -> list[str]:
-    """A sentence for each input in SI units that no body has, or whose spread is too wide. They are solved.
-
-    given, spreads : name -> numbers, labelled (DataArray or Variable) where they are several
-    """
-    found = []
-    for name, (low, high, words) in _REAL.items():
-        values = np.ravel(given.get(name, np.nan))
-        outside = ((values < low) | (values > high)) & np.isfinite(values)
-        if outside.any():
-            one = readable(float(values[outside][0]), ROWS[name].unit)
-            found.append(f"{name} = {one}: {words}; is its unit right?")
-    for name, spread in spreads.items():
-        value = given[name]
-        limit = 0.5 - value if name in _RATIOS else abs(value)
-        if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
-            limit = limit * np.minimum(abs(value / given["R"]), 1)
-        with np.errstate(invalid="ignore"):  # a rigid body has inf, and 0 inf is NaN
-            zero = 0 * (value + spread + limit)  # over all their dimensions
-            value, spread, limit = (np.ravel(zero + one) for one in (value, spread, limit))
-        wide = np.flatnonzero((spread > 0) & (spread >= limit))
-        if len(wide):
-            text = readable(float(value[wide[0]]), ROWS[name].unit, float(spread[wide[0]]))
-            found.append(f"{name} = {text}: too wide a spread for the ± of results, which is to first order")
-    return found
 
 
 def _first_outside(scene: Scene, name: str) -> list[Place]:

@@ -63,8 +63,8 @@ class Roughness:
         -------
         str : a sentence
         """
-        own, low, high = -ndtri(1 / max(self.summits, 1.0)), *ends(CUT.interval)[:2]
-        bound = "" if low <= own <= high else f", which would be {max(own, 0):.3g}; the law takes {low:g} to {high:g}"
+        free, low, high = -ndtri(1 / max(self.summits, 1.0)), *ends(CUT.interval)[:2]
+        bound = "" if low <= free <= high else f", which would be {max(free, 0):.3g}; the law takes {low:g} to {high:g}"
         number = f"{self.summits:.0f}" if self.summits < 1e6 else f"{self.summits:.3g}"
         return f"cut = {self.cut:.3g}: 1 - Φ(cut) = 1/N, with N = {number} summits in the scan{bound}"
 
@@ -143,13 +143,13 @@ def over(cutoffs: Sequence[float], answers: Sequence[Roughness], filtered: str) 
     A note that not all have begins with its cutoffs.
     """
     numbers = {
-        name: np.array([getattr(one, name) for one in answers])
+        name: np.array([getattr(answer, name) for answer in answers])
         for name in ("Nbar", "Ra", "sigma_summits", "iso_Ra", "summits")
     }
-    said = dict.fromkeys(note for one in answers for note in one.notes)
-    where = {note: [c for c, one in zip(cutoffs, answers, strict=True) if note in one.notes] for note in said}
+    said = dict.fromkeys(note for answer in answers for note in answer.notes)
+    where = {note: [c for c, answer in zip(cutoffs, answers, strict=True) if note in answer.notes] for note in said}
     notes = tuple(note if len(at) == len(answers) else f"{_at(at)}: {note}" for note, at in where.items())
-    method = "; ".join(f"{_at([c])}: {one.method}" for c, one in zip(cutoffs, answers, strict=True))
+    method = "; ".join(f"{_at([c])}: {answer.method}" for c, answer in zip(cutoffs, answers, strict=True))
     texts = {"method": method, "filter": filtered, "notes": notes}
     return replace(answers[0], **numbers, **texts, cutoff=np.array(cutoffs, dtype=float))
 

@@ -19,11 +19,11 @@ SKEWED = 0.8
 #: Mean squares of the slopes along x and y may differ by this factor. A surface stretched so far along one axis has N̄
 #: 18 % below, and Ra 5 % above, what the isotropic formulas give.
 ISOTROPIC = 2.0
-#: Mean curvature over the one by medians: at most 1.5 on random maps of any size, and beyond 2 on hardly a profile, of
-#: few peaks (tests/specimen/test_scans_as_they_come.py).
+#: Mean curvature over the curvature by medians: at most 1.5 on random maps of any size, and above 2 on few profiles,
+#: which have few peaks (tests/specimen/test_scans_as_they_come.py).
 SPIKED = 2.0
-#: A quadratic may have this part of the variance of heights without a form. Random surfaces have waves as long as the
-#: scan too; they have so much where these waves are most of the roughness (tests/specimen/heights/test_forms.py).
+#: A quadratic may have this part of the variance of heights without a form. On random surfaces it has more only where
+#: waves as long as the scan are most of the roughness (tests/specimen/heights/test_forms.py).
 FORMED = 0.2
 #: Steps along x and y that differ by less are equal.
 UNEQUAL = 1.001
@@ -31,7 +31,7 @@ UNEQUAL = 1.001
 JUMP = "jump against each other"
 
 
-def of_jumps(z: np.ndarray) -> Iterator[str]:
+def jump_doubts(z: np.ndarray) -> Iterator[str]:
     """That the rows of a map jump, or its columns."""
     if z.ndim == 1:
         return
@@ -47,7 +47,7 @@ def of_jumps(z: np.ndarray) -> Iterator[str]:
             )
 
 
-def of_form(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
+def form_doubts(z: np.ndarray, steps: tuple, form) -> Iterator[str]:
     """That heights, of which a form was taken off, still have one."""
     share = 0.0 if form == "quadratic" else taken_by_polynomial(z, steps, 2)
     if share > FORMED:
@@ -61,24 +61,24 @@ def doubts(
     z: np.ndarray,
     steps: tuple,
     along: list[summits.Moments],
-    found: summits.Asperities,
+    asperities: summits.Asperities,
     number: float,
     before: tuple[str, ...],
 ) -> Iterator[str]:
-    """The doubts about asperities `found` on heights z, of which a scan of this size has this number.
+    """The doubts about the `asperities` of heights z, as many as `number` in a scan of this size.
 
     along : the moments along each axis
     before : the doubts about the heights; jumps are no long asperities
     """
     if z.ndim == 1:
         yield "a profile: the surface is taken to be isotropic and Gaussian, and N̄ is not counted on an area"
-    yield from _of_the_step(found, steps)
-    counted = number if found.found is None else found.found  # which gaps may make far fewer
+    yield from _of_the_step(asperities, steps)
+    counted = number if asperities.counted is None else asperities.counted  # far fewer where there are gaps
     if counted < MANY:
         percent = (3 - z.ndim) * 100 / math.sqrt(counted)
         yield f"about {counted:.0f} asperities: N̄ is uncertain by some {percent:.0f} %"
-    yield from _of_spikes(z, steps, found)
-    slopes = [one.m2 for one in along]
+    yield from _of_spikes(z, steps, asperities)
+    slopes = [m.m2 for m in along]
     if max(slopes) > ISOTROPIC * min(slopes) and not any(JUMP in note for note in before):
         ratio = f"{math.sqrt(max(slopes) / min(slopes)):.2g}" if min(slopes) > 0 else "infinitely many"
         yield f"slopes along one axis are {ratio} times those along the other: asperities are long, not round"
@@ -86,23 +86,23 @@ def doubts(
         float(np.nanmean((z - np.nanmean(z)) ** 3) / np.nanstd(z) ** 3),
         summits.bandwidth(summits.mean_moments(along)),
     )
-    if found.found is None and (abs(skewness) > SKEWED or alpha < 1.5):
+    if asperities.counted is None and (abs(skewness) > SKEWED or alpha < 1.5):
         yield (
             f"skewness {skewness:.2g}, α = {alpha:.3g}: a Gaussian surface has 0, and at least 1.5; "
             'prefer method="summits"'
         )
 
 
-def _of_the_step(found: summits.Asperities, steps: tuple) -> Iterator[str]:
-    apart = found.density**-0.5 / max(steps)
+def _of_the_step(asperities: summits.Asperities, steps: tuple) -> Iterator[str]:
+    apart = asperities.density**-0.5 / max(steps)
     if apart < RESOLVED:
         yield (
             f"asperities are {apart:.2g} points apart, {RESOLVED} are needed to see them: N̄ and Ra are "
             "those of the step or of noise; give a cutoff, or measure with a smaller step"
         )
-    if found.curvature * max(steps) > 1:
+    if asperities.curvature * max(steps) > 1:
         yield (
-            f"Ra = {length(1 / found.curvature)} is below the distance of the points, {length(max(steps))}: no "
+            f"Ra = {length(1 / asperities.curvature)} is below the distance of the points, {length(max(steps))}: no "
             "asperity is seen by so few points; check the units, take out spikes, or give a cutoff"
         )
     if max(steps) > UNEQUAL * min(steps):
@@ -112,10 +112,10 @@ def _of_the_step(found: summits.Asperities, steps: tuple) -> Iterator[str]:
         )
 
 
-def _of_spikes(z: np.ndarray, steps: tuple, found: summits.Asperities) -> Iterator[str]:
-    usual = summits.usual_curvature(z, steps) if found.found is None else found.usual
-    if found.curvature > SPIKED * usual:
-        ratio = f"{found.curvature / usual:.2g} times" if usual > 0 else "far"
+def _of_spikes(z: np.ndarray, steps: tuple, asperities: summits.Asperities) -> Iterator[str]:
+    usual = summits.usual_curvature(z, steps) if asperities.counted is None else asperities.usual
+    if asperities.curvature > SPIKED * usual:
+        ratio = f"{asperities.curvature / usual:.2g} times" if usual > 0 else "far"
         yield (
             f"a few sharp points make Ra {ratio} smaller than the others do: spikes, dust, or heights in coarse steps; "
             "take them out, or give a cutoff"

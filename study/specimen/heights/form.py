@@ -88,11 +88,11 @@ def _without_sphere(z: np.ndarray, steps: tuple, curvature: float | None) -> tup
     kappa, slopes, settled = (0.0 if free else half * curvature), np.zeros(2), _SETTLED * np.nanstd(z) / half
     for _ in range(_STEPS):
         left = z - half * _sphere(x, slopes, kappa).reshape(z.shape)
-        found = basis @ _fitted(left, x, powers, basis) / half
-        change = found[1 : 1 + z.ndim]
+        fitted = basis @ _fitted(left, x, powers, basis) / half
+        change = fitted[1 : 1 + z.ndim]
         slopes = slopes + np.pad(change, (0, 2 - z.ndim))
-        kappa -= 2 * found[-1] / np.sum(round_) if free else 0.0
-        if np.abs(found[1:]).max() <= settled:
+        kappa -= 2 * fitted[-1] / np.sum(round_) if free else 0.0
+        if np.abs(fitted[1:]).max() <= settled:
             break
     return _residual(z - half * _sphere(x, slopes, kappa).reshape(z.shape), steps, 1), kappa / half
 
@@ -101,8 +101,8 @@ def _sphere(x: list, slopes: np.ndarray, kappa: float) -> np.ndarray:
     """Heights of a sphere over the middle of the scan, where it has these slopes (along x, y); of no curvature: a
     plane. All lengths are in one unit. Beyond its equator it ends in a cylinder."""
     sines = slopes / math.sqrt(1 + slopes @ slopes)
-    squared = sum((kappa * one - sine) ** 2 for one, sine in zip(x, sines, strict=True))
-    linear = sum(2 * sine * one - kappa * one**2 for one, sine in zip(x, sines, strict=True))
+    squared = sum((kappa * line - sine) ** 2 for line, sine in zip(x, sines, strict=True))
+    linear = sum(2 * sine * line - kappa * line**2 for line, sine in zip(x, sines, strict=True))
     return linear / (np.sqrt(np.maximum(0.0, 1 - squared)) + math.sqrt(1 - sines @ sines))
 
 
@@ -116,7 +116,7 @@ def _lines(z: np.ndarray, steps: tuple) -> list[np.ndarray]:
 
 def _fitted(z: np.ndarray, x: list, powers: list, basis: np.ndarray) -> np.ndarray:
     """Coefficients of the powers (of y, of x) in the combination of the rows of `basis` that fits the heights best."""
-    across, along = (np.vander(one.ravel(), 2 * max(map(max, powers)) + 1, increasing=True) for one in x)
+    across, along = (np.vander(line.ravel(), 2 * max(map(max, powers)) + 1, increasing=True) for line in x)
     present = np.isfinite(z).reshape(along.shape[0], across.shape[0])
     mean = np.nanmean(z)
     heights = np.where(present, z.reshape(present.shape) - mean, 0.0)

@@ -59,19 +59,19 @@ def filled(z: np.ndarray, most: int = 3000) -> np.ndarray:
 
     The missing heights have the least sum, along all axes, of squared second differences and of squared first
     differences times `TENSION`². A plate, without tension, would run away from gaps at the border; a membrane alone
-    has kinks where it is held, which count as curvature. After `most` steps what is more points than that away from a
-    gap's border may not have settled.
+    has kinks where it is held, which count as curvature. After `most` steps points farther than that from the
+    border of their gap may not have settled.
     """
     absent = np.isnan(z)
     place = np.where(absent, np.cumsum(absent).reshape(z.shape) - 1, -1)
-    known = np.where(absent, 0.0, z - np.nanmean(z))
+    measured = np.where(absent, 0.0, z - np.nanmean(z))
     parts, sides = [], []
     for axis, weights in itertools.product(range(z.ndim), (np.array([1, -2, 1]), TENSION * np.array([-1, 1]))):
         length = z.shape[axis] - len(weights) + 1
         windows = [(slice(None),) * axis + (slice(i, i + length),) for i in range(len(weights))]
         touched = np.any([absent[window] for window in windows], axis=0)
         unknowns = np.stack([place[window][touched] for window in windows])
-        sides.append(-sum(weight * known[window][touched] for weight, window in zip(weights, windows, strict=True)))
+        sides.append(-sum(weight * measured[window][touched] for weight, window in zip(weights, windows, strict=True)))
         which, row = np.nonzero(unknowns >= 0)
         shape = (unknowns.shape[1], int(absent.sum()))
         parts.append(csr_matrix((weights[which], (row, unknowns[which, row])), shape=shape))

@@ -1,7 +1,7 @@
-"""Row jumps of a scanning probe: each row of a map may have an offset of its own, of the instrument.
+"""Row jumps of a scanning probe: the instrument may shift each row of a map by an offset.
 
-An offset is one number for the whole row, so it shows in the mean of a row, and it is drawn anew for each row or jumps
-now and then, so it shows in what neighbouring rows differ by.
+An offset is one number for the whole row: so it shows in the mean of the row. It is drawn anew for each row, or jumps
+now and then: so it shows in the differences of neighbouring rows.
 """
 
 import math
@@ -9,8 +9,8 @@ import math
 import numpy as np
 
 #: Order of the differences across the rows. Those of fourth order leave 7 % of a wave of 12 rows, and 70 times the mean
-#: square of independent offsets: offsets of 2 nm are seen on 50 nm in waves of 12 points. By second differences they
-#: were not, in 9 of 15 maps of 64 rows.
+#: square of independent offsets: offsets of 2 nm are seen on 50 nm in waves of 12 points. Second differences miss them
+#: in 9 of 15 maps of 64 rows.
 _ORDER = 4
 #: Harmonics of the rows with which their mean is compared.
 _HARMONICS = 5
@@ -18,20 +18,19 @@ _HARMONICS = 5
 _STANDS_OUT = 4.0
 #: Least part of the mean square of the second differences across the rows that jumps make. Less moves N̄ by below 3 %.
 _MATTERS = 0.05
-#: Largest correlation of the fourth differences of neighbouring rows' offsets. That of independent offsets is -0.8, of
-#: a random walk or of single steps -0.75, of grooves that the step resolves above -0.5. The second number allows for
-#: the scatter over n rows, times 1/√n. With these no jumps are seen on 200 isotropic, ground and white surfaces
-#: (tests/specimen/heights/test_row_jumps.py); of ground ones whose grooves are as narrow as the step, on one in a
-#: hundred.
+#: Largest correlation between neighbouring rows of the fourth differences of their offsets. Independent offsets have
+#: -0.8, a random walk or single steps -0.75, grooves that the step resolves above -0.5. _SCATTER/√n allows for the
+#: scatter over n rows. With both no jumps are seen on 200 isotropic, ground and white surfaces
+#: (tests/specimen/heights/test_row_jumps.py), but on one in a hundred whose grooves are as narrow as the step.
 _UNLIKE, _SCATTER = -0.6, 1.1
 
 
 def aligned(z: np.ndarray) -> np.ndarray:
     """The map, each row shifted so that the median of its differences from the row before is 0.
 
-    A row that has no point beside one of the row before is shifted as that one. The median of each row itself would do
-    harm: it is the height of another point from row to row, and made N̄ 1.3 to 1.6 times too large on smooth surfaces
-    without jumps (tests/specimen/heights/test_row_jumps.py).
+    A row without a point beside one of the row before is shifted as the row before. The median of each row itself would
+    do harm: it is the height of another point from row to row, and makes N̄ 1.3 to 1.6 times too large on smooth
+    surfaces without jumps (tests/specimen/heights/test_row_jumps.py).
     """
     differences = np.diff(z, axis=0)
     present = np.isfinite(differences).any(axis=1)
@@ -43,8 +42,9 @@ def aligned(z: np.ndarray) -> np.ndarray:
 def jumps(z: np.ndarray) -> float | None:
     """Standard deviation of the offsets of rows (axis 0) of a map, as if independent; None where no jumps are seen.
 
-    Jumps are seen if the rows' means vary far more from row to row than the first harmonics of the rows do, by an
-    amount that matters for N̄, and without the memory that a surface has, which the step resolves.
+    Jumps are seen if three conditions hold: the means of the rows vary far more from row to row than the first
+    harmonics do; that matters for N̄; and neighbouring rows resemble each other less than on a surface that the step
+    resolves.
     """
     bends = np.diff(z, 2, axis=0)
     means, deviations, count = _of_rows(np.diff(z, _ORDER, axis=0))
@@ -56,7 +56,7 @@ def jumps(z: np.ndarray) -> float | None:
     if not (offsets > _STANDS_OUT * expected and 6 * variance > _MATTERS * np.nanmean(bends**2)):
         return None
     middle, neighbours = means[1:-1], (means[2:] + means[:-2]) / 2
-    loud = np.abs(middle) >= np.sqrt(offsets)  # of rare steps these rows alone
+    loud = np.abs(middle) >= np.sqrt(offsets)  # where steps are rare, the rows beside them
     if not loud.any() or np.sum((middle * neighbours)[loud]) > (
         (_UNLIKE - _SCATTER / np.sqrt(len(means))) * np.sum(middle[loud] ** 2)
     ):

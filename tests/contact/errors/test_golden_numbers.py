@@ -5,23 +5,16 @@ what was computed under one NUMERICS_VERSION is taken for the same, and reused.
 """
 
 import csv
-from importlib.util import module_from_spec, spec_from_file_location
-from pathlib import Path
 
+import make_golden_numbers as golden
 import numpy as np
 import pytest
 
 from solver import NUMERICS_VERSION
 
-spec = spec_from_file_location(
-    "make_golden_numbers", Path(__file__).parents[2] / "references" / "make_golden_numbers.py"
-)
-golden = module_from_spec(spec)
-spec.loader.exec_module(golden)
-
 LINES = golden.FILE.read_text(encoding="utf-8").splitlines()
 ROWS = list(csv.DictReader(LINES[1:]))
-REMAKE = "and run `python tests/references/make_golden_numbers.py`"
+REMAKE = "and run `python tools/references/make_golden_numbers.py`"
 #: A thousandth of the usual rtol, and a hundred times the rounding of the exact layer's operator.
 SAME = 1e-9
 #: The paper's approximations amplify rounding, and end where they move by less than rtol/10.

@@ -177,11 +177,13 @@ def test_slips_of_a_prefix_and_wide_spreads_are_doubted(tmp_path, capsys):
     """By `check` and by `run`, as by `study.solve`."""
     path = tmp_path / "mine.toml"
     text = TEXT.replace('"200 GPa"', '"200 TPa"').replace('"2 um", ', '"2 ± 3 um", ')
+    text = text.replace("nu1 = 0.25", 'nu1 = "0.45 ± 0.06"')
     path.write_text(text, encoding="utf-8")
     assert main(["check", str(path)]) == 0
     doubts = [
         "mine: beware: E1 = 2e+05 GPa: materials have 1 Pa to 2 TPa; is its unit right?",
         "mine: beware: h = 2.0 ± 3.0 µm: too wide a spread for the ± of results, which is to first order",
+        "mine: beware: nu1 = 0.450 ± 0.060: too wide a spread for the ± of results, which is to first order",
     ]
     assert capsys.readouterr().out.splitlines()[2:] == doubts
     assert main(["run", str(path), "--dry-run"]) == 0

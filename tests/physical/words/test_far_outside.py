@@ -13,10 +13,10 @@ from solver import Problem, laws, solve
 from solver.closed_forms import hertz
 from solver.estimate import estimate
 from study import solving
-from study.data.assumptions import validity_of
 from study.data.dataset import model_attributes
 from study.in_words import FarOutside, early, far_outside
 from study.inputs.reading import read
+from study.rules.rule import RULES, validity_of
 
 BALL = {"R": "5 mm", "punch": "steel 52100", "P": "5 N", "Ra": "2 um", "bonding": "bonded"}
 FILM = BALL | {"layer": "PTFE", "h": "10 nm", "body": "steel 52100", "Nbar": "0.1 1/um^2"}
@@ -57,7 +57,7 @@ def test_a_film_of_ptfe_is_said_to_be_far_outside_before_it_is_solved(unsolved, 
     first, *sentences = text.splitlines()
     assert "far outside what the model describes" in first and sentences
     assert first.startswith("at least half of these contacts are" if change.get("P") else "this contact is")
-    assert {*sentences} <= {*early.BROKEN.values()}
+    assert {*sentences} <= {rule.sentence for rule in RULES.values() if rule.mask}
 
 
 @pytest.mark.parametrize("progress", [False, None, True])
@@ -92,7 +92,7 @@ def test_a_law_of_ones_own_is_judged_by_what_is_given(unsolved):
     """Its functions may fail, and are called where that is told. The pitch of its asperities says enough."""
     law = replace(laws.LAWS["disc_cell"], name="somebodys", version="1")
     (text,) = said_before(**FILM | {"micro": law})
-    assert text.splitlines()[1:] == [early.BROKEN["pitch_not_small_against_h"]]
+    assert text.splitlines()[1:] == [RULES["pitch_not_small_against_h"].sentence]
     assert said_before(**LINING | {"micro": law}) == []
 
 

@@ -8,8 +8,8 @@ import pytest
 from conftest import ROOT
 
 import study
-from study.in_words import BROKEN
-from study.in_words.beyond import HARDEST, SEEN
+from study.rules.assumptions import HARDEST, SEEN
+from study.rules.rule import RULES
 
 SPARSE = {"P": 1e-5, "h": 0.002, "n": 2.0, "Ra": 0.004, "x": 2}
 MASKS = ("spot_not_small_against_h", "pitch_not_small_against_h")
@@ -17,7 +17,7 @@ MASKS = ("spot_not_small_against_h", "pitch_not_small_against_h")
 
 def said(found) -> list[str]:
     lines = [line.removeprefix("Beware: ") for line in study.summary(found).splitlines()]
-    return [line for line in lines if any(line.startswith(BROKEN[mask]) for mask in MASKS)]
+    return [line for line in lines if any(line.startswith(RULES[mask].sentence) for mask in MASKS)]
 
 
 def at(pitch: float, **more):
@@ -64,7 +64,7 @@ def test_a_pitch_of_cases_that_keep_to_the_assumption_does_not_count():
     rows = [{"Nbar": 1 / (0.5 * 0.002) ** 2, "Ra": 0.004}, {"Nbar": 1 / (4 * 0.002) ** 2, "Ra": 1e-7}]
     found = study.solve(cases=rows, P=1e-5, h=0.002, n=2.0, x=2)
     assert (found.validity & 4).values.tolist() == [4, 0]
-    (doubt,) = (text for text in study.in_words.doubts(found) if BROKEN[MASKS[0]] in text)
+    (doubt,) = (text for text in study.in_words.doubts(found) if RULES[MASKS[0]].sentence in text)
     assert doubt.startswith("1 of 2 cases: ") and "Here the pitch 1/sqrt(Nbar) is 0.5 h" in doubt
 
 

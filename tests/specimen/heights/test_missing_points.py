@@ -122,7 +122,7 @@ def test_too_few_points_are_refused(method):
 
 
 def moments(z):
-    found = summits.of_moments(summits.mean_moments(summits.moments(z, (STEP, STEP))))
+    found = summits.gaussian_summits(summits.mean_moments(summits.moments(z, (STEP, STEP))))
     return np.array([found.density, found.curvature])
 
 

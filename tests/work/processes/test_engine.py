@@ -68,7 +68,7 @@ def test_a_cluster_is_left_when_no_thread_waits_for_it(monkeypatch):
     class Client:
         closed = False
 
-        def submit(self, function, task, pure):
+        def submit(self, call, pure):
             return SimpleNamespace(add_done_callback=callbacks.append)
 
         def close(self, timeout):
@@ -116,9 +116,9 @@ def test_a_container_uses_no_more_processors_than_its_limit(monkeypatch):
 class Computed:
     """A future of dask that ends at once; None for a task: the scheduler is gone."""
 
-    def __init__(self, function, call):
-        self.function, self.call = function, call
-        _, (self.task,) = pickle.loads(call)  # as roughcoat.elsewhere packs it
+    def __init__(self, call):
+        self.call = pickle.loads(pickle.dumps(call))  # as it travels
+        _, (self.task,) = pickle.loads(self.call.__getstate__())
 
     def add_done_callback(self, called):
         called(self)
@@ -129,7 +129,7 @@ class Computed:
     def result(self):
         if self.cancelled():
             raise CancelledError("the scheduler is gone")
-        return self.function(self.call)
+        return self.call()
 
 
 @pytest.fixture
@@ -148,9 +148,9 @@ def client(monkeypatch):
                 raise OSError("closed")
             return self.threads
 
-        def submit(self, function, task, pure):
+        def submit(self, call, pure):
             assert pure is False, "the same block twice is computed twice"
-            return Computed(function, task)
+            return Computed(call)
 
         def close(self, timeout):
             done.append("closed")

@@ -1,0 +1,87 @@
+"""What is doubted of contacts beside the assumptions of the model. Each condition gives its sentences, often none."""
+
+import numpy as np
+import xarray as xr
+
+from ..inputs.laws import smooth_laws
+from ..inputs.vocabulary import BODIES, ROWS
+from ..specimen.quantities import readable
+from ..specimen.roughness import looks_like_iso_ra
+from .rule import in_si, of_cases, rule
+
+#: What bodies have, in SI units: beyond it a unit was mistaken, mPa for MPa or Mm for mm. The softest gels have some
+#: 10 Pa, diamond 1.2 TPa; the sharpest tips have some nm, and layers are not thinner than an atom.
+_REAL = dict.fromkeys(("E1", "E2", "E_punch"), (1.0, 2e12, "materials have 1 Pa to 2 TPa"))
+_REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 1 km"))
+_REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
+_RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
+#: What may have a spread: inputs with a unit that cannot be zero, and Poisson ratios.
+_LENGTHS = ("a", "D", "h", "Ra", "sigma", "R", "R1", "R2")
+_SPREAD = ("P", *_LENGTHS, "Nbar", "E1", "E2", "E_punch", "hardness", "yield_strength", *_RATIOS)
+#: The yield strength is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share.
+YIELD, STIFF = 0.03, 1e10
+
+
+@rule()
+def ra_as_of_iso(v):
+    if {"Ra", "Nbar", "micro"} <= {*v} and not np.isin(v["micro"].values, smooth_laws()).all():
+        Ra, Nbar = (v["Ra"] + 0 * v["Nbar"]).values, (v["Nbar"] + 0 * v["Ra"]).values
+        yield from filter(None, [looks_like_iso_ra(Ra, Nbar, si="units" in v["Ra"].attrs)])
+
+
+@rule()
+def table_of_several_radii(v):
+    tables = {"R", "micro"} <= {*v} and np.char.startswith(v["micro"].values.astype(str), "table:").any()
+    if tables and np.ptp(v["R"].values) > 0 and not (v["R"].dims and {*v["R"].dims} <= {*v["micro"].dims}):
+        yield (
+            "A table has A, or the heights z, in R: with several R its asperities grow with the punch. Give each R a "
+            "table of its own, in cases."
+        )
+
+
+@rule()
+def metals_yield(v):
+    """Bodies in SI units that are pressed so hard that a metal would yield: the worst case of the one pressed most.
+
+    What lies under a layer has the largest nominal pressure where the contact is wide against that, and less elsewhere.
+    """
+    moduli = {body: v[modulus] for body, (modulus, _, _) in BODIES.items() if in_si(v, modulus)}
+    moduli = {body: E.where((E >= STIFF) & np.isfinite(E)) for body, E in moduli.items()}
+    least = min((np.fmin.reduce(E.values, axis=None, initial=np.inf) for E in moduli.values()), default=np.inf)
+    if not ("p_peak" in v and (v["p_peak"] > YIELD * least).any()):
+        return []
+    bare = v["base"] == "half_space"
+    under = v["p_peak"].where(bare, v["p_ring"].where(v["a"] > v["h"]) if "h" in v else np.nan)
+    pressures = {"punch": v["p_peak"], "layer": v["p_peak"].where(~bare), "body": under}
+    shares = {body: (pressures[body] / moduli.get(body, xr.Variable((), np.nan))).fillna(0) for body in BODIES}
+    body = max(shares, key=lambda body: shares[body].max())
+    beyond = sum(share > YIELD for share in shares.values()) > 0
+    share = f"The pressure on the {body} comes to {float(shares[body].max()):.2g} of its Young's modulus"
+    said = f"{of_cases(beyond.values)}{share}: metals yield before that, which the model leaves out."
+    return [said] * bool(beyond.any())
+
+
+@rule()
+def nothing_real_has_it(v):
+    for name, (low, high, words) in _REAL.items():
+        values = v[name].values if in_si(v, name) else np.array(np.nan)
+        outside = values[((values < low) | (values > high)) & np.isfinite(values)]
+        if outside.size:
+            yield f"{name} = {readable(float(outside[0]), ROWS[name].unit)}: {words}; is its unit right?"
+
+
+@rule()
+def spread_too_wide(v):
+    for name in _SPREAD:
+        if f"{name}_spread" not in v or not (name in _RATIOS or in_si(v, name)):
+            continue
+        value, spread = v[name], v[f"{name}_spread"]
+        limit = 0.5 - value if name in _RATIOS else abs(value)
+        if name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+            limit = limit * np.minimum(abs(value / v["R"]), 1)
+        with np.errstate(invalid="ignore"):  # a rigid body has inf, and 0 inf is NaN
+            zero = 0 * (value + spread + limit)  # over all their dimensions
+            value, spread, limit = (np.ravel(zero + array) for array in (value, spread, limit))
+        wide = np.flatnonzero((spread > 0) & (spread >= limit))[:1]
+        for text in [readable(float(value[i]), ROWS[name].unit, float(spread[i])) for i in wide]:
+            yield f"{name} = {text}: too wide a spread for the ± of results, which is to first order"

@@ -1,0 +1,176 @@
+"""The table of rules, the flags `validity` of those with a mask, and what is said of contacts that violate some."""
+
+from collections import defaultdict
+from collections.abc import Callable, Mapping
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from solver.kernels.two_layers import layer_modulus
+from solver.laws import LAWS
+
+from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
+
+
+class Rule(NamedTuple):
+    """A row of the table: a condition with the decorator `rule`.
+
+    With a mask it is a function (v, times) of `numbers` -> bool over the cases: where the rule is violated by more than
+    `times` its limit. Without, one of the variables of a dataset, of which any may be missing -> sentences.
+    """
+
+    condition: Callable
+    mask: int  # in `validity`; 0: none
+    text: str  # in a figure, in mathtext
+    grey: str  # of its band there
+    of_which: str  # what a note above the axes adds to the text, for a legend has no room
+    size: Callable | None  # the variables, where it is violated -> a sentence on how large the error is
+    sentence: str  # what is said where it is violated: the docstring, in which {NAME} is a constant of the module
+
+
+RULES: dict[str, Rule] = {}
+"""The table: name -> rule. What is said of a contact is said in this order."""
+ASSUMPTIONS: dict[int, str] = {}
+"""Mask -> name of its rule."""
+
+
+def rule(mask=0, text="", grey="0.85", *, of_which="", size=None) -> Callable:
+    """Decorator of a condition: puts a `Rule` into the table. Raises ValueError for a mask or name that is taken."""
+
+    def register(condition: Callable) -> Callable:
+        name, words = condition.__name__, " ".join((condition.__doc__ or "").split())
+        if name in RULES or mask in ASSUMPTIONS or mask < 0 or mask & (mask - 1):
+            raise ValueError(f"{name}, {mask}: a rule needs a name, and a power of 2 or 0, that no other rule has")
+        sentence = words.format(**condition.__globals__) if mask else ""
+        RULES[name] = Rule(condition, mask, text or name.replace("_", " "), grey, of_which, size, sentence)
+        ASSUMPTIONS.update({mask: name} if mask else {})
+        return condition
+
+    return register
+
+
+def sentences(v: Mapping) -> list[str]:
+    """What the rules say of contacts, the variables of a dataset: those of its flags, then those without a mask.
+
+    Before contacts are solved their inputs alone are judged.
+    """
+    said = []
+    for name, where in (broken(v["validity"]) if "validity" in v else {}).items():
+        row = RULES.get(name)  # results may come from a program that had more rules
+        if where.any():
+            words = row.sentence if row else f"{name}: a rule that is not known here."
+            said.append(of_cases(where) + words + (row.size(v, where) if row and row.size else ""))
+    return said + [text for row in RULES.values() if not row.mask for text in row.condition(v)]
+
+
+def of_cases(where: np.ndarray) -> str:
+    """ "2 of 5 cases: ", the beginning of a sentence about several."""
+    return f"{where.sum()} of {where.size} cases: " if where.size > 1 else ""
+
+
+def validity(dataset: xr.Dataset) -> xr.DataArray:
+    """Assumptions that each case violates, a sum of the masks of ASSUMPTIONS; 0: all hold. docs/model.md explains them.
+
+    A case without numbers (see `status`) only gets the masks that need none. int32 over the dimensions of `status`.
+
+    Raises ValueError for results with units, which hold it already: the masks compare with R = 1 and E2* = 1.
+    """
+    if has_units(dataset):
+        raise ValueError("validity follows from results without units; those with units hold it: dataset.validity")
+    return xr.DataArray(validity_of(dataset.variables), dataset["status"].coords, name="validity")
+
+
+def validity_of(variables: Mapping, times: float = 1.0) -> xr.Variable:
+    """`validity` of the variables of a dataset, dimensionless; with R1 and R2, in R, where both radii are known.
+
+    times : how many times beyond its limit an assumption counts as violated
+    """
+    status, v = variables["status"], numbers(variables)
+    violated = (np.int32(mask) * RULES[name].condition(v, times) for mask, name in ASSUMPTIONS.items())
+    flags = sum(violated, np.zeros(status.shape, np.int32))
+    return xr.Variable(status.dims, flags, attributes("validity") | validity_attributes())
+
+
+def numbers(variables: Mapping) -> Mapping:
+    """Name -> array over the dimensions of `status`, of length 1 along some; NaN of a name that is not there. They are
+    arrays, since DataArrays take as long as a contact.
+
+    Beside the variables: layered, rough, thin (bool: a thin layer was used), E1* (reduced modulus of the layer), spots
+    (how many touch), b (radius of the central one).
+    """
+    dims, used = variables["status"].dims, variables["model_used"].attrs
+    arrays = {name: _along(dims, array) for name, array in variables.items() if set(array.dims) <= set(dims)}
+    v = defaultdict(lambda: np.nan, {"m": 0.0} | arrays)
+    models = zip(used["flag_values"], used["flag_meanings"].split(), strict=True)
+    v["thin"] = np.isin(v["model_used"], [value for value, word in models if word.endswith("thin_layer")])
+    v |= {"layered": v["base"] != "half_space", "rough": have("rough", v["micro"]), "E1*": layer_modulus(v["n"])}
+    return v | {"spots": spots(v) * _touching(v), "b": spot_radius(v)}
+
+
+def _along(dims: tuple, variable: xr.Variable):
+    """The numbers of a variable over some of the dimensions `dims`, of length 1 along the others."""
+    if variable.dims == dims:
+        return variable.data
+    own = variable if variable.ndim < 2 else variable.transpose(*(dim for dim in dims if dim in variable.dims))
+    return own.data[tuple(slice(None) if dim in own.dims else None for dim in dims)]
+
+
+def have(feature: str, micro):
+    """Whether the law of each case has a feature, such as "rough". A law that is not registered is taken to have it."""
+    return sum(micro == name for name, law in LAWS.items() if not getattr(law, feature)) == 0
+
+
+def _touching(values):
+    """Share of the summits in the centre that touch: 1 of equal heights."""
+    share = np.ones(())
+    for law in [law for name, law in LAWS.items() if law.touching and np.any(values["micro"] == name)]:
+        touch = law.touching(values["A0"], **{name: values.get(name, np.nan) for name in law.parameters})
+        share = np.where(values["micro"] == law.name, touch, share)
+    return share
+
+
+def spots(values):
+    return values.get("Nbar", np.nan) * np.pi * values["a"] ** 2
+
+
+def spot_radius(values):
+    return np.sqrt(values["lam0"] / (np.pi * values.get("Nbar", np.nan)))
+
+
+def validity_attributes() -> dict:
+    """CF flags of `validity`."""
+    masks = np.array(list(ASSUMPTIONS), dtype=np.int32)
+    return {"flag_masks": masks, "flag_meanings": " ".join(ASSUMPTIONS.values())}
+
+
+def broken(validity: xr.DataArray | xr.Variable) -> dict[str, np.ndarray]:
+    """Name of each assumption -> where it is violated, of the shape of the flags; in the order of the masks."""
+    attributes = validity.attrs
+    masks = zip(np.atleast_1d(attributes["flag_masks"]).tolist(), attributes["flag_meanings"].split(), strict=True)
+    values = whole(validity.values, attributes)
+    return {name: (values & mask) != 0 for mask, name in masks}
+
+
+def whole(flags: np.ndarray, attributes: dict) -> np.ndarray:
+    """Flags as whole numbers. `where`, `reindex` and `interp` of xarray make them floats, NaN where no case is left.
+
+    For NaN the status is "not run", and other flags are 0. Raises ValueError for numbers that are flags of no case.
+    """
+    if flags.dtype.kind in "iu":
+        return flags
+    if flags.dtype.kind != "f" or (np.isfinite(flags) & (flags % 1 != 0)).any():
+        raise ValueError("these flags are of no case: they have been compared, averaged or interpolated")
+    words = attributes["flag_meanings"].split()
+    absent = np.atleast_1d(attributes["flag_values"])[words.index("not_run")] if "not_run" in words else 0
+    return np.where(np.isfinite(flags), flags, absent).astype(int)
+
+
+def has_units(dataset: xr.Dataset) -> bool:
+    """Whether the numbers are in SI units, also of a dataset without the coordinates that say it."""
+    return any(own.attrs.get("units", "1") != "1" for name, own in dataset.variables.items() if name in VOCABULARY)
+
+
+def in_si(v: Mapping, name: str) -> bool:
+    """Whether an input is there and in its SI unit; it is in another one in a dataset of `study.readable`."""
+    return name in v and v[name].attrs.get("units") == ROWS[name].unit

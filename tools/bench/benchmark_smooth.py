@@ -1,0 +1,31 @@
+"""What smooth thin layers gain by a solver of their own over Newton's method: `python tools/bench/benchmark_smooth.py`.
+
+Shortest processor times by turns, of a batch and of cases solved one by one.
+"""
+
+import numpy as np
+from benchmark_cases import X, by_turns, problem
+
+from solver import Problem, solve
+from solver.models import named
+from solver.schemes import newton
+
+OWN = named._smooth_layer
+
+
+def run(way, problems: list[Problem]) -> None:
+    named._smooth_layer = way
+    for cases in problems:
+        solve(cases, X)
+
+
+def main() -> None:
+    many = problem("smooth", "thin_layer", 1e-6)
+    alone = [many.take(np.array([i])) for i in range(40)]
+    for what, problems in (("a batch of 16,000", [many]), ("40 cases, one by one", alone)):
+        own, of_newton = by_turns(lambda p=problems: run(OWN, p), lambda p=problems: run(newton, p))
+        print(f"{what}: {1000 * own:.0f} ms, by Newton's method {1000 * of_newton:.0f} ms, {of_newton / own:.1f} times")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+"""What one BLAS thread is worth: processor and wall time of calls on the exact layer, alone and beside busy processes.
+
+    python tools/bench/benchmark_threads.py
+
+Each row is a process of its own, whose BLAS is told by OPENBLAS_NUM_THREADS to have so many threads. "free" takes the
+limit of the solver away (solver/threads.py), "limited" is the solver as it is. A number above that of the processors
+stands for a machine with more of them.
+"""
+
+import json
+import os
+import subprocess
+import sys
+import time
+from contextlib import contextmanager
+from itertools import product
+
+CHILD = "--child"
+BUSY = "while True: pass"
+
+
+def random_cases() -> dict:
+    """8,000 random cases of the exact layer, as `study.solve` takes them."""
+    import xarray as xr
+    from solver_cases import random_cases
+
+    drawn = random_cases(8000, seed=1)
+    return {name: xr.DataArray(drawn[name], dims="case") for name in ("P", "Ra", "Nbar", "n", "h", "bonding")}
+
+
+def a_map() -> dict:
+    """A map of 25,000 cases, as `study.solve` takes it."""
+    import numpy as np
+
+    axes = {"P": np.geomspace(1e-7, 1e-3, 50), "h": np.geomspace(1e-3, 0.1, 10), "n": np.linspace(0.1, 0.9, 5)}
+    return axes | {"Ra": [0.001, 0.002, 0.003, 0.004, 0.005], "Nbar": 250000, "bonding": ["frictionless", "bonded"]}
+
+
+GRIDS = {"random": random_cases, "map": a_map}
+
+
+def child(grid: str, free: bool) -> None:
+    """Print processor and wall seconds of one call of `study.solve`, after a small one that imports everything."""
+    import study
+    from solver import threads
+
+    if free:
+        threads._blas = lambda: (NOTHING, NOTHING)
+    study.solve(P=1e-5, h=[0.01, 0.02], n=0.5, Nbar=250000, Ra=0.004)
+    parameters = GRIDS[grid]()
+    wall, processor = time.perf_counter(), time.process_time()
+    study.solve(**parameters, profiles=False, workers=1)  # the time of this process is all there is
+    print(json.dumps([time.process_time() - processor, time.perf_counter() - wall]))
+
+
+class _Nothing:
+    """In place of the limit."""
+
+    def __enter__(self):
+        return None
+
+    def __exit__(self, *_):
+        return None
+
+    def limit(self, limits):
+        return self
+
+
+NOTHING = _Nothing()
+
+
+@contextmanager
+def busy(count: int):
+    """So many processes that keep a processor busy each."""
+    others = [subprocess.Popen([sys.executable, "-c", BUSY]) for _ in range(count)]
+    try:
+        yield
+    finally:
+        for other in others:
+            other.kill()
+            other.wait()
+
+
+def measured(grid: str, threads: int, free: bool) -> tuple[float, float]:
+    """Processor and wall seconds of one call in a process of its own."""
+    names = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
+    environment = os.environ | dict.fromkeys(names, str(threads))
+    command = [sys.executable, __file__, CHILD, grid, str(int(free))]
+    return tuple(json.loads(subprocess.run(command, env=environment, capture_output=True, check=True).stdout))
+
+
+def blas_threads(grids=tuple(GRIDS), numbers=(2, 4, 8)) -> list[dict]:
+    """A row for each way, alone and with a busy process for each processor; processor time also over that of one
+    forced thread in the same company."""
+    rows = []
+    for grid, others in product(grids, (0, os.cpu_count())):
+        with busy(others):
+            ways = {"1 forced": (1, True)}
+            ways |= {f"{n}, {'free' if free else 'limited'}": (n, free) for n in numbers for free in (True, False)}
+            times = {way: measured(grid, *chosen) for way, chosen in ways.items()}
+        for way, (processor, wall) in times.items():
+            row = {"cases": grid, "busy_processes": others, "blas_threads": way, "processor_seconds": processor}
+            rows.append(row | {"over_forced": processor / times["1 forced"][0], "wall_seconds": wall})
+    return rows
+
+
+def table(rows: list[dict]) -> str:
+    """The rows in Markdown."""
+    cells = [[f"{value:.2f}" if isinstance(value, float) else str(value) for value in row.values()] for row in rows]
+    heads = [head.replace("_", " ") for head in rows[0]]
+    return "\n".join(f"| {' | '.join(line)} |" for line in [heads, ["---"] * len(heads), *cells])
+
+
+if __name__ == "__main__":
+    if sys.argv[1:2] == [CHILD]:
+        child(sys.argv[2], sys.argv[3] == "1")
+    else:
+        print(table(blas_threads()))

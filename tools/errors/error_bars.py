@@ -1,0 +1,75 @@
+"""What the factors in solver/contact/error.py are worth: `python tools/errors/error_bars.py [SIZE]`, a minute.
+
+SIZE random cases (2,000 by default) of each law on each base, far beyond any scene, are solved on few nodes and on 96,
+which are the truth. A line for each number of nodes:
+
+- cases: those whose error on 96 nodes is below a tenth of what is judged;
+- blind: of cases whose estimate is multiplied by _BLIND, how many have a truth above the estimate without that factor,
+  and how many above the estimate with it;
+- ring: of cases whose truth is above the estimate, where λ has risen before the first node: how many there are, and
+  the largest error of Ar/An over λ s²/2 at that node, in units of Ar/An;
+- above: how many have a truth above their error bar, and by which factor at most.
+"""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+
+sys.path.append(str(Path(__file__).parents[2] / "tests/shared"))  # pytest has it there already
+from solver_cases import EXTREMES, ROUGH_KINDS, random_cases  # noqa: E402
+
+from solver import Problem
+from solver.contact.driver import solve_on
+from solver.contact.equation import evaluate
+from solver.contact.error import _BLIND, _RISEN, completed, estimate, margin, refine
+from solver.contact.results import difference, quantities
+from solver.contact.start import first_guess
+from solver.numerics.ladder import MARGIN
+from solver.numerics.mesh import mesh_of
+from solver.scaling import as_cases, dimensionless
+
+NODES = (6, 12, 22, 32)
+
+
+def judged(base: str, law: str, size: int) -> dict[int, np.ndarray]:
+    """Nodes -> rows of cases: truth, difference of two meshes, estimate, error bar, error of Ar/An over its ring, and
+    the factor of the estimate."""
+    case = random_cases(size, 1, EXTREMES) | {"beta": np.random.default_rng(1).uniform(0.3, 0.95, size)}
+    cases, found = as_cases(dimensionless(Problem.of(**case, base=base, micro=law))), {}
+
+    def solved(n):
+        at = solve_on(evaluate(cases, first_guess(cases, mesh_of(n)), mesh_of(n)))
+        own = quantities(at.at)
+        refined = refine(at.at, own)
+        return at, own, difference(own, refined.numbers), estimate(at.at, own, refined)
+
+    fine, true, _, own_error = solved(96)
+    for n in NODES:
+        (ev, closed, _), own, moved, error = solved(n)
+        lam = cases.law.area(ev.state.y[:, :1], ev.curve.q[:, :1])[:, 0]
+        ring = np.where(lam > _RISEN, lam * ev.mesh.s[0] ** 2 / 2, 0.0) / own.Ar_An
+        truth, area = difference(own, true), np.abs(own.Ar_An / true.Ar_An - 1)
+        bar = completed(ev, own.Ar_An, error, np.arange(size))[1]
+        known = closed & fine.closed & (own_error < 0.1 * truth) & (truth > 1e-9)
+        found[n] = np.stack([truth, moved, error, bar, area / ring, margin(ev)], axis=1)[known]
+    return found
+
+
+def main(size: int = 2000) -> None:
+    np.seterr(all="ignore")
+    parts = [judged(base, law, size) for base, law in ROUGH_KINDS]
+    for n in NODES:
+        truth, moved, error, bar, rings, factor = np.concatenate([part[n] for part in parts]).T
+        blind = factor > MARGIN
+        seen = [f"{np.mean(truth[blind] > times * MARGIN * moved[blind]):.1%}" for times in (1, _BLIND)]
+        needed = rings[np.isfinite(rings) & (truth > error)]
+        above = truth / bar
+        print(
+            f"{n:2d} nodes, {len(truth)} cases; blind: {seen[0]} and {seen[1]} of {blind.sum()}; "
+            f"ring: {len(needed)}, {needed.max(initial=0):.1f}; above: {(above > 1).sum()}, {above.max():.1f}"
+        )
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:2]))

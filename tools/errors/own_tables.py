@@ -1,0 +1,87 @@
+"""What `model_error` of tables of one's own is worth: `python tools/errors/own_tables.py [SIZE [SEED]]`, a minute.
+
+SIZE random tables (100 by default) are made from the laws of this package: half of them with 5 to 60 rows here and
+there, the others with 60 in equal steps of log p. Contacts with each are compared with those of the law itself, on a
+half-space and on the exact layer, from 1.5 times the first pressure on. Three lines:
+
+- tables: how many are not refused, and how many of these are somewhere between their rows off by more than `error`;
+- contacts: how many there are, how many are farther off than `model_error`, and the largest ratio of the two;
+- edge: the largest error above that of the rows, over (p1/p(0))^_STEEPNESS: what _GUESSED of
+  solver/models/range_of_law.py must be.
+"""
+
+import sys
+
+import numpy as np
+
+from solver import Problem, Status, laws, solve
+from solver.laws import own_table
+from solver.models.range_of_law import _STEEPNESS
+from solver.solution import JUDGED
+
+LAWS = ("disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights")
+
+
+def table(random: np.random.Generator, even: bool):
+    """The name of a random law, its parameters, and the :class:`~solver.laws.Law` of a random table of it; ValueError
+    of one that is refused."""
+    law, Ra = str(random.choice(LAWS)), 10 ** random.uniform(-4, -1)
+    given = {"Nbar": 10 ** random.uniform(-2, 2) / Ra**2, "Ra": Ra}
+    if law == "power_law":
+        given |= {"B": 10 ** random.uniform(-2, 0), "beta": random.uniform(0.3, 1.0)}
+    elif "heights" in law:
+        given["sigma"] = Ra * 10 ** random.uniform(-3, -1)
+    if law == "normal_heights":
+        given["cut"] = random.uniform(3, 4.5)
+    first = 10 ** random.uniform(-6, -3)
+    last = min(first * 10 ** random.uniform(1, 4), 0.3)
+    p = np.geomspace(first, last, 60)
+    if not even:
+        draw = random.choice([np.geomspace, np.linspace])(first, last, random.integers(5, 61))
+        p = np.sort(draw * (1 + random.uniform(-0.2, 0.2, len(draw))))
+    columns = laws.LAWS[law].at(p, 1.0, **given)
+    own_table._check(p, *columns)
+    return law, given, own_table.of_columns(f"table:{random.random()}", p, *columns)
+
+
+def between(law: str, given: dict, found) -> float:
+    """The largest distance of a table from its law, over `error`."""
+    p = np.geomspace(found.least, found.most, 1000)
+    pairs = zip(found.at(p, 1.0), laws.LAWS[law].at(p, 1.0, **given), strict=True)
+    return max(np.abs(near / true - 1).max() for near, true in pairs) / found.error
+
+
+def contacts(random: np.random.Generator, base: str, law: str, given: dict, found) -> np.ndarray:
+    """Largest relative error, `model_error` + `error`, and p1/p(0) (3, n) of contacts with a table."""
+    n = 1.0 if base == "half_space" else 10 ** random.uniform(-1, 1)
+    case = {"base": base, "h": 10 ** random.uniform(-3, 0), "n": n}
+    true = solve(Problem.of(a=np.geomspace(found.least, 10 * found.most, 12), **case, **given, micro=law))
+    control = str(random.choice(["P", "a", "D"]))
+    near = solve(Problem.of(**{control: getattr(true, control)}, **case, micro=found))
+    ratio = found.least * n / true.p0
+    known = (near.status == Status.CONVERGED) & (true.status == Status.CONVERGED) & (ratio < 1 / 1.5)
+    error = np.max([np.abs(getattr(near, name) / getattr(true, name) - 1) for name in JUDGED], axis=0)
+    return np.stack([error, near.model_error + near.error + true.error, ratio])[:, known]
+
+
+def main(size: int = 100, seed: int = 1) -> None:
+    np.seterr(all="ignore")
+    random, apart, judged, edges = np.random.default_rng(seed), [], [np.empty((3, 0))], [0.0]
+    for number in range(size):
+        try:
+            law, given, found = table(random, number % 2 == 0)
+        except ValueError:
+            continue
+        apart.append(between(law, given, found))
+        for base in ("half_space", "layered"):
+            judged.append(contacts(random, base, law, given, found))
+            error, _, ratio = judged[-1]
+            edges.append(((error - found.error) / ratio**_STEEPNESS).max(initial=0.0))
+    (error, bar, _), apart = np.concatenate(judged, axis=1), np.array(apart)
+    print(f"{len(apart)} tables of {size}, {(apart > 1).sum()} somewhere above error, at most {apart.max():.1f} times")
+    print(f"{len(error)} contacts, {(error > bar).sum()} above model_error, at most {(error / bar).max():.2f} times")
+    print(f"edge: {max(edges):.3f}")
+
+
+if __name__ == "__main__":
+    main(*map(int, sys.argv[1:]))

@@ -1,0 +1,185 @@
+"""Mutated study files through the command line: `python tools/fuzz/fuzz_studies.py [COUNT [SEED]]`, 5,000 by default.
+
+Each is a study of the repository, made small, with a few things done to it: bytes flipped, lines dropped, doubled and
+swapped, values replaced by nasty ones, keys misspelled, types changed. All are checked; of those that are accepted some
+are estimated (--dry-run) and some are run. Whatever the file: exit code 0 or 2, no exception, no warning, messages that
+one can read, and an answer in time and within bounded memory.
+"""
+
+import contextlib
+import io
+import os
+import random
+import re
+import resource
+import signal
+import sys
+import tempfile
+import time
+import warnings
+from collections import Counter
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PATIENCE = 60  # seconds of this process for one file, of which the slowest takes some; more is a hang
+MEMORY = 6_000_000_000  # bytes that the process may ask for: it needs half of it for its libraries and tables
+LONGEST = 31 * 1000  # characters of all messages: thirty, and how many more
+FEW = 100  # cases of a study that is estimated or run
+ESTIMATED, RUN = 10, 20  # one of so many that are accepted
+NASTY = (
+    "1e308", "-1e308", "5e-324", "1e-300", "1e400", "nan", "inf", "-inf", "0", "-0.0", "-1", "1.5", "true", '""', '"x"',
+    '"\\u001b[31m"', '"\\u0000"', "[]", "{}", "[[]]", "[1, [2]]", "[1e-6, nan]", "[true]", '["x", 1]', "1979-05-27",
+    "9" * 5000, "0x" + "f" * 5000, "1" + "0" * 400, "[" * 2000, "{start = 1, stop = 2, num = 3}",
+    "{start = -1e308, stop = 1e308, num = 5}", "{start = 1e-308, stop = 1e308, num = 9, spacing = 'log'}",
+    "{start = 0, stop = 1, num = 1000000}", "{start = 1, stop = 2}", "{num = 3}", '"layered"', '"picard"', '"auto"',
+)  # fmt: skip
+LINES = (
+    "[model]", "[axes]", "[[cases]]", "[sample]", "[numerics]", "[output]", "[fit]", "x = 2", "block = 0", "size = 7",
+    "profiles = []", "P = 1e-5", "a = [0.01, 0.02]", "D = 1e-4", "h = nan", "nodes = 17", 'kind = "micro_law"',
+    'dtype = "float32"', ".".join(["a"] * 20_000) + " = 1", "[" + ".".join(["a"] * 20_000) + "]", "= 1", "\x00",
+)  # fmt: skip
+
+
+class Hang(BaseException):
+    """No Exception: nothing on its way may take it for a fault of its own."""
+
+
+def bases() -> list[str]:
+    """The studies of the repository with few points."""
+
+    def few(found: re.Match) -> str:
+        return f"{found[1]}{min(int(found[2].replace('_', '')), 3)}"
+
+    texts = [path.read_text(encoding="utf-8") for path in sorted((ROOT / "studies").glob("*/*.toml"))]
+    return [re.sub(r"\b((?:num|size)\s*=\s*)([\d_]+)", few, text) for text in texts]
+
+
+def mutated(chance: random.Random, text: str) -> bytes:
+    """The text with one to four things done to it."""
+    changes = chance.choice((CHANGES, MILD))
+    for _ in range(chance.randint(1, 4)):
+        lines = text.split("\n")
+        at = chance.choice([i for i, line in enumerate(lines) if line.strip()] or [0])
+        text = "\n".join(chance.choice(changes)(chance, lines, at))
+    raw = bytearray(text.encode("utf-8", "surrogateescape"))
+    if chance.random() < 0.1 and raw:
+        for _ in range(chance.randint(1, 3)):
+            raw[chance.randrange(len(raw))] ^= 1 << chance.randrange(8)
+    return bytes(raw)
+
+
+def _value(chance, lines, at):
+    """Another value, of any type, or the same one within a list, a table or quotes."""
+    key, equals, value = lines[at].partition("=")
+    same = value.strip()
+    new = chance.choice((*NASTY, f"[{same}]", f"{{x = {same}}}", f'"{same}"', f"-{same}", value * 2))
+    return [*lines[:at], f"{key}= {new}" if equals else new, *lines[at + 1 :]]
+
+
+def _key(chance, lines, at):
+    """A letter more, less, or another."""
+    key, equals, value = lines[at].partition("=")
+    place = chance.randrange(len(key) + 1)
+    new = key[:place] + chance.choice(("", "x", ".", '"', "é", " ")) + key[place + chance.randint(0, 1) :]
+    return [*lines[:at], new + equals + value, *lines[at + 1 :]]
+
+
+def _number(chance, lines, at):
+    """Another number of about the size, or of another."""
+    numbers = list(re.finditer(r"\d[\d_]*\.?\d*(?:e[-+]?\d+)?", lines[at]))
+    if not numbers:
+        return lines
+    found = chance.choice(numbers)
+    value = float(found[0].replace("_", "")) * 10 ** chance.choice((0.1, -0.1, 1, -1, 4, -4))
+    new = f"{value:.4g}" if "." in found[0] or "e" in found[0] else str(min(int(value), 10**18))
+    return [*lines[:at], lines[at][: found.start()] + new + lines[at][found.end() :], *lines[at + 1 :]]
+
+
+def _word(chance, lines, at):
+    """Another word that the vocabulary knows in the place of a text."""
+    words = ("frictionless", "bonded", "layered", "thin_layer", "half_space", "auto", "disc_cell", "smooth", "newton")
+    return [*lines[:at], re.sub(r'"\w+"', f'"{chance.choice(words)}"', lines[at], count=1), *lines[at + 1 :]]
+
+
+MILD = (_number, _number, _word, lambda chance, lines, at: [*lines[:at], *lines[at + 1 :]])
+CHANGES = (
+    lambda chance, lines, at: lines[:at] + lines[at + 1 :],
+    lambda chance, lines, at: lines[: at + 1] + lines[at:],
+    lambda chance, lines, at: lines[:at] + [chance.choice(LINES)] + lines[at:],
+    lambda chance, lines, at: lines[at:] + lines[:at],
+    lambda chance, lines, at: [*lines[:at], lines[at][: chance.randrange(len(lines[at]) + 1)]],
+    _key, _key, _value, _value, _value,
+)  # fmt: skip
+
+
+def said(arguments: list[str]) -> tuple[int, str]:
+    """Exit code of a command and what it says on stderr."""
+    from study.__main__ import main
+
+    errors = io.StringIO()
+    with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(errors), warnings.catch_warnings():
+        warnings.simplefilter("error")
+        return main(arguments), errors.getvalue()
+
+
+def fault(arguments: list[str]) -> tuple[int, str]:
+    """Exit code of a command, and what is wrong with how it ended; "" if nothing is."""
+
+    def hang(*_):
+        raise Hang
+
+    before = signal.signal(signal.SIGVTALRM, hang)
+    signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE)  # of this process: others may be busy
+    try:
+        code, text = said(arguments)
+    except (Exception, SystemExit, Hang) as error:
+        return 1, f"{type(error).__name__}: {str(error)[:300]}"
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, before)
+    if code not in (0, 2) or len(text) > LONGEST or bool(code) != bool(text.strip()) and "run" not in arguments:
+        return code, f"exit code {code}, {len(text)} characters: {text[:300]}"
+    return code, ""
+
+
+def faults(count: int, seed: int, folder: Path, done: Counter) -> list[str]:
+    """What is wrong with how the commands end; counted in `done`: commands by their exit code."""
+    from study.inputs.reading import read
+
+    found, texts, file = [], bases(), folder / "mutated.toml"
+    for number in range(count):
+        chance = random.Random(f"{seed} {number}")
+        file.write_bytes(mutated(chance, chance.choice(texts)))
+        code, wrong = fault(["check", str(file)])
+        done[f"check {code}"] += 1
+        commands = []
+        if not code and read(file).grid.size <= FEW:
+            commands += [["run", str(file), "--dry-run"]] * (chance.randrange(ESTIMATED) == 0)
+            commands += [["run", str(file)]] * (chance.randrange(RUN) == 0)
+        for command in commands:
+            results = ["--workers", "1", "--results", str(folder / str(number))]
+            code, again = fault([*command, *results])
+            done[f"{' '.join(command[::2])} {code}"] += 1
+            wrong = wrong or again
+        if wrong:
+            kept = folder / f"fault{number}.toml"
+            kept.write_bytes(file.read_bytes())
+            found.append(f"{kept}: {wrong}")
+    return found
+
+
+def main() -> int:
+    count, seed = ([int(given) for given in sys.argv[1:]] + [5000, 0][len(sys.argv) - 1 :])[:2]
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    begun, done = time.monotonic(), Counter()
+    found = faults(count, seed, Path(tempfile.mkdtemp(prefix="fuzz_studies")), done)
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * (1 if sys.platform == "darwin" else 1024) / 1e9
+    print(*found, sep="\n")
+    print(f"{count} study files in {time.monotonic() - begun:.0f} s, {peak:.2f} GB: {len(found)} faults", dict(done))
+    return min(len(found), 1)
+
+
+if __name__ == "__main__":
+    sys.path.insert(0, str(ROOT))
+    sys.exit(main())

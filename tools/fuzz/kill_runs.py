@@ -1,0 +1,63 @@
+"""Runs from the command line that are killed at random moments; seeded, 40 kills by default, which takes minutes:
+
+    python tools/fuzz/kill_runs.py [KILLS [SEED]]
+
+A run that has ended before its kill is begun anew, from nothing or with its results removed. At the end the results
+must have the digest of those of an undisturbed run. Exit code 0 if so.
+"""
+
+import random
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import study
+from study.files.results_file import numbers_digest
+from study.work.processes import python_command
+
+TEXT = """
+[model]
+micro = "smooth"
+n = 0.5
+base = "thin_layer"
+[axes]
+h = [0.001, 0.002, 0.003]
+P = { start = 1e-6, stop = 1e-4, num = 2000 }
+[numerics]
+block = 20
+"""
+
+
+def main(kills: int, seed: int) -> int:
+    chance = random.Random(seed)
+    command, environment = python_command("from study.__main__ import main; sys.exit(main(sys.argv[1:]))")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        (folder / "many.toml").write_text(TEXT, encoding="utf-8")
+        there, apart = (study.load(folder / "many.toml", folder / word) for word in ("results", "apart"))
+        apart.run(workers=1)
+        command += ["run", str(folder / "many.toml"), "--results", str(there.results), "--workers", "2"]
+        begun = time.monotonic()
+        subprocess.run(command, env=environment, capture_output=True, check=True)
+        lasts, wrong = time.monotonic() - begun, 0
+        for _ in range(kills):
+            if (there.results / "many.nc").exists():
+                wrong += numbers_digest(there.results / "many.nc") != numbers_digest(apart.results / "many.nc")
+                shutil.rmtree(there.results) if chance.random() < 0.5 else (there.results / "many.nc").unlink()
+            run = subprocess.Popen(command, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(chance.uniform(0, lasts))
+            run.kill()
+            run.wait()
+        subprocess.run(command, env=environment, capture_output=True, check=True)
+        wrong += numbers_digest(there.results / "many.nc") != numbers_digest(apart.results / "many.nc")
+        wrong += there.verify().kind != "sound"
+    print(f"{kills} kills, {wrong} results that differ, seed {seed}")
+    return bool(wrong)
+
+
+if __name__ == "__main__":
+    given = [int(word) for word in sys.argv[1:]]
+    sys.exit(main(*(given + [40, 1][len(given) :])))

@@ -1,0 +1,109 @@
+"""Eight threads that solve, run, open, read lazily and ask for the state of studies at once, for some seconds:
+
+    python tools/fuzz/stress_threads.py SECONDS
+
+Exit code 0 if nothing crashed and every number was right. As a process of its own, for what it looks for ends the
+interpreter.
+"""
+
+import shutil
+import sys
+import tempfile
+import threading
+import time
+import traceback
+from pathlib import Path
+
+import numpy as np
+
+import study
+from study import api
+from study.files import results_file
+from study.files.examine import examine
+
+MODEL = {"micro": "smooth", "base": "half_space"}
+AXES = {"P": [1e-6 * i for i in range(1, 41)]}
+TEXT = '[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\nP = {}\n[numerics]\nblock = 10\n[output]\nx = 9\n'
+
+
+def right(found) -> bool:
+    """Hertz: a = (3P/4)^(1/3); rtol 1e-6 allows the solver so much, and the iteration more than closes."""
+    exact = (0.75 * found.P.values) ** (1 / 3)
+    return bool((found.status.values == 0).all() and np.allclose(found.a.values, exact, rtol=1e-6, atol=0))
+
+
+def solving(folder: Path, number: int) -> None:
+    assert right(study.solve(**MODEL, **AXES, x=9))
+
+
+def running(folder: Path, number: int) -> None:
+    """A study of this thread's own, begun anew each time, then extended."""
+    opened = written(folder, f"own{number}", AXES["P"][:20])
+    (opened.results / f"own{number}.nc").unlink(missing_ok=True)
+    shutil.rmtree(opened.results / f".own{number}.blocks", ignore_errors=True)
+    assert opened.run(workers=1).complete
+    report = written(folder, f"own{number}", AXES["P"]).run(workers=2)
+    assert report.complete and report.computed == 20, report
+    assert right(opened_of(folder, f"own{number}").open())
+
+
+def reading(folder: Path, number: int) -> None:
+    """A study that is done, eagerly and from its file."""
+    assert right(opened_of(folder, "shared").open())
+    assert right(study.open_results(folder / "results" / "shared.nc"))
+
+
+def lazily(folder: Path, number: int) -> None:
+    found = opened_of(folder, "large").open()
+    assert found.p.chunks and right(found.compute())
+    assert float(found.p.max().compute(num_workers=2)) > 0
+
+
+def asking(folder: Path, number: int) -> None:
+    state = opened_of(folder, "shared").status()
+    assert (state["state"], state["counts"]) == ("done", {0: 40}), state
+    assert opened_of(folder, "shared").run(workers=1).computed == 0
+    state = opened_of(folder, "own0").status()
+    assert state["state"] in ("done", "partial", "outdated", "new"), state
+
+
+def written(folder: Path, name: str, loads: list) -> study.Study:
+    (folder / f"{name}.toml").write_text(TEXT.format(loads), encoding="utf-8")
+    return opened_of(folder, name)
+
+
+def opened_of(folder: Path, name: str) -> study.Study:
+    return study.load(folder / f"{name}.toml", folder / "results")
+
+
+def main(seconds: float) -> int:
+    faults, end = [], time.monotonic() + seconds
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for one, loads in (("shared", AXES["P"]), ("large", [*AXES["P"], 1e-3])):
+            written(folder, one, loads).run(workers=1)
+        api.LAZY = results_file.LAZY = examine(folder / "results" / "large.nc").unpacked - 1
+        for path in ("shared", "own0", "own1"):
+            written(folder, path, AXES["P"])
+
+        def turn(work, number: int) -> None:
+            turns = 0
+            try:
+                while not turns or time.monotonic() < end:
+                    work(folder, number)
+                    turns += 1
+            except BaseException:
+                faults.append(f"{work.__name__}, turn {turns}: {traceback.format_exc()}")
+
+        works = [running, running, reading, reading, lazily, lazily, asking, solving]
+        threads = [threading.Thread(target=turn, args=(work, number)) for number, work in enumerate(works)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+    print("\n".join(faults))
+    return bool(faults)
+
+
+if __name__ == "__main__":
+    sys.exit(main(float(sys.argv[1])))

@@ -1,0 +1,21 @@
+"""Print the lowest versions that pyproject.toml allows, as pip takes them: `make lowest` tests with these."""
+
+import tomllib
+from pathlib import Path
+
+#: matplotlib 3.9 calls names of pyparsing of which later versions warn, and a warning fails a test.
+BESIDE = ["pyparsing==3.1.0"]
+EXTRAS = ("cluster", "test")
+
+
+def lowest(pyproject: dict) -> list[str]:
+    """Requirements "name==version" of the lowest versions."""
+    project = pyproject["project"]
+    allowed = pyproject["build-system"]["requires"] + project["dependencies"]
+    allowed += [one for extra in EXTRAS for one in project["optional-dependencies"][extra]]
+    return [one.replace(">=", "==") for one in allowed] + BESIDE
+
+
+if __name__ == "__main__":
+    text = Path(__file__).parents[1].joinpath("pyproject.toml").read_text(encoding="utf-8")
+    print(*lowest(tomllib.loads(text)))

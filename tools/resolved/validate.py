@@ -1,0 +1,51 @@
+"""`make validate`: the two scales against one. Rough spheres with every asperity resolved, on a half-space and on
+layers, of one height and of random heights, beside the predictions: docs/validate.nc, .md, .png, validate_limits.png.
+
+    python tools/resolved/validate.py
+
+Each contact is kept in results/validate as soon as it is solved; what is there is not solved again. Delete that folder
+where this code has changed.
+"""
+
+import sys
+from pathlib import Path
+
+import xarray as xr
+from validate_cases import HALF_SPACE, LAYERED, THINNER, together
+from validate_figures import draw_limits, draw_means
+from validate_film import films, sparse
+from validate_heights import SPHERES, cells, compared, finer
+from validate_page import page
+
+
+def found(folder: Path) -> dict[str, xr.Dataset]:
+    """Everything that is shown, solved where it is missing."""
+    spheres = xr.concat([compared(sphere, folder) for sphere in SPHERES], "case")
+    spheres["finer"] = "quantity", finer(folder)
+    return {
+        "half_space": together(HALF_SPACE, folder),
+        "layer": together(LAYERED, folder),
+        "thinner": together(THINNER, folder),
+        "films": films(),
+        "sparse": sparse(),
+        "heights": spheres.assign_coords(case=[sphere.name for sphere in SPHERES]),
+        "cells": cells(folder),
+    }
+
+
+def main(docs: Path, folder: Path) -> None:
+    """Solve what is missing, and write the four files."""
+    parts = found(folder)
+    tree = xr.DataTree.from_dict({"/": xr.Dataset(attrs={"command": "make validate"}), **parts})
+    small = {"zlib": True, "dtype": "float32"}
+    packed = {
+        f"/{name}": {own: small for own in part.data_vars if part[own].size > 500} for name, part in parts.items()
+    }
+    tree.to_netcdf(docs / "validate.nc", encoding=packed)
+    draw_means(parts["half_space"], parts["layer"], docs / "validate.png")
+    draw_limits(parts, docs / "validate_limits.png")
+    (docs / "validate.md").write_text(page(parts), encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main(Path(*sys.argv[1:2] or ["docs"]), Path("results/validate"))

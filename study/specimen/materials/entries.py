@@ -43,7 +43,8 @@ class Material:
     yield_strength, hardness : Pa; None: not known. The hardness is a mean pressure, on the projected area
     fracture_strength : of a coating, the tensile stress at which it cracks, Pa; None: not known
     interface_strength : of a coating, the stress at which it comes off what the source names, Pa; None: not known
-    NAME_spread : one standard deviation of each of these, Pa
+    yield_strength_spread, hardness_spread, fracture_strength_spread, interface_strength_spread : one standard deviation
+        of each of these, Pa
     strength_source : where the strengths are from
     condition : what the values hold for, and what they depend on
     source : where they are from

@@ -18,6 +18,7 @@ from .data.dataset import parts
 from .data.si import dataset_of
 from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, doubts, far_outside
+from .inputs.checks import unloading
 from .inputs.definition import POINTS, StudyError
 from .inputs.reading import from_call
 from .inputs.vocabulary import VOCABULARY
@@ -190,6 +191,8 @@ def solve(
         raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
     definition = from_call(parameters, rows, same_piece, tables)
+    for text in unloading(definition):
+        warnings.warn(text, stacklevel=2)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     if chunks is None:

@@ -15,6 +15,9 @@ from .grid import MOVED, Grid, along, same_labels, twins
 from .laws import smooth_laws
 from .vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, VOCABULARY, cases_with
 
+LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so that \
+these contacts are no unloading (docs/model.md, Microscale).'
+"""What is said of loads that fall though asperities yield."""
 FITTED = ("B", "beta")
 """Parameters that are fitted to Nbar and Ra where neither is given (`fitted.py`)."""
 
@@ -161,6 +164,18 @@ def heights_that_yield(grid: Grid) -> list[str]:
     of_heights = " or ".join(map(shown, VOCABULARY[heights[0]].own.needed_by[1]))
     text = "asperities that yield have one height; random heights, elastic, are micro ="
     return [f'{heights[0]} is given with micro = "elastic_plastic": {text} {of_heights}']
+
+
+def unloading(definition) -> list[str]:
+    """A sentence if asperities that yield have an axis of loads, radii or depths that falls somewhere."""
+    grid = definition.grid
+    if not (along(grid, "micro") == "elastic_plastic").any():
+        return []
+    given = definition.scene.given if definition.scene else {name: array for name, (_, array) in grid.values.items()}
+    axes = [name for name in CONTROLS if name in definition.in_results(grid.sizes).keys() & {*given}]
+    values = {name: np.asarray(given[name]) for name in axes}
+    falls = [name for name, array in values.items() if (np.diff(array.reshape(len(array), -1)[:, 0]) < 0).any()]
+    return [f"{name} falls along its axis: {LOADING}" for name in falls]
 
 
 def slips_of_laws(grid: Grid) -> list[str]:

@@ -76,7 +76,6 @@ def test_strengths_have_spread_and_source_and_are_plausible(name):
 def test_strengths_of_a_file(mine):
     own = materials.read(mine(STEEL + "hardness = 8e9\nhardness_spread = 0\n"))["my steel"]
     assert (own.hardness, own.hardness_spread, own.yield_strength) == (8e9, 0.0, None)
-    assert materials.read(mine(STEEL))["my steel"].hardness is None
     for line, message in (
         ("hardness = 8", "hardness = 8: must be a number of Pa from 1000 to 2e"),
         ("hardness = 8e9", "hardness and hardness_spread go together"),

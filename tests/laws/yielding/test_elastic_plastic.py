@@ -1,5 +1,6 @@
 """Asperities that yield: reference rows, the elastic and the plastic limit, contacts, error bars, keys, refusals."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -190,6 +191,19 @@ def test_strengths_that_do_not_go_together_are_invalid():
         study.solve(P=1e-6, **LAYER, **SPOTS, micro="elastic_plastic", cases=[{"yield_strength": 0.01}, {"m": 0.1}])
     with pytest.raises(study.StudyError, match="sigma is given with micro"):
         study.solve(P=1e-6, **LAYER, **SPOTS, micro="elastic_plastic", hardness=0.02, sigma=1e-5)
+
+
+def test_falling_loads_are_warned_of():
+    case = LAYER | SPOTS | {"micro": "elastic_plastic", "hardness": 0.02, "x": 2, "profiles": False}
+    with pytest.warns(UserWarning, match="P falls along its axis"):
+        study.solve(P=[1e-5, 1e-6], **case)
+    with pytest.warns(UserWarning, match="P falls along its axis"):
+        study.solve(P=["2 N", "1 N"], R="10 mm", E2="210 GPa", Nbar="2 1/um^2", Ra="10 um", hardness="8 GPa",
+                    base="half_space", micro="elastic_plastic")  # fmt: skip
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        study.solve(P=[1e-6, 1e-5], **case)
+        study.solve(P=[1e-5, 1e-6], **case | {"micro": "disc_cell"})
 
 
 def test_yield_pressure():

@@ -1,6 +1,5 @@
 """Sensitivities of results: d ln result/d ln input, over the dimensions of the results and `input`."""
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -11,24 +10,18 @@ from solver import sensitivities as derivatives
 from solver.laws import LAWS
 from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import uses
-from solver.sensitivity import is_ratio
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
+from .inputs.scene.changes import RATIOS, SCALES, changes
 from .inputs.scene.scales import make_dimensionless
-from .inputs.scene.scene import Scene
+from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
 from .terminal import shown
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
-#: By which part of itself an input in SI units is moved, and a Poisson ratio by how much, to see what the solver's
-#: inputs make of it: closed forms, so that the error is the square of this. Poisson ratios stay this far below 0.5.
-_STEP = 1e-4
-#: The logarithms of the scales stand beside the solver's inputs: the radius and the modulus that are 1 for the solver.
-_SCALES = ("length", "modulus")
-_RATIOS = ("nu1", "nu2", "nu_punch")
 _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
 
 
@@ -63,14 +56,17 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     dims, shape = contact["status"].dims, contact["status"].shape
     scene = _scene(inputs) if "R" in inputs else None
     numbers = scene.parameters if scene else inputs
-    problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    try:
+        problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    except ValueError as error:
+        raise StudyError([f"sensitivities: {error}"]) from None
     used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
     solution = solve(problem)
     solved = derivatives(problem, solution, inputs=(problem.control, *used))
     logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
     if scene:
-        changes = _in_si(scene, dims, shape)
-        logs = {name: _by_si(logs[name], changes, VOCABULARY[name].powers) for name in QUANTITIES}
+        of_si = _in_si(scene, dims, shape)
+        logs = {name: _by_si(logs[name], of_si, VOCABULARY[name].powers) for name in QUANTITIES}
     # of the control they are known, to the last bit
     control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
     logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
@@ -111,7 +107,7 @@ def _without_coordinates(array: xr.DataArray) -> Any:
 def _scene(inputs: dict[str, Any]) -> Scene:
     """The scene of inputs in SI units. What follows from others is computed again."""
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
-    in_si = [name for name in inputs if name in SCENE or name in _RATIOS or VOCABULARY[name].powers != (0, 0)]
+    in_si = [name for name in inputs if name in SCENE or name in RATIOS or VOCABULARY[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
     scene = Scene(given={name: inputs[name] for name in in_si}, parameters=others)
     make_dimensionless(scene)
@@ -134,43 +130,24 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     own = [name for name in PARAMETERS if name in scene.parameters and name not in given and name not in ("n", "m")]
     own += ["n"] * ("E1" not in given) + ["m"] * ("E_punch" not in given)
     ones = np.ones(int(np.prod(shape)))
-    return {name: _changes(scene, name, dims, shape) for name in names} | {name: {name: ones} for name in own}
-
-
-def _changes(scene: Scene, name: str, dims: tuple, shape: tuple[int, ...]) -> dict[str, np.ndarray]:
-    value, ends = scene.given[name], []
-    value = np.minimum(value, 0.5 - 2 * _STEP) if name in _RATIOS else value
-    for sign in (1, -1):
-        new = value + sign * _STEP * (1.0 if name in _RATIOS else value)
-        moved = replace(scene, given=scene.given | {name: new}, parameters=dict(scene.parameters))
-        make_dimensionless(moved)
-        numbers = {key: moved.parameters[key] for key in ("n", "m") if key in moved.parameters}
-        numbers |= {key: moved.parameters[key] for key in moved.given if key not in SCENE}
-        ends.append(numbers | dict(zip(_SCALES, (moved.R, moved.unit), strict=True)))
-    found = {}
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for key, up in ends[0].items():
-            up, down = (_flat(end, dims, shape) for end in (up, ends[1][key]))
-            change = (up - down if is_ratio(key) else np.log(up / down)) / (2 * _STEP)
-            found[key] = np.nan_to_num(change)  # NaN: of 0, or of a rigid body
-    return found
+    flat = {}
+    for name in names:
+        flat[name] = {key: _flat(change, dims, shape) for key, change in changes(scene, name).items()}
+    return flat | {name: {name: ones} for name in own}
 
 
 def _flat(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
     """A number, a text or a DataArray for all cases, (B,)."""
-    if not isinstance(value, xr.DataArray):
-        return np.full(int(np.prod(shape)), value)
-    sizes, ordered = value.sizes, value.transpose(*(dim for dim in dims if dim in value.dims))
-    return np.broadcast_to(ordered.values.reshape([sizes.get(dim, 1) for dim in dims]), shape).ravel()
+    return np.broadcast_to(over(value, dims), shape).ravel()
 
 
 def _by_si(logs: dict, inputs: dict, powers: tuple[int, int]) -> dict[str, np.ndarray]:
     """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j."""
-    scales = dict(zip(_SCALES, powers[::-1], strict=True))
+    scales = dict(zip(SCALES, powers[::-1], strict=True))
     still = 0 * next(iter(logs.values()))
 
     def by(changes: dict) -> np.ndarray:
         parts = [logs[key] * change for key, change in changes.items() if key in logs]
-        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in _SCALES)
+        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES)
 
     return {name: by(changes) for name, changes in inputs.items() if any(key in logs for key in changes)}

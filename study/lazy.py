@@ -17,7 +17,7 @@ from solver.laws import Law
 from .data.dataset import labelled, not_run, parts
 from .data.si import dataset_of
 from .inputs.definition import Definition, StudyError
-from .inputs.grid import MOVED, cut_out
+from .inputs.grid import cut_out
 from .terminal import shown
 from .work.cases import compute, own_laws, parcel
 from .work.engine import blocks_of_grid
@@ -38,7 +38,7 @@ class Chunks(NamedTuple):
     def within(self, number: int) -> Definition:
         """The definition of the cases in the chunk of a number."""
         place = np.unravel_index(number, [len(ends) - 1 for ends in self.ends.values()])
-        window = {MOVED: slice(None)} if MOVED in self.definition.grid.sizes else {}
+        window = {}
         for (dim, ends), at in zip(self.ends.items(), place, strict=True):
             window[dim] = slice(int(ends[at]), int(ends[at + 1]))
         scene = self.definition.scene and self.definition.scene.within(window)

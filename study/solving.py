@@ -97,6 +97,7 @@ def solve(
     title: str = "",
     workers: int | None = None,
     same_piece: bool = False,
+    correlations: dict[tuple[str, str], float] | None = None,
     progress: bool | None = None,
     chunks: dict | None = None,
     sensitivities: bool = False,
@@ -143,6 +144,7 @@ def solve(
     workers : most processors that a large grid uses, with the same numbers; 1: the calling thread alone; None: all
     same_piece : whether bodies of one material (`punch`, `layer`, `body` of one name) are one piece, whose E and ν are
         off together; otherwise each is a piece of its own, and their spreads are independent
+    correlations : pair of inputs with spreads -> the correlation of these, such as {("E1", "h"): 0.5}; others have none
     progress : whether a call of more than two seconds says how far it is, in a notebook or on stderr; None: in a
         notebook or on a terminal
     chunks : dimension -> cases in a chunk, such as {"P": 10}: the results are dask arrays, which are solved when they
@@ -190,7 +192,7 @@ def solve(
     if not isinstance(sensitivities, (bool, np.bool_)) or (sensitivities and chunks is not None):
         raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
-    definition = from_call(parameters, rows, same_piece, tables)
+    definition = from_call(parameters, rows, same_piece, tables, correlations)
     for text in unloading(definition):
         warnings.warn(text, stacklevel=2)
     if far := far_outside(definition):

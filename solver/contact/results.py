@@ -47,10 +47,10 @@ def _between(mesh, s_bytes):
     """What interpolates from a mesh to other points s (m,) > 0: the rows (m, n) of the Lagrange polynomials and of
     H - H(1); and κ (:func:`interpolate`) at the points (m,) and at the nodes (n,)."""
     s = np.frombuffer(s_bytes)
-    return mesh.basis(s), mesh.rows(s), _stiffness_between(mesh, s), _stiffness_between(mesh, mesh.s)
+    return mesh.basis(s), mesh.rows(s), stiffness_between(mesh, s), stiffness_between(mesh, mesh.s)
 
 
-def _stiffness_between(mesh, s):
+def stiffness_between(mesh, s):
     """κ (m,) at points s: H of a pressure that oscillates from node to node is about κ times this pressure."""
     ends = np.array(mesh.breaks)
     home = np.clip(np.searchsorted(ends, s) - 1, 0, len(ends) - 2)

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..contact.results import interpolate
+from ..contact.results import interpolate, stiffness_between
 from ..numerics.mesh import gauss_rule
 from .state import along, moving_numbers, of_law
 
@@ -25,19 +25,34 @@ class Points(NamedTuple):
 def at_points(ev, changes, derivatives, s):
     """:class:`Points` at s (m,) > 0. `derivatives`: :class:`.state.Implicit` of the solutions `ev`.
 
-    Under asperities the logarithm of q changes smoothly from node to node, also next to the edge, where q itself does
-    not; so its change is interpolated. Without them q is a polynomial in s, and so is its change.
+    Without asperities q is a polynomial in s, and so is its change. With them it is not one next to the edge, but what
+    bodies and asperities make of q is: so the equation of :func:`~solver.contact.results.interpolate` is
+    differentiated.
     """
     law, s = ev.cases.law, np.asarray(s, dtype=float)
     basis, y = ev.mesh.basis(s).T, interpolate(ev, s)
     curve = law.evaluate(y)
+    at_s = of_law(law, y, curve, moving_numbers(changes))
     if law.rough:
-        q = curve.q * (np.where(ev.curve.q > 0, derivatives.q / ev.curve.q, 0.0) @ basis)
+        q = _between_nodes(ev, changes, derivatives, s, curve, at_s)
     else:
         q = s * ((derivatives.q / ev.mesh.s) @ basis)
-    d_lam = along(ev, changes, of_law(law, y, curve, moving_numbers(changes)), q)[1]
+    d_lam = along(ev, changes, at_s, q)[1]
     p_star = law.p_star[:, None]
     return Points(p_star * curve.q, law.area(y, curve.q), p_star * (q + changes.p_star[..., None] * curve.q), d_lam)
+
+
+def _between_nodes(ev, changes, derivatives, s, curve, at_s):
+    """Derivatives (k, B, m) of q at s, where the asperities have the `curve` and the derivatives `at_s`."""
+    basis, stiff = ev.mesh.basis(s).T, ev.X * stiffness_between(ev.mesh, s)
+
+    def explicit(curve):
+        return changes.Y[..., None] * curve.q + changes.Z[..., None] * curve.g
+
+    dq = derivatives.q
+    yields = explicit(ev.curve) + ev.Y * dq + ev.Z * along(ev, changes, derivatives.law, dq)[0]
+    at_same_q = explicit(curve) + ev.Z * along(ev, changes, at_s, 0 * (dq @ basis))[0]
+    return (yields @ basis - at_same_q + stiff * (dq @ basis)) / (stiff + ev.Y + ev.Z * at_s.by_q[0])
 
 
 def of_corners(ev, changes, derivatives):

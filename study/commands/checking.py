@@ -4,7 +4,6 @@ import numpy as np
 
 from ..inputs.checks import unloading
 from ..inputs.definition import Definition
-from ..inputs.grid import MOVED
 from ..inputs.places import study_file
 from ..inputs.reading import read
 from ..inputs.vocabulary import ROWS, VOCABULARY
@@ -37,7 +36,6 @@ def doubtful_lines(definition: Definition) -> list[str]:
 
     scene, v = definition.scene, {}
     for name, value in (scene.given | {f"{name}_spread": spread for name, spread in scene.spreads.items()}).items():
-        value = value.isel({MOVED: 0}) if MOVED in getattr(value, "dims", ()) else value
         v[name] = bare_variable(value, {"units": ROWS[name].unit} if name in ROWS else {})
     return [
         f"{definition.name}: beware: {text}"

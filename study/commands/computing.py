@@ -70,9 +70,9 @@ def retry(options, file: str) -> int:
 
 def verify(options, file: str) -> int:
     """Compare results with their digest."""
-    found = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
-    say(verified_line(found.path, found), sys.stdout if found.good else sys.stderr)
-    return 0 if found.kind == "sound" else 2 if found.kind == "missing" else 1
+    condition = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
+    say(verified_line(condition.path, condition), sys.stdout if condition.good else sys.stderr)
+    return 0 if condition.kind == "sound" else 2 if condition.kind == "missing" else 1
 
 
 def clean(options, file: str) -> int:
@@ -106,27 +106,22 @@ def completed(study: Study, **options) -> int:
 
 
 def state_line(definition: Definition, state: dict) -> str:
-    """ "fig04      2000 cases  partial (500 of 2000 cases)  title".
-
-    Of a study with spreads the first number counts every solution, as `run` does. The statuses of complete results are
-    those of the inputs as they were given: so the line says how many these are.
-    """
+    """ "fig04      2000 cases  partial (500 of 2000 cases)  title"."""
     cases, missing = state["cases"], state["counts"].get(NOT_RUN, 0)
     text = {"partial": " ({} of {} cases)", "outdated": " ({} of {} cases can be used again)"}.get(state["state"], "")
     done = text.format(cases - missing, cases) if state["counts"] else ""
-    each = f" ({cases // definition.times}, each {definition.times} times for ±)" if definition.times > 1 else ""
-    line = f"{definition.name:<16} {cases:>8} cases{each}  {state['state']}{done}  {on_one_line(definition.title, 200)}"
+    line = f"{definition.name:<16} {cases:>8} cases  {state['state']}{done}  {on_one_line(definition.title, 200)}"
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 
-def verified_line(name: str, found: Condition) -> str:
-    """What `verify` found."""
+def verified_line(name: str, condition: Condition) -> str:
+    """What `verify` says of a results file."""
     said = {
         "sound": "verified, every number is the one that was written",
         "unverified": "xarray or an earlier version wrote it, without a digest to compare; nothing wrong was seen",
         "missing": "does not exist",
     }
-    return f"{name}: {said.get(found.kind, found.reason)}"
+    return f"{name}: {said.get(condition.kind, condition.reason)}"
 
 
 def cost_line(name: str, cost: Estimate) -> str:

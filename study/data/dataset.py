@@ -12,7 +12,17 @@ from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
 from ..inputs.laws import COMMENT
-from ..inputs.vocabulary import CONTROLS, INTEGERS, NOT_RUN, NUMERICS, PARAMETERS, attributes, names
+from ..inputs.vocabulary import (
+    BY_INPUT,
+    CONTROLS,
+    INTEGERS,
+    NOT_RUN,
+    NUMERICS,
+    PARAMETERS,
+    WITH_SPREADS,
+    attributes,
+    names,
+)
 from ..rules.rule import validity_attributes, validity_of, whole
 from .provenance import provenance
 
@@ -26,17 +36,25 @@ def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     """What `arrays_of` gives for `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
     found = {name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *definition.results)}
     found |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
+    if definition.inputs:
+        with_spreads = [(name, found[name]) for name in (*WITH_SPREADS, *definition.profiles)]
+        shape = size, len(definition.inputs)
+        found |= {f"{n}{BY_INPUT}": np.full((*shape, *own.shape[1:]), np.nan, own.dtype) for n, own in with_spreads}
     found |= {name: np.zeros(size, dtype) for name, dtype in INTEGERS.items()}
     found["status"][:] = NOT_RUN
     return found
 
 
 class Parts(NamedTuple):
-    """What a dataset is made of. The dataset is made once, last: that takes as long as solving a contact."""
+    """What a dataset is made of. The dataset is made once, last: that takes as long as solving a contact.
+
+    by_input : result -> its derivatives by the inputs of the definition, (*grid.shape, k) and (*grid.shape, k, m)
+    """
 
     variables: dict[str, xr.Variable]
     coords: dict[str, xr.Variable]
     attributes: dict
+    by_input: dict[str, np.ndarray] = {}
 
     def dataset(self) -> xr.Dataset:
         """The dataset of these parts, settings last: `study.solve` has them as attributes, and `xr.concat` compares no
@@ -53,7 +71,7 @@ class Parts(NamedTuple):
         shared = [name for name in NUMERICS if name in self.coords and not self.coords[name].ndim]
         coords = {name: own for name, own in self.coords.items() if name not in shared}
         attributes = {name: self.coords[name].values.item() for name in shared}
-        return Parts(self.variables, coords, self.attributes | attributes)
+        return self._replace(coords=coords, attributes=self.attributes | attributes)
 
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
@@ -80,11 +98,12 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
     variables = {
         name: xr.Variable(dims + ("x",) * (flat.ndim - 1), unflatten(grid, flat), attributes(name, rigid))
         for name, flat in arrays.items()
-        if name not in grid.values
+        if name not in grid.values and not name.endswith(BY_INPUT)
     }
+    by_input = {name.removesuffix(BY_INPUT): unflatten(grid, arrays[name]) for name in arrays if BY_INPUT in name}
     laws = law_versions(grid)
     about = provenance(definition, command) | ({"micro_laws": "\n".join(laws)} if laws else {})
-    return Parts(variables, coordinates, about)
+    return Parts(variables, coordinates, about, by_input)
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:

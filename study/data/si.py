@@ -6,37 +6,38 @@ import numpy as np
 import xarray as xr
 
 from ..inputs.definition import Definition
-from ..inputs.grid import MOVED
-from ..inputs.scene.scene import STEP, Scene, bare_variable
+from ..inputs.scene.scene import Scene, bare_variable
 from ..inputs.vocabulary import ROWS, VOCABULARY
 from .dataset import Parts
 from .index import searchable
+from .spreads import spreads_of
 from .units import PHYSICAL_SCALE, physical_attributes, with_unit
 
 ASSUMED = "not given: the default"
 SAME_PIECE = "same_piece: bodies of one material are one piece of it"
-#: Results that get no spread.
-_WITHOUT_SPREAD = ("error", "profile_error", "model_error", "residual")
 
 
 def dataset_of(definition: Definition, parts: Parts) -> xr.Dataset:
     """The dataset of a study: in SI units if the study has units, else dimensionless."""
-    return results(definition.scene, parts) if definition.scene else parts.dataset()
+    return results(definition, parts) if definition.scene else parts.dataset()
 
 
-def results(scene: Scene, parts: Parts) -> xr.Dataset:
+def results(definition: Definition, parts: Parts) -> xr.Dataset:
     """The dataset in SI units, made of the dimensionless results: inputs as given, results with their spreads."""
-    results, coords = {}, {}
+    scene, results, coords = definition.scene, {}, {}
+    spreads = spreads_of(definition, parts) if parts.by_input else {}
     for name, variable in (parts.variables | parts.coords).items():
-        if name in scene.given or name == MOVED:
+        if name in scene.given:
             continue
         known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
         found = _in_si(name, variable, scene.unit, scene.R) if known else variable
-        if MOVED in found.dims:
-            results |= _spread(name, found, parts.variables.get("model_used"))
-            found = found.isel({MOVED: 0})
+        if name in spreads:
+            spread = _in_si(name, xr.Variable(found.dims, spreads[name]), scene.unit, scene.R)
+            long_name = f"standard deviation of {name}, from the spreads of the inputs"
+            spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
+            results[f"{name}_spread"] = spread
         (coords if name in parts.coords else results)[name] = found
-    coords |= {name: _coordinate(name, _as_given(scene, name, value)) for name, value in scene.given.items()}
+    coords |= {name: _coordinate(name, value) for name, value in scene.given.items()}
     for name, value in scene.spreads.items():
         coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
     for body, (dim, texts) in scene.names.items():
@@ -50,16 +51,10 @@ def results(scene: Scene, parts: Parts) -> xr.Dataset:
         coords["label"] = xr.Variable("case", scene.labels)
     for name in scene.assumed:
         coords[name].attrs["comment"] = ASSUMED
-    attributes = parts.attributes | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
+    pairs = [f"{one} and {other}: {v:g}" for (one, other), v in scene.correlations.items() if np.ndim(v) == 0]
+    given = {"correlations": "; ".join(pairs)} if pairs else {}
+    attributes = parts.attributes | given | {PHYSICAL_SCALE: "SI; R, E1, E2 and E_punch are coordinates"}
     return searchable(Parts(_renamed(scene, results), _renamed(scene, coords), attributes).dataset())
-
-
-def _as_given(scene: Scene, name: str, value: Any) -> Any:
-    """An input over the dimensions in which it was given. Where it was moved with another body it has more."""
-    if MOVED not in getattr(value, "dims", ()):
-        return value
-    own = getattr(scene.spreads.get(name, value), "dims", ())
-    return value.isel({dim: 0 for dim in value.dims if dim not in own or dim == MOVED})
 
 
 def _renamed(scene: Scene, variables: dict[str, xr.Variable]) -> dict[str, xr.Variable]:
@@ -90,28 +85,3 @@ def _in_si(name: str, variable: xr.Variable, unit: Any, R: Any) -> xr.Variable:
         data = with_unit(variable.data, powers, unit, R)
     data = data.astype(variable.dtype, copy=False)
     return xr.Variable(dims, data, physical_attributes(name, variable.attrs), variable.encoding)
-
-
-def _spread(name: str, variable: xr.Variable, used: xr.Variable | None) -> dict[str, xr.Variable]:
-    """{"NAME_spread": standard deviation of a result}, {} for a result that gets none.
-
-    It is the root of Σ (∂result/∂input · spread of the input)², to first order, for independent inputs. Inputs of one
-    piece are moved at once, so that they count as one.
-
-    used : `model_used`, None of coordinates alone. On the base auto the cases moved up and down may be solved by two
-        models, and a step from one model to another is no derivative. Then the case as given is compared with the moved
-        one that has its model.
-    """
-    if VOCABULARY[name].role not in ("control", "result", "profile") or name in _WITHOUT_SPREAD:
-        return {}
-    (given, up, down), (own, plus, minus) = (
-        [v.isel({MOVED: part}) for part in (0, slice(1, None, 2), slice(2, None, 2))] for v in (variable, used)
-    )
-    change = up - down
-    if not (plus.data == minus.data).all():
-        of_one_side = (2 * (up - given)).where(plus == own, (2 * (given - down)).where(minus == own))
-        change = change.where((plus == minus) | change.isnull(), of_one_side)
-    spread = np.sqrt(((change / (2 * STEP)) ** 2).sum(MOVED, skipna=False))
-    long_name = f"standard deviation of {name}, from the spreads of the inputs"
-    spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
-    return {f"{name}_spread": spread}

@@ -8,7 +8,7 @@ from solver.estimate import estimate
 
 from ..data.dataset import model_attributes
 from ..inputs.definition import Definition
-from ..inputs.grid import MOVED, along, columns
+from ..inputs.grid import along, columns
 from ..rules.rule import RULES, broken, have, validity_of
 
 #: A contact is far outside if it exceeds the limit of an assumption this many times. The estimate is right to about
@@ -38,13 +38,11 @@ def far_outside(definition: Definition) -> list[str]:
     slow = slow & (along(grid, "n") < SOFT)
     if not (definition.scene and slow.any()):
         return []
-    as_given = np.arange(grid.size).reshape(grid.shape)
-    as_given = as_given.take(0, list(grid.sizes).index(MOVED)) if MOVED in grid.sizes else as_given
-    index = as_given.ravel()[:: -(-as_given.size // MOST)]
+    index = np.arange(grid.size)[:: -(-grid.size // MOST)]
     looked_at = index[np.broadcast_to(slow, grid.shape).ravel()[index]]
     far = _exceeded(columns(grid, looked_at)) if len(looked_at) else {}
     found = [RULES[word].sentence for word, where in far.items() if 2 * where.sum() >= len(index)]
-    who = "this contact is" if as_given.size == 1 else "at least half of these contacts are"
+    who = "this contact is" if grid.size == 1 else "at least half of these contacts are"
     return [f"{who} {SAID}", *found] if found else []
 
 

@@ -1,4 +1,4 @@
-"""Sentences about how a contact was solved, by which model, and what it rests on."""
+"""Sentences about contacts: how they were solved, by which model, what they rest on, and what is beyond the model."""
 
 import xarray as xr
 
@@ -7,8 +7,9 @@ from solver import Status
 from ..data.dataset import decode
 from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
-from .beyond import doubts
-from .pressures import RUBBER, not_checked
+from ..rules import rule
+from .influence import influence
+from .pressures import RUBBER, largest_of_all, not_checked
 
 _BASES = {
     "half_space": "a half-space",
@@ -26,6 +27,12 @@ SLIDES = 'The layer slides on the body without friction, since bonding is not gi
 does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
 
 
+def doubts(contact: xr.Dataset) -> list[str]:
+    """A sentence for each assumption of the model that some cases violate, and for inputs that nothing real has."""
+    v = dict(contact.variables)  # arithmetic of DataArrays takes longer than solving a contact
+    return rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
+
+
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     """How well the case is solved, by which model, and which assumptions it violates.
 
@@ -36,6 +43,7 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
         *first, last = (VOCABULARY[name].symbol for name in judged)
         within = f"{', '.join(first)} and {last} are within a relative {float(case['error']):.1g}"
         found = [f"Solved: {within} of the model's solution."]
+        found += [f"Spreads: {text}" for text in influence(case, "p_max" if "p_max" in judged else "p0")]
     else:
         known = {one.name.lower(): one.meaning for one in Status}
         meaning = known.get(word, "the case has not been computed")

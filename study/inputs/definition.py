@@ -8,7 +8,7 @@ import numpy as np
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
 from .given import MOST_MESSAGES
-from .grid import MOVED, Grid
+from .grid import Grid
 from .vocabulary import finite, names
 
 POINTS = 33  # of a profile, when a study does not say it
@@ -42,6 +42,7 @@ class Definition:
     laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
     results : names of the results, without profiles and flags
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
+    inputs : of the solver, by which results have derivatives: those that change with the spread of some input
     """
 
     name: str
@@ -56,31 +57,26 @@ class Definition:
     laws: tuple[str, ...] = ()
     scene: Any = None
     results: tuple[str, ...] = names("result")
+    inputs: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f'Definition("{self.name}", {self.cases})'
 
     @property
     def cases(self) -> str:
-        """Number of cases and axes in words: "12 cases (h 2 x P 6)", "60 cases (h 2 x P 6, each 5 times for ±)"."""
+        """Number of cases and axes in words: "12 cases (h 2 x P 6)"."""
         dims = " x ".join(f"{name} {size}" for name, size in self.in_results(self.grid.sizes).items()) or "one case"
-        moved = f", each {self.times} times for ±" if self.times > 1 else ""
-        return f"{counted(self.grid.size, 'case')} ({dims}{moved})"
-
-    @property
-    def times(self) -> int:
-        """How often a case of the results is solved: once, and twice more for each of its inputs with a spread."""
-        return self.grid.sizes.get(MOVED, 1)
+        return f"{counted(self.grid.size, 'case')} ({dims})"
 
     @property
     def numbers(self) -> int:
-        """How many numbers the results hold, roughly."""
-        return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles))
+        """How many numbers the blocks hold, roughly; the results hold as many, and as many spreads."""
+        return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles)) * (1 + len(self.inputs))
 
     def in_results(self, of_dims: dict) -> dict:
-        """A dictionary of the dimensions of the grid, with the names that the results give these, and without MOVED."""
+        """A dictionary of the dimensions of the grid, with the names that the results give these."""
         names = self.scene.dims if self.scene else {}
-        return {names.get(dim, dim): value for dim, value in of_dims.items() if dim != MOVED}
+        return {names.get(dim, dim): value for dim, value in of_dims.items()}
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:

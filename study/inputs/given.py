@@ -61,7 +61,7 @@ class Input:
         values = self.values.values() if isinstance(self.values, dict) else self.values
         values = list(values) if isinstance(self.values, (dict, list)) else []
         pure = {*map(type, values)} <= {float, int}  # quick: of most long lists
-        return not pure and any(type(one) is Quantity or has_unit(one) for one in values)
+        return not pure and any(type(value) is Quantity or has_unit(value) for value in values)
 
     def at(self, place: list[int]) -> Any:
         """What was given at a place, one number for each dimension; None for a number that follows from other words."""
@@ -81,6 +81,7 @@ class Given:
     rows : of [[cases]]; sample : the section of this name
     labels : of the cases
     same_piece : whether bodies of one material are one piece of it
+    correlations : pair of inputs -> correlation of their spreads
     sign : what makes it a study with units, in words: an input with a unit, or one that no other study has; "" if none
     """
 
@@ -91,6 +92,7 @@ class Given:
     sample: Any = None
     labels: list[str] = field(default_factory=list)
     same_piece: bool = False
+    correlations: Any = field(default_factory=dict)
     sign: str = ""
 
     def __post_init__(self):
@@ -102,12 +104,12 @@ class Given:
         return bool(self.sign)
 
     @classmethod
-    def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any) -> "Given":
+    def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> "Given":
         """Parameters of a call: DataArrays, 1-D sequences or single values, and rows of cases."""
-        given = cls()
+        given = cls(correlations=correlations)
         with suppress(ValueError):  # laws as objects have parameters; what is wrong with one is told when micro is read
             micro = [table.get("micro") for table in (parameters, *rows)]
-            law_names([law for one in micro for law in (one if isinstance(one, list) else [one])])
+            law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
         given._same_piece(same_piece, "")
         if rows:
             given._cases(rows)
@@ -125,6 +127,10 @@ class Given:
     def in_file(cls, tables: dict, errors: list[str]) -> "Given":
         """The sections of a study file; [model], [axes] and [numerics] are tables."""
         given = cls(errors)
+        pairs = tables.get("correlations", {})
+        if isinstance(pairs, dict) and all(isinstance(row, dict) for row in pairs.values()):
+            pairs = {(one, other): value for one, row in pairs.items() for other, value in row.items()}
+        given.correlations = pairs
         for name, value in tables["numerics"].items():
             if name in NUMERICS:
                 given._add(Input(name, "[numerics]", (), [value]))
@@ -180,11 +186,11 @@ class Given:
         elif name in self.sections:
             other = f"in {section}" if section else "elsewhere"
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
-        elif not is_input(name):
+        elif not (name in SCENE or name in BODIES or is_parameter(name)):
             place = f"{section} " if section else ""
-            known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
+            names = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
             later = len(self.errors) >= MOST_MESSAGES  # and not shown
-            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, known, place))
+            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, names, place))
         else:
             if section in ("[model]", "[numerics]") and isinstance(entry.values[0], (list, dict)):
                 self.errors.append(f"{section} {name} has several values: these belong in [axes]")
@@ -200,11 +206,8 @@ class Given:
             self.sign = f"the unit of {entry.name}" if entry.array is not None else f"{entry.name} = {shown(value)}"
         if self.same_piece and not self.physical:
             self.errors.append(f"same_piece: {NEEDS_NAMES}")
+        if self.correlations and not self.physical:
+            self.errors.append("correlations: no input has a spread here, since none has a unit")
         order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2}
         self.inputs = dict(sorted(self.inputs.items(), key=lambda pair: order.get(pair[1].section, 1)))
         return self
-
-
-def is_input(name: Any) -> bool:
-    """Whether a name is that of a parameter, of an input of a scene, or of a body of a material."""
-    return name in SCENE or name in BODIES or is_parameter(name)

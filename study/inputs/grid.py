@@ -18,9 +18,6 @@ USUAL, SLOW, SLOWEST = 8000, 1000, 100
 _STIFF, _FINE = 1e3, 1e-9
 _MANY_NODES = 96  # with more than these, all that the solver begins with, a case takes some milliseconds
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
-MOVED = "moved input"
-"""The dimension of the variations of each case while it is solved: as given, then each input with a spread moved up and
-down. Results have a spread in its place. Of a study file it is the last dimension."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,8 +2,7 @@
 numbers.
 
 With or without units: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`. Inputs may have spreads
-("200 ± 10 GPa", materials by name). Then each case is solved several times: as given, and with each such input moved up
-and down, along the dimension MOVED. The results have `NAME_spread` in place of this dimension.
+("200 ± 10 GPa", materials by name). Then results have derivatives by what the solver gets, and `NAME_spread` of these.
 """
 
 import errno
@@ -26,8 +25,7 @@ from .vocabulary import NUMERICS, absent, suggest
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
 KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
 """Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
-SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "numerics", "output")
-FLOAT32_REMEDY = 'say dtype = "float64", or spreads = false'
+SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "correlations", "numerics", "output")
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
 MOST_TABLES = 100_000  # tables such as [[cases]]: tomllib and the checks take some 50 µs for each
 MOST_PARTS = 50  # of a dotted key; tomllib needs memory by the square of their number, 2.4 GB for 20,000
@@ -56,9 +54,12 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     return complete(Given.in_file(tables, errors), tables, name, text, where)
 
 
-def from_call(parameters: dict, rows: list[dict], same_piece: bool, tables: dict) -> Definition:
+def from_call(
+    parameters: dict, rows: list[dict], same_piece: bool, tables: dict, correlations: Any = None
+) -> Definition:
     """Definition of a call of `study.solve`; tables : title and output, as those of a study file."""
-    return complete(Given.in_python(parameters, rows, same_piece), tables, "solve", "", "solve", LARGE)
+    correlations = {} if correlations is None else correlations
+    return complete(Given.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", "solve", LARGE)
 
 
 def complete(given: Given, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
@@ -73,7 +74,9 @@ def complete(given: Given, tables: dict, name: str, text: str, where: str, most:
     if not isinstance(spreads, bool):
         errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
     if given.physical:
-        from .scene.reading import read as read_scene  # it imports xarray, for which pure numbers need not wait
+        # they import xarray, for which pure numbers need not wait
+        from .scene.changes import inputs_of
+        from .scene.reading import read as read_scene
 
         scene = read_scene(given, draft, spreads is True, list(tables.get("axes", ())))
     else:
@@ -83,15 +86,15 @@ def complete(given: Given, tables: dict, name: str, text: str, where: str, most:
         draft.check({})
     draft.put_dimensions()
     grid = draft.finish()
+    inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
     title, x, profiles, dtype = settings(tables, errors)
-    if scene and scene.spreads and dtype == "float32":
-        problem = f"has too few digits for the spreads of {' and '.join(scene.spreads)}"
-        errors.append(f'[output] dtype = "float32" {problem}: {FLOAT32_REMEDY}')
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     results = results_of(grid.values["micro"][1] if "micro" in grid.values else ())
-    made = Definition(name, title, text, grid, x, profiles, dtype, block, "", scene=scene, results=results)
+    made = Definition(
+        name, title, text, grid, x, profiles, dtype, block, "", scene=scene, results=results, inputs=inputs
+    )
     if made.numbers > most:
         errors.append(
             f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"

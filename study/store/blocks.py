@@ -21,7 +21,7 @@ from ..files.access import Unusable
 from ..files.atomic import remove_temporary
 from ..inputs.definition import Definition
 from ..inputs.identity import case_keys, find
-from ..inputs.vocabulary import NOT_RUN
+from ..inputs.vocabulary import BY_INPUT, NOT_RUN
 from .block_file import Block, Damaged, read_block, write_block
 
 log = logging.getLogger(__name__)
@@ -29,18 +29,21 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """The file of a block. keys : (N, 2), of its cases; status : (N,) int8."""
+    """The file of a block. keys : (N, 2), of its cases; status : (N,) int8; inputs : places of the study's inputs among
+    those by which the block has derivatives."""
 
     path: Path
     keys: np.ndarray
     status: np.ndarray
+    inputs: list[int]
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
         """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged when they are no longer there."""
         block = read_block(self.path)
         if not np.array_equal(block.keys, self.keys):
             raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
-        return {name: array[rows] for name, array in block.arrays.items()}
+        rows_of = {name: array[rows] for name, array in block.arrays.items()}
+        return {name: a[:, self.inputs] if name.endswith(BY_INPUT) else a for name, a in rows_of.items()}
 
 
 @dataclass(frozen=True, eq=False)
@@ -98,17 +101,20 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
     return dict(zip(values.tolist(), numbers.tolist(), strict=True))
 
 
-def facts(x: np.ndarray) -> dict:
-    """What stored numbers depend on besides the parameters: version of the numerics, points x of the profiles."""
-    return {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
+def facts(x: np.ndarray, inputs: tuple[str, ...] = ()) -> dict:
+    """What stored numbers depend on besides the parameters: version of the numerics, points x of the profiles, inputs
+    of the derivatives."""
+    about = {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
+    return about | ({"inputs": list(inputs)} if inputs else {})
 
 
 def usable(definition: Definition, block: Block) -> bool:
     """Whether a block holds all that the study wants, with no fewer digits."""
-    columns, wanted = not_run(definition, 0), facts(definition.x)
+    columns, wanted = not_run(definition, 0), facts(definition.x, definition.inputs)
     here = {name: array.dtype.itemsize for name, array in block.arrays.items()}
     enough = all(here.get(name, 0) >= own.dtype.itemsize for name, own in columns.items())
-    same_points = block.facts.get("x") == wanted["x"] or all(own.ndim == 1 for own in columns.values())
+    same_points = block.facts.get("x") == wanted["x"] or not definition.profiles
+    enough = enough and {*definition.inputs} <= {*block.facts.get("inputs", ())}
     return enough and same_points and block.facts.get("numerics_version") == wanted["numerics_version"]
 
 
@@ -126,7 +132,8 @@ def inventory(store: Store, retry: tuple = ()) -> Inventory:
             continue
         blocks[path] = len(block.keys)
         if usable(store.definition, block):
-            sources.append(Source(path, block.keys, block.arrays["status"]))
+            places = [block.facts["inputs"].index(name) for name in store.definition.inputs]
+            sources.append(Source(path, block.keys, block.arrays["status"], places))
     keys = case_keys(store.definition.grid)
     return Inventory(keys, sources, *_places(keys, sources, retry), blocks)
 
@@ -148,10 +155,11 @@ def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.
     """Write a block of the cases at `index` (n,), in the types that the study keeps, and put it into the inventory."""
     kept = {name: array.dtype for name, array in not_run(store.definition, 0).items()}
     arrays = {name: array.astype(kept[name], copy=False) for name, array in arrays.items()}
-    path = put(store, Block(facts(store.definition.x), known.keys[index], arrays))
+    path = put(store, Block(facts(store.definition.x, store.definition.inputs), known.keys[index], arrays))
     known.source[index], known.row[index] = len(known.sources), np.arange(len(index))
     known.status[index] = arrays["status"]
-    known.sources.append(Source(path, known.keys[index], arrays["status"]))
+    places = list(range(len(store.definition.inputs)))
+    known.sources.append(Source(path, known.keys[index], arrays["status"], places))
     known.blocks[path] = len(index)
 
 
@@ -203,8 +211,9 @@ def remove_litter(store: Store) -> None:
 
 def note_export(store: Store, known: Inventory) -> None:
     """Write which cases the results file will have, as they are given, before it is replaced."""
-    keys = known.keys.reshape(-1, store.definition.times, 2)[:, 0]
-    write_block(store.record(store.definition.digest), Block(facts(store.definition.x), keys, {}))
+    write_block(
+        store.record(store.definition.digest), Block(facts(store.definition.x, store.definition.inputs), known.keys, {})
+    )
 
 
 def forget_other_exports(store: Store) -> None:

@@ -10,7 +10,7 @@ from ..files.examine import CHUNK, Condition
 from ..files.netcdf import File
 from ..files.results_file import create, finish, put
 from ..files.seal import seal
-from ..inputs.grid import MOVED, Grid, box, cut_out, windows
+from ..inputs.grid import box, cut_out, windows
 from .blocks import Inventory, Store, forget_other_exports, gather, note_export
 
 AT_ONCE = 64_000_000  # bytes gathered at a time; with less, blocks in another order than the cases are read too often
@@ -35,12 +35,10 @@ def export(store: Store, known: Inventory, command: str, there: Condition) -> No
 
 def _write(file: File, store: Store, known: Inventory, command: str) -> None:
     definition, start = store.definition, 0
-    sizes = {dim: size for dim, size in definition.grid.sizes.items() if dim != MOVED}
-    in_file = Grid(sizes, {})
-    most = AT_ONCE * in_file.size // (8 * definition.numbers)
-    chunk = definition.in_results(dict(zip(sizes, box(in_file.shape, CHUNK), strict=True)))
-    for window in windows(in_file, most, CHUNK):
-        window |= {MOVED: slice(None)} if MOVED in definition.grid.sizes else {}
+    whole_grid = definition.grid
+    most = AT_ONCE * whole_grid.size // (8 * definition.numbers)
+    chunk = definition.in_results(dict(zip(whole_grid.sizes, box(whole_grid.shape, CHUNK), strict=True)))
+    for window in windows(whole_grid, most, CHUNK):
         grid = cut_out(definition.grid, window)
         arrays = gather(store, known, start, start + grid.size)
         here = replace(definition, grid=grid, scene=definition.scene and definition.scene.within(window))

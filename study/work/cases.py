@@ -10,13 +10,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from solver import NUMERICS_VERSION, Problem, Solution, laws, solve
+from solver import NUMERICS_VERSION, Problem, Solution, laws, sensitivities, solve
 from solver.laws import Law
 from solver.laws.trial import going_on
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
-from ..inputs.vocabulary import CONTROLS, INTEGERS
+from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +26,7 @@ class Parcel:
     first, last : numbers of the first and the last case
     parameters : name -> (n,), or (1,) for all cases
     x : (m,) points of the profiles; results, profiles : names of those that are wanted
+    inputs : of the solver, by which derivatives are wanted
     numerics : version of the solver's numerics that is wanted
     laws : micro laws that the worker may not have registered
     """
@@ -36,6 +37,7 @@ class Parcel:
     x: np.ndarray
     results: tuple[str, ...]
     profiles: tuple[str, ...]
+    inputs: tuple[str, ...]
     numerics: str
     laws: tuple[Law, ...] = ()
 
@@ -53,7 +55,7 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
     own = tuple(own_laws(found["micro"]))
-    wanted = definition.x, definition.results, definition.profiles
+    wanted = definition.x, definition.results, definition.profiles, definition.inputs
     return Parcel(int(index[0]), int(index[-1]), found, *wanted, NUMERICS_VERSION, own)
 
 
@@ -80,7 +82,10 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
     for law in wanted.laws:
         laws.register(law)
     with going_on():  # the functions of a law of one's own
-        return arrays_of(solve(Problem.of(**wanted.parameters), wanted.x), wanted.results, wanted.profiles)
+        problem = Problem.of(**wanted.parameters)
+        solution = solve(problem, wanted.x)
+        arrays = arrays_of(solution, wanted.results, wanted.profiles)
+        return arrays | (derivatives_of(problem, solution, wanted) if wanted.inputs else {})
 
 
 def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
@@ -90,6 +95,14 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
     found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
     found |= {name: getattr(solution, name) for name in profiles}
     return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}
+
+
+def derivatives_of(problem: Problem, solution: Solution, wanted: Parcel) -> dict[str, np.ndarray]:
+    """NAME_by_input -> (B, k), and (B, k, m) of profiles, in the units of the solution."""
+    solved = sensitivities(problem, solution, wanted.x if wanted.profiles else wanted.x[:1], wanted.inputs)
+    found = {name: by * getattr(solution, name)[:, None] for name, by in solved.logs.items()}
+    found |= {"lam0": solved.lam[..., 0]} | {name: getattr(solved, name) for name in wanted.profiles}
+    return {f"{name}{BY_INPUT}": array for name, array in found.items()}
 
 
 def guarded(wanted: Parcel) -> dict[str, np.ndarray] | Failure:

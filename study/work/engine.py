@@ -168,9 +168,8 @@ def solved(
     workers : see `computed`; stream : where a call of more than two seconds says how far it is; begun : when it began,
         by time.monotonic, if that was before: reading what was given may take a second of the two
     """
-    size, times, blocks = definition.grid.size, definition.times, blocks_of_grid(definition)
-    moved = f", {'each ' * (size > times)}{times} times for the spreads" * (times > 1)
-    name = f"solving {counted(size // times, 'contact')}{moved}"
+    size, blocks = definition.grid.size, blocks_of_grid(definition)
+    name = f"solving {counted(size, 'contact')}"
     begun = time.monotonic() if begun is None else begun
     with Progress(name, size, stream, begun=begun, passing=True) as shown:
         columns = {}

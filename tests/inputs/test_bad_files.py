@@ -19,7 +19,7 @@ BAD = [
         "[model]",
         "sigma = 1\n[model]",
         '"sigma" is not a section; known: title, kind, model, axes, cases, sample, '
-        "numerics, output; parameters stand below [model] or [axes]",
+        "correlations, numerics, output; parameters stand below [model] or [axes]",
     ),
     ("P = [", "Nabr = [1]\nP = [", '[axes] "Nabr" is not a parameter; did you mean "Nbar"?'),
     ("rtol = ", "blok = 3\nrtol = ", '[numerics] "blok" is not known; did you mean "block"?'),
@@ -89,7 +89,7 @@ BAD = [
     (
         'title = "Prüfung"',
         "fit = {}",
-        '"fit" is not a section; known: title, kind, model, axes, cases, sample, numerics',
+        '"fit" is not a section; known: title, kind, model, axes, cases, sample, correlations, numerics',
     ),
     ('title = "Prüfung"', "cases = 3", "cases must be [[cases]] tables (a list of dictionaries)"),
     ('title = "Prüfung"', "cases = []", "cases is empty: must have at least one case"),

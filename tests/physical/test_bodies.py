@@ -77,7 +77,7 @@ def test_study_files_take_the_values_and_if_wanted_the_spreads(tmp_path):
     assert study.Study(from_tables(tomllib.loads(edited), "lining", edited, "x"), tmp_path).run(workers=1).computed == 2
     edited = text.replace("spreads = false", "spreads = true")
     made = study.Study(from_tables(tomllib.loads(edited), "spread", edited, "x"), tmp_path)
-    assert made.run(workers=1).computed == 4 * 13  # punch, layer and body have E and ν, each moved up and down
+    assert made.run(workers=1).computed == 4, "the blocks without derivatives do not do"
     found = made.open().sel(layer="PTFE", P="10 N")
     alone = study.solve(**COATED, P="10 N", x=2)
     np.testing.assert_allclose([found.a, found.a_spread], [alone.a, alone.a_spread], rtol=1e-9)

@@ -54,6 +54,17 @@ def test_a_spread_of_nu_that_reaches_one_half_is_too_wide():
         assert ("Beware: nu1 = 0.490 ± 0.020: too wide a spread" in text) == wide == ("too wide" in text)
 
 
+def test_spreads_wider_than_their_inputs_are_doubted():
+    """They are no reason to refuse: ± is to first order, and the sentence says that this is not enough."""
+    ball = {"E2": "210 GPa", "base": "half_space", "micro": "smooth", "x": 2}
+    text = study.summary(quiet(**ball, R="5 mm", P="1 ± 10 N"))
+    assert "Beware: P = 1 ± 10 N: too wide a spread for the ± of results" in text
+    cup = quiet(**ball, R1="5 ± 1 mm", R2="-5.05 mm", P="1 N")
+    assert "Beware: R1 = 5.0 ± 1.0 mm: too wide a spread for the ± of results" in study.summary(cup)
+    # a ~ R^(1/3), and R is a hundred times R1
+    np.testing.assert_allclose(cup.a_spread / cup.a, 101 * 0.2 / 3, rtol=1e-6)
+
+
 STEEL = {"R": "5 mm", "punch": "steel 52100", "body": "steel 52100", "micro": "smooth", "x": 2}
 
 

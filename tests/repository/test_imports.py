@@ -25,11 +25,11 @@ ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
         *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
-        "sensitivity",
+        *("sensitivity", "fields"),
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "rules", "data", "in_words", "files", "store", "work"),
-        *("carried", "derivatives", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("terminal", "specimen", "inputs", "rules", "data", "derivatives", "in_words", "files", "store", "work"),
+        *("carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
@@ -238,7 +238,7 @@ def test_solve_names_every_parameter_with_its_default_and_its_choices():
 
     known = inspect.signature(study.solve).parameters
     beside = {"cases", "x", "profiles", "title", "workers", "same_piece", "progress", "chunks"}
-    beside |= {"sensitivities", "parameters"}
+    beside |= {"sensitivities", "correlations", "parameters"}
     assert set(known) - beside == {*PARAMETERS, *SCENE, *BODIES}
     # getdoc: Python 3.13 takes the indentation of docstrings away
     lines = re.findall(r"^([\w, ]+) : ", inspect.getdoc(study.solve), flags=re.MULTILINE)

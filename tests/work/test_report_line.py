@@ -72,16 +72,6 @@ def test_the_state_of_a_study_counts_what_is_done():
     ]
 
 
-def test_the_state_of_a_study_with_spreads_says_how_often_a_case_is_solved():
-    """`cases` counts every solution, the statuses in a results file those of the inputs as they were given."""
-    definition = SimpleNamespace(name="film", title="Films", times=5)
-    state = {"cases": 30, "counts": {0: 6}, "state": "done", "path": "r.nc", "reason": ""}
-    assert state_line(definition, state) == "film                   30 cases (6, each 5 times for ±)  done  Films"
-    new = state | {"state": "partial", "counts": {0: 10, 127: 20}}
-    assert "30 cases (6, each 5 times for ±)  partial (10 of 30 cases)  Films" in state_line(definition, new)
-    assert "        5 cases (1, each 5 times for ±)  " in state_line(definition, state | {"cases": 5})
-
-
 def test_the_cost_of_a_study_counts_what_is_computed():
     text = cost_line("fig04", Estimate(2000, 500, 125.0, 5e8, 7e8, 1.4e9))
     assert text == (

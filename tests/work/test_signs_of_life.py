@@ -34,15 +34,6 @@ def test_the_two_seconds_begin_with_the_call(monkeypatch, stderr):
     assert lines(stderr.getvalue()) == ["solving 1 contact: 1 min 40 s"]
 
 
-def test_it_says_how_often_a_contact_is_solved(monkeypatch, stderr):
-    slowly(monkeypatch, lambda: stderr.written.wait(PATIENCE))
-    study.solve(P="10 mN", R="5 ± 0.1 mm", E2="1 GPa", nu2=0.3, base="half_space", micro="smooth")
-    assert "solving 1 contact, 3 times for the spreads: 0 s" in lines(stderr.getvalue())
-    stderr.written.clear()
-    study.solve(P=["10 mN", "9 mN"], R="5 ± 0.1 mm", E2="1 ± 0.1 GPa", nu2=0.3, base="half_space", micro="smooth")
-    assert lines(stderr.getvalue())[-1] == "solving 2 contacts, each 5 times for the spreads: 0 s"
-
-
 def test_a_quick_call_says_nothing(monkeypatch, stderr):
     """As long as SILENT is: no block of several changes that."""
     monkeypatch.setattr(progress, "SILENT", PATIENCE)

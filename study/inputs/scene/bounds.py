@@ -11,7 +11,6 @@ from solver.parameters import ends
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
 from ..given import Input
-from ..grid import MOVED
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
 from .scene import Scene
@@ -54,11 +53,9 @@ def _message(scene: Scene, given: Input, place: Place) -> str:
     """The message for the value of an input at a place."""
     name = given.name
     value, entry = scene.given[name], VOCABULARY[name]
-    as_given = place | ({MOVED: 0} if MOVED in place else {})
-    index = [as_given[dim] for dim in getattr(value, "dims", ()) if dim != MOVED]
+    index = [place[dim] for dim in getattr(value, "dims", ())]
     called = f"{name}{index}" if index else name
-    text, word, size = _written(given, index, _at(value, as_given), ROWS[name].unit)
-    moved = "with its spread it " if place != as_given else ""
+    text, word, size = _written(given, index, _at(value, place), ROWS[name].unit)
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     # the bounds in the unit of the value
     low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
@@ -68,7 +65,7 @@ def _message(scene: Scene, given: Input, place: Place) -> str:
     units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
     here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
     bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
-    return f"{called} = {on_one_line(str(text))}: {moved}{bounds}"
+    return f"{called} = {on_one_line(str(text))}: {bounds}"
 
 
 def _written(given: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:

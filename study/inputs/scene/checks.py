@@ -11,7 +11,7 @@ from ..checks import equal_cases
 from ..given import Given
 from ..vocabulary import BODIES
 from .bodies import layered
-from .scene import STEP, Scene
+from .scene import Scene
 
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
@@ -52,12 +52,9 @@ def same_cases(scene: Scene) -> list[str]:
 def impossible(scene: Scene) -> list[str]:
     """Messages for bodies that cannot touch as they are given."""
     given, messages = scene.given, []
-    up = {name: given[name] + STEP * scene.spreads.get(name, 0.0) for name in ("R1", "R2") if name in given}
-    if up and not np.all(1 / up["R1"] + 1 / up["R2"] > 0):
+    if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
         R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
-        too = ", with their spreads too" * bool({*up} & {*scene.spreads})
-        wider = f"a cup (the negative radius) must be wider than its ball{too}"
-        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: {wider}")
+        messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
     rigid = np.isinf(given["E2"])
     if not np.any(rigid):
         wrong = 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'
@@ -81,4 +78,4 @@ def moving_tables(scene: Scene) -> list[str]:
 
 
 def _shown(value: Any) -> str:
-    return ", ".join(f"{one:g}" for one in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)
+    return ", ".join(f"{number:g}" for number in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)

@@ -1,15 +1,19 @@
-"""Bodies of one material: independent pieces of it, or one piece, whose moduli are off together."""
+"""How the spreads of inputs hang together: bodies of one material that are one piece, and correlations as given."""
 
+from itertools import combinations
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from ..grid import MOVED
-from ..vocabulary import BODIES
-from .scene import STEP, Scene
+from ...terminal import shown
+from ..vocabulary import BODIES, finite
+from .scene import Scene, over
 
 _RIGID = "rigid"  # the name of what has no modulus
+#: A matrix of correlations has eigenvalues >= 0; those of one with a correlation of 1 are 0 but for rounding.
+_ROUNDING = 1e-9
+FORM = 'must be a number from -1 to 1 for each pair of inputs, such as {("E1", "E2"): 0.5}'
 
 
 def alike(names: dict, one: str, other: str) -> Any:
@@ -26,40 +30,52 @@ def alike(names: dict, one: str, other: str) -> Any:
 
 def none_alike(names: dict) -> bool:
     """Whether no case has two bodies of one material."""
-    bodies = list(BODIES)
-    return not any(np.any(alike(names, *pair)) for pair in (bodies[:2], bodies[1:], bodies[::2]))
+    return not any(np.any(alike(names, *pair)) for pair in combinations(BODIES, 2))
 
 
-def move(scene: Scene) -> None:
-    """Give inputs with spreads the dimension MOVED: all as given, then each in turn moved up and moved down by STEP.
-
-    Inputs of one piece are moved in one turn.
-    """
-    turns = _turns(scene.spreads, scene.names if scene.same_piece else {})
-    order = list(dict.fromkeys(turn for of_input in turns.values() for turn in of_input))
-    for name, spread in scene.spreads.items():
-        for turn, where in turns[name].items():
-            steps, i = np.zeros(1 + 2 * len(order)), order.index(turn)
-            steps[1 + 2 * i : 3 + 2 * i] = STEP, -STEP
-            scene.given[name] = scene.given[name] + where * spread * xr.DataArray(steps, dims=MOVED)
+def of_one_piece(scene: Scene) -> dict[tuple[str, str], Any]:
+    """The correlations of bodies that are one piece: their moduli are off together, and so are their Poisson ratios."""
+    found = {}
+    for one, other in combinations(BODIES, 2):
+        same = alike(scene.names, one, other)
+        for pair in zip(BODIES[one][:2], BODIES[other][:2], strict=True):
+            if {*pair} <= {*scene.spreads} and np.any(same):
+                found[pair] = 1.0 * same
+    return found
 
 
-def _turns(spreads: dict, names: dict) -> dict[str, dict[str, Any]]:
-    """Input with a spread -> the input in whose turn it is moved -> where, a bool or a DataArray.
+def correlate(scene: Scene, given: Any, errors: list[str]) -> None:
+    """Give the scene its correlations, from those that are `given`; messages for what cannot be."""
+    scene.correlations = found = of_one_piece(scene) if scene.same_piece else {}
+    if not isinstance(given, dict) or not all(isinstance(pair, tuple) and len(pair) == 2 for pair in given):
+        errors.append(f"correlations = {shown(given)}: {FORM}")
+        return
+    for pair, value in given.items():
+        without = [name for name in pair if name not in scene.spreads]
+        called = f"correlations: {' and '.join(map(str, pair))}"
+        if without:
+            errors.append(f"{called}: {without[0]} has no spread; {', '.join(scene.spreads) or 'no input'} has one")
+        elif pair[0] == pair[1] or pair in found or pair[::-1] in found:
+            errors.append(f"{called}: " + ("are one input" if pair[0] == pair[1] else "have a correlation already"))
+        elif not finite(value) or not -1 <= value <= 1:
+            errors.append(f"{called} = {shown(value)}: must be a number from -1 to 1")
+        else:
+            found[pair] = float(value)
+    dims = tuple({dim for value in found.values() for dim in getattr(value, "dims", ())})
+    if given and not errors and np.linalg.eigvalsh(matrix(scene, dims)).min() < -_ROUNDING:
+        errors.append("correlations: no inputs have all of these: their matrix has a negative eigenvalue")
 
-    That is E or ν of the first body that is of the same material there, and otherwise the input itself.
 
-    names : as those of a Scene; {}: all are moved in turn
-    """
-    found = {name: {name: True} for name in spreads}
-    pairs = [(body, other) for j, body in enumerate(BODIES) for other in list(BODIES)[:j]]
-    for body, other in pairs:
-        same = alike(names, other, body)
-        for name, first in zip(BODIES[body][:2], BODIES[other][:2], strict=True):
-            if name in spreads and first in spreads and np.any(same):
-                left = found[name].pop(name, False)  # where no body before `other` is of the material
-                found[name] |= {first: np.logical_and(left, same), name: np.logical_and(left, np.logical_not(same))}
-    return {name: {turn: where for turn, where in own.items() if np.any(where)} for name, own in found.items()}
+def matrix(scene: Scene, dims: tuple[str, ...]) -> np.ndarray:
+    """The correlations of the k inputs with spreads, (..., k, k) over the dimensions `dims`."""
+    names = list(scene.spreads)
+    parts = [over(value, dims) for value in scene.correlations.values()]
+    shape = np.broadcast_shapes((1,) * len(dims), *(part.shape for part in parts))
+    found = np.broadcast_to(np.eye(len(names)), (*shape, len(names), len(names))).copy()
+    for (one, other), part in zip(scene.correlations, parts, strict=True):
+        i, j = names.index(one), names.index(other)
+        found[..., i, j] = found[..., j, i] = part
+    return found
 
 
 def _labelled(dim: str, texts: list[str]) -> xr.DataArray:

@@ -20,9 +20,9 @@ from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
 from .checks import impossible, missing, moving_tables, same_cases
 from .names import dim_of, si
-from .pieces import move, none_alike
+from .pieces import correlate, none_alike
 from .scales import make_dimensionless
-from .scene import STEP, Scene
+from .scene import Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
 #: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
@@ -36,7 +36,7 @@ def read(given: Given, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
     """The physical scene that inputs describe. What the solver gets goes to the draft, and all that is wrong: no unit,
     a unit of something else, a missing R or modulus.
 
-    spreads : whether the results shall have spreads, for which inputs with spreads are moved
+    spreads : whether the results shall have spreads
     axes : dimensions in the order that they shall have, behind `case`
     """
     scene, errors = Scene(same_piece=given.same_piece, labels=given.labels), given.errors
@@ -59,8 +59,9 @@ def read(given: Given, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
         return scene
     names = {*given.sections, *inputs}
     scene.assumed = assumed(names, draft.values, scene.given)
-    scene.spreads = scene.spreads if spreads else {}
-    move(scene)
+    correlate(scene, given.correlations, errors)
+    if not spreads:
+        scene.spreads = scene.correlations = {}
     make_dimensionless(scene)
     errors += moving_tables(scene) + beyond_bounds(scene, inputs)
     draft.sizes |= scene.sizes(axes)
@@ -138,9 +139,9 @@ def _add(scene: Scene, entry: Input) -> None:
         _refuse(entry, value, value == 0, "must not be 0")
     _refuse(entry, value, ~np.asarray((value > low) & (value <= high)), limits)
     if not np.all(spread == 0):
-        reach = STEP * spread
-        outside = ~np.asarray((value - reach > low) & (value + reach <= high))
-        _refuse(entry, value, outside, f"with its spread it {limits}; at the limit itself give no spread")
+        limit, limits = (high, limits) if np.isfinite(high) else (0.0, "must not be 0")
+        at_limit = (spread > 0) & (value == limit)
+        _refuse(entry, value, at_limit, f"with its spread it {limits}; at the limit itself give no spread")
         scene.spreads[name] = spread
     scene.given[name] = value
 

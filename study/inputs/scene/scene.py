@@ -3,11 +3,8 @@
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
 import xarray as xr
-
-#: Part of its spread by which an input is moved, for the derivatives by central differences. It is small, so that the
-#: curvature does not count (1e-4 in test_spreads_of_hertz), and large against rtol.
-STEP = 0.1
 
 
 @dataclass
@@ -24,6 +21,7 @@ class Scene:
     given_in : coordinate -> the cases that have it, a DataArray; without a layer a case may have none
     assumed : interface and Poisson ratios that count and are not given, so that they have their defaults
     same_piece : whether bodies of one material are one piece of it
+    correlations : pair of inputs with spreads -> their correlation, a number or a DataArray; 0 of all other pairs
     """
 
     given: dict = field(default_factory=dict)
@@ -34,6 +32,7 @@ class Scene:
     given_in: dict = field(default_factory=dict)
     assumed: tuple = ()
     same_piece: bool = False
+    correlations: dict = field(default_factory=dict)
     parameters: dict = field(default_factory=dict)
     R: Any = 1.0
     unit: Any = 1.0
@@ -60,12 +59,19 @@ class Scene:
                 return value
             return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
 
-        tables = (self.given, self.spreads, self.given_in)
-        given, spreads, given_in = ({name: cut(v) for name, v in table.items()} for table in tables)
+        tables = ("given", "spreads", "given_in", "parameters", "correlations")
+        changed = {table: {name: cut(v) for name, v in getattr(self, table).items()} for table in tables}
         labels = self.labels[window["case"]] if self.labels else []
         names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}
-        changed = {"given": given, "spreads": spreads, "given_in": given_in, "labels": labels, "names": names}
-        return replace(self, **changed, R=cut(self.R), unit=cut(self.unit))
+        return replace(self, **changed, labels=labels, names=names, R=cut(self.R), unit=cut(self.unit))
+
+
+def over(value: Any, dims: tuple[str, ...]) -> np.ndarray:
+    """A number, a text or the values of a DataArray, with all dimensions `dims`; of length 1 along those it lacks."""
+    if not isinstance(value, xr.DataArray):
+        return np.array(value).reshape((1,) * len(dims))
+    sizes, ordered = value.sizes, value.transpose(*(dim for dim in dims if dim in value.dims))
+    return ordered.values.reshape([sizes.get(dim, 1) for dim in dims])
 
 
 def bare_variable(value: Any, attributes: dict | None = None) -> xr.Variable:

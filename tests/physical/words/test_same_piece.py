@@ -26,22 +26,15 @@ def quiet(**given):
 @pytest.mark.parametrize("layer", [{}, {"base": "layered", "layer": "PMMA", "h": "0.2 mm", "bonding": "bonded"}])
 def test_one_piece_is_off_as_a_whole(layer):
     """Hertz's D goes as E*^(-2/3) and a as E*^(-1/3), of two bodies of one modulus as of one; so does a layer of the
-    same material. The step of a tenth of the spread leaves (0.1 · 0.09)²."""
+    same material, as far as it is solved to 1e-6."""
     found = quiet(**BALL | layer, same_piece=True)
-    np.testing.assert_allclose(found.D_spread / found.D, 2 / 3 * OF_E, rtol=2e-4)
-    np.testing.assert_allclose(found.a_spread / found.a, 1 / 3 * OF_E, rtol=2e-4)
+    np.testing.assert_allclose(found.D_spread / found.D, 2 / 3 * OF_E, rtol=1e-5)
+    np.testing.assert_allclose(found.a_spread / found.a, 1 / 3 * OF_E, rtol=1e-5)
     apart = quiet(**BALL | layer)
     np.testing.assert_array_equal(found.D, apart.D)
     assert found.E2_spread == found.E_punch_spread == PMMA.E_spread
     if not layer:  # two independent halves of the compliance
         np.testing.assert_allclose(apart.D_spread / apart.D, 2 / 3 * OF_E / np.sqrt(2), rtol=2e-3)
-
-
-def test_one_piece_is_moved_at_once():
-    """Each input of the piece takes two cases more, not each input of each body."""
-    text = "[model]\nR = '5 mm'\npunch = 'PMMA'\nbody = 'PMMA'\nbase = 'half_space'\nmicro = 'smooth'\nP = '10 N'\n"
-    for more, times in (("", 9), ("same_piece = false\n", 9), ("same_piece = true\n", 5)):
-        assert of(text + more).times == times
 
 
 def of(text: str):

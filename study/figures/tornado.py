@@ -1,0 +1,47 @@
+"""What each input changes of one result: bars, the longest above."""
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ..derivatives import QUANTITIES, sensitivities
+from ..in_words.influence import relative_changes
+from ..inputs.definition import StudyError
+from .labels import stated, symbol, wrapped
+from .registry import Columns
+
+ORDINATE = "input"
+"""The y of `study.plot` that asks for these bars."""
+#: By which part of itself an input without a spread is larger, and a Poisson ratio by how much.
+_STEP = 0.01
+
+
+def tornado(contact: xr.Dataset, name: str, new: Callable[..., Figure]) -> tuple[Figure, Columns]:
+    """The relative change of a result of one contact with each input, in %: larger by one standard deviation where
+    inputs have spreads, else by 1 %, and a Poisson ratio by 0.01; and as much smaller. `new` makes an empty figure.
+
+    Raises StudyError for several contacts, one that has not converged, and a result without sensitivities.
+    """
+    if name not in QUANTITIES:
+        raise StudyError([f"y = {ORDINATE}: x must be one of {', '.join(QUANTITIES)}, not {name}"])
+    if sizes := ", ".join(f"{dim} ({size})" for dim, size in contact["status"].sizes.items() if size > 1):
+        raise StudyError([f"y = {ORDINATE} is of one contact: choose one of {sizes}, such as --where P=VALUE"])
+    contact = contact.squeeze(contact["status"].dims)
+    by_input = sensitivities(contact)[f"{name}_sensitivity"].to_series().to_dict()
+    parts = relative_changes(contact, by_input)
+    about = "one standard deviation" if parts else "1 % (a Poisson ratio by 0.01)"
+    parts = parts or {key: by * _STEP for key, by in by_input.items()}
+    parts = dict(sorted(((key, 100 * part) for key, part in parts.items() if part), key=lambda one: abs(one[1])))
+    if not parts or not np.isfinite([*parts.values()]).all():
+        raise StudyError([f"nothing to draw: no input changes {name} of this contact, or it has not converged"])
+    figure = new(figsize=(3.6, 0.9 + 0.24 * len(parts)), layout="constrained")
+    axes, names, widths = figure.subplots(), [symbol(key) for key in parts], np.array([*parts.values()])
+    axes.barh(names, widths, color="0.25", label=f"input larger by {about}")
+    axes.barh(names, -widths, color="0.75", label="smaller by as much")
+    axes.axvline(0.0, color="0.0", linewidth=0.6)
+    axes.set_xlabel(f"change of {symbol(name)} [%]")
+    figure.suptitle(wrapped(stated([contact]), 21 * figure.get_figwidth()), fontsize=7)
+    figure.legend(loc="outside lower center", fontsize=7)
+    return figure, {"input": np.array([*parts]), f"change of {name} [%]": widths}

@@ -1,0 +1,51 @@
+"""A sentence about what the ± of the largest pressure is made of, and how it depends on the thickness of the layer."""
+
+import numpy as np
+import xarray as xr
+
+from ..derivatives import sensitivities
+from ..inputs.definition import StudyError
+from ..inputs.scene.changes import RATIOS
+from ..inputs.vocabulary import BODIES, VOCABULARY
+
+#: An input that makes more of the variance makes "nearly all" of it.
+_NEARLY = 0.99
+#: A thickness that must change by more than this part of itself hardly acts; nor does a derivative reach so far.
+_FAR = 0.5
+
+
+def influence(case: xr.Dataset, name: str) -> list[str]:
+    """Which input makes most of the ± of a result of one case, and by how much h must change to change it by 1 %.
+
+    The case is solved again, for the derivatives. [] without a spread, and where that cannot be done.
+    """
+    if not float(case.get(f"{name}_spread", 0.0)) > 0:
+        return []
+    try:
+        by_input = sensitivities(case)[f"{name}_sensitivity"].to_series().to_dict()
+    except StudyError:  # the dataset has lost an input
+        return []
+    symbol, parts = VOCABULARY[name].symbol, relative_changes(case, by_input)
+    found = []
+    if not correlated(case):
+        largest = max(parts, key=lambda one: abs(parts[one]))
+        share = parts[largest] ** 2 / sum(part**2 for part in parts.values())
+        most = "nearly all" if share > _NEARLY else f"{100 * share:.0f} %"
+        found = [f"{largest} makes {most} of the variance of {symbol}"]
+    by_h = by_input.get("h", 0.0)
+    if abs(by_h) * _FAR > 0.01:
+        found.append(f"{symbol} is 1 % larger where h is {1 / abs(by_h):.2g} % {'larger' if by_h > 0 else 'smaller'}")
+    elif by_h:
+        found.append(f"h hardly changes {symbol}")
+    return ["; ".join(found) + "."] if found and np.isfinite([*by_input.values()]).all() else []
+
+
+def relative_changes(case: xr.Dataset, by_input: dict) -> dict[str, float]:
+    """Input with a spread -> the relative change of a result with this spread, of the sensitivities of the result."""
+    spreads = {name: float(case[f"{name}_spread"]) for name in by_input if f"{name}_spread" in case}
+    return {n: by_input[n] * (s if n in RATIOS else s / float(case[n])) for n, s in spreads.items()}
+
+
+def correlated(case: xr.Dataset) -> bool:
+    """Whether the spreads of some inputs hang together, so that none has a share of its own."""
+    return "correlations" in case.attrs or any("comment" in case[body].attrs for body in BODIES if body in case)

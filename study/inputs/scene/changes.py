@@ -1,0 +1,72 @@
+"""What an input of a scene changes: the numbers that the solver gets, and the units of its results."""
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from solver.sensitivity import is_ratio
+
+from ..grid import Grid
+from ..identity import counts
+from ..laws import slopes_of_fit
+from ..vocabulary import BODIES, CONTROLS, PARAMETERS, SCENE
+from .scales import make_dimensionless
+from .scene import Scene
+
+RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
+SCALES = ("length", "modulus")
+"""The radius and the modulus that are 1 for the solver; they stand beside the solver's inputs."""
+#: By which part of itself an input is moved, and a Poisson ratio by how much: what follows are closed forms, so that
+#: the error is the square of this. Poisson ratios stay twice this below 0.5.
+_STEP = 1e-4
+
+
+def changes(scene: Scene, name: str, fitted: bool = False) -> dict[str, Any]:
+    """Input of the solver, or scale -> the derivative of its logarithm by that of the input `name` of the scene. Of
+    Poisson ratios, on either side, it is by or of the ratio itself. Numbers or DataArrays.
+
+    fitted : whether B and beta follow from Nbar and Ra
+    """
+    value, ends, step = scene.given[name], [], _STEP
+    if name in RATIOS:
+        value = np.minimum(value, 0.5 - 2 * _STEP)
+    elif name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+        step = _STEP * np.minimum(abs(value / scene.R), 1.0)
+    for sign in (1, -1):
+        new = value + sign * step * (1.0 if name in RATIOS else value)
+        moved = replace(scene, given=scene.given | {name: new}, parameters=dict(scene.parameters))
+        make_dimensionless(moved)
+        numbers = {key: moved.parameters[key] for key in ("n", "m") if key in moved.parameters}
+        numbers |= {key: moved.parameters[key] for key in moved.given if key not in SCENE}
+        ends.append(numbers | dict(zip(SCALES, (moved.R, moved.unit), strict=True)))
+    found = {key: _slope(key, up, ends[1][key], step) for key, up in ends[0].items()}
+    if fitted and ("Nbar" in found or "Ra" in found):
+        of_product = found.get("Nbar", 0.0) + 2 * found.get("Ra", 0.0)
+        fits = slopes_of_fit(scene.parameters["Nbar"] * scene.parameters["Ra"] ** 2)
+        found |= {key: of_product * slope for key, slope in fits.items()}
+    return found
+
+
+def _slope(key: str, up: Any, down: Any, step: Any) -> Any:
+    with np.errstate(divide="ignore", invalid="ignore"):
+        slope = (up - down if is_ratio(key) else np.log(np.divide(up, down))) / (2 * step)
+    # NaN: of 0, or of a rigid body
+    return slope.fillna(0.0) if hasattr(slope, "fillna") else np.nan_to_num(slope)
+
+
+def of_spreads(scene: Scene, fitted: bool) -> dict[str, dict[str, Any]]:
+    """Input with a spread -> what of the solver's inputs and scales changes with it, as `changes`, by its spread."""
+    found = {}
+    for name, spread in scene.spreads.items():
+        value = scene.given[name]
+        part = spread if name in RATIOS else spread / (value + (value == 0))  # what is 0 has no spread
+        found[name] = {key: part * change for key, change in changes(scene, name, fitted).items()}
+    return found
+
+
+def inputs_of(scene: Scene, grid: Grid) -> tuple[str, ...]:
+    """The inputs of the solver that change with some spread, and count in some case; the control if only units do."""
+    moved = {key for own in of_spreads(scene, grid.fitted).values() for key, part in own.items() if np.any(part)}
+    found = tuple(name for name in PARAMETERS if name in moved and counts(grid, name).any())
+    return found or tuple(name for name in CONTROLS if name in grid.values)

@@ -1,0 +1,46 @@
+"""Spreads: processor time of 4,000 layered contacts with seven of them, against the same contacts without.
+
+python tools/bench/benchmark_spreads.py [CASES]
+
+dP/dD is apart: its derivatives take a second linear system at two states beside each solution, here and in
+`solver.sensitivities`; the last line solves without them.
+"""
+
+import sys
+import time
+import warnings
+
+import numpy as np
+
+import solver.sensitivity.sensitivities
+import study
+
+warnings.simplefilter("ignore")
+BALL = {"R": "10.0 ± 0.1 mm", "E_punch": "207 ± 3 GPa", "E2": "210 ± 5 GPa", "nu2": 0.3, "bonding": "bonded"}
+LAYER = {"E1": "200 ± 16 GPa", "nu1": "0.25 ± 0.03", "Nbar": "4.0 ± 0.2 1/um^2", "Ra": "2.0 ± 0.1 um"}
+EXACT = {"R": "10 mm", "E_punch": "207 GPa", "E2": "210 GPa", "E1": "200 GPa", "nu1": 0.25, "Nbar": "4 1/um^2"}
+
+
+def seconds(cases: int, spreads: bool) -> float:
+    h = [f"{value} um" for value in np.geomspace(1, 20, cases // 100)]
+    P = [f"{value} N" for value in np.geomspace(0.1, 100, 100)]
+    given = BALL | LAYER | ({} if spreads else EXACT | {"Ra": "2 um"})
+    begun = time.process_time()
+    found = study.solve(**given, h=h, P=P, profiles=False, workers=1)
+    assert (found.status == 0).all() and ("a_spread" in found) == spreads
+    return time.process_time() - begun
+
+
+def main() -> None:
+    cases = int(sys.argv[1]) if len(sys.argv) > 1 else 4000
+    seconds(100, True)  # tables of the exact layer
+    alone, whole = (min(seconds(cases, spreads) for _ in range(2)) for spreads in (False, True))
+    solver.sensitivity.sensitivities.of_stiffness = lambda ev, part, derivatives, operators: 0 * derivatives.eta
+    without = min(seconds(cases, True) for _ in range(2))
+    print(f"{cases} contacts: {alone:.2f} s")
+    for words, took in (("seven spreads", whole), ("those but dP/dD's", without)):
+        print(f"{words}: {took:.2f} s, {(took - alone) / alone:.2f} solves more")
+
+
+if __name__ == "__main__":
+    main()

@@ -43,7 +43,7 @@ TWO = {
     "beta": (0.5, 0.53),
     "sigma": (1e-5, 2e-5),
     "cut": (4.0, 3.5),
-    **{"hardness": (0.02, 0.021), "yield_strength": (0.007, 0.0071)},
+    **dict.fromkeys(("hardness", "yield_strength"), (0.02, 0.021)),
     "scheme": ("newton", "picard"),
     "k": (1.0, 0.0),
     "rtol": (1e-6, 1e-9),

@@ -17,7 +17,7 @@ _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is th
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
-_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta")
+_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength")
 #: What stands behind "indentation depth" where the punch yields too, or may.
 OF_BOTH = " (approach of both bodies)"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
@@ -91,6 +91,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     lines = ["Given: " + ", ".join(given)]
     lines += [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused) + [""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
+    names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
     rows = _rows(case, names)
     width = max(len(label) for label, _, _ in rows)
     lines += [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]

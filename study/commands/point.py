@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..data.dataset import decode
 from ..data.derived import QUANTITIES
+from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..in_words.inputs import all_inputs
 from ..inputs.definition import StudyError
@@ -79,17 +80,26 @@ def as_numbers(found: xr.Dataset) -> dict:
 def _spreads_of_derived(found: xr.Dataset) -> dict[str, xr.DataArray]:
     """NAME_spread of derived quantities, if results have spreads: NaN where it does not follow from these.
 
-    A largest pressure does not change with its place to first order. Of a ring's radius, of the real pressure in a ring
-    and of the share of an elastic punch the inputs would have to be moved.
+    A largest pressure does not change with its place to first order. That of the centre stays there.
     """
     if "p_spread" not in found:
         return {}
-    place, unknown = int(np.argmax(found["p"].values)), xr.DataArray(math.nan)
-    spreads = {"p_ring": found["p_spread"][place].drop_vars("x"), "r_ring": unknown, "p_peak": unknown}
-    if place == 0:
-        spreads["p_peak"] = found["p_max_spread"]
-    spreads["D_body"] = unknown if float(found.get("m", 0.0)) else found.get("D_spread")
+    place = int(np.argmax(found["p"].values))
+    spreads = {"p_ring": found["p_spread"][place].drop_vars("x"), "p_peak": found["p_max_spread"]}
+    spreads["D_body"] = found.get("D_spread")
+    formulas = {"r_ring": _ring if place else lambda _: math.nan}
+    formulas |= {name: QUANTITIES[name] for name in ["p_peak"] * bool(place) + ["D_body"] * bool(found.get("m", 0.0))}
+    spreads |= {name: xr.DataArray(spread_of_formula(found, formula)) for name, formula in formulas.items()}
     return {f"{name}_spread": spread for name, spread in spreads.items() if spread is not None}
+
+
+def _ring(dataset: xr.Dataset) -> float:
+    """The radius of the ring of one contact, where the parabola through the three points at the largest pressure has
+    its top: it moves with the inputs, which the point of `r_ring` does not."""
+    p, x = dataset["p"].values, dataset["x"].values
+    place = min(max(int(np.argmax(p)), 1), len(p) - 2)
+    bend, slope, _ = np.polyfit(x[place - 1 : place + 2] - x[place], p[place - 1 : place + 2], 2)
+    return float(dataset["a"]) * (x[place] - slope / (2 * bend))
 
 
 def described(found: xr.Dataset, name: str) -> dict | str:

@@ -4,7 +4,7 @@
 limits are in docs/model.md. It needs numpy, scipy, and threadpoolctl, which keeps BLAS on one thread.
 """
 
-from . import closed_forms
+from . import closed_forms, fields
 from .laws import Curve, Law, register
 from .laws import disc_cell as micro
 from .laws.fit import Fit, fit_power_law
@@ -30,6 +30,7 @@ __all__ = [
     "Solution",
     "Status",
     "closed_forms",
+    "fields",
     "fit_power_law",
     "micro",
     "register",

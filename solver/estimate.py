@@ -11,8 +11,8 @@ _QUANTITIES = ("a", "D", "p0", "p_max", "lam0", "A0")
 
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
 def estimate(problem):
-    """Name -> (B,) of a, D, p0, p_max, lam0, A0 in units R = E2* = 1: those of the state with which the iteration
-    begins. D is the least that it can be, the height of the punch at r = a.
+    """Name -> (B,) of a, D, p0, p_max, lam0, A0 in units R = E2* = 1, as they are where the iteration begins. D is the
+    least that it can be, the height of the punch at r = a.
 
     problem : :class:`~solver.problem.Problem` with R = E2 = 1; all bases count as "layered"
 
@@ -20,13 +20,13 @@ def estimate(problem):
     300 random contacts is right to a factor of 2 (tests/physical/words/test_far_outside.py).
     """
     scaled = dimensionless(problem.but(base="layered"))
-    usable, found = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}
+    usable, estimates = ~refused(problem, scaled), {name: np.full(len(problem), np.nan) for name in _QUANTITIES}
     for law in BUILT_IN:
         index = np.flatnonzero(usable & (problem.micro == law.name))
         if len(index):
             for name, values in _of_one_law(as_cases(scaled.take(index))).items():
-                found[name][index] = values
-    return found
+                estimates[name][index] = values
+    return estimates
 
 
 def _of_one_law(cases):

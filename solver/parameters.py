@@ -87,8 +87,8 @@ def among(condition, values):
 
 def uses(name, values):
     """(...) bool: the cases whose answer depends on a parameter; `values` as above."""
-    own = PARAMETERS[name] if name in PARAMETERS else CONTROL[name]
-    return among(own.needed_by, values) & among(own.used_by, values)
+    parameter = PARAMETERS[name] if name in PARAMETERS else CONTROL[name]
+    return among(parameter.needed_by, values) & among(parameter.used_by, values)
 
 
 @lru_cache(maxsize=64)
@@ -98,13 +98,13 @@ def ends(interval):
     return low, high, interval[0] == "[", interval[-1] == "]"
 
 
-def allowed(own, values):
-    """(...) bool: `values` that are allowed by the `interval` and `also` of `own`; NaN never is."""
-    low, high, with_low, with_high = ends(own.interval)
+def allowed(parameter, values):
+    """(...) bool: `values` that the `interval` and `also` of a parameter allow; NaN never is."""
+    low, high, with_low, with_high = ends(parameter.interval)
     values = np.asarray(values)
     above = values >= low if with_low else values > low
     below = values <= high if with_high else values < high
     inside = above & below
-    for value in own.also:
+    for value in parameter.also:
         inside = inside | (values == value)
     return inside

@@ -56,9 +56,9 @@ class Problem:
     parameters: dict[str, np.ndarray]
 
     def __repr__(self):
-        given = f"{self.control} = {self.value.min():g} ... {self.value.max():g}" if len(self) else self.control
+        control = f"{self.control} = {self.value.min():g} ... {self.value.max():g}" if len(self) else self.control
         kinds = [", ".join(sorted(set(values.tolist()))) for values in (self.base, self.micro)]
-        return f"Problem({len(self)} cases, {given}, base: {kinds[0]}, micro: {kinds[1]})"
+        return f"Problem({len(self)} cases, {control}, base: {kinds[0]}, micro: {kinds[1]})"
 
     def __getattr__(self, name):
         """A parameter; NaN if its law was registered after this batch was made."""
@@ -98,16 +98,16 @@ class Problem:
         Traceback (most recent call last):
         ValueError: h is missing: base = "layered" needs it
         """
-        given = {name: v for name, v in zip(CONTROL, (P, a, D), strict=True) if v is not None}
-        if len(given) != 1:
-            raise ValueError(f"give exactly one of P, a, D (got {', '.join(given) or 'none'})")
-        ((control, value),) = given.items()
+        controls = {name: v for name, v in zip(CONTROL, (P, a, D), strict=True) if v is not None}
+        if len(controls) != 1:
+            raise ValueError(f"give exactly one of P, a, D (got {', '.join(controls) or 'none'})")
+        ((control, value),) = controls.items()
         parameters["micro"] = laws.named(parameters.get("micro", PARAMETERS["micro"].default))
         laws.load(parameters, parameters["micro"])
         unknown = sorted(set(parameters) - set(PARAMETERS))
         if unknown:
             raise TypeError(f"unknown parameter {unknown[0]}")
-        defaults = {name: np.nan if own.default is None else own.default for name, own in PARAMETERS.items()}
+        defaults = {name: np.nan if row.default is None else row.default for name, row in PARAMETERS.items()}
         arrays = {name: _array(name, v) for name, v in ({"value": value} | defaults | parameters).items()}
         shape = np.broadcast_shapes((1,), *(v.shape for v in arrays.values()))
         if len(shape) != 1:
@@ -131,7 +131,7 @@ class Problem:
         -------
         Problem
         """
-        return Problem(self.control, self.value[index], {name: own[index] for name, own in self.parameters.items()})
+        return Problem(self.control, self.value[index], {name: v[index] for name, v in self.parameters.items()})
 
     def but(self, **parameters: Any) -> "Problem":
         """The batch with other values of some parameters.
@@ -144,7 +144,7 @@ class Problem:
         -------
         Problem
         """
-        new = {name: np.broadcast_to(own, len(self)) for name, own in parameters.items()}
+        new = {name: np.broadcast_to(v, len(self)) for name, v in parameters.items()}
         return Problem(self.control, self.value, self.parameters | new)
 
     def rough(self) -> np.ndarray:
@@ -183,14 +183,14 @@ class Problem:
 
 
 def _array(name, value):
-    own = PARAMETERS.get(name, Parameter())
-    if own.choices:
+    parameter = PARAMETERS.get(name, Parameter())
+    if parameter.choices:
         array = np.asarray(value, dtype=str)
-        unknown = sorted(set(array.ravel()) - set(own.choices))
+        unknown = sorted(set(array.ravel()) - set(parameter.choices))
         if unknown:
-            raise ValueError(f'{name} = "{unknown[0]}": must be one of {", ".join(own.choices)}')
+            raise ValueError(f'{name} = "{unknown[0]}": must be one of {", ".join(parameter.choices)}')
         return array
-    return np.asarray(value, dtype=int if own.whole else float)
+    return np.asarray(value, dtype=int if parameter.whole else float)
 
 
 def _missing(given, arrays):

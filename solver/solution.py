@@ -85,7 +85,7 @@ class Solution:
     lam: np.ndarray
 
     def __repr__(self):
-        values, counts = (found.tolist() for found in np.unique(self.status, return_counts=True))
+        values, counts = (array.tolist() for array in np.unique(self.status, return_counts=True))
         ended = ", ".join(f"{n} {Status(v).name.lower()}" for v, n in zip(values, counts, strict=True))
         return f"Solution({len(self.a)} cases: {ended or 'none'}; profiles at {self.p.shape[1]} radii)"
 

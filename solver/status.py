@@ -22,9 +22,9 @@ class Status(IntEnum):
 
     def __new__(cls, value: int, meaning: str) -> "Status":
         """The member of a value, an int, with its meaning."""
-        found = int.__new__(cls, value)
-        found._value_, found.meaning = value, meaning
-        return found
+        member = int.__new__(cls, value)
+        member._value_, member.meaning = value, meaning
+        return member
 
 
 #: Statuses of cases whose equations have no solution in the model. The solver has not failed there.

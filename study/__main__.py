@@ -41,8 +41,8 @@ def parser() -> argparse.ArgumentParser:
         sub = commands.add_parser(name.removesuffix("_"), help=text, description=text)
         sub.set_defaults(action=(module, name), items=[name])
         if items:
-            given = sub.add_argument("items", nargs="+", metavar=items)
-            given.completer = partial(proposed, name)
+            argument = sub.add_argument("items", nargs="+", metavar=items)
+            argument.completer = partial(proposed, name)
         if name != "point":
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub

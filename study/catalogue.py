@@ -26,8 +26,8 @@ LETTERS = 21  # letters on an inch of the line above a figure that states its pa
 
 def usual(kind: str) -> list[str]:
     """What "all" stands for: the figures ("figure"), or tables ("table"), that need no study that takes minutes."""
-    found = sorted(names(kind, long=False))
-    return [*found, CAPTIONS] if kind == "figure" else found
+    listed = sorted(names(kind, long=False))
+    return [*listed, CAPTIONS] if kind == "figure" else listed
 
 
 def needed(kind: str, name: str) -> tuple[str, ...]:
@@ -70,9 +70,9 @@ def renewed(kind: str, name: str, results="results", folder="figures") -> list[P
     """Write a figure or table, as `draw` and `tabulate` do, and put it into the record of the folder."""
     if (kind, name) == ("figure", CAPTIONS):
         return draw(name, results, folder)
-    of = digest(kind, name, results)  # before: results that change meanwhile make it outdated
+    made_of = digest(kind, name, results)  # before: results that change meanwhile make it outdated
     paths = (tabulate if kind == "table" else draw)(name, results, folder)
-    record.note(Path(folder), what(kind, name), of, paths)
+    record.note(Path(folder), what(kind, name), made_of, paths)
     return paths
 
 
@@ -128,15 +128,15 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures") -> 
     """
     if name == CAPTIONS:
         return [write(Path(folder) / "captions.md", captions(results))]
-    made = entry("figure", name)
-    if isinstance(made, Drawing):  # the .svg is the original, to be edited by hand
-        return [write(Path(folder) / f"{stem(name)}{path.suffix}", path.read_bytes()) for path in copies(made)]
+    recipe = entry("figure", name)
+    if isinstance(recipe, Drawing):  # the .svg is the original, to be edited by hand
+        return [write(Path(folder) / f"{stem(name)}{path.suffix}", path.read_bytes()) for path in copies(recipe)]
     return save(Path(folder) / stem(name), *compose(name, results))
 
 
-def copies(made: Drawing) -> list[Path]:
+def copies(drawing: Drawing) -> list[Path]:
     """The files of a drawing."""
-    return [made.stem().with_suffix(f".{ending}") for ending in ENDINGS["drawing"]]
+    return [drawing.stem().with_suffix(f".{ending}") for ending in ENDINGS["drawing"]]
 
 
 def captions(results: Folder = "results") -> str:
@@ -154,8 +154,8 @@ def captions(results: Folder = "results") -> str:
     recipes = {name: entry("figure", name) for name in sorted(names("figure"))}
     for name, recipe in sorted(recipes.items(), key=lambda item: not isinstance(item[1], Drawing)):  # drawings first
         if all((Path(results) / f"{study}.nc").exists() for study in recipe.studies):
-            given = ", ".join(stated(open_studies(name, recipe.studies, results)))
-            lines.append(f"**{name}.** {recipe.caption}{f' Parameters: {given}.' if given else ''}\n")
+            shared = ", ".join(stated(open_studies(name, recipe.studies, results)))
+            lines.append(f"**{name}.** {recipe.caption}{f' Parameters: {shared}.' if shared else ''}\n")
     return "\n".join(lines)
 
 

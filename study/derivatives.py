@@ -55,8 +55,8 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
     0.333333
     """
-    dims, shape = contact["status"].dims, contact["status"].shape
     logs, _ = _by_inputs(contact, ())
+    dims, shape = contact["status"].dims, contact["status"].shape
     variables = {}
     for name in QUANTITIES:
         values = np.stack(list(logs[name].values()), axis=-1)
@@ -72,7 +72,10 @@ def _by_inputs(contact: xr.Dataset, x: Any) -> tuple[dict, dict]:
     inputs, (dims, shape) = _checked(contact), (contact["status"].dims, contact["status"].shape)
     scene = _scene(inputs) if "R" in inputs else None
     numbers = scene.parameters if scene else inputs
-    problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    try:
+        problem = Problem.of(**{name: _flat(numbers[name], dims, shape) for name in PARAMETERS if name in numbers})
+    except ValueError as error:
+        raise StudyError([f"sensitivities: {error}"]) from None
     used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
     solution = solve(problem, x)
     solved = derivatives(problem, solution, x, inputs=(problem.control, *used))

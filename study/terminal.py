@@ -8,7 +8,7 @@ from typing import Any, TextIO
 
 #: Control characters of a terminal, without ends of lines and tabs, and those that change the direction of writing.
 CONTROL = re.compile(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u200e\u200f\u202a-\u202e\u2066-\u2069]")
-NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # somebody waits for the text and does not get it
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)  # a reader waits for the text in vain
 
 
 def on_one_line(text: str, most: int = 60) -> str:
@@ -25,8 +25,8 @@ def shown(value: Any) -> str:
         return "a number of more than 4300 digits"
 
 
-def _written_out(found: re.Match) -> str:
-    return found[0].encode("unicode_escape").decode()
+def _written_out(match: re.Match) -> str:
+    return match[0].encode("unicode_escape").decode()
 
 
 def counted(number: int, what: str) -> str:
@@ -70,7 +70,7 @@ def answer(*lines) -> int:
 
 
 def open_closed_streams() -> None:
-    """Open to /dev/null those of stdin, stdout and stderr that the shell has closed (`>&-`).
+    """Open to /dev/null whichever of stdin, stdout and stderr the shell has closed (`>&-`).
 
     Otherwise the next file that is opened, even results, would get the number of the stream and what is printed to it.
     """

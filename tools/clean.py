@@ -15,7 +15,7 @@ CACHES = (".pytest_cache", ".ruff_cache", ".hypothesis")
 
 def written() -> list[Path]:
     """The files of all figures and tables, whether they are there or not."""
-    names = {kind: [name for file in beside.of_the_book() for one, name in beside.names_in(file) if one == kind]
+    names = {kind: [name for file in beside.book_files() for one, name in beside.names_in(file) if one == kind]
              for kind in ("figure", "table")}  # fmt: skip
     drawn = {*ENDINGS["figure"], *ENDINGS["drawing"]}
     figures = [Path("figures", f"{name}.{ending}") for name in names["figure"] for ending in drawn]

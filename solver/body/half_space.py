@@ -57,10 +57,10 @@ class HalfSpaceOperator(NamedTuple):
     def between(self, q, s, half_space):
         return half_space
 
-    def of_waves(self, waves, half_space):
+    def wave_products(self, waves, half_space):
         return np.stack([half_space, 0 * half_space])[:, None]
 
-    def of_waves_between(self, waves, s, half_space):
+    def waves_between(self, waves, s, half_space):
         return half_space[None]
 
 

@@ -83,7 +83,7 @@ class HankelOperator(NamedTuple):
             out[part.index] += part.share * half_space[part.index]
         return out
 
-    def of_waves(self, waves, half_space):
+    def wave_products(self, waves, half_space):
         out = np.full((2, len(self.rows), self.mesh.n + 1), np.nan)  # as films stay
         for part in self.parts:
             for tab, rows in part.tables(self.mesh) if part.film is None else ():
@@ -92,7 +92,7 @@ class HankelOperator(NamedTuple):
                 out[1, part.index[rows]] = tab.weights(part.uL[rows]) @ J
         return out
 
-    def of_waves_between(self, waves, s, half_space):
+    def waves_between(self, waves, s, half_space):
         out = np.full((len(self.rows), len(s)), np.nan)
         for part in self.parts:
             for tab, rows in part.tables(self.mesh) if part.film is None else ():

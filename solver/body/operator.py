@@ -43,12 +43,12 @@ class Operator(Protocol):
         """K q (B, m) at points s = sqrt(1 - x²) (m,) > 0 between the nodes; `half_space` (B, m) is what K of a
         half-space gives there."""
 
-    def of_waves(self, waves, half_space):
+    def wave_products(self, waves, half_space):
         """K of a pressure that is no polynomial in s, and its derivatives by ln a: (2, B or 1, n + 1), each at the
         nodes and at last the displacement of the edge. ``waves(k)`` is the Hankel transform ∫₀¹ · J0(kx) x dx of the
         pressure at k (G,), in 1/a, and `half_space` (n + 1,) what K of a half-space gives. NaN: it is not known."""
 
-    def of_waves_between(self, waves, s, half_space):
+    def waves_between(self, waves, s, half_space):
         """The same (B or 1, m) at points s (m,) > 0 between the nodes, for `half_space` (m,) there."""
 
 
@@ -70,7 +70,7 @@ class Body(Protocol):
         on another mesh; what of it still holds is used again."""
 
     def softness(self, a):
-        """About the compliance (B,) that a contact of radius a feels, over that of a half-space of E."""
+        """About the compliance (B,) that a contact of radius a feels, over the compliance of a half-space of E."""
 
     def error(self, a, nodes):
         """Relative error (B,) of the operator itself on `nodes` nodes, which no finer mesh makes smaller."""

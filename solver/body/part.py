@@ -13,7 +13,7 @@ from . import film
 from .tables import table
 from .wave_rule import CUT, FILM, STIFFEST, few, place_of, quadrature
 
-#: Kernel values are computed in blocks of so many numbers: the arrays in between stay in the cache.
+#: Kernel values are computed in blocks of this many numbers: the arrays in between stay in the cache.
 _BLOCK = 16384
 
 

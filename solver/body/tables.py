@@ -16,15 +16,15 @@ from .wave_rule import CUT, FILM, STIFFEST, few, quadrature
 #: Largest array of a table, in numbers. In place of a larger one the product of J0 and φ (of films) is formed case by
 #: case, and J0 between the nodes anew each time.
 _KEEP = 4e6
-#: All tables that are kept take at most so many bytes.
+#: All tables that are kept take at most this many bytes.
 _MOST_BYTES = 4e8
-#: On meshes of up to so many nodes the product is formed for a single case too: it serves all later ones.
+#: On meshes of up to this many nodes the product is formed for a single case too: it serves all later ones.
 _SMALL = 22
 #: The same for the convolution of films.
 _WHOLE = 64
 #: The integral of the transform φ is taken in pieces. Along each the argument of J0 grows by at most this, in radians.
 _PHASE = 120.0
-#: φ is formed, and its moments kept, in parts of so many nodes k.
+#: φ is formed, and its moments kept, in parts of this many nodes k.
 _ROWS = 250
 #: The moments of a panel are formed for the first of these numbers of polynomials that is enough. J0 costs the most: so
 #: meshes of many orders share its values.
@@ -167,7 +167,7 @@ def _angles(low, high, k, order):
     ends = np.arccos(x[0] + np.maximum(np.arange(pieces + 1) - 0.5, 0) / (pieces - 0.5) * (x[1] - x[0]))
     ends[[0, -1]] = np.arcsin([low, high])
     width, sin = np.diff(ends), np.sin(ends)
-    # the largest phase on a piece: that of J0, and that of a polynomial, which is fastest at the ends of its panel
+    # the largest phase on a piece: of J0, and of a polynomial, which is fastest at the ends of its panel
     share = min(np.diff(sin).max() / (high - low), 1.0)
     phase = k * (width * sin[1:]).max() + 2 * order * np.arcsin(np.sqrt(share))
     t, w = gauss_legendre(8 * int(phase / 32 + np.cbrt(phase / 2) * 3 / 8 + 2))

@@ -23,8 +23,8 @@ _WIDEST = 200.0
 #: Largest n of each class of stiffness (:class:`~solver.kernels.kernel.Kernel`), and how many panels its quadrature has
 #: towards k = 0, each half as wide as the one before: beyond the first class the first panel ends below 0.15/n.
 STIFFEST, _DEPTH = (2.0, 1e3, 1e6, 1e9), (0, 12, 22, 32)
-#: The few nodes are chosen by the L - 1 and u dL/du of so many random kernels. They are enough when what they leave out
-#: of any of these functions is at most this part of the largest of them, which is rounding.
+#: The few nodes are chosen by L - 1 and u dL/du of _SAMPLES random kernels. They are enough when they leave out at most
+#: _LEFT_OUT, which is rounding, of the largest of these functions.
 _SAMPLES, _LEFT_OUT = 200, 3e-16
 #: A panel of the width w in k has _MORE + w/2 + _ROOT w^(1/3) points, but at least _LEAST: the first number below
 #: u = 1/2, the second above, with u = kh/a at the lower end of the octave. It has _LESS points fewer for each digit by

@@ -14,7 +14,7 @@ from .equation import State
 from .error import completed, estimate, profile_error, refine
 from .results import profiles, quantities
 
-#: A ring of tension may lie between two nodes: so the pressure is looked at in this many times as many points.
+#: A ring of tension may lie between two nodes: so the pressure is formed at this many times as many points.
 _DENSER = 3
 #: If the error of a case is below this, p(0) < 0 is real and no error of the mesh.
 _SURE = 0.1

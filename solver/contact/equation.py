@@ -108,8 +108,8 @@ class Evaluation:
 
     @cached_property
     def gap(self):
-        """(B, n): where others press the surface down and away from asperities, which then bear no pressure, their
-        height above it over a²/2; else 0."""
+        """(B, n): height over a²/2 of asperities above the surface, where they bear no pressure because the pressure
+        around them presses the surface away; else 0."""
         q = self.curve.q
         if q.min(initial=np.inf) > _NOTHING * q.max(initial=0.0):  # quick to see, and true of most batches
             return np.zeros(q.shape)
@@ -223,7 +223,7 @@ def control_gradient(control, ev):
 def jacobian(ev):
     """d (B, n) of dF/dq = X (K + diag(d)) at fixed η; and dF/dη over X (B, n) at fixed q. By q and not by y, because
     the operator is linear in q."""
-    own = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
+    diagonal = ev.Y + ev.Z * (ev.curve.dg / ev.curve.dq)
     drop_slope = ev.cases.punch.drop_slope(np.exp(ev.state.eta), ev.mesh.s)
     dF_deta = ev.slopes[0] - ev.Kq - 2 * (ev.Y * ev.curve.q + ev.Z * ev.curve.g) / ev.X - drop_slope / ev.X
-    return own / ev.X, dF_deta
+    return diagonal / ev.X, dF_deta

@@ -30,9 +30,9 @@ _BLIND = 3.0
 #: this and the estimate are of one size, both may be too small: where the edge moves by δ a, Ar/An and P change by 2 δ
 #: and 3 δ. So the smaller of the two counts _BOTH times: "edge" and "edge, a given" of the same tests.
 _BOTH = 2.0
-#: In the centre the pressures of two meshes may agree by chance: those of "centre" of
-#: tests/contact/errors/test_error_bars.py do, to a twentieth of their error. So on meshes of one panel any change of
-#: the pressure where s is above this counts. Several panels may enclose a corner there.
+#: In the centre the pressures of two meshes may agree by chance: in the case "centre" of
+#: tests/contact/errors/test_error_bars.py to a twentieth of their error. So on meshes of one panel any change of the
+#: pressure where s is above this counts. Several panels may enclose a corner there.
 _MIDDLE = 0.9
 #: Tolerance of the solution between its nodes, where the step on the finer mesh begins. Changes below it are no errors.
 _NEAR = 1e-8
@@ -44,7 +44,7 @@ _NEAR = 1e-8
 _SATURATED, _SHARP = 0.7, 0.45
 _TIMES, _MORE = 2, 4
 #: If the exponent of the displacement is below this, λ rises sharply where pressure begins. Then Ar/An is compared with
-#: that of a law with corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
+#: the quadrature for corners: "steep" of tests/contact/errors/test_error_bars.py. Panels enclose that place.
 _STEEP = 0.1
 #: Under a law with corners two meshes may agree by chance. So the error also counts the load that the mesh misses
 #: between its nodes: the sum over the contact, in which opposite signs cancel, and _CHANCE times the largest sum from
@@ -154,8 +154,8 @@ def _missed_ring(ev):
 
 
 def added_in_ring(t, s1, beta=1.0):
-    """Relative change (B,) of a and the like by a compliance in the ring between the edge and the first node s1. Over
-    that of the body it is t (s/s1)^(β-1), with t (B,).
+    """Relative change (B,) of a and the like by a compliance in the ring between the edge and the first node s1. Its
+    ratio to the compliance of the body is t (s/s1)^(β-1), with t (B,).
 
     The change is 2 ∫ t (s/s1)^(β-1) ds/s from about the s where the compliance is s² to s1. Below that s, in a ring at
     the edge, it is more than the body's. With β = 1, for springs, the change is t ln(1 + s1²/2t).

@@ -31,8 +31,8 @@ def guess_radius(cases):
 
 
 def guess_pressure(cases, a, s):
-    """q (B, m) at s (m,) > 0 under contacts of radius a (B,). 1/q is the sum of those that half-space, springs and
-    asperities have alone: so it is exact where one of them yields far more than the others."""
+    """q (B, m) at s (m,) > 0 under contacts of radius a (B,). 1/q is the sum of the 1/q of half-space, springs and
+    asperities alone: so it is exact where one of them yields far more than the others."""
     X, Y, Z = groups(cases, np.log(a))
     base = cases.punch.stiffness(a, s, X * cases.body.softness(a)[:, None], Y)
     return 1 / (base + 1 / cases.law.sparse(cases.punch.drop(a, s) / Z))
@@ -45,8 +45,8 @@ def first_guess(cases, mesh, a=None):
 
 
 def smooth_start(cases, mesh):
-    """The equation at given radii (control "a"), at a first guess: its 1/q is the sum of those of the smooth contact
-    and of the asperities alone."""
+    """The equation at given radii (control "a"), at a first guess: 1/q is the sum of the 1/q of the smooth contact and
+    of the asperities alone."""
     eta, drop = np.log(cases.value), cases.punch.drop(cases.value, mesh.s)
     X, Y, Z = groups(cases, eta)
     operator = cases.edge.at(cases.body, np.exp(eta), mesh)

@@ -32,9 +32,9 @@ FLAT = Shape(
 
 
 class WithAdded(NamedTuple):
-    """The :class:`~solver.body.operator.Operator` of q and of a `shape` of the given `strength` together: `plain` is
-    that of q. `growth` is the derivative of the strength by ln a, (B,) both. `column`, `d_column` (B, n + 1): K of the
-    shape, the last one its displacement of the edge, and the derivative by ln a."""
+    """The :class:`~solver.body.operator.Operator` of q, which is `plain`, and of a `shape` together. The shape has the
+    `strength`, whose derivative by ln a is `growth`, (B,) both. `column`, `d_column` (B, n + 1): K of the shape at the
+    nodes, at last the displacement of the edge; and the derivative by ln a."""
 
     plain: Operator
     shape: Shape
@@ -46,7 +46,9 @@ class WithAdded(NamedTuple):
     @classmethod
     def of(cls, plain, shape, strength, growth):
         half_space = np.append(shape.half_space(plain.mesh.s), shape.edge)
-        columns = (np.broadcast_to(v, (len(strength), v.shape[1])) for v in plain.of_waves(shape.waves, half_space))
+        columns = (
+            np.broadcast_to(v, (len(strength), v.shape[1])) for v in plain.wave_products(shape.waves, half_space)
+        )
         return cls(plain, shape, strength, growth, *columns)
 
     @property
@@ -85,5 +87,5 @@ class WithAdded(NamedTuple):
         return products[0] + column[:, :-1], products[1] + column[:, -1]
 
     def between(self, q, s, half_space):
-        column = self.plain.of_waves_between(self.shape.waves, s, self.shape.half_space(s))
+        column = self.plain.waves_between(self.shape.waves, s, self.shape.half_space(s))
         return self.plain.between(q, s, half_space) + self.strength[:, None] * column

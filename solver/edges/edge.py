@@ -1,14 +1,14 @@
 """The protocol of an edge: how the pressure ends at r = a, which is what closes the contact radius.
 
-The equation holds for any radius. Which one it is, the edge says: at a free edge there is no pressure, p(a) = 0, which
-polynomials in s = sqrt(1 - x²) obey by themselves (:mod:`.free`). An edge of another kind adds a pressure that is known
-where the radius is:
+The equation holds for any radius, and the edge says which it is. At a free edge there is no pressure, p(a) = 0, which
+polynomials in s = sqrt(1 - x²) obey by themselves (:mod:`.free`). An edge of another kind adds a pressure that follows
+from the radius:
 
     p = p* (q + strength(a) shape(x)),        q a polynomial in s as at a free edge.
 
 An edge that holds tension, for example, adds 1/s. What the added pressure does to the surface is one more column of the
 operator (:mod:`.added`): so the right-hand side of the equation changes, and its matrix does not. The contact asks an
-edge for nothing else, and never which one it is. All pressures here are over p*.
+edge for nothing else, nor which edge it is. All pressures here are over p*.
 """
 
 from typing import Protocol

@@ -4,7 +4,7 @@ from typing import NamedTuple
 
 
 class Free(NamedTuple):
-    """The :class:`~solver.edges.edge.Edge` of all cases: it has no numbers of its own."""
+    """The :class:`~solver.edges.edge.Edge` of all cases: it has no numbers."""
 
     pulls = False
 

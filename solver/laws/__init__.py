@@ -27,8 +27,8 @@ __all__ = [
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
-#: Names that no parameter of a law can have: those of attributes of a Problem, and E, which `scales` gets. The package
-#: `study` adds those of results, and of what else it is told.
+#: Names that no parameter of a law can have: the attributes of a Problem, and E, which `scales` gets. The package
+#: `study` adds results and its other inputs.
 RESERVED = {*CONTROL, "E", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
@@ -74,14 +74,14 @@ def untried(law):
     return bool(law.version) and not law.name.startswith(own_table.PREFIX) and law not in _TRIED
 
 
-def try_out(law, E, given):
+def try_out(law, E, parameters):
     """Try the functions of a law that is :func:`untried` at some of its cases: see :func:`.trial.tried`.
 
-    That takes a seventh of a millisecond, once a process. Without it a law with a wrong derivative gave a dP/dD that
-    was 2 % off, as converged (tests/laws/test_trial.py).
+    That takes a seventh of a millisecond, once a process. Without it a law with a wrong derivative gives a dP/dD that
+    is 2 % off, as converged (tests/laws/test_trial.py).
     """
     if untried(law):
-        trial.tried(law, E, given)
+        trial.tried(law, E, parameters)
         _TRIED.add(law)
 
 
@@ -120,21 +120,21 @@ def _load_installed():
     """Register the laws of all entry points, each a :class:`Law` or a list of them; texts of what is wrong."""
     from importlib.metadata import entry_points  # takes a while, and most studies have no need of it
 
-    wrong, found, own = [], {}, set(LAWS)
+    wrong, places, present = [], {}, set(LAWS)
     for entry in entry_points(group=GROUP):
         where = f"entry point {entry.name} = {entry.value} of {GROUP}"
         try:
             with trial.going_on():
                 laws = entry.load()
             for law in laws if isinstance(laws, (list, tuple)) else [laws]:
-                found.setdefault(law.name, {}).setdefault(law, where)
+                places.setdefault(law.name, {}).setdefault(law, where)
         except Exception as error:
             wrong.append(f"{where}: {error}")
-    for name, places in found.items():
-        if len(places) > 1:
-            wrong.append(f"{' and '.join(places.values())} have laws of one name, {name}: one must go")
-        elif name not in own:
-            ((law, where),) = places.items()
+    for name, laws in places.items():
+        if len(laws) > 1:
+            wrong.append(f"{' and '.join(laws.values())} have laws of one name, {name}: one must go")
+        elif name not in present:
+            ((law, where),) = laws.items()
             try:
                 register(law)
             except ValueError as error:
@@ -142,14 +142,14 @@ def _load_installed():
     return wrong
 
 
-def named(given):
-    """The name of a law, or the names of a list of laws. A law given as an object, or as "table:" and the path of a
-    table of one's own (ValueError if it cannot be used), is registered first."""
-    if isinstance(given, (list, tuple)):
-        return [named(one) for one in given]
-    if isinstance(given, str) and given.startswith(own_table.PREFIX):
-        given = own_table.read(given)
-    return register(given).name if isinstance(given, Law) else given
+def named(law):
+    """The name of a law, or the names of a list of laws. A law that comes as an object, or as "table:" and the path of
+    a table of one's own (ValueError if it cannot be used), is registered first."""
+    if isinstance(law, (list, tuple)):
+        return [named(each) for each in law]
+    if isinstance(law, str) and law.startswith(own_table.PREFIX):
+        law = own_table.read(law)
+    return register(law).name if isinstance(law, Law) else law
 
 
 def _known(parameters, micro):

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..parameters import Parameter
-from .law import Curve, Law, inverse, log_step, of_positive
+from .law import Curve, Law, inverse, log_step, where_positive
 
 __all__ = ["LAW", "PARAMETERS", "contact_fraction", "displacement", "largest_pressure"]
 
@@ -89,7 +89,7 @@ def spot_from_pressure(q):
     y = spot_guess(target)
     for _ in range(3):  # the slope of ln q by ln y is between 1 and 3: from a guess within 1 % three steps are enough
         y = y * np.exp(log_step(lambda y: _pressure(y)[:2], target, y))
-    return of_positive(q, y)
+    return where_positive(q, y)
 
 
 def _odds(curve):

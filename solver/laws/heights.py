@@ -6,7 +6,7 @@ touch of the highest summit. Without a spread, σ = 0, the law is the disc cell.
 contact: p ~ A^(5/2) there, until A is about σ/c. Without a cut c there is no highest summit, and so no edge.
 
 q is the root of an equation at each y. So a law is tabulated when it is first used, once for each σ/A* and c. Many
-cases with one spread are fast; a batch in which each case has a spread of its own waits for as many tables.
+cases with one spread are fast; a batch with as many spreads as cases waits for as many tables.
 """
 
 from collections.abc import Callable
@@ -25,12 +25,12 @@ from .law import Curve, Law
 _ALIKE = 0.03
 #: Most tables that are kept, 2 KNOTS numbers each, and how many are made at a time.
 _KEPT, _AT_ONCE = 4096, 64
-#: Largest relative error of A, λ and p_max by the tables (tests/laws/heights/test_heights.py). It is that of λ; A has
-#: 5e-6, and with uniform heights 3e-5. STEPPED is that of a histogram, whose steps make corners in the curves (A has
-#: 1e-4); its tables have _FINE times as many knots.
+#: Largest relative error of A, λ and p_max by the tables (tests/laws/heights/test_heights.py). λ has it; A has 5e-6,
+#: and with uniform heights 3e-5. STEPPED is that of histograms, whose steps make corners in the curves (A has 1e-4);
+#: their tables have _FINE times as many knots.
 ERROR, STEPPED, _FINE = 2e-4, 5e-4, 4
 #: Corners are sharp where few summits stand above many: where a share is over _RARE times the mean of those above it.
-#: The error then grows with this power of that ratio (tests/laws/heights/test_histograms.py).
+#: The error then grows as this ratio to the power _SHARPER (tests/laws/heights/test_histograms.py).
 _RARE, _SHARPER = 25.0, 1.7
 #: Points of the quadrature over a density, exact to rounding for the normal one (tests/laws/heights/test_touching.py),
 #: and how many cases have it at a time.
@@ -77,8 +77,8 @@ class Symmetric(NamedTuple):
 
 
 class Histogram(NamedTuple):
-    """The same of a histogram: the density in each of its bins of the width `step`, from the highest summits down, and
-    the mean `depth`. x is in R and σ is 1; there is no c, which is 0 wherever it is asked for."""
+    """The density of a histogram: `shares`, in each of its bins of the width `step`, from the highest summits down; and
+    the mean `depth`. The methods are those of :class:`Symmetric`. x is in R and σ is 1; c has no meaning, and is 0."""
 
     shares: tuple[float, ...]
     step: float
@@ -117,13 +117,13 @@ def _tables(density, field, sigma, cut):
     keys = [(density, field, *pair) for pair in pairs.tolist()]
     rows = {key: _TABLES.get(key) for key in keys}
     missing, fine = [key for key, row in rows.items() if row is None], density.fine
-    at_once = _AT_ONCE // fine**2  # the tables are larger, of more pieces
+    at_once = _AT_ONCE // fine**2  # fine tables are larger, and of more pieces
     for begin in range(0, len(missing), at_once):
         some = missing[begin : begin + at_once]
         s, c = np.array([key[2:] for key in some]).T[:, :, None]
         at = partial(density.at, cut=c[..., None, None])
-        made = spread.tables(density.edges(c), at, field, s, _relief(density, s, c), fine)
-        rows.update(zip(some, np.moveaxis(made, 1, 0), strict=True))
+        new = spread.tables(density.edges(c), at, field, s, _relief(density, s, c), fine)
+        rows.update(zip(some, np.moveaxis(new, 1, 0), strict=True))
     if missing:
         if len(_TABLES) + len(missing) > _KEPT:
             _TABLES.clear()
@@ -136,7 +136,7 @@ def _relief(density, sigma, cut):
 
 
 def _looked_up(density, field, which, y, sigma, cut):
-    """q (B, m) if `which` is 0, λ if it is 1; and d ln q/d ln y, or that of λ."""
+    """q (B, m) if `which` is 0, λ if it is 1; and the derivative of its logarithm by ln y."""
     table, group = _tables(density, field, np.where(sigma > 0, sigma, 1.0), cut)
     step = spread.STEP * spread.KNOTS / table.shape[-1]
     value, slope = spread.look_up(np.ascontiguousarray(table[:, which]), group, y, step)
@@ -149,20 +149,22 @@ def _curve(density, field, y, sigma, cut):
     if (y > spread.LAST).any():
         q, slope = spread.beyond(y, q, slope, relief)
     (delta, w), dq = spread.depth(y, q, relief), slope * q / y
-    found = Curve(q, delta, dq, 2 * delta / y * (1 - y * dq / (w + q)))
+    spots = Curve(q, delta, dq, 2 * delta / y * (1 - y * dq / (w + q)))
     if (sigma > 0).all():
-        return found
-    return Curve(*(np.where(sigma > 0, own, one) for own, one in zip(found, disc_cell.spot_curve(y), strict=True)))
+        return spots
+    return Curve(
+        *(np.where(sigma > 0, rough, level) for rough, level in zip(spots, disc_cell.spot_curve(y), strict=True))
+    )
 
 
 def _guess(density, field, q, sigma, cut):
-    """y with q(y) = q, roughly: A by the power law of small pressures, but no less than that of one height, and no more
-    than that and the depth of the mean plane together."""
-    one = disc_cell.spot_guess(np.maximum(q, 0.0))
-    alike = disc_cell.spot_curve(np.maximum(one, 1e-300)).g
+    """y with q(y) = q, roughly. A is that of the power law of small pressures, but no less than that of equal heights,
+    and no more than this and the depth of the mean plane together."""
+    level = disc_cell.spot_guess(np.maximum(q, 0.0))
+    alike = disc_cell.spot_curve(np.maximum(level, 1e-300)).g
     few = (1.25 * np.pi * sigma / density.top(cut) * np.maximum(q, 0.0)) ** 0.4
     delta = np.clip(few, alike, alike + density.mean(cut) * sigma)
-    return np.where(sigma > 0, spread.unknown(delta, q, _relief(density, sigma, cut)), one)
+    return np.where(sigma > 0, spread.unknown(delta, q, _relief(density, sigma, cut)), level)
 
 
 def _area(density, field, y, q, sigma, cut):
@@ -175,8 +177,8 @@ def _peak(density, field, y, q, sigma, cut):
     delta, k = spread.depth(y, q, _relief(density, sigma, cut))[0], field * (2 / 3) * q
     v, c2 = spread.spot(delta, k)
     c = np.sqrt(c2)
-    found = 3 / np.pi * c + field * (2 / np.pi) * q * np.arctan2(c, v) + 1.5 / np.pi * np.maximum(delta - 1, 0.0)
-    return np.where(sigma > 0, found, disc_cell.spot_peak(y, q))
+    peak = 3 / np.pi * c + field * (2 / np.pi) * q * np.arctan2(c, v) + 1.5 / np.pi * np.maximum(delta - 1, 0.0)
+    return np.where(sigma > 0, peak, disc_cell.spot_peak(y, q))
 
 
 def _edge(density, field, sigma, cut):
@@ -206,13 +208,13 @@ def _scales(density, field, E, Nbar, Ra, sigma=1.0, cut=None):
     return p_star, A_star, sigma / A_star, density.c if cut is None else cut
 
 
-def law(name, density, field=1.0, **known):
+def law(name, density, field=1.0, **rest):
     """:class:`~solver.laws.law.Law` of these heights; `field` 0: the asperities do not feel each other."""
     parts = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge, "guess": _guess, "scales": _scales}
     parts = {key: partial(part, density, field) for key, part in parts.items()}
-    known = {"error": ERROR, "touching": partial(_touching, density)} | known
+    rest = {"error": ERROR, "touching": partial(_touching, density)} | rest
     parameters = disc_cell.PARAMETERS | density.parameters
-    return Law(name=name, parameters=parameters, rise=1.1, corners=True, **parts, **known)
+    return Law(name=name, parameters=parameters, rise=1.1, corners=True, **parts, **rest)
 
 
 def histogram(name, z, share, version):
@@ -221,7 +223,7 @@ def histogram(name, z, share, version):
     step = (z[-1] - z[0]) / (len(z) - 1)
     depth, shares = (z[-1] - z)[::-1] + step / 2, (share / (share.sum() * step))[::-1]
     bins = Histogram(tuple(shares.tolist()), step, float(depth @ shares * step))
-    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]  # of each share but the last: the mean above it
+    above = (np.cumsum(share[::-1]) / np.arange(1, len(z) + 1))[-2::-1]  # the mean above each share but the last
     sharp = max(1.0, (share[:-1] / above).max() / _RARE)
     return law(name, bins, version=version, error=STEPPED * sharp**_SHARPER)
 

@@ -7,7 +7,7 @@ the periodic contact problem. p* and A* are those of the disc cell. Both ends of
 Full contact is a limit only. Between neighbouring summits the surface has a kink, here called a ridge, where its slope
 changes by J. The pressure of full contact would be minus infinity there: (z J/4π) ln r at the distance r from a point
 where z ridges meet, and from a ridge itself, with z = 2. So gaps stay, of the size exp(-4π p^/(z J)); their area falls
-as exp(-2π p^/J). A^ falls short of its limit by the mean gap. That falls as exp(-3π p^) on the square lattice (J = 1,
+as exp(-2π p^/J). A^ falls short of its limit by the mean gap, which falls as exp(-3π p^) on the square lattice (J = 1,
 z = 4), and as exp(-4π p^/J) on the hexagonal one.
 """
 
@@ -17,7 +17,7 @@ from importlib.resources import files
 import numpy as np
 
 from . import disc_cell
-from .tabulated import Table, fitted, law_of, t_of
+from .tabulated import LawTable, fitted, law_of, t_of
 
 FILE = files(__package__) / "lattices.csv"  # which may be in a zip file
 #: p* and A* in units E = Ra = l = 1; and the radius of an isolated spot over y, for y -> 0.
@@ -26,16 +26,17 @@ _SPOT = np.cbrt(0.75 * P_STAR)
 #: Distance of neighbours on the hexagonal lattice, over l.
 _PITCH = (4 / 3) ** 0.25
 #: Full contact. J: the change of slope on a ridge, equal to the distance of neighbours. relief: the limit of A^. above:
-#: that of p_max^ - p^, from ``full_contact`` in tools/references/make_lattices.py. rate: both go as exp(-rate p^).
+#: that of p_max^ - p^, from ``full_contact`` in tools/references/make_lattices.py. rate: both tend to their limits as
+#: exp(-rate p^).
 ENDS = {
     "square": {"J": 1.0, "relief": 1 / 12, "above": 0.2206356, "rate": 3 * np.pi},
     "hex": {"J": _PITCH, "relief": 5 / (36 * np.sqrt(3)), "above": 0.2177788, "rate": 4 * np.pi / _PITCH},
 }
-#: Largest relative error of A, λ and p_max (tests/laws/lattice/test_lattice.py). It is that of λ; A, p_max have 1e-5.
+#: Largest relative error of A, λ and p_max (tests/laws/lattice/test_lattice.py). λ has it; A and p_max have 1e-5.
 ERROR = 2e-4
 #: Degree of the polynomials. They are near enough to the rows: FITTED in tests/laws/lattice/test_lattice.py.
 _DEGREE = 12
-#: Beyond the last row the fit is led by guiding points. This is their weight; that of a row is at most 1.
+#: Beyond the last row the fit is led by guiding points of this weight; a row has at most the weight 1.
 _WEIGHT = 1e-4
 #: At the guiding points V + m ln t goes on from the last row and tends to a number: its slope decays over this distance
 #: in t.
@@ -50,16 +51,16 @@ def read(name):
 
 
 def _table(name):
-    """:class:`~solver.laws.tabulated.Table` of a lattice."""
+    """:class:`~solver.laws.tabulated.LawTable` of a lattice."""
     J, relief, above, rate = ENDS[name].values()
     p, A, lam, p_max = read(name)
     q = p / P_STAR
-    given = (
+    columns = (
         (A / A_STAR, 2, rate, relief / A_STAR, _SPOT**2 / A_STAR),
         (lam, 2, 2 * np.pi / J, 1.0, np.pi * _SPOT**2),
         ((p_max - p) / P_STAR, 1, rate, above / P_STAR, 2 * _SPOT / np.pi / P_STAR),
     )
-    return Table(*(_quantity(t_of(q), q, *one) for one in given))
+    return LawTable(*(_quantity(t_of(q), q, *column) for column in columns))
 
 
 def _quantity(t, q, X, power, rate, limit, first):
@@ -74,8 +75,8 @@ def _quantity(t, q, X, power, rate, limit, first):
 
 
 def _law(name):
-    own = {"parameters": disc_cell.PARAMETERS, "scales": disc_cell.scales, "error": ERROR, "smears": False, "rise": 1.1}
-    return law_of(_table(name), name=f"{name}_lattice", **own)
+    words = {"name": f"{name}_lattice", "parameters": disc_cell.PARAMETERS, "scales": disc_cell.scales}
+    return law_of(_table(name), **words, error=ERROR, smears=False, rise=1.1)
 
 
 SQUARE, HEX = _law("square"), _law("hex")

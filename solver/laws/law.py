@@ -133,8 +133,8 @@ class Law:
         p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(numbers[name] for name in names))))
         flat = {name: v.ravel() for name, v in zip(names, values, strict=True)}
         with np.errstate(all="ignore"):
-            found = self.bind(E.ravel(), **flat).at(p.reshape(-1, 1))
-        return Spots(*(v.reshape(p.shape) for v in found))
+            spots = self.bind(E.ravel(), **flat).at(p.reshape(-1, 1))
+        return Spots(*(v.reshape(p.shape) for v in spots))
 
 
 class Bound(NamedTuple):
@@ -227,15 +227,15 @@ def inverse(value, target, y):
         going = going & (size > _LAST) & ((size > _ROUNDING) | (size < before / 2))
         if not going.any():
             break
-    return of_positive(target, np.where(size < 1, y, np.nan))
+    return where_positive(target, np.where(size < 1, y, np.nan))
 
 
 def log_step(value, target, y):
-    """The change of ln y in a Newton step on ln value against ln y; arguments as those of :func:`inverse`."""
+    """The change of ln y in a Newton step on ln value against ln y; arguments as in :func:`inverse`."""
     now, slope = value(y)
     return np.log(target / now) * now / (slope * y)
 
 
-def of_positive(target, y):
+def where_positive(target, y):
     """y where target > 0; 0 where it is not, and NaN where it is NaN."""
     return np.where(target > 0, y, np.where(np.isnan(target), np.nan, 0.0))

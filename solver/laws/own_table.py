@@ -1,8 +1,8 @@
 """A micro law from a table of one's own, ``micro = "table:mine.csv"``; docs/model.md says what stands in the file.
 
-Smooth curves are laid near the rows. The law's `error` is the largest distance of a row from the curve fitted to the
-others, or, between the rows, of the curve from one of a lower degree. Below the first row A goes on as the power of p
-that the first two rows have. With the columns z and share it is the law of this histogram (``heights.py``).
+Smooth curves are laid near the rows. The law's `error` is the largest of two distances: of a row from the curve fitted
+to the others, and, between the rows, of the curve from one of a lower degree. Below the first row A is the power of p
+that goes through the first two rows. A table with the columns z and share is a histogram (``heights.py``).
 """
 
 import csv
@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from . import heights
-from .tabulated import Table, fitted, law_of, t_of
+from .tabulated import LawTable, fitted, law_of, t_of
 
 PREFIX = "table:"
 COLUMNS = ("p", "A", "lam", "p_max")
@@ -26,18 +26,18 @@ HEIGHTS, _MOST = ("z", "share"), 32
 #: A table of a law: its fewest rows, and the highest degree of a polynomial. A polynomial within _NEAR of the rows is
 #: near enough, and needs no higher degree; one farther than _FAR from a row is refused. Both are relative distances.
 _FEWEST, _DEGREE, _NEAR, _FAR = 5, 14, 1e-4, 0.05
-#: The lowest degree counts whose distance is below this times that of the best degree: higher ones follow the noise.
+#: The lowest degree is taken that is at most this times as far from the rows as the best: higher ones follow the noise.
 _HARDLY = 1.5
 #: The error of a curve between the rows is taken to be this times its distance from the curve one degree lower, at
 #: _STEPS points a gap. p may rise by the factor _GAP from row to row: in wider gaps both curves are wrong alike
 #: (tests/laws/test_own_table_range.py).
 _APART, _STEPS, _GAP = 2.0, 8, 30.0
-#: Curves of neighbouring degrees may be wrong alike. So the distance from the next _HIGHER degrees counts too, of those
-#: that are as near the rows and have less than _PART coefficients a row; and _OF_ENDS of how far the first and the last
-#: row are from the curve through the others. Chosen so that `error` encloses all tables of
+#: Curves of neighbouring degrees may be wrong alike. So the distance from curves of the next _HIGHER degrees counts, if
+#: they are as near the rows and have less than _PART coefficients a row; and so does _OF_ENDS times the distance of the
+#: first and the last row from the curve through the others. Chosen so that `error` encloses all tables of
 #: tests/laws/test_own_table_range.py; it encloses all 90 random ones of `python tools/errors/own_tables.py` too.
 _HIGHER, _PART, _OF_ENDS = 3, 0.5, 0.15
-#: Largest exponent of A(p) over the rows. That of a contact is at most 1; the rest is left to noise.
+#: Largest exponent of A(p) over the rows. A contact has at most 1; the rest is left to noise.
 _BENT = 1.05
 #: Where λ is below _LIGHT and A rises with an exponent below _ROUND (2/3 of round summits, 1 of flat ones), λ rises
 #: faster than p_max in all laws of this package (tests/laws/test_own_table.py): else the columns are exchanged.
@@ -63,23 +63,23 @@ def read(name):
 
 
 def _text_of(path):
-    """The text of a file of numbers. Raises ValueError for what is no file, such as a pipe, which would be waited for,
-    or a device, which may have no end, and for a file that is too large; OSError where it cannot be read."""
+    """The text of a file of numbers. Raises ValueError for a pipe, which would be waited for, a device, which may have
+    no end, and a file that is too large; OSError where it cannot be read."""
     _check_file(path.stat())  # before it is opened: to open a device may do something
     with open(os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0)), "rb") as file:
-        found = os.fstat(file.fileno())
-        _check_file(found)  # it may have become a pipe
-        # no more than its size: that of the files of /proc, some of which have no end, is 0
-        return file.read(found.st_size).decode("utf-8-sig")
+        status = os.fstat(file.fileno())
+        _check_file(status)  # it may have become a pipe
+        # no more than its size: files of /proc, some of which have no end, have the size 0
+        return file.read(status.st_size).decode("utf-8-sig")
 
 
-def _check_file(found):
-    """Raise ValueError for the `os.stat_result` of what cannot be a table."""
-    if not stat.S_ISREG(found.st_mode):
-        what = "folder" if stat.S_ISDIR(found.st_mode) else "pipe or device"
+def _check_file(status):
+    """Raise ValueError for an `os.stat_result` that no table can have."""
+    if not stat.S_ISREG(status.st_mode):
+        what = "folder" if stat.S_ISDIR(status.st_mode) else "pipe or device"
         raise ValueError(f"is no file but a {what}: a table is a text file of numbers")
-    if found.st_size > LARGEST:
-        raise ValueError(f"has {found.st_size} bytes: must have at most {LARGEST}, some 100,000 rows")
+    if status.st_size > LARGEST:
+        raise ValueError(f"has {status.st_size} bytes: must have at most {LARGEST}, some 100,000 rows")
 
 
 @lru_cache(maxsize=16)
@@ -90,20 +90,20 @@ def _of_text(name, text):
         return _histogram(name, **_columns(text, HEIGHTS, 2))
     columns = _columns(text, COLUMNS, _FEWEST)
     _check(**columns)
-    return of_columns(name, **columns)
+    return fitted_law(name, **columns)
 
 
 def _histogram(name, z, share):
-    """The law of a histogram with the columns z and share (n,). Raises ValueError where it is not one of use."""
+    """The law of a histogram with the columns z and share (n,). Raises ValueError where it is of no use."""
     steps = np.diff(z)
     if len(z) > _MOST:
         raise ValueError(f"has {len(z)} rows: must have at most {_MOST}")
     if not (steps > 0).all() or np.ptp(steps) > 1e-6 * steps.mean():
         raise ValueError("column z: must ascend in equal steps")
-    found = heights.histogram(name, z, share, _digest(z, share))
-    if found.error > _FAR:
+    law = heights.histogram(name, z, share, _digest(z, share))
+    if law.error > _FAR:
         raise ValueError("column share: a few summits stand far above the many: leave out the highest rows, of so few")
-    return found
+    return law
 
 
 def _digest(*columns):
@@ -148,9 +148,9 @@ def _check(p, A, lam, p_max):
         ("p_max", p_max > p, 1, "must be larger than p"),
         ("p_max", lam * p_max > (1 - _FAR) * p, 1, "must be at least p/lam, the mean over the spots"),
     )
-    for name, kept, first, words in rules:
-        if not kept.all():
-            row = first + int(np.argmin(kept))
+    for name, holds, first, words in rules:
+        if not holds.all():
+            row = first + int(np.argmin(holds))
             value = {"p": p, "A": A, "lam": lam, "p_max": p_max}[name][row - 1]
             raise ValueError(f"column {name}, row {row}: {value:g}: {words}")
     if np.median(np.log(A[1:] / A[0]) / np.log(p[1:] / p[0])) > _BENT:  # one wrong row is named below
@@ -162,7 +162,7 @@ def _check(p, A, lam, p_max):
         raise ValueError(f"columns lam and p_max, rows 1 to {last + 1}: {words}")
 
 
-def of_columns(name, p, A, lam, p_max):
+def fitted_law(name, p, A, lam, p_max):
     """:class:`~solver.laws.law.Law` near the rows (n,) of a table that has been checked."""
     beta = np.clip(np.log(A[1] / A[0]) / np.log(p[1] / p[0]), *_BETA)
     s, q = 2 / beta - 1, p / p[-1]
@@ -170,7 +170,7 @@ def of_columns(name, p, A, lam, p_max):
     quantities = (("A", A / A[-1], 2), ("lam", lam, 2), ("p_max", (p_max - p) / p[-1], 1))
     curves = [_curve(column, t, q, X, power) for column, X, power in quantities]
     return law_of(
-        Table(*(curve for curve, _ in curves), s),
+        LawTable(*(curve for curve, _ in curves), s),
         name=name,
         version=_digest(p, A, lam, p_max),
         scales=partial(_scales, p[-1], A[-1]),
@@ -191,8 +191,8 @@ def _curve(column, t, q, X, power):
     largest error at and between them. Raises ValueError where every degree is too far away, or falls."""
     degrees = range(min(_DEGREE, len(t) - 2) + 1)
     tried = [fitted(t, q, X, degree, power=power, span=(t[0], t[-1])) for degree in degrees]
-    apart, tried = _apart([found for found, _ in tried], t), tried[1:]  # degree 0 is there to compare degree 1 with
-    far = np.array([error[1:-1].max() for _, error in tried])  # without the ends: no curve through the others says them
+    apart, tried = _apart([curve for curve, _ in tried], t), tried[1:]  # degree 1 is compared with degree 0
+    far = np.array([error[1:-1].max() for _, error in tried])  # no curve through the others tells the ends
     if far.min() > _FAR:
         row = int(np.argmax(tried[far.argmin()][1][1:-1])) + 2
         raise ValueError(
@@ -206,7 +206,7 @@ def _curve(column, t, q, X, power):
             f"column {column}, rows {row} and {row + 1}: smooth curves through the rows differ by "
             f"{100 * far.min():.0f} % between them: at most {100 * _FAR:.0f} % are allowed: add rows there"
         )
-    falls = np.array([column == "A" and _falls(found, t) for found, _ in tried])
+    falls = np.array([column == "A" and _falls(curve, t) for curve, _ in tried])
     good = ~falls & (far <= max(_NEAR, _HARDLY * far[~falls].min(initial=np.inf))) & (far <= _FAR)
     if not good.any():
         raise ValueError(f"column {column}: no smooth curve through the rows rises: add rows, or smooth them")
@@ -219,14 +219,14 @@ def _curve(column, t, q, X, power):
 
 
 def _apart(curves, t):
-    """Errors (k - 1, m) of k curves of ascending degrees, but for the first, at _STEPS points a gap of the rows t."""
+    """Errors (k - 1, m) of k curves of ascending degrees without the first, at _STEPS points a gap of the rows t."""
     rows = np.arange(len(t))
     points = np.exp(np.interp(np.arange(0, len(t) - 1, 1 / _STEPS), rows, np.log(t)))
     V = np.array([curve.exponent(points)[0] for curve in curves])
     return _APART * np.expm1(np.minimum(np.abs(np.diff(V, axis=0)), 9.0))  # far above _FAR, and no overflow
 
 
-def _falls(found, t):
+def _falls(quantity, t):
     """Whether a :class:`~solver.laws.tabulated.Quantity` falls somewhere between the rows at t (n,), or below them."""
     points = np.append(np.geomspace(1e-6, t[0], 50), np.linspace(t[0], 1, 2000)[:-1])
-    return bool((found.power / points + found.exponent(points)[1] <= 0).any())
+    return bool((quantity.power / points + quantity.exponent(points)[1] <= 0).any())

@@ -9,13 +9,13 @@ from ..parameters import Parameter
 from . import disc_cell
 from .law import Curve, Law
 
-#: With a small β the pressure at the edge is below the least float. _LEAST y is added to q, so that q increases with y
-#: there too. Below _LOST this term is seen in the digits of q: a case with such a pressure in the centre has no p_max.
+#: With a small β the pressure at the edge is below the least float. _LEAST y is added to q, so that q increases there.
+#: Below _LOST this term is seen in the digits of q: a case with such a pressure in the centre has no p_max.
 _LEAST, _LOST = 1e-295, 1e-270
 
 
 def _scales(E, Nbar, Ra, B, beta):
-    """p*, A*; and further β, and p* over that of the law that is fitted."""
+    """p*, A*, β, and the ratio of p* to the p* of the fitted law."""
     return E, B * Ra, beta, E / disc_cell.scales(E, Nbar, Ra)[0]
 
 

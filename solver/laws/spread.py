@@ -1,4 +1,4 @@
-"""The spots of asperities of random heights in the mean field of the disc cell: means over them, and tables of these.
+"""The spots of asperities of random heights in the mean field of the disc cell: means over the spots, and their tables.
 
 Units are p* and A*; q = p/p*, k = 2 q/3, and δ = A/A* is the approach of the highest summit. One that lies ζ below it
 has the approach δ - ζ. Where 0 < δ - ζ + 2 k and δ - ζ < 1 it has a spot of radius c = b/B̄, with v = sqrt(1 - c²),
@@ -24,23 +24,22 @@ from ..numerics.quadrature import gauss_legendre
 
 #: Gauss points on each smooth piece of the density: of summits with a spot, and of those that fill their cell.
 _SPOTS, _FILLED = 24, 16
-#: About how many spots are computed at a time, so that arrays of them stay in the processor's cache. On one
-#: machine the first use of a histogram of 32 classes took 0.4 of the processor time that it takes with all spots at
-#: once, 20 laws of normal heights 0.7. The numbers have the same bits with any value
-#: (tests/laws/heights/test_histograms.py).
+#: About how many spots are computed at a time, so that their arrays stay in the processor's cache. On one machine the
+#: first use of a histogram of 32 classes took 0.4 of the processor time of all spots at once, that of 20 laws of normal
+#: heights 0.7. The numbers have the same bits with any value (tests/laws/heights/test_histograms.py).
 _AT_A_TIME = 2**15
 #: Newton's method on ln q: most steps; a change below _LAST is the last, for the next would be below rounding; a change
-#: below _NEAR is taken even if it leaves the bracket of the root, which then is rounding; the largest change.
+#: below _NEAR is taken even if it leaves the bracket of the root, for that is rounding; the largest change.
 _STEPS, _LAST, _NEAR, _LONGEST = 60, 1e-9, 1e-6, 2.0
 #: Knots of a table in ln y: the first, their distance, their number. A quintic through six of them errs by less than
 #: 5e-6 in q and 2e-4 in λ, and at the last knot δ is as near to its limit (tests/laws/heights/test_heights.py).
 FIRST, STEP, KNOTS = np.log(1e-4), 0.025, 992
 #: The largest y that a table knows; the last two knots are beyond it.
 LAST = np.exp(FIRST + STEP * (KNOTS - 3))
-#: The relief <ζ> + 1/3 above which w is not 1, and the one above which u is not: the tables then begin where δ is 1e-16
-#: of the relief. tests/laws/heights/test_heights_far.py has heights below, between and above both.
+#: The relief <ζ> + 1/3 above which w exceeds 1, and that above which u does. So the tables begin where δ is 1e-16 of
+#: the relief. tests/laws/heights/test_heights_far.py has heights below, between and above both.
 _FAR, _FARTHEST = 10.0, 1e8
-#: Every sixth knot is solved first. The others begin at what is interpolated between these, and take fewer steps.
+#: Every sixth knot is solved first. The others begin at values interpolated between these, and take fewer steps.
 _EVERY = 6
 
 
@@ -73,7 +72,7 @@ def unknown(delta, q, relief):
 
 
 def beyond(y, q, slope, relief):
-    """q and d ln q/d ln y, from those at LAST where y is larger: w + q goes on as the power of y that it is there. That
+    """q and d ln q/d ln y, where y is larger from those at LAST: w + q goes on as the power of y that it is there. It
     is nearly the first power, so that δ is nearly constant."""
     w = depth(1.0, q, relief)[1]
     power, ratio = slope * q / (w + q), np.maximum(y / LAST, 1.0)
@@ -98,8 +97,8 @@ def means(edges, density, field, q, delta, sigma):
 def _means(edges, density, field, q, delta, sigma):
     low, high = (edges[:, None, part, None] for part in (slice(None, -1), slice(1, None)))
     sigma, delta, q = sigma[..., None, None], delta[..., None, None], q[..., None, None]
-    k, one = field * (2 / 3) * q, np.where(sigma > 0, sigma, 1.0)
-    full, touching = (delta - 1) / one, (delta + 2 * k) / one
+    k, divisor = field * (2 / 3) * q, np.where(sigma > 0, sigma, 1.0)
+    full, touching = (delta - 1) / divisor, (delta + 2 * k) / divisor
     begin, end = np.clip(full, low, high), np.clip(touching, low, high)
 
     tau, weight = gauss_legendre(_SPOTS)
@@ -152,13 +151,13 @@ def pressure(edges, density, field, y, sigma, relief, q=None):
         q = q * np.exp(step)
         if np.abs(step).max() <= _LAST:
             break
-    # at the last q, not at the one before: else the tables made together would decide the last digits
+    # means at the last q: at the one before, the last digits would depend on the tables that are made together
     return q, means(edges, density, field, q, depth(y, q, relief)[0], sigma)
 
 
 def _weights():
-    """(6, 6): a row for each of the values at -2, ..., 3, a column for each power of t in [0, 1]. They give the quintic
-    whose value and first two derivatives at 0 and at 1 are those of the polynomial through the five values around."""
+    """(6, 6): a row for each of the values at -2, ..., 3, a column for each power of t in [0, 1]. They give a quintic.
+    At 0 and at 1 it has the value and the first two derivatives of the polynomial through the five values around."""
     first = np.array([1, -8, 0, 8, -1]) / 12
     second = np.array([-1, 16, -30, 16, -1]) / 12
     hermite = np.array([
@@ -187,7 +186,7 @@ def look_up(table, group, y, step=STEP):
     value, slope = np.zeros_like(t), np.zeros_like(t)
     for row in _WEIGHTS.T[::-1]:  # Horner's scheme
         slope = slope * t + value
-        value = value * t + sum(weight * one for weight, one in zip(row, around, strict=True) if weight)
+        value = value * t + sum(weight * values for weight, values in zip(row, around, strict=True) if weight)
     return value + slope * (place - knot - t), slope / step
 
 

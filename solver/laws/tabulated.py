@@ -1,4 +1,4 @@
-"""A micro law from the rows of a table: smooth curves near the rows that rise, with the ends that are known.
+"""A micro law from the rows of a table: smooth, rising curves near the rows, with the ends that are known.
 
 The unknown y > 0 is chosen by q = y t^s with t = y/(1 + y), which goes from 0 to 1. For small y, q is y^(1 + s): with
 s = 2/β - 1, g ~ y² means g ~ q^β. For large y, q is y - s. A quantity that begins as t^m and tends to a limit by
@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev, polynomial
 
-from .law import Curve, Law, inverse, of_positive
+from .law import Curve, Law, inverse, where_positive
 
 #: Above this q, y is q to rounding.
 _LARGE = 1e30
@@ -70,7 +70,7 @@ class Quantity(NamedTuple):
         return 1 / (1 / self.limit + rest), rest, (self.power / t + dV) * (1 - t) ** 2 + self.rate * dq
 
 
-class Table(NamedTuple):
+class LawTable(NamedTuple):
     """The quantities of a law: A/A*, λ, and `above`, (p_max - p)/p*; and the exponent s of q = y t^s."""
 
     A: Quantity
@@ -86,43 +86,43 @@ class Table(NamedTuple):
 
 
 def fitted(t, q, X, degree, guides=((), (), 0.0), first=None, **form):
-    """:class:`Quantity` near the rows X (n,) at t and q (n,), and its error at each row (n,), relative: how far the row
-    is from the curve fitted to the other rows alone. Rows far apart have large errors, as the curve between them has.
+    """:class:`Quantity` near the rows X (n,) at t and q (n,), and its relative error at each row (n,): how far the row
+    is from the curve fitted to the other rows alone. Where rows are far apart, both this and the curve err much.
 
     degree : of the polynomial
-    guides : t and V (k,) of guiding points where there are no rows, and their weight, small beside those of the rows
+    guides : t and V (k,) of guiding points where there are no rows, and their weight, small beside the rows' weights
     first : X/t^power for t -> 0, if it is known; met exactly
     form : power, and rate, limit and span of the Quantity
     """
-    one = Quantity(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
-    share = 1 - X / one.limit  # dX/X = (1 - X/limit) dV
-    V = -one.rate * q - np.log((1 / X - 1 / one.limit) * t**one.power)
+    quantity = Quantity(**{"rate": 0.0, "limit": np.inf} | form, V=np.zeros(1))
+    share = 1 - X / quantity.limit  # dX/X = (1 - X/limit) dV
+    V = -quantity.rate * q - np.log((1 / X - 1 / quantity.limit) * t**quantity.power)
     points, values = np.append(t, guides[0]), np.append(V, guides[1])
     weights = np.append(share, np.full(len(guides[0]), guides[2]))[:, None]
     lowest, factor = (0.0, np.ones_like(points)) if first is None else (np.log(first), points)
     basis = factor[:, None] * chebyshev.chebvander(2 * points - 1, degree)
     Q, R = np.linalg.qr(basis * weights)
-    found = np.linalg.solve(R, Q.T @ ((values - lowest) * weights[:, 0]))
-    V = chebyshev.cheb2poly(found)
+    coefficients = np.linalg.solve(R, Q.T @ ((values - lowest) * weights[:, 0]))
+    V = chebyshev.cheb2poly(coefficients)
     if first is not None:
         V = polynomial.polyadd(polynomial.polymul(V, [0.5, 0.5]), [lowest])
-    one = one._replace(V=V)
-    own = (Q[: len(t)] ** 2).sum(axis=1)  # leverage: how much of the curve at a row comes from that row itself
-    return one, np.abs(one.at(t, q) / X - 1) / np.maximum(1 - own, 1e-9)
+    quantity = quantity._replace(V=V)
+    leverage = (Q[: len(t)] ** 2).sum(axis=1)  # leverage: how much of the curve at a row comes from that row itself
+    return quantity, np.abs(quantity.at(t, q) / X - 1) / np.maximum(1 - leverage, 1e-9)
 
 
 def t_of(q, s=2.0):
     """t (n,) at which y t^s = q (n,) > 0."""
-    y = _from_pressure(Table(None, None, None, s), np.asarray(q, dtype=float))
+    y = _from_pressure(LawTable(None, None, None, s), np.asarray(q, dtype=float))
     return y / (1 + y)
 
 
-def law_of(table, **known):
-    """:class:`~solver.laws.law.Law` of a :class:`Table`, which can be pickled. `known`: its name, its `scales` and all
-    else that the table does not say."""
+def law_of(table, **rest):
+    """:class:`~solver.laws.law.Law` of a :class:`LawTable`, which can be pickled. `rest`: its name, its `scales` and
+    all else that the table does not say."""
     functions = {"curve": _curve, "area": _area, "peak": _peak, "edge": _edge}
     functions |= {"from_pressure": _from_pressure, "from_displacement": partial(_from_displacement, _inverse(table))}
-    return Law(**{name: partial(function, table) for name, function in functions.items()}, **known)
+    return Law(**{name: partial(function, table) for name, function in functions.items()}, **rest)
 
 
 def _curve(table, y):
@@ -146,16 +146,16 @@ def _edge(table):
 def _from_pressure(table, q):
     start = np.maximum(q, 0.0)
     if table.s == 2:
-        return of_positive(q, _root(start))
+        return where_positive(q, _root(start))
     return inverse(lambda y: table.pressure(y)[1:], q, start ** (1 / (1 + table.s)) + start)
 
 
 def _root(q):
     """y >= 0 with y³ = q (1 + y)², which is q = y t², by Cardano's formula. No terms cancel: y is right to a few units
     of rounding."""
-    one = np.minimum(q, _LARGE)
-    t = np.cbrt(one * (0.5 + np.sqrt(0.25 + one / 27) + one / 3 * (1 + one / 9)))
-    return np.where(q > _LARGE, q, one / 3 + t + one * (one + 6) / (9 * np.maximum(t, _TINY)))
+    bounded = np.minimum(q, _LARGE)
+    t = np.cbrt(bounded * (0.5 + np.sqrt(0.25 + bounded / 27) + bounded / 3 * (1 + bounded / 9)))
+    return np.where(q > _LARGE, q, bounded / 3 + t + bounded * (bounded + 6) / (9 * np.maximum(t, _TINY)))
 
 
 def _inverse(table):
@@ -167,8 +167,8 @@ def _inverse(table):
 
 
 def _from_displacement(inverse_curve, table, g):
-    """y (B, m) at which A/A* is g. Solved for 1/rest, which is g without a limit, and grows to infinity as g comes near
-    a limit."""
+    """y (B, m) at which A/A* is g. It is solved for 1/rest, which is g where A has no limit, and grows to infinity as g
+    comes near a limit."""
     A, g = table.A, np.asarray(g, dtype=float)
     odds = 1 / (1 / np.where(g < A.limit, g, np.nan) - 1 / A.limit)
 

@@ -41,14 +41,14 @@ def declaration(law):
     """What is wrong with the declaration of the parameters of a law: a text, "" for nothing."""
     if not isinstance(law.parameters, dict):
         return "parameters must be a dictionary, name -> Parameter"
-    for name, own in law.parameters.items():
+    for name, parameter in law.parameters.items():
         if not (isinstance(name, str) and name.isidentifier() and name[0] != "_"):
             return f"the parameter {name!r} must have a name of letters, digits and _"
-        if not isinstance(own, Parameter) or own.choices or not _is_interval(own.interval):
+        if not isinstance(parameter, Parameter) or parameter.choices or not _is_interval(parameter.interval):
             return f'the parameter {name} must be a Parameter with an interval such as "(0, 1.57)", and no choices'
-        if not (own.default is None or allowed(own, own.default)):
-            return f"the parameter {name} has the default {own.default}, outside {own.interval}"
-        if not (isinstance(own.powers, tuple) and [type(power) for power in own.powers] == [int, int]):
+        if not (parameter.default is None or allowed(parameter, parameter.default)):
+            return f"the parameter {name} has the default {parameter.default}, outside {parameter.interval}"
+        if not (isinstance(parameter.powers, tuple) and [type(power) for power in parameter.powers] == [int, int]):
             return f"the parameter {name} must have powers of two whole numbers, (i, j) of E2*^i R^j"
     return ""
 
@@ -82,19 +82,19 @@ def tried(law, E, given):
         if falls.any():
             _refuse(law, f"curve: {name} must increase from 0 at y = 0", given, falls)
         slope = np.log(getattr(above, name) / getattr(below, name)) / (2 * _STEP)  # of ln q over ln y
-        numbers, known = (slope, _Y * getattr(curve, f"d{name}") / at, _WRONG), here & (at > _TINY)
-        rising = known & (slope > _FLAT / _STEP)
+        numbers, checked = (slope, _Y * getattr(curve, f"d{name}") / at, _WRONG), here & (at > _TINY)
+        rising = checked & (slope > _FLAT / _STEP)
         _compare(law, f"curve: d{name} must be the derivative of {name} by y", numbers, rising, given)
         if getattr(law, inverse):
             again = _curve(law, _of_shape(law, inverse, at, *bound.own), bound.own)
             numbers = at, getattr(again, name), _INVERSE
-            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, known, given)
+            _compare(law, f"{inverse} must be the inverse of {name} of curve", numbers, checked, given)
 
 
 def _shapes(law, E, given):
     """The law bound to its cases, and curve and area at _Y, if all of its functions return what they must."""
-    found = _called(law, "scales", E, **given)
-    if not (isinstance(found, (tuple, list)) and len(found) >= 2 and all(np.shape(v) in ((), E.shape) for v in found)):
+    parts = _called(law, "scales", E, **given)
+    if not (isinstance(parts, (tuple, list)) and len(parts) >= 2 and all(np.shape(v) in ((), E.shape) for v in parts)):
         _refuse(law, "scales must return p*, A* and what else the functions need, each of the shape of E")
     bound = law.bind(E, **given)
     curve, edge = _curve(law, _Y, bound.own), _called(law, "edge", *bound.own)
@@ -108,42 +108,42 @@ def _shapes(law, E, given):
     return bound, curve, _of_shape(law, "area", _Y, curve.q, *bound.own)
 
 
-def _compare(law, rule, numbers, known, given):
-    """Refuse a law if too many of the points where two arrays are `known` differ."""
+def _compare(law, rule, numbers, checked, given):
+    """Refuse a law if two arrays differ at too many of the points that are `checked`."""
     right, stated, most = numbers
-    known = known & np.isfinite(right) & np.isfinite(stated)
-    wrong = known & (np.abs(stated - right) > most * np.abs(right))
-    if wrong.sum() > _PART * known.sum():
+    checked = checked & np.isfinite(right) & np.isfinite(stated)
+    wrong = checked & (np.abs(stated - right) > most * np.abs(right))
+    if wrong.sum() > _PART * checked.sum():
         _refuse(law, rule, given, wrong)
 
 
 def _curve(law, y, own):
-    found = _called(law, "curve", y, *own)
-    if not isinstance(found, Curve) or any(np.shape(values) != y.shape for values in found):
+    curve = _called(law, "curve", y, *own)
+    if not isinstance(curve, Curve) or any(np.shape(values) != y.shape for values in curve):
         _refuse(law, "curve must return a Curve of four arrays of the shape of y, (cases, points)")
-    return found
+    return curve
 
 
 def _of_shape(law, name, y, *further):
-    found = _called(law, name, y, *further)
-    if np.shape(found) != y.shape:
+    values = _called(law, name, y, *further)
+    if np.shape(values) != y.shape:
         _refuse(law, f"{name} must return an array of the shape of y, (cases, points)")
-    return found
+    return values
 
 
-def _broadcasts(law, name, found, y):
+def _broadcasts(law, name, values, y):
     try:
-        right = np.broadcast_shapes(np.shape(found), y.shape) == y.shape and np.asarray(found).dtype.kind in "fiub"
+        right = np.broadcast_shapes(np.shape(values), y.shape) == y.shape and np.asarray(values).dtype.kind in "fiub"
     except ValueError:
         right = False
     if not right:
         _refuse(law, f"{name} must return numbers, one for all or one for each of what it is given")
 
 
-def _called(law, name, *given, **named):
+def _called(law, name, *arguments, **named):
     try:
         with going_on():
-            return getattr(law, name)(*given, **named)
+            return getattr(law, name)(*arguments, **named)
     except Exception as error:
         at = traceback.extract_tb(error.__traceback__)[-1]
         where = f" ({Path(at.filename).name}, line {at.lineno})" * (at.filename != __file__)

@@ -1,4 +1,4 @@
-"""The paraboloid f = r²/2, in R: what the model takes a sphere for. Its drop is s², at every radius."""
+"""The paraboloid f = r²/2, in R, for which the model takes a sphere. Its drop is s² at every radius."""
 
 from typing import NamedTuple
 
@@ -9,7 +9,7 @@ HERTZ = np.pi**2 / 16
 
 
 class Paraboloid(NamedTuple):
-    """The :class:`~solver.punches.punch.Punch` of all cases: it has no numbers of its own."""
+    """The :class:`~solver.punches.punch.Punch` of all cases: it has no numbers."""
 
     def take(self, index):
         return self

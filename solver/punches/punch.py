@@ -1,6 +1,6 @@
 """The protocol of a punch: the shape f(r) of the indenter. One file has one shape: :mod:`.paraboloid`.
 
-The contact asks a punch for nothing else, and never which one it is. Lengths are in R; a is the contact radius, x = r/a
+The contact asks a punch for nothing else, nor which punch it is. Lengths are in R; a is the contact radius, x = r/a
 and s = sqrt(1 - x²). What the surface must yield at x, less that at the edge, is f(a) - f(ax). The equation of the
 contact is divided by a²/2, and so is this:
 
@@ -45,7 +45,7 @@ class Punch(Protocol):
         """Contact radius (B,) under the load P (B,) where asperities alone yield, by A = A* (p/p*)^(1/e)."""
 
     def stiffness(self, a, s, half_space, springs):
-        """First guess of 1/q, (B, m) at s (m,) > 0, where asperities do not yield: it is nearly the sum of those on a
+        """First guess of 1/q, (B, m) at s (m,) > 0, where asperities do not yield: it is nearly the sum of the 1/q on a
         half-space, whose X is `half_space` (B, 1), and on springs, whose Y is `springs` (B, 1)."""
 
 

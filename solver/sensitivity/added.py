@@ -8,7 +8,7 @@ from .changes import moved_along, slope_of
 from .points import at_points
 
 
-def of_added(ev, changes, derivatives, problem, unit, x):
+def added_slopes(ev, changes, derivatives, problem, unit, x):
     """Quantity -> (k, B), derivatives of ln A0, ln p_max and ln Ar/An; and of λ at the radii x (m,), (k, B, m).
 
     derivatives : :class:`.state.Implicit` of the smooth solutions `ev`; problem : the 2 k B moved cases with their

@@ -9,6 +9,7 @@ from ..contact.results import quantities
 from ..contact.start import first_guess
 from ..numerics.ladder import LADDER
 from ..numerics.mesh import mesh_of
+from ..scaling import as_cases
 
 #: The closed form of the smooth half-space is a polynomial in s that the coarsest mesh has.
 _LEAST = LADDER[0]
@@ -18,6 +19,17 @@ def meshes(solution, problem):
     """Number of nodes (B,) of the one panel on which each case was solved; 0: on several panels."""
     nodes = np.maximum(solution.nodes, _LEAST)
     return np.where((problem.nodes > 0) | np.isin(nodes, LADDER), nodes, 0)
+
+
+def stacks(problem, nodes, a, most):
+    """Yield the indices of cases of one law, base and mesh, and their number of nodes; 0: of one case on panels. No
+    stack has more than `most` unknowns."""
+    kinds = np.stack([problem.micro, problem.base, nodes.astype(str)])
+    for kind in np.unique(kinds, axis=1).T:
+        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[2])
+        order = as_cases(problem.take(index)).body.order(a[index])
+        index = index if order is None else index[order]
+        yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // most) or len(index)))
 
 
 def found_again(cases, nodes, a, rtol):
@@ -30,7 +42,7 @@ def found_again(cases, nodes, a, rtol):
 
 
 def same(ev, solution, rtol):
-    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It is not where there
-    are two solutions, or where it was solved on other panels."""
+    """(B,) bool: `ev` is the equation at the radius and the depth of `solution`, to rtol (B,). It may be another where
+    there are two solutions, or other panels."""
     results = quantities(ev)
     return np.maximum(np.abs(results.a / solution.a - 1), np.abs(results.D / solution.D - 1)) <= rtol

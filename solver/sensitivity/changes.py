@@ -12,21 +12,21 @@ from ..contact.equation import Cases, groups
 from ..parameters import CONTROL, PARAMETERS
 from ..scaling import as_cases
 
-#: By how much an input is moved up and down: a part of itself, a Poisson ratio by this. The curvature then adds 1e-8
+#: An input is moved up and down by this part of itself, a Poisson ratio by this number. The curvature then adds 1e-8
 #: times a third derivative, and rounding 1e-12.
 STEP = 1e-4
-#: Parameters that are numbers, but say how a case is solved, or are units: what these do follows from dimensions.
+#: Numbers that are no inputs: they say how a case is solved, or are units, whose effect follows from dimensions.
 _NO_INPUTS = {"accuracy", "k", "rtol", "R", "E2"}
 
 
 def is_ratio(name):
-    """Whether the derivative is by the input itself and not by its logarithm: Poisson ratios, which may be 0."""
+    """Whether the derivative is by the input itself, not by its logarithm: of Poisson ratios, which may be 0."""
     return name in ("nu1", "nu2")
 
 
 def inputs_of(control):
     """Names of all inputs, the control first: numbers that have an interval."""
-    numbers = [name for name, own in PARAMETERS.items() if own.interval and not own.whole and name not in _NO_INPUTS]
+    numbers = [name for name, row in PARAMETERS.items() if row.interval and not row.whole and name not in _NO_INPUTS]
     return (control, *numbers)
 
 
@@ -38,17 +38,17 @@ def moved(problem, inputs, step=STEP):
     sign = np.array([1.0, -1.0])[:, None]
     arrays = {name: values for name, values in (("value", rows.value), *rows.parameters.items()) if name not in inputs}
     for i, name in enumerate(inputs):
-        own = "value" if name in CONTROL else name
-        values = np.array(arrays.get(own, getattr(rows, own)), dtype=float).reshape(k, 2, size)
+        key = "value" if name in CONTROL else name
+        values = np.array(arrays.get(key, getattr(rows, key)), dtype=float).reshape(k, 2, size)
         values[i] += sign * step * (1.0 if is_ratio(name) else values[i])
-        arrays[own] = values.ravel()
+        arrays[key] = values.ravel()
     value = arrays.pop("value")
     return type(problem)(problem.control, value, rows.parameters | arrays)
 
 
 def slope_of(values, k, step=STEP):
-    """Derivatives (k, B, ...) from values (2 k B, ...) of the cases of :func:`moved`; 0 where nothing changes, also of
-    what is infinite."""
+    """Derivatives (k, B, ...) from values (2 k B, ...) of the cases of :func:`moved`; 0 where nothing changes, infinite
+    values too."""
     up, down = np.moveaxis(values.reshape(k, 2, len(values) // (2 * k), *values.shape[1:]), 1, 0)
     return np.where(up == down, 0.0, (up - down) / (2 * step))
 

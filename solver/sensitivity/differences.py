@@ -1,7 +1,7 @@
 """Derivatives by moved inputs: each case solved again with each input a little larger and a little smaller.
 
-It takes 2 k solutions, and they have errors. It is for cases whose equation is not found again, such as those on panels
-that another round would choose otherwise.
+It takes 2 k solutions, which have errors. It is for cases whose equation is not found again, such as those on panels
+that would be chosen otherwise a second time.
 """
 
 import numpy as np
@@ -9,7 +9,7 @@ import numpy as np
 from ..solve import solve
 from .changes import moved, slope_of
 
-#: By how much an input is moved, and the rtol of the moved cases: the error is about their ratio, and this squared.
+#: By how much an input is moved, and the rtol of the moved cases. The error is about _RTOL/_STEP, and _STEP².
 _STEP, _RTOL = 1e-3, 1e-9
 
 

@@ -18,17 +18,17 @@ from ..scaling import as_cases, dimensionless
 from ..solution import Solution
 from ..status import Status
 from ..threads import one_blas_thread
-from .added import of_added
-from .again import found_again, meshes, same
+from .added import added_slopes
+from .again import found_again, meshes, same, stacks
 from .changes import changes_of, inputs_of, moved, slope_of
 from .differences import by_differences
 from .held import Held, held
 from .points import of_corners, profiles
 from .state import implicit, operators_of
-from .stiffness import of_stiffness
+from .stiffness import stiffness_slopes
 
-#: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`, and those of them whose unit
-#: has the modulus as a factor.
+#: Quantities that have sensitivities, arrays (B,) of a :class:`~solver.solution.Solution`; and those among them whose
+#: unit has the modulus as a factor.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0")
 _OF_MODULUS = ("P", "p0", "p_max", "dP_dD")
 #: Most unknowns of a stack: with k inputs it has k right-hand sides.
@@ -105,7 +105,7 @@ def _of_solved(scaled, solution, inputs, x):
     shapes, left = np.full((2, k, size, len(x)), np.nan), np.ones(size, dtype=bool)
     now, above = held(scaled, solution.model_used), moved(scaled, inputs)
     beside = held(above, np.tile(solution.model_used, 2 * k))
-    for index, nodes in _stacks(now.written, meshes(solution, scaled), solution.a):
+    for index, nodes in stacks(now.written, meshes(solution, scaled), solution.a, _STACK):
         rows = (np.arange(2 * k)[:, None] * size + index).ravel()
         part = now.take(index), beside.take(rows), above.take(rows)
         good, derivatives, at_x = _of_stack(*part, solution.take(index), nodes, x)
@@ -121,16 +121,6 @@ def _of_solved(scaled, solution, inputs, x):
     return logs, shapes
 
 
-def _stacks(problem, nodes, a):
-    """Yield the indices of cases of one law, base and mesh, and their number of nodes; 0: of one case on panels."""
-    kinds = np.stack([problem.micro, problem.base, nodes.astype(str)])
-    for kind in np.unique(kinds, axis=1).T:
-        index, count = np.flatnonzero(np.all(kinds == kind[:, None], axis=0)), int(kind[2])
-        order = as_cases(problem.take(index)).body.order(a[index])
-        index = index if order is None else index[order]
-        yield from ((part, count) for part in np.array_split(index, -(-len(index) * count // _STACK) or len(index)))
-
-
 def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
     """(B,) bool, whether the solutions were found again; quantity -> (k, B); and (2, k, B, m) for p and λ.
 
@@ -142,14 +132,14 @@ def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
     changes = changes_of(beside.written, ev.state.eta, k)
     operators = operators_of(ev, changes)
     derivatives = implicit(ev, changes, operators)
-    logs = derivatives.logs | {"dP_dD": of_stiffness(ev, beside.written, derivatives, operators)}
+    logs = derivatives.logs | {"dP_dD": stiffness_slopes(ev, beside.written, derivatives, operators)}
     if ev.cases.law.law.corners:
         logs["Ar_An"] = of_corners(ev, changes, derivatives)
     logs |= {name: logs[name] + d_E2 for name in _OF_MODULUS}
     at = profiles(ev, changes, derivatives, x)
     d_p, d_lam = now.E2[:, None] * (at.d_p + d_E2[..., None] * at.p), at.d_lam
     if now.added.any():
-        spots, lam = of_added(ev, changes, derivatives, above, (now.E2, d_E2), x)
+        spots, lam = added_slopes(ev, changes, derivatives, above, (now.E2, d_E2), x)
         logs = {name: np.where(now.added, spots.get(name, values), values) for name, values in logs.items()}
         d_lam = np.where(now.added[:, None], lam, d_lam)
     finite = np.all([np.isfinite(values).all(axis=0) for values in logs.values()], axis=0)

@@ -6,7 +6,8 @@ the logarithms of load and depth, by explicit functions. So dq/dθ at a fixed ra
     X (K + diag) dq/dθ = -dF/dθ,
 
 with the matrix of Newton's last step, for all inputs at once, and the control then gives dη/dθ. A law is taken as g, λ
-and p_max over q: where an input changes its own numbers, they are moved at the same y, and q's change is taken out.
+and p_max over q: where an input changes the law's own numbers, these are moved at the same y, and the change of q is
+taken out.
 """
 
 from typing import NamedTuple
@@ -20,7 +21,7 @@ from ..numerics.linalg import solve_stack
 from .changes import STEP
 
 
-class OfLaw(NamedTuple):
+class LawSlopes(NamedTuple):
     """Derivatives of a law at points (B, m), three of each: of g, λ and p_max/p*. `by_q`: along its curve; `by_own`:
     index of one of the law's own numbers -> by its logarithm at the same q."""
 
@@ -29,7 +30,7 @@ class OfLaw(NamedTuple):
 
 
 def of_law(law, y, curve, moving):
-    """:class:`OfLaw` at y (B, m) with its `curve`; `moving`: indices of the law's own numbers that move."""
+    """:class:`LawSlopes` at y (B, m) with its `curve`; `moving`: indices of the law's own numbers that move."""
     up, down = (_three(law, y * (1 + sign * STEP)) for sign in (1, -1))
     dq = up[0] - down[0]
     by_q = tuple(_over(high - low, dq) for high, low in zip(up[1:], down[1:], strict=True))
@@ -39,7 +40,7 @@ def of_law(law, y, curve, moving):
         up, down = (_three(_with(law, i, 1 + sign * STEP), y) for sign in (1, -1))
         q, *rest = ((high - low) / (2 * STEP) for high, low in zip(up, down, strict=True))
         by_own[i] = tuple(change - slope * q for change, slope in zip(rest, by_q, strict=True))
-    return OfLaw(by_q, by_own)
+    return LawSlopes(by_q, by_own)
 
 
 def _three(law, y):
@@ -66,8 +67,8 @@ class Explicit(NamedTuple):
 
 
 class OperatorChange(NamedTuple):
-    """Derivative by an input of the operators of B cases, from those `up` and `down` of the moved bodies: linear in q
-    as they are."""
+    """Derivative by an input of the operators of B cases, from the operators `up` and `down` of the moved bodies. Like
+    them it is linear in q."""
 
     up: Operator
     down: Operator
@@ -77,7 +78,7 @@ class OperatorChange(NamedTuple):
         return self._slope(self.up.products(q), self.down.products(q))
 
     def slopes(self, q):
-        """Derivatives of those by ln a."""
+        """Derivatives by ln a of these :meth:`products`."""
         return self._slope(self.up.slopes(q), self.down.slopes(q))
 
     def _slope(self, up, down):
@@ -115,26 +116,26 @@ def explicit(ev, changes, moving, operators):
 
 def _relative(changes, ev, i):
     """Derivatives (k, B) of the logarithm of the law's own number i."""
-    own = ev.cases.law.own[i][:, 0]
-    return np.where(own == 0, 0.0, changes.own[i] / np.where(own == 0, 1.0, own))
+    number = ev.cases.law.own[i][:, 0]
+    return np.where(number == 0, 0.0, changes.own[i] / np.where(number == 0, 1.0, number))
 
 
 class Implicit(NamedTuple):
-    """Derivatives of B solutions by k inputs under their control: of q at the nodes (k, B, n), of η (k, B); `tangent`,
-    dq/dη (B, n) along the branch; `law`, :class:`OfLaw` at the nodes; `logs`: quantity -> derivatives of its logarithm
-    (k, B)."""
+    """Derivatives of B solutions by k inputs under their control: of q at the nodes (k, B, n), of η (k, B); `logs`:
+    quantity -> derivatives of its logarithm (k, B). Besides, `tangent` is dq/dη (B, n) along the branch, and `law` has
+    the derivatives of the law at the nodes."""
 
     q: np.ndarray
     eta: np.ndarray
     tangent: np.ndarray
-    law: OfLaw
+    law: LawSlopes
     at_fixed_state: Explicit
     logs: dict
 
 
 def moving_numbers(changes):
     """Indices of the law's own numbers that some input changes."""
-    return [i for i, own in enumerate(changes.own) if np.any(own != 0)]
+    return [i for i, change in enumerate(changes.own) if np.any(change != 0)]
 
 
 def implicit(ev, changes, operators):
@@ -159,7 +160,7 @@ def implicit(ev, changes, operators):
 
 
 def _of_spots(ev, changes, law, q):
-    """Quantity -> derivatives of its logarithm (k, B), of those that the law makes of q."""
+    """Quantity -> derivatives of its logarithm (k, B), of the quantities that the law makes of q."""
     results = quantities(ev)
     change = along(ev, changes, law, q)
     centre = [part[..., -1] for part in change]
@@ -174,7 +175,7 @@ def _of_spots(ev, changes, law, q):
 def along(ev, changes, law, q):
     """Derivatives (k, B, m) of g, λ and p_max/p* at points where q has the derivatives `q` (k, B, m)."""
     changed = [slope * q for slope in law.by_q]
-    for i, own in law.by_own.items():
+    for i, slopes in law.by_own.items():
         relative = _relative(changes, ev, i)[..., None]
-        changed = [change + relative * more for change, more in zip(changed, own, strict=True)]
+        changed = [change + relative * more for change, more in zip(changed, slopes, strict=True)]
     return changed

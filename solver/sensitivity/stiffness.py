@@ -1,8 +1,8 @@
 """Derivatives of the contact stiffness dP/dD by inputs: of the slope S = d ln P/d ln D of the curve.
 
-At a fixed depth the derivative of S by an input θ is that of d ln P/dθ by ln D. So d ln P/dθ at a fixed depth is formed
-at two states next to the solution, on the tangent of the branch: their error is even in the distance and cancels. At
-such a state one transposed system serves all inputs. Then, under the control,
+At a fixed depth the derivative dS/dθ by an input θ is the derivative of d ln P/dθ by ln D. So d ln P/dθ at a fixed
+depth is formed at two states next to the solution, on the tangent of the branch: their error is even in the distance
+and cancels. At such a state one transposed system serves all inputs. Then, under the control,
 
     d ln S/dθ = [d(d ln P/dθ)/d ln D + (dS/d ln D) (d ln D/dθ)]/S,    dP/dD = S P/D.
 """
@@ -18,7 +18,7 @@ from .state import explicit, moving_numbers, of_law
 STEP = 3e-4
 
 
-def of_stiffness(ev, part, derivatives, operators):
+def stiffness_slopes(ev, part, derivatives, operators):
     """Derivatives (k, B) of ln dP/dD. `part`: the moved cases; `derivatives`: :class:`.state.Implicit` of `ev`;
     `operators`: input -> :class:`.state.OperatorChange` at the radii of the solutions."""
     by_depth = control_gradient("D", ev)
@@ -38,7 +38,7 @@ def _beside(ev, part, derivatives, operators, step):
     changes = changes_of(part, at.state.eta, len(derivatives.eta))
     law = of_law(at.cases.law, y, at.curve, moving_numbers(changes))
     moved = {i: _beside_products(change, ev.curve.q, tangent, step) for i, change in operators.items()}
-    fixed = explicit(at, changes, {i: own[0] for i, own in law.by_own.items()}, moved)
+    fixed = explicit(at, changes, {i: slopes[0] for i, slopes in law.by_own.items()}, moved)
     diagonal, dF_deta = jacobian(at)
     gradients = [control_gradient(name, at) for name in ("P", "D")]
     right = np.stack([by_q for by_q, _ in gradients], axis=-1)
@@ -51,7 +51,7 @@ def _beside(ev, part, derivatives, operators, step):
 
 
 def _beside_products(change, q, tangent, step):
-    """Derivatives of K q and edge @ q by an input that changes the operator, at the state beside the solution; to first
-    order, from the operator at the radius of the solution."""
+    """Derivatives of K q and edge @ q by an input that changes the operator, at the state beside the solution. They are
+    to first order, from the operator at the radius of the solution."""
     parts = change.products(q), change.products(tangent), change.slopes(q)
-    return tuple(own + step * (along + slope) for own, along, slope in zip(*parts, strict=True))
+    return tuple(here + step * (along + slope) for here, along, slope in zip(*parts, strict=True))

@@ -59,31 +59,29 @@ def maps(panels, *studies: xr.Dataset) -> Columns:
 def pooled(studies: tuple[xr.Dataset, ...]) -> dict[str, np.ndarray]:
     """All cases of the studies, flat: parameters, N Ra², status, error over rtol, iterations."""
     flat = []
-    for found in studies:
-        wanted = {name: found[name] for name in ("P", "h", "n", "base", "micro", "status", "iterations")}
-        wanted |= {"N Ra^2": found["Nbar"] * found["Ra"] ** 2, "error/rtol": found["error"] / found["rtol"]}
+    for study in studies:
+        wanted = {name: study[name] for name in ("P", "h", "n", "base", "micro", "status", "iterations")}
+        wanted |= {"N Ra^2": study["Nbar"] * study["Ra"] ** 2, "error/rtol": study["error"] / study["rtol"]}
         same = xr.broadcast(*wanted.values(), exclude=("x",))
         flat.append({name: array.values.ravel() for name, array in zip(wanted, same, strict=True)})
     return joined(flat)
 
 
 def binned(cases: dict[str, np.ndarray], x: str, y: str, edges: list[np.ndarray]) -> Columns:
-    """Columns over the cells of the plane: middle, number of cases, of converged and of failed ones.
-
-    And of the converged ones median and largest error over rtol and largest number of iterations, NaN without any.
-    """
+    """Columns over the cells of the plane: middle; number of cases, of converged and of failed ones; and of the
+    converged ones median and largest error over rtol and largest number of iterations, NaN if there are none."""
     at = [np.searchsorted(e[1:-1], cases[name], "right") for name, e in zip((x, y), edges, strict=True)]
     cell, status = at[0] * BINS + at[1], cases["status"]
     middles = np.meshgrid(*(np.sqrt(e[1:] * e[:-1]) for e in edges), indexing="ij")
-    found = {"x": middles[0].ravel(), "y": middles[1].ravel(), "cases": np.bincount(cell, minlength=BINS**2)}
-    found["failed"] = np.bincount(cell[np.isin(status, list(FAILED))], minlength=BINS**2)
-    found["converged"] = np.bincount(cell[status == Status.CONVERGED], minlength=BINS**2)
-    columns = {"median error/rtol": np.median, "largest error/rtol": np.max, "largest iterations": np.max}
+    columns = {"x": middles[0].ravel(), "y": middles[1].ravel(), "cases": np.bincount(cell, minlength=BINS**2)}
+    columns["failed"] = np.bincount(cell[np.isin(status, list(FAILED))], minlength=BINS**2)
+    columns["converged"] = np.bincount(cell[status == Status.CONVERGED], minlength=BINS**2)
+    reductions = {"median error/rtol": np.median, "largest error/rtol": np.max, "largest iterations": np.max}
     converged = [np.flatnonzero((cell == i) & (status == Status.CONVERGED)) for i in range(BINS**2)]
-    for column, reduce in columns.items():
+    for column, reduce in reductions.items():
         values = cases[column.split()[1]]
-        found[column] = np.array([reduce(values[index]) if len(index) else np.nan for index in converged])
-    return found
+        columns[column] = np.array([reduce(values[index]) if len(index) else np.nan for index in converged])
+    return columns
 
 
 def points(axes, cases: dict[str, np.ndarray], x: str, y: str) -> None:

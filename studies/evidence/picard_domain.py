@@ -22,14 +22,14 @@ DASHES = ((0, (4, 1.5)), (0, (1, 1.2)))
 
 
 @figure("picard_domain", "picard_domain", long=True, size=(TWO_COLUMNS, 4.8), panels=(2, 3))
-def domain(panels, found: xr.Dataset) -> Columns:
+def domain(panels, approximations: xr.Dataset) -> Columns:
     """Size of the cycle in which the paper's successive approximations (8) end, over the compliance C of the layer and
     the relaxation 1 + 2k, and the lines of the linear theory. Last panel: two successive iterates near the edge, and
     the solution."""
     *maps, last = panels.ravel()
     parts = []
     for axes, (beta, nodes) in zip(maps, MAPS, strict=True):
-        part = found.sel(beta=beta, nodes=nodes).transpose("k", "h", ...)
+        part = approximations.sel(beta=beta, nodes=nodes).transpose("k", "h", ...)
         image = draw_map(axes, part)
         parts.append(map_columns(part))
         axes.set_title(rf"$\beta = {'2/3' if beta > 0.6 else beta}$, {nodes} nodes", fontsize=8)
@@ -76,8 +76,8 @@ def draw_map(axes, part: xr.Dataset):
 def theory(part: xr.Dataset) -> list[np.ndarray]:
     """Smallest 1 + 2k for which small errors shrink, an array over h for each line.
 
-    The first is that of the whole contact, by its half-space part alone. The others are those of the asperities alone,
-    A'(p)/C, where p/p(0) is one of SHARES. p(0) is taken from the largest k, which is 5e-7 off at most.
+    The first is for the whole contact, by its half-space part alone. The others are for the asperities alone, A'(p)/C
+    where p/p(0) is one of SHARES. p(0) is taken at the largest k, where it is 5e-7 off at most.
     """
     C, p0 = compliance(part), part["p0"].values[-1]
     a, n, B, Ra, beta = (float(part[name]) for name in ("a", "n", "B", "Ra", "beta"))
@@ -104,10 +104,10 @@ def map_columns(part: xr.Dataset) -> Columns:
     """β, nodes, C, k, size of the cycle and status of each case of a map that has numbers."""
     size, status = cycle_size(part), part["status"].values
     k, C = np.meshgrid(part["k"].values, compliance(part), indexing="ij")
-    known = np.isfinite(size)
+    finite = np.isfinite(size)
     whole = {"beta": np.full(size.shape, float(part["beta"])), "nodes": np.full(size.shape, int(part["nodes"]))}
     whole |= {"C": C, "k": k, "cycle/p(0)": size, "status": status}
-    return {name: values[known] for name, values in whole.items()}
+    return {name: values[finite] for name, values in whole.items()}
 
 
 def legend(panels) -> None:

@@ -18,8 +18,8 @@ def paper_cases(base: str, size: int, seed: int) -> dict:
     loads = np.geomspace(1e-6, 5e-5, max(size // len(numbers.TABLE1), 1))
     row, load = (v.ravel() for v in np.indices((len(numbers.TABLE1), len(loads))))
     Ra, Nbar, B, beta = np.array(numbers.TABLE1).T[:, row]
-    found = {"P": loads[load], "Ra": Ra, "Nbar": Nbar, "B": B / Ra, "beta": beta, "h": 0.02, "n": 0.5}
-    return found | {"base": np.full(len(row), base), "micro": np.full(len(row), "power_law")}
+    parameters = {"P": loads[load], "Ra": Ra, "Nbar": Nbar, "B": B / Ra, "beta": beta, "h": 0.02, "n": 0.5}
+    return parameters | {"base": np.full(len(row), base), "micro": np.full(len(row), "power_law")}
 
 
 def coatings(size: int, seed: int) -> dict:
@@ -27,11 +27,11 @@ def coatings(size: int, seed: int) -> dict:
     random = np.random.default_rng(seed)
     Ra, density = _between(random, 5e-4, 1e-2, size), random.integers(len(DENSITIES), size=size)
     B, beta, _ = np.array([fit_power_law(value) for value in DENSITIES]).T[:, density]
-    found = {"Ra": Ra, "Nbar": np.array(DENSITIES)[density] / Ra**2, "B": B, "beta": beta}
+    parameters = {"Ra": Ra, "Nbar": np.array(DENSITIES)[density] / Ra**2, "B": B, "beta": beta}
     ranges = {"P": (1e-7, 1e-3), "h": (1e-3, 0.1), "n": (1e-3, 1e3)}
-    found |= {name: _between(random, *ends, size) for name, ends in ranges.items()}
-    found |= {"bonding": random.choice(["frictionless", "bonded"], size)}
-    return found | {"base": np.full(size, "layered"), "micro": np.full(size, "disc_cell")}
+    parameters |= {name: _between(random, *ends, size) for name, ends in ranges.items()}
+    parameters |= {"bonding": random.choice(["frictionless", "bonded"], size)}
+    return parameters | {"base": np.full(size, "layered"), "micro": np.full(size, "disc_cell")}
 
 
 def extremes(size: int, seed: int) -> dict:
@@ -41,10 +41,10 @@ def extremes(size: int, seed: int) -> dict:
     """
     random = np.random.default_rng(seed)
     ranges = {"Ra": (1e-5, 0.1), "P": (1e-12, 0.1), "h": (1e-8, 1e3), "n": (1e-6, 0.999999)}
-    found = {name: _between(random, *ends, size) for name, ends in ranges.items()}
-    return found | {
+    parameters = {name: _between(random, *ends, size) for name, ends in ranges.items()}
+    return parameters | {
         "bonding": random.choice(["frictionless", "bonded"], size),
-        "Nbar": _between(random, 1e-6, 1e6, size) / found["Ra"] ** 2,
+        "Nbar": _between(random, 1e-6, 1e6, size) / parameters["Ra"] ** 2,
         "B": _between(random, 1e-2, 10, size),
         "beta": random.uniform(0.3, 0.95, size),
         "base": random.choice(["half_space", "thin_layer"], size),

@@ -39,7 +39,7 @@ class Way:
     """One way to solve: `run(cases, setting)` for each of its `settings`.
 
     varied : what the settings are, in a word
-    sets : names of the problem sets on which it is measured; most : it takes at most so many cases of a set
+    sets : names of the problem sets on which it is measured; most : it takes at most this many cases of a set
     copies : of each of the paper's cases in a batch; several for ways so quick that a hundred cases cannot be timed
     prepare(setting) : is called before, and not timed, as any number of cases can use what it prepares
     """
@@ -67,18 +67,18 @@ def changed(**parameters) -> Callable[[dict, float], Solution]:
     return run
 
 
-def swapped(name: str, one: str, other: str) -> Callable[[dict, float], Solution]:
+def swapped(name: str, first: str, second: str) -> Callable[[dict, float], Solution]:
     """`run` of the solver with two values of the parameter `name` exchanged; the setting is rtol."""
 
     def run(cases: dict, setting: float) -> Solution:
-        values = np.where(cases[name] == one, other, np.where(cases[name] == other, one, cases[name]))
+        values = np.where(cases[name] == first, second, np.where(cases[name] == second, first, cases[name]))
         return solve(Problem.of(**cases | {name: values, "rtol": setting}), X)
 
     return run
 
 
 def _picard(k: float) -> Way:
-    """The solver's scheme "picard", on the nodes that Newton's method has; the more there are, the smaller is rtol."""
+    """The solver's scheme "picard", on the nodes of Newton's method; the more nodes, the smaller is rtol."""
     options = {"scheme": "picard", "k": k, "nodes": int, "rtol": lambda n: 10 ** (-n / 6), "max_iterations": 400}
     return Way(changed(**options), "nodes", NODES, PAPERS, most=SLOW)
 
@@ -134,7 +134,7 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS) -> 
     size : cases of each set; those that the model cannot solve (`status` of the reference) are left out
     """
     shape = len(SETS), len(ways), max(len(way.settings) for way in ways.values())
-    found = {name: np.full(shape, np.nan) for name in WORDS}
+    arrays = {name: np.full(shape, np.nan) for name in WORDS}
     counts = np.zeros(shape[:2], dtype=np.int32)
     for i, (name, make) in enumerate(SETS.items()):
         everything = with_reference(make(size, SEED))
@@ -146,8 +146,8 @@ def measure(size: int = SIZE, repeats: int = 3, ways: dict[str, Way] = WAYS) -> 
             for step, setting in enumerate(way.settings):
                 copies = way.copies if name in PAPERS else 1
                 for key, value in measured(way, setting, cases, reference, repeats, copies).items():
-                    found[key][i, j, step] = value
-    return assembled(found, counts, ways)
+                    arrays[key][i, j, step] = value
+    return assembled(arrays, counts, ways)
 
 
 def measured(way: Way, setting: float, cases: dict, reference: Solution, repeats: int, copies=1) -> dict[str, float]:
@@ -189,15 +189,15 @@ def timed(action: Callable[[], Solution], repeats: int) -> tuple[float, Solution
 def errors(solution: Solution, reference: Solution) -> np.ndarray:
     """(B,) the largest of the relative errors of each case, at most 1; 1 without an answer."""
     with np.errstate(all="ignore"):
-        found = difference(solution, reference)
-    return np.minimum(np.nan_to_num(found, nan=1.0, posinf=1.0), 1.0)
+        largest = difference(solution, reference)
+    return np.minimum(np.nan_to_num(largest, nan=1.0, posinf=1.0), 1.0)
 
 
-def assembled(found: dict, counts: np.ndarray, ways: dict[str, Way]) -> xr.Dataset:
+def assembled(arrays: dict, counts: np.ndarray, ways: dict[str, Way]) -> xr.Dataset:
     """The dataset of `measure`."""
     variables = {
         name: (("set", "way", "step"), array, {"long_name": WORDS[name]} | ({"units": "s"} if name == "time" else {}))
-        for name, array in found.items()
+        for name, array in arrays.items()
     }
     variables["cases"] = ("set", "way"), counts, {"long_name": "cases measured"}
     variables["varied"] = "way", [way.varied for way in ways.values()]

@@ -27,12 +27,12 @@ ERRORS = (1e-2, 1e-3, 1e-4, 1e-5, 1e-6)  # errors at which the paper's way is co
 
 
 @figure("tradeoff", "tradeoff", long=True, size=(TWO_COLUMNS, 6.4), panels=(2, 2))
-def work_precision(panels, found: xr.Dataset) -> Columns:
+def work_precision(panels, measurements: xr.Dataset) -> Columns:
     """Error below which 95 % of the cases are, against processor time per case, a panel for each problem set
     (docs/tradeoff.md). Open marks: fewer than 99 % of the cases ended. Dashed: half of the cases differ by more between
     two models."""
-    for axes, name in zip(panels.ravel(), found["set"].values.tolist(), strict=True):
-        here = found.sel(set=name)
+    for axes, name in zip(panels.ravel(), measurements["set"].values.tolist(), strict=True):
+        here = measurements.sel(set=name)
         axes.set_title(name, fontsize=9)
         for way, (_, colour, mark) in DRAWN.items():
             part = here.sel(way=way).dropna("step", subset=["time"])
@@ -51,7 +51,7 @@ def work_precision(panels, found: xr.Dataset) -> Columns:
     for axes in panels[:, 0]:
         axes.set_ylabel("error, 95 % of the cases below")
     legend(panels)
-    return columns(found)
+    return columns(measurements)
 
 
 def curve(axes, time, error, ended, colour: str, mark: str) -> None:
@@ -83,13 +83,13 @@ def legend(panels) -> None:
     columns=r"""set; way; setting; cases | d; time/us | .1f | time/\textmu s
     error 50% | .1e; error 95% | .1e; largest | .1e; ended | .1%""",
 )
-def rows(found: xr.Dataset) -> list[tuple]:
+def rows(measurements: xr.Dataset) -> list[tuple]:
     """Work and precision: time per case on one thread, error of half and of 95% of the cases, largest error, share of
     the cases that ended."""
     table = []
-    for name in found["set"].values.tolist():
-        for way in found["way"].values.tolist():
-            part = found.sel(set=name, way=way)
+    for name in measurements["set"].values.tolist():
+        for way in measurements["way"].values.tolist():
+            part = measurements.sel(set=name, way=way)
             for step in np.flatnonzero(np.isfinite(part["time"].values)):
                 here = part.isel(step=step)
                 errors = [float(here[key]) for key in ("median", "most", "worst")]
@@ -105,13 +105,13 @@ def rows(found: xr.Dataset) -> list[tuple]:
     long=True,
     columns="; ".join(["set", "way", *(f"{target:g} | .3g" for target in TARGETS)]),
 )
-def cheapest(found: xr.Dataset) -> list[tuple]:
+def cheapest(measurements: xr.Dataset) -> list[tuple]:
     """Time per case in us of the cheapest setting with which 95% of the cases are within the error; -: there is
     none."""
-    table, ways = [], [way for way in found["way"].values.tolist() if way not in MODELS]
-    for name in found["set"].values.tolist():
+    table, ways = [], [way for way in measurements["way"].values.tolist() if way not in MODELS]
+    for name in measurements["set"].values.tolist():
         for way in ways:
-            part = found.sel(set=name, way=way)
+            part = measurements.sel(set=name, way=way)
             if int(part["cases"]):
                 times = (time_to(part, target) for target in TARGETS)
                 table.append((name, way, *(time if np.isfinite(time) else "-" for time in times)))
@@ -130,12 +130,12 @@ def time_to(part: xr.Dataset, target: float) -> float:
     long=True,
     columns="error | g; the paper's way | .3g; with; Newton | .3g; factor | .0f",
 )
-def factors(found: xr.Dataset) -> list[tuple]:
+def factors(measurements: xr.Dataset) -> list[tuple]:
     """On the paper's layer: the paper's way at its cheapest beside Newton (rtol), time per case in us.
 
     It has those of ERRORS that the paper's way reaches.
     """
-    layer, table = found.sel(set="paper, layer"), []
+    layer, table = measurements.sel(set="paper, layer"), []
     ways = [way for way in layer["way"].values.tolist() if way.startswith("paper") and int(layer["cases"].sel(way=way))]
     for target in ERRORS:
         theirs, way = min((time_to(layer.sel(way=way), target), way) for way in ways)
@@ -145,9 +145,9 @@ def factors(found: xr.Dataset) -> list[tuple]:
     return table
 
 
-def columns(found: xr.Dataset) -> Columns:
+def columns(measurements: xr.Dataset) -> Columns:
     """What the figure shows, as numbers: set and way by their place."""
-    known = np.isfinite(found["time"].values)
-    i, j, _ = np.nonzero(known)
-    cells = {name: found[name].values[known] for name in ("setting", "time", "median", "most", "worst", "ended")}
-    return {"set": i, "way": j, "cases": found["cases"].values[i, j]} | cells
+    timed = np.isfinite(measurements["time"].values)
+    i, j, _ = np.nonzero(timed)
+    cells = {name: measurements[name].values[timed] for name in ("setting", "time", "median", "most", "worst", "ended")}
+    return {"set": i, "way": j, "cases": measurements["cases"].values[i, j]} | cells

@@ -34,10 +34,10 @@ MAIN_CASE = {"h": 0.02, "n": 0.5}
 
 
 @figure("validity", "validity", size=(TWO_COLUMNS, 7.6), panels=(5, 5))
-def given_load(panels, found: xr.Dataset) -> Columns:
+def given_load(panels, contacts: xr.Dataset) -> Columns:
     """Error of the thin layer against the exact one under one load, over h/a (a of the exact layer) and n: rows are
     quantities, columns materials. Star: the paper's main case. Hatched: the thin-layer equation does not apply."""
-    rough = found.sel(micro="disc_cell")
+    rough = contacts.sel(micro="disc_cell")
     rows = [(name, rough, name) for name in ("a", "p0", "D", "Ar_An", "p_max")]
     symbols = {"a": "$a$", "p0": "$p(0)$", "D": "$D$", "Ar_An": "$A_r/A_n$", "p_max": r"$p_{\max}$"}
     columns = matrix(panels, rows, symbols)
@@ -46,13 +46,13 @@ def given_load(panels, found: xr.Dataset) -> Columns:
 
 
 @figure("validity_load", "validity_load", size=(TWO_COLUMNS, 3.9), panels=(2, 5))
-def given_radius(panels, found: xr.Dataset) -> Columns:
+def given_radius(panels, contacts: xr.Dataset) -> Columns:
     """Error of the load of the thin layer against the exact one at one contact radius, over h/a and n: smooth and rough
     punch. Dashed: the closed form of docs/accuracy.md. Star: the paper's main case. Hatched: the thin-layer equation
     does not apply."""
-    rows = [(micro, found.sel(micro=micro), "P") for micro in ("smooth", "disc_cell")]
+    rows = [(micro, contacts.sel(micro=micro), "P") for micro in ("smooth", "disc_cell")]
     columns = matrix(panels, rows, {"smooth": "$P$, smooth", "disc_cell": "$P$, rough"})
-    for axes, case in zip(panels[0], materials(found), strict=True):
+    for axes, case in zip(panels[0], materials(contacts), strict=True):
         x, n = np.geomspace(0.01, 20, 200), np.geomspace(0.01, 0.95, 100)
         material = [float(case[name]) for name in ("nu1", "nu2")]
         estimate = thin_layer_error(x, n[:, None], *material, str(case["bonding"].values) == "bonded").P
@@ -67,10 +67,10 @@ def matrix(panels, rows: list[tuple[str, xr.Dataset, str]], symbols: dict[str, s
     for i, (name, dataset, quantity) in enumerate(rows):
         for j, (axes, case) in enumerate(zip(panels[i], materials(dataset), strict=True)):
             h_a, error = one_map(axes, case, quantity)
-            n, known = error["n"].broadcast_like(error), np.isfinite(error.values)
-            place = {"row": np.full(known.sum(), i), "material": np.full(known.sum(), j)}
+            n, finite = error["n"].broadcast_like(error), np.isfinite(error.values)
+            place = {"row": np.full(finite.sum(), i), "material": np.full(finite.sum(), j)}
             numbers = {"h/a": h_a, "n": n, "error": error}
-            parts.append(place | {name: array.values[known] for name, array in numbers.items()})
+            parts.append(place | {name: array.values[finite] for name, array in numbers.items()})
             if case["bonding"] == "frictionless":
                 main_case(axes, case)
             if i == 0:
@@ -164,11 +164,11 @@ def limits(given_load: xr.Dataset, given_radius: xr.Dataset) -> list[tuple]:
     rows = []
     for micro, names in (("smooth", ("P", "a", "p0", "D")), ("disc_cell", ("P", "a", "p0", "D", "Ar_An", "p_max"))):
         for name in names:
-            found = (given_radius if name == "P" else given_load).sel(micro=micro)
-            cases = (found.isel(case=i) for i in range(len(MATERIALS)))
+            contacts = (given_radius if name == "P" else given_load).sel(micro=micro)
+            cases = (contacts.isel(case=i) for i in range(len(MATERIALS)))
             largest = [round(largest_thickness(case, name, level), 3) for case in cases for level in (0.01, 0.1)]
-            punch, given = "smooth" if micro == "smooth" else "rough", "a" if name == "P" else "P"
-            rows.append((punch, vocabulary.VOCABULARY[name].symbol, given, *largest))
+            punch, control = "smooth" if micro == "smooth" else "rough", "a" if name == "P" else "P"
+            rows.append((punch, vocabulary.VOCABULARY[name].symbol, control, *largest))
     return rows
 
 

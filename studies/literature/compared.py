@@ -15,7 +15,7 @@ SERIES_UP_TO = 0.15
 closed form to 1e-4 (tests/literature/test_literature.py)."""
 
 
-def of_material(rigid: xr.Dataset, bonded: bool, nu: float) -> xr.Dataset:
+def contacts_on_layer(rigid: xr.Dataset, bonded: bool, nu: float) -> xr.Dataset:
     """The contacts of one layer on a rigid base, by rising a/h. Without friction the Poisson ratio has no effect."""
     case = pick(rigid, bonding="bonded", nu1=nu) if bonded else pick(rigid, bonding="frictionless")
     return case.sortby("h", ascending=False)
@@ -29,7 +29,7 @@ def over_hertz(contact: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray]
 
 def load_error(formula: Formula, rigid: xr.Dataset, nu: float) -> tuple[np.ndarray, np.ndarray]:
     """a/h, and the relative error of a formula's load at the exact depth."""
-    x, chi, exact = over_hertz(of_material(rigid, formula.bonded, nu))
+    x, chi, exact = over_hertz(contacts_on_layer(rigid, formula.bonded, nu))
     return x, formula.of(chi, nu) / exact - 1
 
 
@@ -44,10 +44,10 @@ def stiffness_errors(coated: xr.Dataset) -> dict[str, np.ndarray]:
     """Name of a formula -> its relative error (n, a/h). The last formula has a free α: each n gets the best one."""
     x, n, exact = stiffness(coated)
     nu = float(coated["nu1"])
-    found = {name: of(x, n[:, None], nu) / exact - 1 for name, (of, _) in formulas.STIFFNESSES.items()}
+    by_name = {name: formula(x, n[:, None], nu) / exact - 1 for name, (formula, _) in formulas.STIFFNESSES.items()}
     errors = formulas.doerner_nix(x, n[:, None], nu, np.geomspace(0.1, 10, 201)[:, None, None]) / exact - 1
     best = np.abs(errors).max(axis=2).argmin(axis=0)  # the α with the smallest largest error
-    return found | {"Doerner and Nix 1986, King 1987": errors[best, np.arange(len(n))]}
+    return by_name | {"Doerner and Nix 1986, King 1987": errors[best, np.arange(len(n))]}
 
 
 def over_smooth(rough: xr.Dataset) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
@@ -105,17 +105,17 @@ def around_one(n: np.ndarray, largest: np.ndarray, level: float) -> str:
 
 def coefficients(rigid: xr.Dataset, bonded: bool, nu: float) -> np.ndarray:
     """c1, c2, c3 of F/F_H = 1 + c1 χ + c2 χ² + c3 χ³ + ..., by least squares of the exact contacts at small a/h."""
-    x, chi, exact = over_hertz(of_material(rigid, bonded, nu))
+    x, chi, exact = over_hertz(contacts_on_layer(rigid, bonded, nu))
     small = x <= SERIES_UP_TO
     degree = min(6, np.count_nonzero(small) - 1)
-    found = np.polynomial.Polynomial.fit(chi[small], (exact[small] - 1) / chi[small], degree).convert().coef
-    return np.append(found, np.full(3, np.nan))[:3]
+    series = np.polynomial.Polynomial.fit(chi[small], (exact[small] - 1) / chi[small], degree).convert().coef
+    return np.append(series, np.full(3, np.nan))[:3]
 
 
 def kappa(rigid: xr.Dataset, nu: float, at: float | np.ndarray = 1.0) -> np.ndarray:
     """E_eff/E1* of bonded layers at some a/h: a cubic spline of logarithms."""
     from scipy.interpolate import CubicSpline
 
-    contact = of_material(rigid, True, nu)
+    contact = contacts_on_layer(rigid, True, nu)
     x = over_hertz(contact)[0]
     return np.exp(CubicSpline(np.log(x), np.log(derived.effective_modulus(contact).values))(np.log(at)))

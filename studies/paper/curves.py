@@ -66,12 +66,12 @@ def pressures(axes, shown: list[tuple[dict[str, xr.Dataset], str, str]], a0: flo
     """
     columns = {}
     for cases, label, side in shown:
-        own = []
+        points = []
         for name, case in cases.items():
             r, p = case["x"].values * float(case["a"]) / a0, case["p"].values
             columns |= {f"r/a0 ({name})": r, f"p/E2* ({name})": p}
-            own.append((r, p * 100))
-        name_curve(axes, plot(axes, own, label), next(iter(cases)), 0.12, side=side)
+            points.append((r, p * 100))
+        name_curve(axes, plot(axes, points, label), next(iter(cases)), 0.12, side=side)
     if dotted:
         axes.plot([], [], color="0.3", label=dotted, **PAPER)
     axes.set(xlabel="$r/a_0$", ylabel=r"$p\ /\ (10^{-2} E_2^*)$", xlim=(0, None), ylim=(0, 1.1 * axes.dataLim.y1))
@@ -100,12 +100,12 @@ def rough_and_smooth_pressures(axes, main: xr.Dataset, exact: bool) -> Columns:
 
 
 @with_companion(figure("fig10", "spot_density", size=SIZE), figure("fig10_layered", "spot_density", size=SIZE))
-def densities(axes, found: xr.Dataset, exact: bool) -> Columns:
+def densities(axes, contacts: xr.Dataset, exact: bool) -> Columns:
     """Nominal pressure for three densities of asperities, B and β as in Table 1; a0: radius of 1."""
-    paper = [pick(found, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
+    paper = [pick(contacts, Nbar=Nbar, base="thin_layer") for Nbar in (250_000, 62_500, 15_625)]
     shown = []
     for thin, (name, side) in zip(paper, {"1": "above", "2": "below", "3": "below"}.items(), strict=True):
-        layered = pick(found, Nbar=float(thin["Nbar"]), base="layered")
+        layered = pick(contacts, Nbar=float(thin["Nbar"]), base="layered")
         cases = {name: layered, f"{name}, thin layer": thin} if exact else {name: thin}
         shown.append((cases, rf"{name}: $\bar N R^2 = {int(thin['Nbar'])}$", side))
     return pressures(axes, shown, float(paper[0]["a"]), PAPER_LABEL * exact)

@@ -1,4 +1,4 @@
-"""The figures and tables of the paper: those of results stand in the files that are imported here."""
+"""The figures and tables of the paper. Those that show results stand in the files that are imported here."""
 
 from pathlib import Path
 
@@ -6,16 +6,16 @@ from study.figures.registry import drawing
 
 from . import curves, lattice_laws, law_fits, paper_error  # noqa: F401
 
-SCHEMES = Path(__file__).with_name("schemes")
+DRAWINGS = Path(__file__).with_name("schemes")
 
 
 @drawing("fig01")
 def contact() -> Path:
     """The contact: a sphere of radius R with asperities, pressed by P on a coated half-space."""
-    return SCHEMES / "fig01"
+    return DRAWINGS / "fig01"
 
 
 @drawing("fig02")
 def cell() -> Path:
     """One asperity of radius Ra and its cell; the contact spot has the radius b."""
-    return SCHEMES / "fig02"
+    return DRAWINGS / "fig02"

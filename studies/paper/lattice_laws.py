@@ -48,7 +48,7 @@ def laws(panels) -> Columns:
 
 
 @figure("fig10_lattice", "spot_density_lattice", "spot_density", size=(TWO_COLUMNS, 3.0), panels=(1, 2))
-def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
+def densities(panels, lattice: xr.Dataset, paper: xr.Dataset) -> Columns:
     """Left: nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted: with
     the power law of Table 1 on the same layer. Right: how far that (dotted) and the disc cell (dashed) are from the
     lattice, over its p(0). a0: radius of the paper's contact 1."""
@@ -56,7 +56,7 @@ def densities(panels, found: xr.Dataset, paper: xr.Dataset) -> Columns:
     shown, differences = [], {}
     a0 = float(pick(paper, Nbar=250_000, base="thin_layer")["a"])
     for i, side in enumerate(("above", "below", "below")):
-        name, here = str(i + 1), found.isel(Nbar=i)
+        name, here = str(i + 1), lattice.isel(Nbar=i)
         true, disc = (here.sel(micro=micro) for micro in ("square_lattice", "disc_cell"))
         fitted = pick(paper, Nbar=float(true["Nbar"]), base="layered")
         cases = {name: true, f"{name}, power law": fitted}

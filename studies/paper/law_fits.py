@@ -32,8 +32,8 @@ def exact(Ra: float, Nbar: float, law: str = "disc_cell") -> np.ndarray:
 
 def fitted(Ra: float, Nbar: float) -> Fit:
     """The power law as the paper fits it, with B in R/E1*^β."""
-    found = fit_power_law(Nbar * Ra**2)
-    return found._replace(B=found.B * Ra)
+    fit = fit_power_law(Nbar * Ra**2)
+    return fit._replace(B=fit.B * Ra)
 
 
 def printed(Ra: float, Nbar: float) -> np.ndarray:
@@ -66,8 +66,8 @@ def table1() -> list[tuple]:
     is in Ra/E1*^beta, is this over Ra/R."""
     rows = []
     for Ra, Nbar, B, beta in numbers.TABLE1:
-        found = largest_error(printed(Ra, Nbar), exact(Ra, Nbar))
-        rows.append((Ra, Nbar, Nbar * Ra**2, B, beta, bound(Ra, Nbar), found, *fitted(Ra, Nbar)))
+        error = largest_error(printed(Ra, Nbar), exact(Ra, Nbar))
+        rows.append((Ra, Nbar, Nbar * Ra**2, B, beta, bound(Ra, Nbar), error, *fitted(Ra, Nbar)))
     return rows
 
 
@@ -102,8 +102,8 @@ def draw_laws(panels, laws_of: Callable, names: dict[str, str], beside: tuple[st
             columns |= {f"A/R Ra={Ra} N={Nbar} {law}": values for law, values in A.items()}
         for law, name in names.items():
             axes.plot([], [], label=name, **{"color": "0.5"} | LOOKS[law])
-        given = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
-        axes.legend(title=f"({panel}) {given}", loc="upper left")
+        common = f"$R_a/R = {roughnesses[0][0]}$" if panel == "a" else rf"$\bar N R^2 = {roughnesses[0][1]}$"
+        axes.legend(title=f"({panel}) {common}", loc="upper left")
         limits = {"xlim": (0, PRESSURES[-1]), "ylim": (0, axes.get_ylim()[1] * 1.25)}
         axes.set(xlabel="$p/E_1^*$", ylabel=r"$A[p]\ /\ (10^{-4} R)$", **limits)
     return columns

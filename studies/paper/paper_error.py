@@ -31,19 +31,19 @@ def measured() -> xr.Dataset:
     `numbers.NUMBERS`: `converged`, and `by_iterates`, see `explained`. `pair`: which iterate, on how many intervals.
     """
     problem = Problem.of(a=RADIUS, **MAIN)
-    found = [[solve_uniform(problem, n, 0.0, 1e-12, m) for m in range(1, STEPS + 1)] for n in INTERVALS]
+    solutions = [[solve_uniform(problem, n, 0.0, 1e-12, m) for m in range(1, STEPS + 1)] for n in INTERVALS]
     variables = {
-        f"iterate_{name}": (("intervals", "iterate"), [[float(getattr(s, name)[0]) for s in row] for row in found])
+        f"iterate_{name}": (("intervals", "iterate"), [[float(getattr(s, name)[0]) for s in row] for row in solutions])
         for name in SHARED
     }
     iterates = xr.Dataset(variables, {"intervals": list(INTERVALS), "iterate": np.arange(1, STEPS + 1)})
     return iterates.merge(explained(iterates))
 
 
-def nearest_pair(found: xr.Dataset) -> dict[str, int]:
+def nearest_pair(iterates: xr.Dataset) -> dict[str, int]:
     """Indices of the mesh and of the iterate whose load, and whose successor's depth, are nearest to the paper's."""
-    load = np.abs(found["iterate_P"] / numbers.NUMBERS["P"][1] - 1).isel(iterate=slice(None, -1)).values
-    depth = np.abs(found["iterate_D"] / numbers.NUMBERS["D"][1] - 1).isel(iterate=slice(1, None)).values
+    load = np.abs(iterates["iterate_P"] / numbers.NUMBERS["P"][1] - 1).isel(iterate=slice(None, -1)).values
+    depth = np.abs(iterates["iterate_D"] / numbers.NUMBERS["D"][1] - 1).isel(iterate=slice(1, None)).values
     mesh, step = np.unravel_index(np.argmin(np.maximum(load, depth)), load.shape)
     return {"intervals": int(mesh), "iterate": int(step)}
 
@@ -51,8 +51,8 @@ def nearest_pair(found: xr.Dataset) -> dict[str, int]:
 def explained(iterates: xr.Dataset) -> xr.Dataset:
     """The paper's numbers of Section 5, converged and by the nearest pair of iterates.
 
-    The load is that of the first iterate of the pair, what is printed for the rough layered contact that of the
-    second, and the other contacts are converged ones under the load of the second.
+    Of the pair the first iterate gives the load, and the second what is printed for the rough layered contact. The
+    other contacts are converged ones under the load of the second.
     """
     pair = nearest_pair(iterates)
     first, second = iterates.isel(pair), iterates.isel(pair | {"iterate": pair["iterate"] + 1})
@@ -60,16 +60,16 @@ def explained(iterates: xr.Dataset) -> xr.Dataset:
     theirs = contacts(float(second["iterate_P"]))
     theirs |= {name: float(second[f"iterate_{name}"]) for name in SHARED} | {"P": float(first["iterate_P"])}
     variables = {"converged": [converged[key] for key in theirs], "by_iterates": list(theirs.values())}
-    found = xr.Dataset({name: ("quantity", values) for name, values in variables.items()}, {"quantity": list(theirs)})
-    return found.assign(pair=("end", [int(first["intervals"]), int(first["iterate"])]))
+    table = xr.Dataset({name: ("quantity", values) for name, values in variables.items()}, {"quantity": list(theirs)})
+    return table.assign(pair=("end", [int(first["intervals"]), int(first["iterate"])]))
 
 
 def contacts(load: float) -> dict[str, float]:
     """The numbers of Section 5 by converged solutions under one load, keys of `numbers.NUMBERS`."""
     changes = {}, {"base": "half_space"}, {"micro": "smooth"}
     layered, bare, smooth = (solve(Problem.of(P=load, **MAIN | change, rtol=1e-9)) for change in changes)
-    found = {name: float(getattr(layered, name)[0]) for name in SHARED} | {"An_ratio": float(bare.a[0] / RADIUS) ** 2}
-    return found | {"D smooth layered": float(smooth.D[0]), "D smooth homogeneous": float(hertz(P=load).D)}
+    ours = {name: float(getattr(layered, name)[0]) for name in SHARED} | {"An_ratio": float(bare.a[0] / RADIUS) ** 2}
+    return ours | {"D smooth layered": float(smooth.D[0]), "D smooth homogeneous": float(hertz(P=load).D)}
 
 
 @table(
@@ -78,11 +78,11 @@ def contacts(load: float) -> dict[str, float]:
     long=True,
     columns="quantity; paper | .4g; converged | .5g; converged off | +.2%; iterates | .5g; iterates off | +.2%",
 )
-def rows(found: xr.Dataset) -> list[tuple]:
+def rows(study: xr.Dataset) -> list[tuple]:
     """The paper's numbers, the converged ones, and those by two successive iterates of Eq. (8) with k = 0: the load by
     the first, the rest by the second, or under its load."""
     table = []
-    for key, *ours in zip(*(found[name].values for name in ("quantity", "converged", "by_iterates")), strict=True):
+    for key, *ours in zip(*(study[name].values for name in ("quantity", "converged", "by_iterates")), strict=True):
         quantity, printed = numbers.NUMBERS[str(key)]
         table.append((quantity, printed, *(float(v) for value in ours for v in (value, value / printed - 1))))
     return table

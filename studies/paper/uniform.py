@@ -39,7 +39,7 @@ def uniform_mesh(intervals: int) -> UniformMesh:
 
 def rows(targets: np.ndarray, intervals: int) -> np.ndarray:
     """Integrals (m, n + 1) of the kernel of Eq. (3) at the nodes `targets` (m,) against the n + 1 hat functions."""
-    found = np.zeros((len(targets), intervals + 1))
+    integrals = np.zeros((len(targets), intervals + 1))
     target, cell = np.meshgrid(targets, np.arange(intervals), indexing="ij")
     (u, w), (v, wv) = (np.array(np.polynomial.legendre.leggauss(count)) / 2 for count in (8, 24))
     u, v = u + 0.5, v + 0.5  # on [0, 1]
@@ -51,9 +51,9 @@ def rows(targets: np.ndarray, intervals: int) -> np.ndarray:
     ):
         t, c = target[chosen], cell[chosen]
         kernel = weight * elliptic(t[:, None], c[:, None] + place) / intervals
-        found[t - targets[0], c] += kernel @ (1 - place)  # += counts each pair (t, c) once, and none occurs twice
-        found[t - targets[0], c + 1] += kernel @ place
-    return found
+        integrals[t - targets[0], c] += kernel @ (1 - place)  # += counts each pair (t, c) once, and none occurs twice
+        integrals[t - targets[0], c + 1] += kernel @ place
+    return integrals
 
 
 def elliptic(x: np.ndarray, source: np.ndarray) -> np.ndarray:
@@ -62,12 +62,14 @@ def elliptic(x: np.ndarray, source: np.ndarray) -> np.ndarray:
     return ellipkm1(np.abs(x - source) * (x + source) / outer**2) * source / outer
 
 
-Found = namedtuple("Found", "a P D p0 p_max Ar_An A0 status iterations")
+UniformSolution = namedtuple("UniformSolution", "a P D p0 p_max Ar_An A0 status iterations")
 """What `solver.Solution` has under these names, (B,) in units R = E2* = 1; NaN where a case diverged."""
 
 
 @one_blas_thread()
-def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None) -> Found:
+def solve_uniform(
+    problem: Problem, intervals: int, k: float, tolerance: float, limit: int | None = None
+) -> UniformSolution:
     """Solve a batch of rough cases, or smooth ones on a thin layer, as the paper does.
 
     problem : cases on "thin_layer", where its equation applies, or "half_space", given P or a, with R = E2* = 1; its
@@ -94,7 +96,7 @@ def solve_uniform(problem: Problem, intervals: int, k: float, tolerance: float, 
     if (problem.m > 0).any():
         raise ValueError("the punch of the paper is rigid: m must be 0")
     invalid = problem.invalid()
-    whole = Found(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
+    whole = UniformSolution(*np.full((7, len(problem)), np.nan), *np.zeros((2, len(problem)), dtype=int))
     for base, micro in kinds:
         index = np.flatnonzero((problem.base == base) & (problem.micro == micro) & ~invalid)
         if not len(index):
@@ -113,7 +115,7 @@ class Contact:
     def __init__(self, problem: Problem, mesh: UniformMesh, k: float, tolerance: float, limit: int | None):
         cases = as_cases(dimensionless(problem))
         self.law, self.C = cases.law, cases.body.C
-        self.given, self.value = problem.control, problem.value
+        self.control, self.value = problem.control, problem.value
         self.mesh, self.k, self.tolerance = mesh, k, tolerance
         self.limit = limit or max(LIMIT, int(LIMIT_RELAXED * (1 + k)))
         self.p, self.count = np.zeros((len(problem), len(mesh.x))), np.zeros(len(problem), dtype=int)
@@ -156,15 +158,15 @@ class Contact:
         spots = (P / (2 * np.pi * law.p_star) * (2 * law.A_star * gamma) ** e * (2 * e + 2)) ** (1 / (2 + 2 * e))
         return ((0.75 * P) ** (4 / 3) + 4 / np.pi * self.C * P + spots**4) ** 0.25
 
-    def solved(self) -> Found:
+    def solved(self) -> UniformSolution:
         """The outputs at the radius found; D by Eq. (14), whose integral along r is trapezoidal too."""
         every, law, mesh = np.arange(len(self.value)), self.law, self.mesh
         a = self.value
-        if self.given == "P":
+        if self.control == "P":
             a = np.exp(halved(self.load_error, np.log(self.start()), self.tolerance))
         settled, p = self.approximate(a, every), self.p
         P = 2 * np.pi * a**2 * (p @ mesh.w)  # (5)
-        if self.given == "P":
+        if self.control == "P":
             settled &= np.abs(np.log(P / self.value)) < 10 * self.tolerance
             P = self.value  # without the error of the search
         status = np.where(settled, Status.CONVERGED, Status.ITERATION_LIMIT)
@@ -174,12 +176,13 @@ class Contact:
         A0, peak = law.A_star * law.evaluate(y[:, :1]).g[:, 0], law.peak(y[:, :1], q[:, :1])[:, 0]  # (6), (13)
         D = 2 * a / len(mesh.x) * (p.sum(axis=1) - p[:, 0] / 2) + self.C * p[:, 0] + A0  # (14)
         arrays = a, P, D, p[:, 0], peak, 2 * (law.area(y, q) @ mesh.w), A0  # (12)
-        return Found(*np.where(status == Status.DIVERGED, np.nan, arrays), status, self.count)
+        return UniformSolution(*np.where(status == Status.DIVERGED, np.nan, arrays), status, self.count)
 
 
 def halved(load_error, start: np.ndarray, tolerance: float) -> np.ndarray:
-    """Roots (B,) of increasing functions `load_error(x, index)` by halving: from start ± 0.1, moved outwards, doubling,
-    until they enclose the root. A case is left alone when its bracket is below the tolerance, or its function NaN."""
+    """Roots (B,) of increasing functions `load_error(x, index)` by halving. The bracket begins as start ± 0.1, and its
+    ends move outwards, by steps that double, until they enclose the root. A case is done when its bracket is below the
+    tolerance, and given up when its function is NaN."""
     low, high = start - 0.1, start + 0.1
     for sign, end in ((-1, low), (1, high)):
         step, short = 0.1, np.arange(len(start))
@@ -190,7 +193,7 @@ def halved(load_error, start: np.ndarray, tolerance: float) -> np.ndarray:
     active = np.arange(len(start))
     while len(active):
         middle = (low[active] + high[active]) / 2
-        found = load_error(middle, active)
-        low[active], high[active] = np.where(found < 0, [middle, high[active]], [low[active], middle])
-        active = active[(high[active] - low[active] > tolerance) & ~np.isnan(found)]
+        error = load_error(middle, active)
+        low[active], high[active] = np.where(error < 0, [middle, high[active]], [low[active], middle])
+        active = active[(high[active] - low[active] > tolerance) & ~np.isnan(error)]
     return (low + high) / 2

@@ -70,26 +70,26 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
     if command == "point":
         from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, names
 
-        known = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
+        words = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
     elif command in ("plot", "table"):
         from ..figures import beside
 
-        known = ["all", *beside.names("figure" if command == "plot" else "table")]
-        known += known_studies() if command == "plot" else []
+        words = ["all", *beside.names("figure" if command == "plot" else "table")]
+        words += known_studies() if command == "plot" else []
     elif command == "--x":
         from ..data.derived import QUANTITIES
         from ..inputs.vocabulary import SCENE, VOCABULARY
 
-        known = [*VOCABULARY, *SCENE, *QUANTITIES]
+        words = [*VOCABULARY, *SCENE, *QUANTITIES]
     elif command == "--status":
         from ..data.dataset import status_words
 
-        known = list(status_words().values())
+        words = list(status_words().values())
     else:
         files = [*Path().glob("*.toml"), *files_in(STUDIES)]
         files += Path("results").glob("*.nc") if command == "verify" else ()
-        known = [*known_studies(), *(path.as_posix() for path in sorted(files))]
-    return [name for name in known if name.startswith(prefix)]
+        words = [*known_studies(), *(path.as_posix() for path in sorted(files))]
+    return [name for name in words if name.startswith(prefix)]
 
 
 def folder(text: str) -> str:
@@ -116,7 +116,7 @@ def address(text: str) -> str:
 
 def part(text: str) -> tuple[int, int]:
     """I/N, the I-th of N parts."""
-    found = re.fullmatch(rf"(\d{{1,{MOST_DIGITS}}})/(\d{{1,{MOST_DIGITS}}})", text)
-    if not found or not 1 <= int(found[1]) <= int(found[2]):
+    match = re.fullmatch(rf"(\d{{1,{MOST_DIGITS}}})/(\d{{1,{MOST_DIGITS}}})", text)
+    if not match or not 1 <= int(match[1]) <= int(match[2]):
         raise argparse.ArgumentTypeError(f"{on_one_line(text)}: must be I/N, whole numbers with 1 <= I <= N")
-    return int(found[1]), int(found[2])
+    return int(match[1]), int(match[2])

@@ -70,9 +70,9 @@ def retry(options, file: str) -> int:
 
 def verify(options, file: str) -> int:
     """Compare results with their digest."""
-    found = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
-    say(verified_line(found.path, found), sys.stdout if found.good else sys.stderr)
-    return 0 if found.kind == "sound" else 2 if found.kind == "missing" else 1
+    condition = examine(file) if Path(file).suffix == ".nc" else _opened(options, file).verify()
+    say(verified_line(condition.path, condition), sys.stdout if condition.good else sys.stderr)
+    return 0 if condition.kind == "sound" else 2 if condition.kind == "missing" else 1
 
 
 def clean(options, file: str) -> int:
@@ -114,14 +114,14 @@ def state_line(definition: Definition, state: dict) -> str:
     return line + f"\n    {state['path']}: {state['reason']}" * bool(state["reason"])
 
 
-def verified_line(name: str, found: Condition) -> str:
-    """What `verify` found."""
+def verified_line(name: str, condition: Condition) -> str:
+    """What `verify` says of a results file."""
     said = {
         "sound": "verified, every number is the one that was written",
         "unverified": "xarray or an earlier version wrote it, without a digest to compare; nothing wrong was seen",
         "missing": "does not exist",
     }
-    return f"{name}: {said.get(found.kind, found.reason)}"
+    return f"{name}: {said.get(condition.kind, condition.reason)}"
 
 
 def cost_line(name: str, cost: Estimate) -> str:

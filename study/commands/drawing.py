@@ -57,16 +57,16 @@ def _curves(options, name: str) -> int:
     for i, _ in twins([axis for axis, _ in options.where]):
         raise StudyError([f"--where {options.where[i][0]} is given twice"])
     if Path(name).suffix == ".nc":
-        found = _of_file(name)
+        dataset = _of_file(name)
     else:
         study = load(study_file(name), options.results)
         if options.run and (code := completed(study)):
             return code
-        found = study.open()
+        dataset = study.open()
     stem, title = f"{Path(name).stem}_{options.y}", f"{Path(name).stem}: {options.y} against {options.x}"
     try:
         with style():
-            figure, columns = drawn(found, options.x, options.y, options.hue, dict(options.where), Figure)
+            figure, columns = drawn(dataset, options.x, options.y, options.hue, dict(options.where), Figure)
         written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
     except (StudyError, OSError):
         raise

@@ -29,67 +29,67 @@ def items(options) -> list[list[str]]:
     return [options.items]
 
 
-def point(options, given: list[str]) -> int:
-    """Solve the contact and say what was found; exit code 1 for one that has no solution."""
-    parameters = parameters_of(given)
+def point(options, texts: list[str]) -> int:
+    """Solve the contact and say its numbers; exit code 1 if it has no solution."""
+    parameters = parameters_of(texts)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it; but that may take long
         warnings.simplefilter("always", FarOutside)
         warnings.showwarning = lambda text, *_: say(f"beware: {text}", sys.stderr)
         try:
-            found = solve(**parameters)  # with the profile p, which may be largest in a ring
+            contact = solve(**parameters)  # with the profile p, which may be largest in a ring
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
-    text = json.dumps(as_numbers(found), indent=2, ensure_ascii=False) if options.json else summary(found)
-    return answer(text) or (0 if int(found["status"]) == 0 else 1)
+    text = json.dumps(as_numbers(contact), indent=2, ensure_ascii=False) if options.json else summary(contact)
+    return answer(text) or (0 if int(contact["status"]) == 0 else 1)
 
 
-def parameters_of(given: list[str]) -> dict[str, float | str | bool]:
+def parameters_of(texts: list[str]) -> dict[str, float | str | bool]:
     """Arguments of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
-    found, errors = {}, []
-    for text in given:
+    parameters, errors = {}, []
+    for text in texts:
         try:
             name, value = assignment(text)
         except ArgumentTypeError as error:
             errors.append(f'{error}, such as R="5 mm"')
             continue
-        errors += [f"{name} is given twice"] * (name in found)
+        errors += [f"{name} is given twice"] * (name in parameters)
         if name == "same_piece":
             errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in _SWITCH)
             value = _SWITCH.get(str(value).lower())
         elif name in solve.__kwdefaults__:
             errors.append(f"{name} says nothing of one contact: leave it out")
-        found[name] = value
+        parameters[name] = value
     if errors:
         raise StudyError(errors)
-    return found
+    return parameters
 
 
-def as_numbers(found: xr.Dataset) -> dict:
+def as_numbers(contact: xr.Dataset) -> dict:
     """Inputs and results of one case for JSON: value, unit, and spread where the inputs have some; flags by name."""
-    found = found.assign({name: QUANTITIES[name](found) for name in _DERIVED} | _spreads_of_derived(found))
+    contact = contact.assign({name: QUANTITIES[name](contact) for name in _DERIVED} | _spreads_of_derived(contact))
     shown = {
-        name: described(found, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *_DERIVED)) if name in found
+        name: described(contact, name) for name in dict.fromkeys((*all_inputs(), *SHOWN, *_DERIVED)) if name in contact
     }
-    shown |= {name: number(found[name]) for name in ("error", "model_error")}
-    shown |= {name: decode(found[name]).item() for name in ("status", "model_used")}
-    shown["validity"] = decode(found["validity"]).item().split()
-    return shown | {"beware": doubts(found)}
+    shown |= {name: number(contact[name]) for name in ("error", "model_error")}
+    shown |= {name: decode(contact[name]).item() for name in ("status", "model_used")}
+    shown["validity"] = decode(contact["validity"]).item().split()
+    return shown | {"beware": doubts(contact)}
 
 
-def _spreads_of_derived(found: xr.Dataset) -> dict[str, xr.DataArray]:
+def _spreads_of_derived(contact: xr.Dataset) -> dict[str, xr.DataArray]:
     """NAME_spread of derived quantities, if results have spreads: NaN where it does not follow from these.
 
     A largest pressure does not change with its place to first order. That of the centre stays there.
     """
-    if "p_spread" not in found:
+    if "p_spread" not in contact:
         return {}
-    place = int(np.argmax(found["p"].values))
-    spreads = {"p_ring": found["p_spread"][place].drop_vars("x"), "p_peak": found["p_max_spread"]}
-    spreads["D_body"] = found.get("D_spread")
+    place = int(np.argmax(contact["p"].values))
+    spreads = {"p_ring": contact["p_spread"][place].drop_vars("x"), "p_peak": contact["p_max_spread"]}
+    spreads["D_body"] = contact.get("D_spread")
     formulas = {"r_ring": _ring if place else lambda _: math.nan}
-    formulas |= {name: QUANTITIES[name] for name in ["p_peak"] * bool(place) + ["D_body"] * bool(found.get("m", 0.0))}
-    spreads |= {name: xr.DataArray(spread_of_formula(found, formula)) for name, formula in formulas.items()}
+    formulas |= {name: QUANTITIES[name] for name in ["p_peak"] * bool(place) + ["D_body"] * bool(contact.get("m", 0.0))}
+    spreads |= {name: xr.DataArray(spread_of_formula(contact, formula)) for name, formula in formulas.items()}
     return {f"{name}_spread": spread for name, spread in spreads.items() if spread is not None}
 
 
@@ -102,15 +102,15 @@ def _ring(dataset: xr.Dataset) -> float:
     return float(dataset["a"]) * (x[place] - slope / (2 * bend))
 
 
-def described(found: xr.Dataset, name: str) -> dict | str:
+def described(contact: xr.Dataset, name: str) -> dict | str:
     """Value, unit and spread of a variable; a text as it is, and "rigid" or "flat" in place of an infinite number."""
-    array = found[name]
+    array = contact[name]
     if array.dtype.kind in "UO":
         return str(array.values)
     if name in INFINITE and math.isinf(array):
         return INFINITE[name][0]
     unit = array.attrs.get("scale") or array.attrs.get("units", "1")
-    spread = {"spread": number(found[f"{name}_spread"])} if f"{name}_spread" in found else {}
+    spread = {"spread": number(contact[f"{name}_spread"])} if f"{name}_spread" in contact else {}
     return {"value": number(array), "unit": unit} | spread
 
 

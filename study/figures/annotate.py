@@ -60,12 +60,12 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 
     A results file of an earlier version has fewer masks.
     """
-    found = {name: broken(flags) for name, flags in validity.items()}
-    of_curves = {
-        meaning: {name: where[meaning] for name, where in found.items() if meaning in where and where[meaning].any()}
-        for meaning in dict.fromkeys(meaning for where in found.values() for meaning in where)
+    masks = {name: broken(flags) for name, flags in validity.items()}
+    curves_of = {
+        meaning: {name: where[meaning] for name, where in masks.items() if meaning in where and where[meaning].any()}
+        for meaning in dict.fromkeys(meaning for where in masks.values() for meaning in where)
     }
-    return {meaning: curves for meaning, curves in of_curves.items() if curves}
+    return {meaning: curves for meaning, curves in curves_of.items() if curves}
 
 
 def note(axes, noted: list[tuple]) -> None:

@@ -27,14 +27,14 @@ KINDS = {"figure": "figure", "drawing": "figure", "table": "table", "measured": 
 LARGEST = 1_000_000  # bytes of a file beside `figures.py` that counts as its data; of ours the largest has 6,000
 
 
-def users() -> list[Path]:
+def user_files() -> list[Path]:
     """Each `figures.py` of the user: in the working folder, in `studies`, and in its chapters."""
     book = packaged().resolve()
     files = [folder / FILE for folder in (Path(), *chapters(STUDIES))]
     return [file for file in files if file.is_file() and not file.resolve().is_relative_to(book)]
 
 
-def of_the_book() -> list[Path]:
+def book_files() -> list[Path]:
     """Each `figures.py` of the book."""
     return [folder / FILE for folder in chapters(packaged()) if (folder / FILE).is_file()]
 
@@ -84,7 +84,7 @@ def read(path: Path, _: tuple) -> Text:
 
 
 def _calls(nodes: list[ast.AST], called: dict[str, str]) -> Iterator[tuple[tuple[str, str], bool]]:
-    """(kind, name) and `long` of each call of a decorator. called : what the file calls it -> its own name"""
+    """(kind, name) and `long` of each call of a decorator. called : its name in the file -> its name in KINDS"""
     for node in nodes:
         if isinstance(node, ast.Call) and node.args and isinstance(node.args[0], ast.Constant):
             decorator = called.get(getattr(node.func, "id", None), getattr(node.func, "attr", None))
@@ -100,7 +100,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
     In place of a file that cannot be read its path is given: `place_of` says what is wrong with it.
     """
     listed = []
-    for file in (*users(), *of_the_book()):
+    for file in (*user_files(), *book_files()):
         try:
             entries = names_in(file).items()
             listed += sorted(name for (its, name), is_long in entries if its == kind and (long or not is_long))
@@ -119,8 +119,8 @@ def place_of(kind: str, name: str) -> tuple[Path, str] | None:
         file = Path(folder, FILE)
         files = [file] if file.is_file() and (kind, last) in names_in(file) else []
     else:
-        files = [file for file in users() if (kind, name) in _readable(file)]
-        files = files or [file for file in of_the_book() if (kind, name) in _readable(file)]
+        files = [file for file in user_files() if (kind, name) in _readable(file)]
+        files = files or [file for file in book_files() if (kind, name) in _readable(file)]
     if len(files) > 1:
         paths = " and ".join(file.as_posix() for file in files)
         raise StudyError([f"{name}: is in {paths}: say which, such as {files[0].parent.as_posix()}/{name}"])
@@ -140,7 +140,7 @@ def unknown(kind: str, name: str, others: list[str]) -> StudyError:
     A file that cannot be read is told too: the name may stand there.
     """
     lines = [f'"{name}" is not known{suggest(name, [*others, *names(kind)])}']
-    for file in (*users(), *of_the_book()):
+    for file in (*user_files(), *book_files()):
         try:
             names_in(file)
         except StudyError as error:

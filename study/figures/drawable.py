@@ -21,12 +21,12 @@ def drawable(dataset: xr.Dataset, names: tuple[str, ...]) -> xr.Dataset:
     reasons = {name: _reason(str(name), variable) for name, variable in dataset.variables.items()}
     if wrong := [f"{name} {reasons[name]}" for name in dict.fromkeys(names) if reasons.get(name)]:
         raise StudyError(wrong)
-    found = dataset.drop_vars([name for name, reason in reasons.items() if reason]).copy()
-    for variable in found.variables.values():
+    kept = dataset.drop_vars([name for name, reason in reasons.items() if reason]).copy()
+    for variable in kept.variables.values():
         variable.attrs = {
             key: value for key, value in variable.attrs.items() if key not in _IN_LABELS or isinstance(value, str)
         }
-    return found
+    return kept
 
 
 def check_size(dataset: xr.Dataset, x: str, y: str) -> None:

@@ -43,7 +43,7 @@ def formatted(table: Table, rows: list[tuple]) -> list[list[str]]:
 def latex(cell: str) -> str:
     """A formatted cell or a caption for LaTeX: powers of ten written out, signs escaped, in a text with $ % alone."""
     text = re.sub(r"(?<!\\)%" if "$" in cell else r"(?<!\\)[%&#_^]", r"\\\g<0>", cell).replace(r"\^", r"\^{}")
-    return re.sub(r"([\d.+-]+)e([+-]\d+)$", lambda found: rf"${found[1]}\times 10^{{{int(found[2])}}}$", text)
+    return re.sub(r"([\d.+-]+)e([+-]\d+)$", lambda match: rf"${match[1]}\times 10^{{{int(match[2])}}}$", text)
 
 
 def csv_text(headings, rows) -> str:

@@ -18,8 +18,8 @@ UNITS = {"B": r"R_a/E_1^{*\beta}"}  # units of parameters whose scale is not mad
 
 def symbol(name: str) -> str:
     """The symbol of a name: "$p_{\\max}$", or the name in words."""
-    found = plain_symbol(name)
-    return f"${mathtext(found)}$" if found else name.replace("_", " ")
+    plain = plain_symbol(name)
+    return f"${mathtext(plain)}$" if plain else name.replace("_", " ")
 
 
 def plain_symbol(name: str) -> str:
@@ -30,8 +30,8 @@ def plain_symbol(name: str) -> str:
 def mathtext(plain: str) -> str:
     """A symbol for matplotlib: "pmax" has an index, p_max, as E1 and Ra have; "N̄" a bar."""
 
-    def with_index(found: re.Match) -> str:
-        letter, index = found.groups()
+    def with_index(match: re.Match) -> str:
+        letter, index = match.groups()
         word = r"\max" if index == "max" else rf"\mathrm{{{index}}}"
         return f"{letter}_{index}" if len(index) == 1 else f"{letter}_{{{word}}}"
 
@@ -63,7 +63,7 @@ def axis_label(name: str, array: xr.DataArray) -> str:
 def with_units(columns: dict, dataset: xr.Dataset) -> dict:
     """Columns of numbers of a dataset whose names say the unit of physical numbers: "P", or "P [N]"."""
     units = {name: dataset[name].attrs.get("units", "1") for name in columns if name in dataset}
-    return {name if units.get(name, "1") == "1" else f"{name} [{units[name]}]": own for name, own in columns.items()}
+    return {name if units.get(name, "1") == "1" else f"{name} [{units[name]}]": v for name, v in columns.items()}
 
 
 def value_text(name: str, array: xr.DataArray, value) -> str:
@@ -73,7 +73,7 @@ def value_text(name: str, array: xr.DataArray, value) -> str:
     unit = array.attrs.get("units", "1")
     if unit in READABLE and unit != "1":
         text = readable(float(value), unit)  # "5e+05 1/mm²"
-        text = re.sub(r"(\d)e([+-]\d+)", lambda found: rf"{found[1]}$\times10^{{{int(found[2])}}}$", text)
+        text = re.sub(r"(\d)e([+-]\d+)", lambda match: rf"{match[1]}$\times10^{{{int(match[2])}}}$", text)
         return f"{symbol(name)} = {text}"
     if unit != "1":  # of study.readable
         return f"{symbol(name)} = {written(float(value))} {unit}"
@@ -88,24 +88,24 @@ def written(value: float) -> str:
     return rf"${mantissa}\times10^{{{int(power)}}}$".replace(r"$1\times", "$") if power else mantissa
 
 
-def name_of(found: xr.Dataset, dim: str, i: int) -> str:
+def name_of(dataset: xr.Dataset, dim: str, i: int) -> str:
     """The name of index i of a dimension, for a title: its value, or the label of the case."""
-    known = "label" if dim == "case" and "label" in found else dim
-    if known not in found.coords:
+    name = "label" if dim == "case" and "label" in dataset else dim
+    if name not in dataset.coords:
         return f"{dim} {i}"
-    value = found[known].values[i]
-    if known == "case":
+    value = dataset[name].values[i]
+    if name == "case":
         return f"case {value}"
-    return value_text(known, found[known], value if isinstance(value, str) else float(value))
+    return value_text(name, dataset[name], value if isinstance(value, str) else float(value))
 
 
-def legend_texts(found: xr.Dataset, hue: str) -> tuple[str, list[str]]:
+def legend_texts(dataset: xr.Dataset, hue: str) -> tuple[str, list[str]]:
     """Title of the legend, and what each curve is called in it."""
-    known = "label" if hue == "case" and "label" in found else hue
-    if known not in found.coords or found[known].dtype.kind not in "fi" or known == "case":
-        return "", [name_of(found, hue, i) for i in range(found.sizes[hue])]
-    size = multiple(found[known])[1]
-    return axis_label(known, found[known]), [written(float(f"{one / size:.4g}")) for one in found[known].values]
+    name = "label" if hue == "case" and "label" in dataset else hue
+    if name not in dataset.coords or dataset[name].dtype.kind not in "fi" or name == "case":
+        return "", [name_of(dataset, hue, i) for i in range(dataset.sizes[hue])]
+    size = multiple(dataset[name])[1]
+    return axis_label(name, dataset[name]), [written(float(f"{value / size:.4g}")) for value in dataset[name].values]
 
 
 def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
@@ -116,7 +116,7 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
     """
     datasets = list(datasets)
     contacts = [dataset for dataset in datasets if "base" in dataset.coords]
-    found = ["rigid base"] * (bool(contacts) and all(is_rigid(dataset, "base") for dataset in contacts))
+    texts = ["rigid base"] * (bool(contacts) and all(is_rigid(dataset, "base") for dataset in contacts))
     of_some = {name for dataset in datasets for name in used_inputs(dataset)}
     for name in all_inputs():
         values = _values(datasets, name)
@@ -124,8 +124,8 @@ def stated(datasets: Iterable[xr.Dataset]) -> list[str]:
             (value,) = values
             if name == "bonding" or not isinstance(value, str):
                 array = next(dataset[name] for dataset in datasets if name in dataset)
-                found.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
-    return found
+                texts.append(value_text(name, array, value) + (rf" ${UNITS[name]}$" if name in UNITS else ""))
+    return texts
 
 
 def wrapped(texts: list[str], most: float) -> str:

@@ -65,47 +65,47 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     if y == ORDINATE and y not in dataset.variables:
         return tornado(chosen(dataset, where), x, new)
     dataset = drawable(dataset, (x, y, hue, *where))
-    found = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
-    check_size(found, x, y)
-    hue = "case" if hue == "label" and found[hue].dims == ("case",) else hue
-    check_roles(found, x, y, hue)
-    found = found.sortby(x) if x in found.dims else found  # a curve through loads as they were given runs to and fro
-    found = found.squeeze([dim for dim, size in found.sizes.items() if size == 1 and dim not in (x, hue)])
-    pair = xr.broadcast(found[x], found[y])
-    if not np.logical_and(*(np.isfinite(one.values) for one in pair)).any():
+    contacts = chosen(with_names(dataset, [x, y, *([hue] if hue else [])]), where)
+    check_size(contacts, x, y)
+    hue = "case" if hue == "label" and contacts[hue].dims == ("case",) else hue
+    check_roles(contacts, x, y, hue)
+    contacts = contacts.sortby(x) if x in contacts.dims else contacts  # else a curve may run to and fro
+    contacts = contacts.squeeze([dim for dim, size in contacts.sizes.items() if size == 1 and dim not in (x, hue)])
+    pair = xr.broadcast(contacts[x], contacts[y])
+    if not np.logical_and(*(np.isfinite(array.values) for array in pair)).any():
         raise StudyError([f"nothing to draw: no case has numbers for {x} and {y}; status says what became of each"])
-    if "validity" in found and not {*found["validity"].dims} <= {*pair[1].dims}:
-        found = found.drop_vars("validity")
+    if "validity" in contacts and not {*contacts["validity"].dims} <= {*pair[1].dims}:
+        contacts = contacts.drop_vars("validity")
     dims = [dim for dim in pair[1].dims if pair[1].sizes[dim] > 1 or dim in (x, hue)]
     if hue and hue not in dims:
         raise StudyError([f"hue = {hue} is no axis of {y}; its axes: {', '.join(dims)}"])
-    along = running(found, x, [dim for dim in dims if dim != hue])
+    along = running(contacts, x, [dim for dim in dims if dim != hue])
     rest = [dim for dim in dims if dim not in (along, hue)]
-    count = prod(found.sizes[dim] for dim in rest)
+    count = prod(contacts.sizes[dim] for dim in rest)
     if count > MOST_PANELS:
-        sizes = ", ".join(f"{dim} ({found.sizes[dim]})" for dim in rest)
+        sizes = ", ".join(f"{dim} ({contacts.sizes[dim]})" for dim in rest)
         raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose with --where NAME=VALUE"])
-    whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in found.dims}
-    found = found.assign(whole)  # without coordinates: it has them, and xarray 2026.2 refuses to align them
+    whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in contacts.dims}
+    contacts = contacts.assign(whole)  # variables: xarray 2026.2 does not align coordinates that are there
     columns = 2 if count == 4 else min(count, 3)
     rows = -(-count // columns)
-    names = min(found.sizes[hue], MOST_NAMES) if hue else 0  # a long legend stands below what is stated, not on it
+    names = min(contacts.sizes[hue], MOST_NAMES) if hue else 0  # a long legend needs room below the title
     size = max(2.9, 2.1 * columns) + (1.1 if hue else 0.5), max(2.2 * rows + 0.4, 0.17 * names + 1.2)
     figure = new(figsize=size, layout="constrained")
     panels = figure.subplots(rows, columns, sharex=True, sharey=True, squeeze=False).ravel()
     parts = []
-    for axes, place in zip(panels, product(*(range(found.sizes[dim]) for dim in rest)), strict=False):
-        case = found.isel(dict(zip(rest, place, strict=True)))
-        axes.set_title(", ".join(name_of(found, dim, i) for dim, i in zip(rest, place, strict=True)), fontsize=8)
-        parts += curves(axes, case, (x, y, hue, along), found)
+    for axes, place in zip(panels, product(*(range(contacts.sizes[dim]) for dim in rest)), strict=False):
+        case = contacts.isel(dict(zip(rest, place, strict=True)))
+        axes.set_title(", ".join(name_of(contacts, dim, i) for dim, i in zip(rest, place, strict=True)), fontsize=8)
+        parts += curves(axes, case, (x, y, hue, along), contacts)
     for axes in panels[count:]:
         axes.set_visible(False)
-    decorate(figure, panels[:count], found, (x, y, hue, along))
-    return figure, with_units(joined(parts), found)
+    decorate(figure, panels[:count], contacts, (x, y, hue, along))
+    return figure, with_units(joined(parts), contacts)
 
 
 def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
-    """The dataset, with those of the names added that have to be derived. Raises StudyError for an unknown name."""
+    """The dataset with the derived quantities among the names added. Raises StudyError for an unknown name."""
     errors = []
     for name in names:
         if name in QUANTITIES and name not in dataset:
@@ -120,10 +120,11 @@ def with_names(dataset: xr.Dataset, names: list[str]) -> xr.Dataset:
     return dataset
 
 
-def check_roles(found: xr.Dataset, x: str, y: str, hue: str) -> None:
+def check_roles(contacts: xr.Dataset, x: str, y: str, hue: str) -> None:
     """Raise StudyError for texts as coordinates of a curve, an axis as its ordinate, or as abscissa and hue."""
-    errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(found[name])]
-    if y in found.dims and (x in found.dims or y not in found[x].dims):  # else the load may be drawn against the depth
+    errors = [f"{name} has texts: they are not drawn, but may be the hue" for name in {x, y} if is_text(contacts[name])]
+    # where x depends on the axis y, such as the depth on the load, its curve may be drawn
+    if y in contacts.dims and (x in contacts.dims or y not in contacts[x].dims):
         errors.append(f"y = {y} is an axis of these results: it may be x or the hue")
     if x == hue:
         errors.append(f"x and hue are both {x}")
@@ -139,7 +140,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
     """The dataset at the wanted values of its axes. Raises StudyError for a value that is not there."""
     for name, value in where.items():
         if name not in dataset.coords or dataset[name].ndim != 1:
-            axes = [str(name) for name, one in dataset.coords.items() if one.ndim == 1]
+            axes = [str(name) for name, axis in dataset.coords.items() if axis.ndim == 1]
             raise StudyError([f"{name} is no axis of these results{suggest(name, axes)}"])
         values = dataset[name].values
         (dim,), unit = dataset[name].dims, dataset[name].attrs.get("units", "1")
@@ -151,7 +152,7 @@ def chosen(dataset: xr.Dataset, where: dict) -> xr.Dataset:
             fits = exact if exact.any() else near
         if not fits.any():
             few = values if is_text(dataset[name]) else values[np.argsort(np.abs(values - wanted), kind="stable")]
-            listed = ", ".join(f"{one:g}" if values.dtype.kind == "f" else str(one) for one in few[:20])
+            listed = ", ".join(f"{each:g}" if values.dtype.kind == "f" else str(each) for each in few[:20])
             more = " ..." * (len(values) > 20) + f" {unit}" * (unit != "1")
             raise StudyError([f"{name} = {value} is not there; there are {listed}{more}"])
         index = np.flatnonzero(fits)  # several of [[cases]] may have the value, and keep their numbers
@@ -171,11 +172,11 @@ def number(name: str, value: Any, unit: str) -> float:
         raise StudyError([str(error)]) from None
 
 
-def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
+def running(contacts: xr.Dataset, x: str, dims: list[str]) -> str:
     """The dimension along which a curve runs: `x` itself, or one on which it depends, a control before others."""
     if x in dims:
         return x
-    varies = [dim for dim in (*CONTROLS, *dims) if dim in dims and dim in found[x].dims]
+    varies = [dim for dim in (*CONTROLS, *dims) if dim in dims and dim in contacts[x].dims]
     if not varies:
         raise StudyError([f"x = {x} has one value only; axes: {', '.join(dims) or 'none'}"])
     return varies[0]
@@ -184,19 +185,19 @@ def running(found: xr.Dataset, x: str, dims: list[str]) -> str:
 def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Columns]:
     """The curves of one panel, solid where the case is valid, dotted where not, in a band of ±; their numbers."""
     x, y, hue, along = names
-    of = x if y in whole.dims else y  # what has a band
+    banded = x if y in whole.dims else y  # has a band of ±
     parts, colours = [], shades(case.sizes[hue] if hue else 1)
     sizes = [multiple(whole[name])[1] for name in (x, y)]
     for i, colour in enumerate(colours):
-        one = case.isel({hue: i}) if hue else case
-        across, up = (np.broadcast_to(one[name].values, one.sizes[along]) for name in (x, y))
+        curve = case.isel({hue: i}) if hue else case
+        across, up = (np.broadcast_to(curve[name].values, curve.sizes[along]) for name in (x, y))
         valid = np.ones(len(up), bool)
-        if "validity" in one:
-            valid = np.broadcast_to(one["validity"].values == 0, len(up))
-        spread = {name: np.broadcast_to(one[name].values, len(up)) for name in (f"{of}_spread",) if name in one}
+        if "validity" in curve:
+            valid = np.broadcast_to(curve["validity"].values == 0, len(up))
+        spread = {name: np.broadcast_to(curve[name].values, len(up)) for name in (f"{banded}_spread",) if name in curve}
         for half in spread.values():
             low, high = (across - half) / sizes[0], (across + half) / sizes[0]
-            if of == x:
+            if banded == x:
                 axes.fill_betweenx(up / sizes[1], low, high, color=colour, **BAND)
             elif along == "case":
                 axes.errorbar(across / sizes[0], up / sizes[1], half / sizes[1], fmt="none", color=colour, alpha=0.5)
@@ -211,45 +212,45 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             as_points(axes.lines[-1:], "full")
         fixed = {
             name: np.full(len(up), array.item())
-            for name, array in one.coords.items()
+            for name, array in curve.coords.items()
             if (name in whole.dims or name == "label") and not array.ndim
         }
-        known = {"valid": valid.astype(int)} if "validity" in one else {}
-        parts.append(fixed | {x: across, y: up} | spread | known)
+        flags = {"valid": valid.astype(int)} if "validity" in curve else {}
+        parts.append(fixed | {x: across, y: up} | spread | flags)
     return parts
 
 
-def decorate(figure: Figure, panels, found: xr.Dataset, names: tuple) -> None:
+def decorate(figure: Figure, panels, contacts: xr.Dataset, names: tuple) -> None:
     """Labels, scales, the legend, and the parameters above the figure."""
     x, y, hue, along = names
-    log_x = spaced_by_factors(found[x].values)
-    log_y = log_x and np.nanmin(found[y].values) > 0 and np.nanmax(found[y].values) > 30 * np.nanmin(found[y].values)
+    log_x, values = spaced_by_factors(contacts[x].values), contacts[y].values
+    log_y = log_x and np.nanmin(values) > 0 and np.nanmax(values) > 30 * np.nanmin(values)
     for axes in panels:
         grid = axes.get_subplotspec()
         axes.set(xscale="log" if log_x else "linear", yscale="log" if log_y else "linear")
         for axis in (axes.xaxis, axes.yaxis):
             tick_decades(axis)
-        axes.set_ylabel(axis_label(y, found[y]) if grid.is_first_col() else "")
-        axes.set_xlabel(axis_label(x, found[x]))
+        axes.set_ylabel(axis_label(y, contacts[y]) if grid.is_first_col() else "")
+        axes.set_xlabel(axis_label(x, contacts[x]))
         axes.label_outer()
         if grid.num1 + grid.get_gridspec().ncols >= len(panels):  # there is no panel below it
-            axes.set_xlabel(axis_label(x, found[x]))
+            axes.set_xlabel(axis_label(x, contacts[x]))
             axes.tick_params(labelbottom=True)
-    figure.suptitle(wrapped(stated([found]), 21 * figure.get_figwidth()), fontsize=7)
+    figure.suptitle(wrapped(stated([contacts]), 21 * figure.get_figwidth()), fontsize=7)
     handles, title = [], ""
     if hue:
-        every = -(-found.sizes[hue] // MOST_NAMES)
-        colours = shades(found.sizes[hue])
-        named = range(0, found.sizes[hue], every)
-        title, texts = legend_texts(found, hue)
+        every = -(-contacts.sizes[hue] // MOST_NAMES)
+        colours = shades(contacts.sizes[hue])
+        named = range(0, contacts.sizes[hue], every)
+        title, texts = legend_texts(contacts, hue)
         handles = [Line2D([], [], color=colours[i], linestyle="-", label=texts[i]) for i in named]
         if along == "case":
             as_points(handles, "full")
-    if "validity" in found and (found["validity"] != 0).any():
+    if "validity" in contacts and (contacts["validity"] != 0).any():
         handles.append(Line2D([], [], color="0.4", label="not valid", **NOT_VALID))
         if along == "case":
             as_points(handles[-1:], "none")
-    if f"{x if y in found.dims else y}_spread" in found:
+    if f"{x if y in contacts.dims else y}_spread" in contacts:
         handles.append(Patch(facecolor="0.4", label="± one standard\ndeviation", **BAND))
     if handles:
         figure.legend(handles=handles, title=title, loc="outside right center")

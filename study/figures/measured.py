@@ -24,14 +24,14 @@ def results(name: str, folder, force: bool = False, command: str = "") -> xr.Dat
     a study, and for a name that nothing measures.
     """
     measured, path = entry("measured", name), Path(folder) / f"{name}.nc"
-    found = examine(path)
-    if found.kind in ("foreign", "unreadable"):
-        found.raise_if_bad()
-    if found.sizes:
+    condition = examine(path)
+    if condition.kind in ("foreign", "unreadable"):
+        condition.raise_if_bad()
+    if condition.sizes:
         raise StudyError([f"{path}: holds the cases of a study: move it away, or use --results DIR"])
-    if force or not found.good or found.digest != digest(measured.plan()):
+    if force or not condition.good or condition.digest != digest(measured.plan()):
         path.parent.mkdir(parents=True, exist_ok=True)
-        write(described(measured.measure(), name, measured, command), path, found)
+        write(described(measured.measure(), name, measured, command), path, condition)
     return open_results(path)
 
 

@@ -36,15 +36,15 @@ def digest_of(what: str, endings: tuple[str, ...], results: list[Path], beside: 
 @cache  # 300 files are read in 30 ms
 def program() -> str:
     """sha256 of all files of the program, and of the versions of what it draws with."""
-    found = hashlib.sha256(json.dumps([NUMERICS_VERSION, *map(package_version, LIBRARIES)]).encode())
+    digest = hashlib.sha256(json.dumps([NUMERICS_VERSION, *map(package_version, LIBRARIES)]).encode())
     for package in PACKAGES:
         archive = next((path for path in package.parents if path.is_file()), None)  # a zip file that holds the package
         if archive:
-            found.update(f"{_digest(archive)}\n".encode())
+            digest.update(f"{_digest(archive)}\n".encode())
         for file in sorted(package.rglob("*.*")):
             if file.is_file() and file.parent.name != "__pycache__":
-                found.update(f"{file.relative_to(package).as_posix()} {_digest(file)}\n".encode())
-    return found.hexdigest()
+                digest.update(f"{file.relative_to(package).as_posix()} {_digest(file)}\n".encode())
+    return digest.hexdigest()
 
 
 def is_up_to_date(folder: Path, what: str, digest: str, names: list[str]) -> bool:
@@ -59,7 +59,7 @@ def is_up_to_date(folder: Path, what: str, digest: str, names: list[str]) -> boo
 def note(folder: Path, what: str, digest: str, paths: list[Path]) -> None:
     """Put the files of a figure or table, just written, into the record.
 
-    Of two programs that do so at once one entry may be lost: what it is about is then made again.
+    If two programs do so at once, one entry may be lost: its figure or table is then made again.
     """
     entry = {"of": digest, "files": {path.name: _digest(path) for path in paths}}
     write(folder / RECORD, json.dumps(_read(folder) | {what: entry}, indent=1, sort_keys=True) + "\n")
@@ -69,10 +69,10 @@ def _read(folder: Path) -> dict:
     """The record of a folder; {} if there is none, or none that can be read."""
     try:
         path = folder / RECORD
-        found = json.loads(path.read_bytes()) if path.is_file() and path.stat().st_size < LARGEST else {}
+        record = json.loads(path.read_bytes()) if path.is_file() and path.stat().st_size < LARGEST else {}
     except (OSError, ValueError, RecursionError):
         return {}
-    return found if isinstance(found, dict) else {}
+    return record if isinstance(record, dict) else {}
 
 
 def _digest(path: Path) -> str:

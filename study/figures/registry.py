@@ -19,7 +19,7 @@ from ..terminal import program
 from . import beside
 
 ONE_COLUMN, TWO_COLUMNS = 3.35, 6.9  # inches, widths of a journal page
-COMMANDS = ("tradeoff",)  # what is measured that has a command of its own
+COMMANDS = ("tradeoff",)  # measurements that have a command
 Decorator = Callable[[Callable], Callable]
 Pair = tuple[float, float]
 Cells = tuple[int, int]
@@ -142,7 +142,7 @@ def table(name: str, *studies: str, columns: str, caption: str = "", long: bool 
     """
 
     def register(rows: Callable[..., list[tuple]]) -> Callable[..., list[tuple]]:
-        heads = tuple(column(one) for one in re.split(r"\n|(?<!\\); ", columns.strip()))
+        heads = tuple(column(line) for line in re.split(r"\n|(?<!\\); ", columns.strip()))
         add("table", name, rows, Table(studies, rows, caption_of(rows, caption), heads))
         return rows
 
@@ -163,8 +163,8 @@ def measured(name: str, plan: Callable[[], str], title: str):
     return register
 
 
-def add(kind: str, name: str, function: Callable, made: NamedTuple) -> None:
-    """Put what a function gives into the register of its package.
+def add(kind: str, name: str, function: Callable, registered: NamedTuple) -> None:
+    """Put what is registered with a function into the register of its package.
 
     Raises ValueError if another function there has the name. In a notebook a function may be defined anew.
     """
@@ -175,17 +175,17 @@ def add(kind: str, name: str, function: Callable, made: NamedTuple) -> None:
     other = getattr(other, "func", other)
     if (other.__module__, other.__name__) != (function.__module__, function.__name__):
         raise ValueError(f'"{name}" is that of {other.__module__}.{other.__name__} already: take another name')
-    register[name] = made
+    register[name] = registered
 
 
-def caption_of(function: Callable, given: str = "") -> str:
-    """The caption that was given, by default the first paragraph of the docstring, on one line."""
-    return " ".join((given or (function.__doc__ or "").partition("\n\n")[0]).split())
+def caption_of(function: Callable, caption: str = "") -> str:
+    """The caption, by default the first paragraph of the docstring, on one line."""
+    return " ".join((caption or (function.__doc__ or "").partition("\n\n")[0]).split())
 
 
-def column(given: str) -> Column:
+def column(line: str) -> Column:
     """One of the `columns` of a table."""
-    text, form, latex = (cell.strip() for cell in (given + "||").split("|")[:3])
+    text, form, latex = (cell.strip() for cell in (line + "||").split("|")[:3])
     return Column(text, form or "s", latex)
 
 
@@ -195,7 +195,7 @@ def names(kind: str, *, long: bool = True) -> list[str]:
 
 
 def entry(kind: str, name: str) -> Any:
-    """What is registered of a name: of the program itself, or beside studies, where it is run now.
+    """What is registered under a name, by the program itself or by code beside studies, which runs now.
 
     Raises StudyError, which suggests another name, if there is none.
     """
@@ -212,7 +212,7 @@ def entry(kind: str, name: str) -> Any:
 
 
 def code_of(kind: str, name: str) -> list[Path]:
-    """Files beside studies from which a figure or table that has been run may follow; none for one of a script."""
+    """Files beside studies that a figure or table may depend on, once its code has run; none if a script has it."""
     place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
     return beside.files_of(beside.package_of(place[0])) if place else []
 
@@ -220,7 +220,7 @@ def code_of(kind: str, name: str) -> list[Path]:
 def study_beside(kind: str, name: str) -> Path | None:
     """The folder of a figure or table of the user, where the studies that it needs are looked for first."""
     place = None if name in REGISTERS[""][kind] else beside.place_of(kind, name)
-    return place[0].parent if place and place[0] not in beside.of_the_book() else None
+    return place[0].parent if place and place[0] not in beside.book_files() else None
 
 
 def open_studies(name: str, studies: tuple[str, ...], results) -> list[xr.Dataset]:
@@ -252,8 +252,8 @@ def pick(dataset: xr.Dataset, **wanted) -> xr.Dataset:
     """
     fits = np.ones(dataset.sizes["case"], dtype=bool)
     for name, value in wanted.items():
-        found = dataset[name].values
-        fits &= (found == value) if isinstance(value, str) else np.isclose(found, value, rtol=1e-9, atol=0)
+        values = dataset[name].values
+        fits &= (values == value) if isinstance(value, str) else np.isclose(values, value, rtol=1e-9, atol=0)
     if np.count_nonzero(fits) != 1:
         which = ", ".join(f"{name} = {value}" for name, value in wanted.items())
         raise StudyError([f"{dataset.attrs['study_name']}: {np.count_nonzero(fits)} cases have {which}: needs one"])

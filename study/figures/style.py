@@ -21,8 +21,8 @@ FONT = "STIXGeneral"  # of all figures; it comes with matplotlib
 
 @contextmanager
 def style() -> Iterator[None]:
-    """Draw, and write, in the style of all figures. What it does not set is as matplotlib comes, whatever the settings
-    of the user are."""
+    """Draw, and write, in the style of all figures. What it does not set has the defaults of matplotlib, whatever the
+    settings of the user are."""
     # A user keeps matplotlib's list of fonts from one installation to the next, so those that come with it may be
     # missing there, and every figure looks different.
     if FONT not in font_manager.fontManager.get_font_names():
@@ -33,7 +33,7 @@ def style() -> Iterator[None]:
 
 
 class StyledFigure(Figure):
-    """A figure that is drawn in the style of all figures whenever it is: matplotlib makes ticks no sooner.
+    """A figure that takes the style of all figures each time it is drawn: matplotlib makes ticks only then.
 
     pyplot does not know it. A notebook shows it where it is the last value of a cell, or given to `display`.
     """
@@ -47,7 +47,7 @@ class StyledFigure(Figure):
             super().savefig(*arguments, **options)
 
     def _repr_png_(self) -> bytes:
-        """What a notebook asks for as long as nobody has told it how to show figures, as importing pyplot does."""
+        """A notebook asks for this unless something, such as importing pyplot, has told it how to show figures."""
         stream = BytesIO()
         self.savefig(stream, format="png", dpi=self.dpi)
         return stream.getvalue()

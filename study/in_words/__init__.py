@@ -1,9 +1,8 @@
 """A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
 
-from .beyond import doubts
 from .early import FarOutside, far_outside
 from .pressures import STRENGTHS
-from .sentences import MODELS, NOT_VIOLATED
+from .sentences import MODELS, NOT_VIOLATED, doubts
 from .text import MOST_CASES, SHOWN, Summary, summary
 
 __all__ = [

@@ -57,6 +57,21 @@ def largest(case: xr.Dataset) -> Largest:
     return Largest(float(p[place]), real, place, fine)
 
 
+def largest_of_all(contact: xr.Dataset) -> dict[str, xr.Variable]:
+    """p_ring, p_peak: the largest nominal and real pressures of each case that are known, in the centre or a ring."""
+    v = contact.variables
+    nominal, real = v["p0"], v["p_max"]
+    top = v["p"].max("x") if "p" in v else nominal
+    ring = top > RING * nominal
+    if ring.any():
+        try:
+            peak = derived.peak_pressure(contact).variable
+        except ValueError:  # the moduli are not known, as of a mean
+            peak = top
+        nominal, real = top.where(ring, nominal), peak.where(ring & (peak > real), real)
+    return {"p_ring": nominal, "p_peak": real}
+
+
 def _may_have_a_ring(case: xr.Dataset) -> bool:
     """Whether the layer may bend like a plate: harder than the body, and a > h.
 

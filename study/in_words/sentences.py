@@ -1,4 +1,4 @@
-"""Sentences about how a contact was solved, by which model, and what it rests on."""
+"""Sentences about contacts: how they were solved, by which model, what they rest on, and what is beyond the model."""
 
 import xarray as xr
 
@@ -7,9 +7,9 @@ from solver import Status
 from ..data.dataset import decode
 from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
-from .beyond import doubts
+from ..rules import rule
 from .influence import influence
-from .pressures import RUBBER, not_checked
+from .pressures import RUBBER, largest_of_all, not_checked
 
 _BASES = {
     "half_space": "a half-space",
@@ -25,6 +25,12 @@ WHOSE = " The asperities are the punch's; a rough surface under a polished punch
 surfaces the sum counts (docs/model.md, Elastic punch)."
 SLIDES = 'The layer slides on the body without friction, since bonding is not given. One that is deposited or glued on \
 does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
+
+
+def doubts(contact: xr.Dataset) -> list[str]:
+    """A sentence for each assumption of the model that some cases violate, and for inputs that nothing real has."""
+    v = dict(contact.variables)  # arithmetic of DataArrays takes longer than solving a contact
+    return rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
 
 
 def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:

@@ -19,37 +19,37 @@ FITTED = ("B", "beta")
 """Parameters that are fitted to Nbar and Ra where neither is given (`fitted.py`)."""
 
 
-def not_given(given: Collection[str], texts: Callable[[str], Iterable], errors: list[str]) -> list[str]:
+def not_given(names: Collection[str], texts: Callable[[str], Iterable], errors: list[str]) -> list[str]:
     """Messages for parameters without a default that are not given, though some case needs them.
 
-    given : names of those that are given; texts : a function, name of a parameter such as base -> its values
+    names : of those that are given; texts : a function, name of a parameter such as base -> its values
     errors : found before. If one is of an unknown name or section, the missing parameter may be there: no messages then
     """
     messages = []
     if any("is not a parameter" in error or "is not a section" in error for error in errors):
         return []
-    neither = not {*FITTED} & {*given}  # is given: then both are fitted, and it is said once to what
+    neither = not {*FITTED} & {*names}  # is given: then both are fitted, and it is said once to what
     for name in PARAMETERS:
-        own = VOCABULARY[name].own
-        selector, words = own.needed_by
-        if name in given or name in CONTROLS or own.default is not None:
+        parameter = VOCABULARY[name].own
+        selector, words = parameter.needed_by
+        if name in names or name in CONTROLS or parameter.default is not None:
             continue
         values = texts(selector)
-        found = " or ".join(shown(word) for word in words if word in values)
+        users = " or ".join(shown(word) for word in words if word in values)
         if name in FITTED and neither:
-            if found and name == FITTED[0] and not {"Nbar", "Ra"} <= {*given}:
+            if users and name == FITTED[0] and not {"Nbar", "Ra"} <= {*names}:
                 messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
-        elif found:
-            messages.append(f"{name} is missing: {selector} = {found} needs it")
-    if messages and "micro = " in messages[-1] and "micro" not in given:
+        elif users:
+            messages.append(f"{name} is missing: {selector} = {users} needs it")
+    if messages and "micro = " in messages[-1] and "micro" not in names:
         messages[-1] += ' (without asperities: micro = "smooth")'
     return messages
 
 
 def one_control(names: Collection[str]) -> list[str]:
     """A message if the names of the parameters have none of P, a and D, or several."""
-    given = [name for name in CONTROLS if name in names]
-    return [f"exactly one of P, a, D must be given, not {' and '.join(given) or 'none'}"] * (len(given) != 1)
+    controls = [name for name in CONTROLS if name in names]
+    return [f"exactly one of P, a, D must be given, not {' and '.join(controls) or 'none'}"] * (len(controls) != 1)
 
 
 def equal_cases(cases: list) -> list[str]:
@@ -68,7 +68,7 @@ def dimensions_that_differ(given: Given, values: dict[str, np.ndarray]) -> list[
     itself = {name: entry for name, entry in inputs.items() if entry.dims in ((name,), ("case",))}
     lengths = {entry.dims[0]: (name, len(entry.values)) for name, entry in itself.items() if entry.array is None}
     labels = {name: (name, values.get(name, entry.array)) for name, entry in itself.items() if entry.dims == (name,)}
-    labels = {name: (name, np.asarray(known)) for name, (_, known) in labels.items() if known is not None}
+    labels = {name: (name, np.asarray(values)) for name, (_, values) in labels.items() if values is not None}
     for name, entry in arrays.items():
         if entry.dims == (name,) and name in entry.array.coords:
             labels[name] = name, entry.array.coords[name].values
@@ -81,15 +81,15 @@ def dimensions_that_differ(given: Given, values: dict[str, np.ndarray]) -> list[
             elif length != expected:
                 messages[f"{name} has {length} values along {dim}, {other} has {expected}"] = None
             elif coordinate is not None:
-                other, known = labels.setdefault(dim, (name, coordinate))
-                if not same_labels(known, coordinate):
+                other, expected = labels.setdefault(dim, (name, coordinate))
+                if not same_labels(expected, coordinate):
                     messages[f"{name} has other values of {dim}, or in another order, than {other}"] = None
     return list(messages)
 
 
 def _taken(given: Given, name: str) -> list[str]:
     """Messages for dimensions of a DataArray whose name is that of something else."""
-    found = []
+    said = []
     for dim in given.inputs[name].dims:
         owner = given.inputs.get(dim)
         of_scene = dim in SCENE or dim in BODIES
@@ -98,14 +98,14 @@ def _taken(given: Given, name: str) -> list[str]:
         parameter = dim in PARAMETERS or of_scene
         of_units = given.physical and dim in ROWS and ROWS[dim].unit != "1"
         if parameter and dim not in given.sections:
-            found.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
+            said.append(f"the dimension {dim} is called like a parameter that is not given: rename it")
         elif owner and owner.dims != (dim,):
-            found.append(f"{dim} is a dimension and a parameter over other dimensions")
+            said.append(f"{dim} is a dimension and a parameter over other dimensions")
         elif owner and of_units and owner.array is None:
-            found.append(f'{name}: a dimension cannot be called "{dim}" here, unless that is a DataArray over itself')
+            said.append(f'{name}: a dimension cannot be called "{dim}" here, unless that is a DataArray over itself')
         elif not parameter and dim in VOCABULARY and dim != "case":
-            found.append(f'a dimension cannot be called "{dim}", which is the name of a result')
-    return found
+            said.append(f'a dimension cannot be called "{dim}", which is the name of a result')
+    return said
 
 
 def missing_parameters(grid: Grid) -> list[str]:
@@ -117,8 +117,8 @@ def missing_parameters(grid: Grid) -> list[str]:
         if gaps.any():
             selector, words = VOCABULARY[name].own.needed_by
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
-            found = [shown(word) for word in words if word in along(grid, selector)]
-            reason = f": {selector} = {' or '.join(found)} needs it" if found else ""
+            users = " or ".join(shown(word) for word in words if word in along(grid, selector))
+            reason = f": {selector} = {users} needs it" if users else ""
             messages.append(f"{name} is missing in case {case}{reason}")
     return messages
 
@@ -154,9 +154,9 @@ def slips_of_laws(grid: Grid) -> list[str]:
         having = np.argwhere(micro == word)
         few = {dim: having[np.linspace(0, len(having) - 1, 3).astype(int), axis] for axis, dim in enumerate(dims)}
         few = {dim: few.get(dim, np.linspace(0, size - 1, 3).astype(int)) for dim, size in grid.sizes.items()}
-        given = {name: array[tuple(few[dim] for dim in own)] for name, (own, array) in grid.values.items()}
+        cases = {name: array[tuple(few[dim] for dim in over)] for name, (over, array) in grid.values.items()}
         try:
-            law_of(dimensionless(Problem.of(**given)))
+            law_of(dimensionless(Problem.of(**cases)))
         except ValueError as error:
             messages.append(str(error))
     return messages

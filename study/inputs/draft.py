@@ -55,9 +55,9 @@ class Draft:
     def read(self, entry: Input) -> None:
         """The numbers or words of an input without a unit. What a case does not say has its default, or NaN."""
         name, gaps = entry.name, entry.section == "[[cases]]"
-        own = VOCABULARY[name].own
+        default = VOCABULARY[name].own.default
         raw = entry.values if entry.array is None else entry.array.values.ravel().tolist()
-        raw = [own.default if gaps and value is None else value for value in raw]
+        raw = [default if gaps and value is None else value for value in raw]
         array = self.checked(name, raw, gaps=gaps, distinct=entry.dims == (name,))
         self.values[name] = entry.dims, array.reshape(entry.shape)
 
@@ -88,10 +88,10 @@ class Draft:
         self.errors += dimensions_that_differ(given, labels | {n: array for n, (dims, array) in values.items() if dims})
         _, laws = values.get("micro", ((), ""))  # "" if what was given has been refused
         for name in [name for name in PARAMETERS if name not in given.sections]:
-            own = VOCABULARY[name].own  # a parameter of a law that no case has stays away
-            selector, owners = own.needed_by
-            if own.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
-                values[name] = (), np.array(own.default)
+            parameter = VOCABULARY[name].own  # of a law that no case has it stays away
+            selector, owners = parameter.needed_by
+            if parameter.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
+                values[name] = (), np.array(parameter.default)
         names = {*given.sections, *["n"] * given.physical}  # n follows from moduli
         self.errors += not_given(names, lambda name: values.get(name, ((), ()))[1], self.errors)
         if not self.errors:
@@ -101,13 +101,13 @@ class Draft:
     def put(self, name: str, dims: tuple[str, ...], array: np.ndarray) -> None:
         """A number that follows from others, over its dimensions."""
         self.values[name] = dims, self.checked(name, array.ravel().tolist()).reshape(array.shape)
-        self._lengths(name)
 
     def put_dimensions(self) -> None:
         """Note the lengths of dimensions, and coordinates of those that are no inputs."""
         given = self.given
-        for name in self.values:
-            self._lengths(name)
+        for dims, array in self.values.values():
+            for dim, size in zip(dims, array.shape, strict=True):
+                self.sizes.setdefault(dim, size)
         for entry in given.inputs.values():
             for dim in entry.dims if entry.array is not None else ():
                 stacked = hasattr(entry.array.indexes.get(dim), "levels")  # see `carried`
@@ -119,11 +119,6 @@ class Draft:
             self.labels["label"] = ("case",), np.array(given.labels, dtype=str)
         if len(self.sizes) > MOST_DIMENSIONS:
             self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
-
-    def _lengths(self, name: str) -> None:
-        dims, array = self.values[name]
-        for dim, size in zip(dims, array.shape, strict=True):
-            self.sizes.setdefault(dim, size)
 
     def finish(self) -> Grid:
         """The grid, with B and beta where they are to be fitted, after a check of what concerns several parameters."""

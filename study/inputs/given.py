@@ -61,7 +61,7 @@ class Input:
         values = self.values.values() if isinstance(self.values, dict) else self.values
         values = list(values) if isinstance(self.values, (dict, list)) else []
         pure = {*map(type, values)} <= {float, int}  # quick: of most long lists
-        return not pure and any(type(one) is Quantity or has_unit(one) for one in values)
+        return not pure and any(type(value) is Quantity or has_unit(value) for value in values)
 
     def at(self, place: list[int]) -> Any:
         """What was given at a place, one number for each dimension; None for a number that follows from other words."""
@@ -109,7 +109,7 @@ class Given:
         given = cls(correlations=correlations)
         with suppress(ValueError):  # laws as objects have parameters; what is wrong with one is told when micro is read
             micro = [table.get("micro") for table in (parameters, *rows)]
-            law_names([law for one in micro for law in (one if isinstance(one, list) else [one])])
+            law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
         given._same_piece(same_piece, "")
         if rows:
             given._cases(rows)
@@ -186,11 +186,11 @@ class Given:
         elif name in self.sections:
             other = f"in {section}" if section else "elsewhere"
             self.errors.append(f"{name} is given twice: in {self.sections[name]} and {other}")
-        elif not is_input(name):
+        elif not (name in SCENE or name in BODIES or is_parameter(name)):
             place = f"{section} " if section else ""
-            known = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
+            names = [*PARAMETERS, *SCENE, *BODIES, *["label"] * (section == "[[cases]]")]
             later = len(self.errors) >= MOST_MESSAGES  # and not shown
-            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, known, place))
+            self.errors.append(f"{name} is not a parameter" if later else no_parameter(name, names, place))
         else:
             if section in ("[model]", "[numerics]") and isinstance(entry.values[0], (list, dict)):
                 self.errors.append(f"{section} {name} has several values: these belong in [axes]")
@@ -211,8 +211,3 @@ class Given:
         order = {"[[cases]]": 0, "[sample]": 0, "[model]": 2}
         self.inputs = dict(sorted(self.inputs.items(), key=lambda pair: order.get(pair[1].section, 1)))
         return self
-
-
-def is_input(name: Any) -> bool:
-    """Whether a name is that of a parameter, of an input of a scene, or of a body of a material."""
-    return name in SCENE or name in BODIES or is_parameter(name)

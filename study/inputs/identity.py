@@ -25,8 +25,8 @@ from .vocabulary import PARAMETERS, VOCABULARY
 def counts(grid: Grid, name: str) -> np.ndarray:
     """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
     value, default = along(grid, name), VOCABULARY[name].own.default
-    given = ~np.isnan(value) if default is None else value != default
-    return given & uses(name, partial(along, grid))
+    changed = ~np.isnan(value) if default is None else value != default
+    return changed & uses(name, partial(along, grid))
 
 
 def law_versions(grid: Grid) -> list[str]:
@@ -52,7 +52,7 @@ def digest_of(definition) -> str:
         "profiles": definition.profiles,
         "dtype": definition.dtype,
     }
-    content["values"] = {name: found for name, found in content["values"].items() if found}
+    content["values"] = {name: digests for name, digests in content["values"].items() if digests}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     return _digest_of_scene(digest, definition.scene) if definition.scene else digest
@@ -101,17 +101,17 @@ def case_keys(grid: Grid) -> np.ndarray:
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
 
 
-def find(keys: np.ndarray, known: np.ndarray, rank: np.ndarray) -> np.ndarray:
-    """(B,) int64: the row of each of the keys (B, 2) among the `known` (N, 2), that of lowest `rank`; -1: not there.
+def find(keys: np.ndarray, stored: np.ndarray, rank: np.ndarray) -> np.ndarray:
+    """(B,) int64: the row of each of the keys (B, 2) among the `stored` (N, 2), that of lowest `rank`; -1: not there.
 
-    Of two different known keys with the same first half one may be reported as not there.
+    Of two different stored keys with the same first half one may be reported as not there.
     """
-    if not len(known):
+    if not len(stored):
         return np.full(len(keys), -1)
-    order = np.lexsort((rank, known[:, 0]))
-    place = np.searchsorted(known[order, 0], keys[:, 0])
-    row = order[np.minimum(place, len(known) - 1)]
-    return np.where((known[row] == keys).all(axis=1), row, -1)
+    order = np.lexsort((rank, stored[:, 0]))
+    place = np.searchsorted(stored[order, 0], keys[:, 0])
+    row = order[np.minimum(place, len(stored) - 1)]
+    return np.where((stored[row] == keys).all(axis=1), row, -1)
 
 
 def _hashed(name: str, array: np.ndarray) -> np.ndarray:

@@ -30,10 +30,10 @@ laws.RESERVED.update(SCENE, BODIES)
 
 def update_vocabulary() -> None:
     """Make PARAMETERS and VOCABULARY fit the micro laws that are registered now."""
-    own = names("control", "material", "roughness", "numerics")
-    for name in set(PARAMETERS) - set(own):  # their laws may have been replaced
+    built_in = names("control", "material", "roughness", "numerics")
+    for name in set(PARAMETERS) - set(built_in):  # their laws may have been replaced
         del VOCABULARY[name]
-    PARAMETERS[:] = own
+    PARAMETERS[:] = built_in
     for name, declared in [parameter for law in laws.LAWS.values() for parameter in law.parameters.items()]:
         if name not in PARAMETERS:
             owners = " and ".join(SOLVER_PARAMETERS[name].needed_by[1])
@@ -42,15 +42,15 @@ def update_vocabulary() -> None:
             PARAMETERS.append(name)
 
 
-def law_names(given: list) -> list:
+def law_names(values: list) -> list:
     """The values of `micro` as names. A law given as an object is registered under its name.
 
     If a name is not known, the laws of installed packages are loaded. Raises ValueError for a law that cannot be used.
     """
-    found = laws.named(given)
-    laws.load((), [word for word in found if isinstance(word, str)])
+    words = laws.named(values)
+    laws.load((), [word for word in words if isinstance(word, str)])
     update_vocabulary()
-    return found
+    return words
 
 
 def recall(versions: str) -> None:
@@ -90,21 +90,21 @@ def wants_a_fit(grid: Grid) -> bool:
 def fitted(grid: Grid) -> tuple[dict, list[str]]:
     """Values of B and beta over the dimensions of Nbar and Ra, as in `Grid.values`; and what is wrong with them."""
     products = along(grid, "Nbar") * along(grid, "Ra") ** 2
-    known = np.unique(products[np.isfinite(products)]).tolist()
-    if len(known) > MOST_FITS:
-        few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(known)}"
+    different = np.unique(products[np.isfinite(products)]).tolist()
+    if len(different) > MOST_FITS:
+        few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(different)}"
         return {}, [f"B and beta are missing: {few}"]
     dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
-    fitted_laws, found, errors = {value: fit_power_law(value) for value in known}, {}, []
+    fitted_laws, values, errors = {product: fit_power_law(product) for product in different}, {}, []
     for name in ("B", "beta"):
-        own = VOCABULARY[name].own
-        fits = {value: getattr(law, name) for value, law in fitted_laws.items()}
-        kept = {value: float(f"{fit:.{DIGITS}g}") for value, fit in fits.items()}
-        array = np.array([kept.get(value, np.nan) for value in products.ravel().tolist()])
-        found[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])
-        wrong = [(value, fit) for value, fit in fits.items() if not allowed(own, fit)]
-        errors += [f"{name} fitted to Nbar Ra^2 = {v:g} is {fit:g}: must be in {own.interval}" for v, fit in wrong[:1]]
-    return found, errors
+        parameter = VOCABULARY[name].own
+        fits = {product: getattr(law, name) for product, law in fitted_laws.items()}
+        rounded = {product: float(f"{fit:.{DIGITS}g}") for product, fit in fits.items()}
+        array = np.array([rounded.get(product, np.nan) for product in products.ravel().tolist()])
+        values[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])
+        wrong = [f"{product:g} is {fit:g}" for product, fit in fits.items() if not allowed(parameter, fit)][:1]
+        errors += [f"{name} fitted to Nbar Ra^2 = {fit}: must be in {parameter.interval}" for fit in wrong]
+    return values, errors
 
 
 #: By which part of itself Nbar Ra^2 is moved: fits are good to some 1e-12 (their root is sought to 1e-15), so that the
@@ -114,7 +114,7 @@ _STEP = 1e-3
 
 def slopes_of_fit(products: Any) -> dict[str, Any]:
     """Of B and beta that are fitted to Nbar Ra^2, a number or a DataArray: d ln B/d ln(Nbar Ra^2), and so of beta."""
-    values = np.array([_slopes_of_fit(one) if one > 0 else (0.0, 0.0) for one in np.ravel(products).tolist()]).T
+    values = np.array([_slopes_of_fit(v) if v > 0 else (0.0, 0.0) for v in np.ravel(products).tolist()]).T
     zero = 0.0 * products
     return {name: zero + own.reshape(np.shape(products)) for name, own in zip(("B", "beta"), values, strict=True)}
 

@@ -69,41 +69,40 @@ def study_file(path, beside: Path | None = None) -> Path:
     `studies/paper/main_case.toml`. Raises StudyError when there is no such file, or there are two.
     """
     text = os.fspath(path)
-    given = Path(os.path.expanduser(text))
-    if given.exists():
-        return given
-    if by_path := given.suffix == ".toml":
-        roots = [given.parent] if given.parent.name == STUDIES.name else []
+    place = Path(os.path.expanduser(text))
+    if place.exists():
+        return place
+    if by_path := place.suffix == ".toml":
+        roots = [place.parent] if place.parent.name == STUDIES.name else []
     else:
         roots = [beside, root_of(beside), STUDIES, packaged()] if beside else [STUDIES, packaged()]
-    for root in roots if ".." not in given.parts else ():
-        if found := _in(root, given.stem if by_path else text):
-            return found
-    raise _not_found(text, given)
+    for root in roots if ".." not in place.parts else ():
+        if file := _in(root, place.stem if by_path else text):
+            return file
+    raise _not_found(text, place)
 
 
 def _in(root: Path, name: str) -> Path | None:
     """The study file of a name in a folder, or in the one chapter that has it. Raises StudyError if two chapters do."""
     here, *inside = (folder / f"{name}.toml" for folder in chapters(root))
-    found = [here] if here.exists() else [path for path in inside if path.exists()]
-    if len(found) > 1:
+    paths = [here] if here.exists() else [path for path in inside if path.exists()]
+    if len(paths) > 1:
         from .definition import StudyError
 
-        paths = " and ".join(path.as_posix() for path in found)
-        raise StudyError([f"{name}: is in {paths}: give the path of one"])
-    return found[0] if found else None
+        raise StudyError([f"{name}: is in {' and '.join(map(Path.as_posix, paths))}: give the path of one"])
+    return paths[0] if paths else None
 
 
-def _not_found(text: str, given: Path) -> Exception:
+def _not_found(text: str, place: Path) -> Exception:
     """The error of a study file that is not there. It tells which are meant perhaps."""
     from .definition import StudyError
     from .vocabulary import suggest
 
-    by_path, beside = given.suffix == ".toml", Path(f"{text}.toml")
-    there = (*sorted(given.parent.glob("*.toml")), *files_in(STUDIES))
-    paths = list(dict.fromkeys(path.as_posix() for path in there))
-    same = [path for path in paths if Path(path).name == given.name]
+    by_path, beside = place.suffix == ".toml", Path(f"{text}.toml")
+    files = (*sorted(place.parent.glob("*.toml")), *files_in(STUDIES))
+    paths = list(dict.fromkeys(path.as_posix() for path in files))
+    same = [path for path in paths if Path(path).name == place.name]
     # whoever writes "mine" means the file beside, and no study of a name that is like it
-    known = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
-    looked = "" if by_path else f" (looked for {given.as_posix()} and {(STUDIES / f'{text}.toml').as_posix()})"
-    return StudyError([f"{text}: not found{looked}{suggest(text, known) if known else ''}"])
+    meant = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
+    looked = "" if by_path else f" (looked for {place.as_posix()} and {(STUDIES / f'{text}.toml').as_posix()})"
+    return StudyError([f"{text}: not found{looked}{suggest(text, meant) if meant else ''}"])

@@ -31,12 +31,12 @@ def values_of_axis(name: str, raw: Any, physical: bool, errors: list[str]) -> li
 def sampled(table: Any, names: list[str], physical: bool, checked: Callable, errors: list[str]) -> dict[str, list]:
     """What [sample] draws for the parameters `names`: entries of lists as they stand there, and numbers of ranges, in
     SI where the study has units. {} if there is a mistake; checked : name, values -> messages are appended."""
-    before, known, read = len(errors), {}, dict(table) if isinstance(table, dict) else {}
+    before, parameters, read = len(errors), {}, dict(table) if isinstance(table, dict) else {}
     for name in names:
         raw = table[name]
-        known[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].own
+        parameters[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].own
         if physical and _is_number(name):
-            known[name] = known[name] if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
+            parameters[name] = parameters[name] if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
             if isinstance(raw, dict):
                 read[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
         if isinstance(raw, list):  # all of it, since some of its values may not be drawn
@@ -46,7 +46,7 @@ def sampled(table: Any, names: list[str], physical: bool, checked: Callable, err
         return {}
     read = {name: raw for name, raw in read.items() if name not in refused} if isinstance(table, dict) else table
     in_si = [name for name in names if physical and isinstance(read[name], dict)]
-    return {n: [*map(Quantity, v)] if n in in_si else v for n, v in draw(read, known, errors).items()}
+    return {n: [*map(Quantity, v)] if n in in_si else v for n, v in draw(read, parameters, errors).items()}
 
 
 def _is_number(name: str) -> bool:
@@ -58,9 +58,9 @@ def _check_list(name: str, raw: list, physical: bool, checked: Callable, errors:
     if not (physical and _is_number(name)) and name not in BODIES:
         checked(name, raw)
         return
-    for i, one in enumerate(raw):
+    for i, value in enumerate(raw):
         try:
-            of_names(name, [one]) if name in BODIES else si(name, one, f"{name}[{i}]")
+            of_names(name, [value]) if name in BODIES else si(name, value, f"{name}[{i}]")
         except (ValueError, LookupError) as error:
             errors.append(str(error.args[0]))
 
@@ -72,9 +72,9 @@ def _in_si(raw: dict, key: str, unit: str, errors: list[str]) -> dict:
     except ValueError as error:
         errors.append(str(error))
         return {}
-    unsure = [end for end, one in read.items() if one.spread]
+    unsure = [end for end, number in read.items() if number.spread]
     errors += [f"{key}: {end} = {shown(raw[end])}: a range has no spread, a list of values may" for end in unsure]
-    ends = {end: one.value for end, one in read.items()}
+    ends = {end: number.value for end, number in read.items()}
     wrong = [end for end, value in ends.items() if raw.get("spacing") == "log" and value <= 0]
     errors += [f"{key}: {end} = {shown(raw[end])}: must be > 0 for spacing log" for end in wrong]
     return {} if wrong or unsure else raw | ends
@@ -85,15 +85,15 @@ def _unit_of_range(name: str, raw: dict) -> str:
     i, j = ROWS[name].powers
     other, power = divisor(raw)
     if other in ROWS:
-        i, j = (own + power * more for own, more in zip((i, j), ROWS[other].powers, strict=True))
+        i, j = i + power * ROWS[other].powers[0], j + power * ROWS[other].powers[1]
     return si_unit((i, j))
 
 
-def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, list]:
+def draw(table, parameters: dict[str, Parameter], errors: list[str]) -> dict[str, list]:
     """Columns of a random sample: parameter -> list of `size` values, in the order of the table.
 
-    table : {size, seed, NAME = ..., ...}, known names; docs/studies.md says what a parameter may be
-    known : parameter -> what values it may have
+    table : {size, seed, NAME = ..., ...}; docs/studies.md says what a parameter may be
+    parameters : NAME -> what values it may have
     errors : messages are appended here; {} is returned then
 
     Each parameter has random numbers of its own, so that a further parameter changes no other and a larger `size`
@@ -107,11 +107,11 @@ def draw(table, known: dict[str, Parameter], errors: list[str]) -> dict[str, lis
     for key, (low, high) in LIMITS.items():
         if type(table.get(key)) is not int or not low <= table[key] <= high:
             errors.append(f"[sample] {quoted(key, table)}: must be a whole number in [{low}, {high}]")
-    drawn = {name: given for name, given in table.items() if name not in LIMITS}
+    drawn = {name: raw for name, raw in table.items() if name not in LIMITS}
     if not drawn:
         errors.append("[sample] has no parameter: must draw at least one")
     for name in drawn:
-        _check(name, drawn, known[name], errors)
+        _check(name, drawn, parameters[name], errors)
     if len(errors) > before:
         return {}
     columns = {}
@@ -128,15 +128,15 @@ def uniform(size: int, seed: int, name: str) -> np.ndarray:
     return (np.random.PCG64([seed, *name.encode()]).random_raw(size) >> np.uint64(11)) * 2.0**-53
 
 
-def _column(given, u: np.ndarray, columns: dict[str, list]) -> list:
-    if isinstance(given, list):
-        return [given[int(i)] for i in u * len(given)]
-    start, stop = float(given["start"]), float(given["stop"])
-    log = given.get("spacing", "linear") == "log"
+def _column(raw, u: np.ndarray, columns: dict[str, list]) -> list:
+    if isinstance(raw, list):
+        return [raw[int(i)] for i in u * len(raw)]
+    start, stop = float(raw["start"]), float(raw["stop"])
+    log = raw.get("spacing", "linear") == "log"
     values = _rounded(start ** (1 - u) * stop**u if log else start * (1 - u) + stop * u)
     values = np.clip(values, start, stop)
-    if "over" in given:
-        other, power = divisor(given)
+    if "over" in raw:
+        other, power = divisor(raw)
         with np.errstate(all="ignore"):  # a quotient that is not finite is refused later, as any such value
             values = _rounded(values / np.array(columns[other]) ** power)
     return values.tolist()
@@ -146,31 +146,31 @@ def _rounded(values: np.ndarray) -> np.ndarray:
     return np.array([float(f"{value:.5e}") for value in values])
 
 
-def divisor(given: dict) -> tuple[str, int]:
+def divisor(raw: dict) -> tuple[str, int]:
     """Parameter and power by which a range is divided: ("Ra", 2) for over = "Ra^2"; ("", 0) without a valid `over`."""
-    over = given.get("over")
-    found = re.fullmatch(r"(\w+?)(?:\^([1-9]))?", over) if isinstance(over, str) else None
-    return (found[1], int(found[2] or 1)) if found else ("", 0)
+    over = raw.get("over")
+    parts = re.fullmatch(r"(\w+?)(?:\^([1-9]))?", over) if isinstance(over, str) else None
+    return (parts[1], int(parts[2] or 1)) if parts else ("", 0)
 
 
-def _check(name: str, drawn: dict, own: Parameter, errors: list[str]) -> None:
+def _check(name: str, drawn: dict, parameter: Parameter, errors: list[str]) -> None:
     """Append messages for the list or range of one parameter."""
-    key, given = f"[sample] {name}", drawn[name]
-    if isinstance(given, list) and given:
+    key, raw = f"[sample] {name}", drawn[name]
+    if isinstance(raw, list) and raw:
         return  # its values are checked later, as those of any parameter
-    if not isinstance(given, dict) or own.choices or own.whole:
-        form = "" if own.choices or own.whole else f"{{{', '.join(KEYS)}}} or "
-        errors.append(f"{key} = {shown(given)}: must be {form}a list to choose from")
+    if not isinstance(raw, dict) or parameter.choices or parameter.whole:
+        form = "" if parameter.choices or parameter.whole else f"{{{', '.join(KEYS)}}} or "
+        errors.append(f"{key} = {shown(raw)}: must be {form}a list to choose from")
         return
     before = len(errors)
-    check_range(given, key, errors, KEYS)
-    if len(errors) == before and not given["start"] < given["stop"]:
-        errors.append(f"{key}: stop = {shown(given['stop'])}: must be > start")
-    if "over" in given:
+    check_range(raw, key, errors, KEYS)
+    if len(errors) == before and not raw["start"] < raw["stop"]:
+        errors.append(f"{key}: stop = {shown(raw['stop'])}: must be > start")
+    if "over" in raw:
         plain = [n for n, other in drawn.items() if isinstance(other, dict) and "over" not in other]
-        if divisor(given)[0] not in plain:
+        if divisor(raw)[0] not in plain:
             allowed = " or ".join(plain) or "none here"
-            errors.append(f"{key}: over = {shown(given['over'])}: must be a power of a range of [sample]: {allowed}")
+            errors.append(f"{key}: over = {shown(raw['over'])}: must be a power of a range of [sample]: {allowed}")
     elif len(errors) == before:
-        bad = [(end, check(own, given[end])) for end in ("start", "stop")]
-        errors += [f"{key}: {end} = {shown(given[end])}: {text}" for end, text in bad if text]
+        wrong = [(end, check(parameter, raw[end])) for end in ("start", "stop")]
+        errors += [f"{key}: {end} = {shown(raw[end])}: {text}" for end, text in wrong if text]

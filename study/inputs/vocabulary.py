@@ -53,8 +53,8 @@ class Entry:
     @property
     def own(self) -> Parameter:
         """The row of a parameter in the solver's table: bounds, choices, default, which cases need it."""
-        known = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
-        return known._replace(interval=self.interval) if self.interval else known
+        row = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
+        return row._replace(interval=self.interval) if self.interval else row
 
     @cached_property
     def unit(self) -> str:
@@ -94,8 +94,8 @@ LONGEST = 100  # most letters of a wrong name that are compared with others
 
 def entries(tables: dict) -> dict[str, Entry]:
     """Name -> row, of tables as those of vocabulary.toml: role -> name -> the other fields."""
-    rows = [(name, role, own) for role, table in tables.items() for name, own in table.items()]
-    return {name: Entry(name, role, **own | {"powers": tuple(own.get("powers", (0, 0)))}) for name, role, own in rows}
+    rows = [(name, role, row) for role, table in tables.items() for name, row in table.items()]
+    return {name: Entry(name, role, **row | {"powers": tuple(row.get("powers", (0, 0)))}) for name, role, row in rows}
 
 
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
@@ -144,8 +144,8 @@ def cases_with(name: str, values) -> np.ndarray:
 
 def matters(name: str, values) -> bool:
     """Whether the answer of some case may depend on a parameter; `values` as in `cases_with`."""
-    own = VOCABULARY[name].own
-    return all(np.any(among(condition, values)) for condition in (own.needed_by, own.used_by))
+    parameter = VOCABULARY[name].own
+    return all(np.any(among(condition, values)) for condition in (parameter.needed_by, parameter.used_by))
 
 
 def attributes(name: str, rigid: bool = False) -> dict:
@@ -158,34 +158,33 @@ def attributes(name: str, rigid: bool = False) -> dict:
     """
     entry = VOCABULARY[name]
     words = ", ".join(filter(None, (entry.long_name, entry.ratio)))
-    found = {"long_name": words, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
-    if rigid:
-        found = {key: text.replace("E2*", "E1*") for key, text in found.items()}
-    return {key: text for key, text in found.items() if text}
+    texts = {"long_name": words, "symbol": entry.symbol, "scale": entry.scale, "equation": entry.equation}
+    return {key: text.replace("E2*", "E1*") if rigid else text for key, text in texts.items() if text}
 
 
-def allowed(own: Parameter) -> str:
+def allowed(parameter: Parameter) -> str:
     """What the values of a parameter must be, as the end of a message: "must be > 0"."""
-    if own.choices:
-        return "must be one of " + ", ".join(f'"{choice}"' for choice in own.choices)
-    low, high = own.interval[1:-1].split(", ")
+    if parameter.choices:
+        return "must be one of " + ", ".join(f'"{choice}"' for choice in parameter.choices)
+    low, high = parameter.interval[1:-1].split(", ")
     if high == "inf":
-        return f"must be {'>' if own.interval[0] == '(' else '>='} {low}"
-    either = "".join(f"{value} or " for value in own.also)
-    return f"must be {either}in {own.interval}"
+        return f"must be {'>' if parameter.interval[0] == '(' else '>='} {low}"
+    either = "".join(f"{value} or " for value in parameter.also)
+    return f"must be {either}in {parameter.interval}"
 
 
-def check(own: Parameter, value) -> str:
+def check(parameter: Parameter, value) -> str:
     """What is wrong with one value of a parameter: "" or a text such as "must be > 0"."""
-    if own.choices:
+    if parameter.choices:
         table = value.removeprefix("Table:") if isinstance(value, str) and value.endswith(".csv") else ""
         hint = f'; a table of your own is "table:{table}"' * bool(table)
-        return "" if isinstance(value, str) and value in own.choices else allowed(own) + hint
+        return "" if isinstance(value, str) and value in parameter.choices else allowed(parameter) + hint
     if not finite(value):
-        return f"must be a finite number, {allowed(own).removeprefix('must be ')}"
-    if own.whole and value != int(value):
+        return f"must be a finite number, {allowed(parameter).removeprefix('must be ')}"
+    if parameter.whole and value != int(value):
         return "must be a whole number"
-    return "" if are_within(own, float(value)).all() else allowed(own)  # float: a Decimal may trap a comparison
+    inside = are_within(parameter, float(value)).all()  # float: a Decimal may trap a comparison
+    return "" if inside else allowed(parameter)
 
 
 def finite(value) -> bool:
@@ -197,17 +196,17 @@ def finite(value) -> bool:
         return False
 
 
-def no_parameter(name: str, known, place: str = "") -> str:
+def no_parameter(name: str, words, place: str = "") -> str:
     """The message about a name that is no parameter: what is called so here, what the model lacks, or a name like it.
 
-    place : what stands before the name, such as "[model] "; known : the names to propose
+    place : what stands before the name, such as "[model] "; words : those to propose
     """
-    known, hint = list(known), absent(name)
+    words, hint = list(words), absent(name)
     if hint == _RESULT:
         search = "solve for several P, which become an axis, and interpolate in it, or find P by scipy.optimize.brentq"
         hint += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
-    like = [one for one in known if one[0].lower() == str(name)[:1].lower()]  # one letter more or less: Er is no R
-    near = suggest(name, like, known)
+    like = [other for other in words if other[0].lower() == str(name)[:1].lower()]  # a letter more or less: Er is no R
+    near = suggest(name, like, words)
     return f"{place}{shown(str(name))} is not a parameter{f'; {hint}' if hint else near}"
 
 
@@ -219,12 +218,12 @@ def absent(name: str) -> str:
     name = str(name)[:LONGEST]
     if name in PARAMETERS or name in SCENE:
         return ""
-    known = _ABSENT | dict.fromkeys((one for one in names("result", "derived") if one not in _ABSENT), _RESULT)
+    says = _ABSENT | {word: _RESULT for word in names("result", "derived") if word not in _ABSENT}
     whole = (name, _as_word(name), _as_word(re.sub(r"[\d*']", "", name)))
     first, *others = re.split(r"[\s_.*-]+", name)
-    parts = [re.sub(r"\d+$", "", first)] * bool(others) + [_as_word(one) for one in (first, *others) if len(one) > 2]
-    found = [known[one] for one in whole if one in known] or [says for one, says in known.items() if one in parts]
-    return found[0] if found else ""
+    parts = [re.sub(r"\d+$", "", first)] * bool(others) + [_as_word(word) for word in (first, *others) if len(word) > 2]
+    texts = [says[word] for word in whole if word in says] or [text for word, text in says.items() if word in parts]
+    return texts[0] if texts else ""
 
 
 def _as_word(name: str) -> str:
@@ -235,11 +234,11 @@ def _as_word(name: str) -> str:
 _ABSENT = {_as_word(word): entry["says"] for entry in _NOT_THERE.values() for word in entry["words"]}
 
 
-def suggest(word: str, known, listed=None) -> str:
-    """The end of a message: '; did you mean "Nbar"?' when a known word is near, else what is known, or `listed`."""
-    lower = {name.lower(): name for name in known}
+def suggest(word: str, words, listed=None) -> str:
+    """The end of a message: '; did you mean "Nbar"?' when one of the words is near, else these, or `listed`."""
+    lower = {name.lower(): name for name in words}
     near = difflib.get_close_matches(str(word).lower()[:LONGEST], lower, n=1, cutoff=0.6)
     if near:
         return f'; did you mean "{lower[near[0]]}"?'
-    listed = list(listed or known)
+    listed = list(listed or words)
     return "; known: " + ", ".join(listed[:LISTED]) + (f" and {len(listed) - LISTED} more" * (len(listed) > LISTED))

@@ -47,14 +47,8 @@ def _plain_array(array: Any) -> Any:
         import xarray as xr  # imported already: `array` is a Variable of it
 
         array = xr.DataArray(array)
-    for name, coordinate in [
-        (name, coordinate) for name, coordinate in array.coords.items() if hasattr(coordinate.data, "magnitude")
-    ]:
-        values = (
-            coordinate.dims,
-            coordinate.data.magnitude,
-            coordinate.attrs | {"units": _name_of(coordinate.data.units)},
-        )
+    for name, axis in [(name, axis) for name, axis in array.coords.items() if hasattr(axis.data, "magnitude")]:
+        values = axis.dims, axis.data.magnitude, axis.attrs | {"units": _name_of(axis.data.units)}
         array = array.drop_vars(name).assign_coords({name: values})
     if hasattr(array.data, "magnitude"):
         array = array.copy(data=array.data.magnitude).assign_attrs(units=array.data.units)

@@ -128,14 +128,11 @@ def height_map(
         positive, an unknown unit, more missing points than allowed, or lengths whose unit must be another
     """
     dx = number(f"{name}: dx", dx, unit)
-    coordinates = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
-    spacings = [
-        abs(float(values[1] - values[0])) for values in coordinates if values.dtype.kind in "iuf" and values.size > 1
-    ]
-    if dy is None and len(spacings) == 2 and not np.isclose(spacings[0], spacings[1], rtol=UNEVEN, atol=0):
-        raise ValueError(
-            f"{name}: the coordinates of z have steps of {spacings[0]:g} along x, {spacings[1]:g} along y: give dy"
-        )
+    axes = [z.coords[axis].values for axis in ("x", "y") if axis in getattr(z, "coords", ())]  # of xarray
+    steps = [abs(float(x[1] - x[0])) for x in axes if x.dtype.kind in "iuf" and x.size > 1]
+    if dy is None and len(steps) == 2 and not np.isclose(steps[0], steps[1], rtol=UNEVEN, atol=0):
+        x, y = steps
+        raise ValueError(f"{name}: the coordinates of z have steps of {x:g} along x, {y:g} along y: give dy")
     rows = dx if dy is None else number(f"{name}: dy", dy, unit)
     return _checked(z, (rows, dx), unit, height_unit, name, missing=missing, steep=steep, huge=huge)
 

@@ -25,7 +25,7 @@ _THOUSAND = re.compile(r"(?<!\d)[1-9]\d{0,2},\d{3}(?!\d)")
 _COMMENT = re.compile(r"(?:^|(?<=[\s;,]))[#%].*")
 #: float takes "inf" and "1_000" as well.
 _NUMBER = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?")
-#: Signs that no text has. The end marks 3 and 26 stand in those of ISO 5436-2.
+#: Signs that no text has. The end marks 3 and 26, which texts of ISO 5436-2 have, are not among them.
 _BINARY = re.compile(r"[\x00-\x02\x04-\x08\x0e-\x19\x1b-\x1f]")
 _CHANNEL = re.compile(r"[#%\s]*(?:channel|kanal|kanál|canale?)\s*[:=]\s*(.+?)\s*$", re.IGNORECASE)
 #: Zygo writes this in the place of z.

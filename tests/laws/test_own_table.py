@@ -72,7 +72,7 @@ def test_the_error_covers_what_is_between_few_rows(rows):
         return laws.LAWS["disc_cell"].at(p, 1.0, **ASPERITIES)
 
     rows, between = np.geomspace(1e-5, 0.03, rows), np.geomspace(1e-5, 0.03, 300)
-    law = own_table.of_columns("table:few.csv", rows, *disc(rows))
+    law = own_table.fitted_law("table:few.csv", rows, *disc(rows))
     truth = max(np.abs(found / true - 1).max() for found, true in zip(law.at(between, 1.0), disc(between), strict=True))
     assert truth < law.error < 10 * truth
 
@@ -87,7 +87,7 @@ def test_the_error_covers_tables_of_random_rows():
         p = np.sort(p * np.exp(random.normal(0, 0.1, len(p))))
         between = np.geomspace(p[0], p[-1], 300)
         table, truth = (laws.LAWS["disc_cell"].at(points, 1.0, **asperities) for points in (p, between))
-        law = own_table.of_columns("table:random.csv", p, *table)
+        law = own_table.fitted_law("table:random.csv", p, *table)
         error = max(np.abs(f / true - 1).max() for f, true in zip(law.at(between, 1.0), truth, strict=True))
         missed.append(error / law.error)
     assert max(missed) < 1

@@ -24,7 +24,7 @@ def test_the_error_covers_rows_of_equal_steps(law, first, last, rows):
 
     p, between = np.linspace(first, last, rows), np.geomspace(first, last, 3000)
     own_table._check(p, *truth(p))
-    found = own_table.of_columns("table:steps.csv", p, *truth(p))
+    found = own_table.fitted_law("table:steps.csv", p, *truth(p))
     far = max(np.abs(a / b - 1).max() for a, b in zip(found.at(between, 1.0), truth(between), strict=True))
     assert far < found.error
 
@@ -103,7 +103,7 @@ def test_a_table_that_begins_near_the_largest_pressure():
     (p1/p(0))^1.2, the largest that a search found."""
     heights = {"Nbar": 129.24242, "Ra": 0.065663067, "sigma": 4.176585e-5, "cut": 4.766572}
     p = np.geomspace(5.26064895e-5, 0.0157819, 50)
-    table = own_table.of_columns("table:heights.csv", p, *laws.LAWS["normal_heights"].at(p, 1.0, **heights))
+    table = own_table.fitted_law("table:heights.csv", p, *laws.LAWS["normal_heights"].at(p, 1.0, **heights))
     true = solve(Problem.of(a=np.geomspace(0.03, 0.09, 12), base="half_space", micro="normal_heights", **heights))
     found = solve(Problem.of(a=true.a, base="half_space", micro=table))
     far = np.max([np.abs(getattr(found, name) / getattr(true, name) - 1) for name in ("P", "D", "p0", "Ar_An")], axis=0)

@@ -44,7 +44,7 @@ def formula(name: str, bonded: bool):
 
 def test_an_incompressible_bonded_layer(contacts):
     """Of another solver: F/F_H, and how far three formulas are from it."""
-    x, _, exact = compared.over_hertz(compared.of_material(contacts, True, 0.5))
+    x, _, exact = compared.over_hertz(compared.contacts_on_layer(contacts, True, 0.5))
     assert_allclose(x, SHOWN_AT, rtol=1e-12)
     assert_allclose(exact, (1.12354, 1.85712, 3.37110, 8.46801, 29.0573), rtol=5e-6)
     off = {name: compared.load_error(formula(name, True), contacts, 0.5)[1]

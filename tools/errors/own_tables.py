@@ -41,7 +41,7 @@ def table(random: np.random.Generator, even: bool):
         p = np.sort(draw * (1 + random.uniform(-0.2, 0.2, len(draw))))
     columns = laws.LAWS[law].at(p, 1.0, **given)
     own_table._check(p, *columns)
-    return law, given, own_table.of_columns(f"table:{random.random()}", p, *columns)
+    return law, given, own_table.fitted_law(f"table:{random.random()}", p, *columns)
 
 
 def between(law: str, given: dict, found) -> float:

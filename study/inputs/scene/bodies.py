@@ -22,30 +22,36 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
 
     E and ν have the spreads of the table of materials; messages are appended to `errors`.
     """
-    found, names = dict(inputs), {}
+    inputs, names = dict(inputs), {}
     for body, follows in BODIES.items():
-        entry = found.pop(body, None)
+        entry = inputs.pop(body, None)
         if entry is None:
             continue
-        errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in follows if name in found]
+        both = [name for name in follows if name in inputs]
+        errors += [f"{body} and {name} are both given: {name} follows from {body}" for name in both]
         if entry.is_wrong:
             continue
         try:
-            texts, *columns = of_names(body, _listed(entry))
+            texts, *columns = of_names(body, entry.values if entry.array is None else entry.array)
         except LookupError as error:
             errors.append(str(error.args[0]))
             continue
         errors += equal_values(body, texts, str) if entry.dims == (body,) else []
         for name, column in zip(follows, columns, strict=False):
-            found[name] = replace(entry, name=name, values=list(column), array=None)
+            inputs[name] = replace(entry, name=name, values=list(column), array=None)
         names[body] = "".join(entry.dims), list(texts)
-    return found, names
+    return inputs, names
 
 
-def of_names(body: str, names: list) -> list[tuple]:
-    """Names, E and ν of the materials that are given for a body. Raises LookupError for what is none."""
+def of_names(body: str, names: Any) -> list[tuple]:
+    """Names, E and ν of the materials that are given for a body. Raises LookupError for what is none.
+
+    names : a list; those of earlier results are in a DataArray
+    """
     try:
-        checked = [_checked(name) for name in names]
+        if getattr(names, "dims", ()) not in ((), (body,)):
+            raise LookupError("a DataArray of names is over the dimension of its own name; give a list, or cases")
+        checked = [_checked(name) for name in (names if isinstance(names, list) else np.ravel(names.values).tolist())]
         table = {text: _material(body, name) for text, name in {str(name): name for name in checked}.items()}
     except LookupError as error:
         modulus, ratio, _ = BODIES[body]
@@ -68,17 +74,6 @@ def assumed(names: set[str], values: dict, given: dict) -> tuple[str, ...]:
     return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)
 
 
-def _listed(entry: Any) -> list:
-    """The names in an input; those of earlier results are in a DataArray. Raises LookupError for another one."""
-    if entry.array is None:
-        return entry.values
-    if entry.dims not in ((), (entry.name,)):
-        modulus, ratio, _ = BODIES[entry.name]
-        text = "a DataArray of names is over the dimension of its own name; give a list, or cases"
-        raise LookupError(f"{entry.name}: {text} (or give {modulus} and {ratio})")
-    return np.ravel(entry.array.values).tolist()
-
-
 def _checked(name: Any) -> str | materials.Material:
     """The same name or material; "inf" of the number. Raises LookupError for anything else."""
     if isinstance(name, float) and name == np.inf:
@@ -97,7 +92,7 @@ def _material(body: str, name: str | materials.Material) -> tuple[str, Quantity,
     if body == "punch" and str(name).lower() in _SHAPES:
         shape = "the punch is a ball of radius R, other shapes are not in the model"
         raise LookupError(f'{shown(name)} is no material, such as "steel 52100"; {shape}')
-    found = materials.get(name) if isinstance(name, str) else name  # one of the user's own
-    if not all(map(finite, (found.E, found.nu, found.E_spread, found.nu_spread))):
-        raise LookupError(f"{shown(found.name)}: E, nu and their spreads must be finite numbers, E in Pa")
-    return found.name, Quantity(found.E, found.E_spread), Quantity(found.nu, found.nu_spread)
+    material = materials.get(name) if isinstance(name, str) else name  # one of the user's own
+    if not all(map(finite, (material.E, material.nu, material.E_spread, material.nu_spread))):
+        raise LookupError(f"{shown(material.name)}: E, nu and their spreads must be finite numbers, E in Pa")
+    return material.name, Quantity(material.E, material.E_spread), Quantity(material.nu, material.nu_spread)

@@ -78,4 +78,4 @@ def moving_tables(scene: Scene) -> list[str]:
 
 
 def _shown(value: Any) -> str:
-    return ", ".join(f"{one:g}" for one in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)
+    return ", ".join(f"{number:g}" for number in np.ravel(value)[:3].tolist()) + " ..." * (np.size(value) > 3)

@@ -21,15 +21,15 @@ def dim_of(name: str) -> str:
     return name if ROWS[name].unit == "1" else f"{name} in SI"
 
 
-def si(name: str, given: Any, called: str = "") -> Quantity:
+def si(name: str, value: Any, called: str = "") -> Quantity:
     """The SI value of a parameter or result given as text, quantity of pint or number, or as Quantity.
 
     called : its name in messages
 
     Raises ValueError as `quantity` does.
     """
-    if type(given) is Quantity:
-        return given
-    if name in INFINITE and (given.lower() in INFINITE[name] if isinstance(given, str) else given == math.inf):
+    if type(value) is Quantity:
+        return value
+    if name in INFINITE and (value.lower() in INFINITE[name] if isinstance(value, str) else value == math.inf):
         return Quantity(math.inf)
-    return quantity(called or name, given, ROWS[name].unit)
+    return quantity(called or name, value, ROWS[name].unit)

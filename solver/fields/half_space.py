@@ -1,0 +1,133 @@
+"""The integrals over k of a half-space, in closed form over k: docs/stresses.md, Near the surface.
+
+With Abel's φ, k p^(k) = ∫₀¹ φ(t) sin(kt) dt, each integral over k is one over t of an elementary function, regular down
+to the surface: E_m = ∫ p^ k e^(-kz) J_m dk, F_m = ∫ p^ k (kz) e^(-kz) J_m dk, D_m = ∫ p^ e^(-kz) J_m dk.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics.quadrature import gauss_legendre
+
+#: t = sin(angle): Gauss points on each panel of the angle. Panels are graded to t = r, where the integrand has its
+#: singularity, at the distance z in the complex plane; with 12 points Hertz is right to 7e-13, with 16 to rounding
+#: (tests/fields/test_half_space.py).
+_POINTS = 16
+#: Most halvings of a panel towards t = r: on the surface, where D has a root there, and below it, where E and F change
+#: by the root of z. Depths share the nodes of the next multiple of _STEP halvings.
+_ON_SURFACE, _BELOW, _STEP = 39, 69, 3
+#: On a panel of the angle no wider than this over the number of nodes the polynomial has at most 5 of its waves.
+_WIDTH = 10.0
+#: Added where a panel without width has t = r or t = 0 on the surface.
+_TINY = 1e-200
+
+
+class Integrals(NamedTuple):
+    """E, F (m + 1, B, Z, R) for the orders 0 to m, D (3, B, Z, R) for 0, 1, 2, of B pressures at Z depths, R radii."""
+
+    E: np.ndarray
+    F: np.ndarray
+    D: np.ndarray
+
+
+def integrals(pressure, r, z, most=2):
+    """:class:`Integrals` of a :class:`~.pressure.Pressure` at radii r (R,) and depths z (Z,), both in a.
+
+    most : largest order m of E and F. On the surface, z = 0, E and F are 0: only D is an integral there.
+    """
+    B = len(pressure.values)
+    E, F, D = (np.zeros((count, B, len(z), len(r))) for count in (most + 1, most + 1, 3))
+    halvings = _halvings(r, z)
+    for count in np.unique(halvings):
+        nodes = _Nodes.of(pressure, r, count)
+        for i in np.flatnonzero(halvings == count):
+            for whole, of_order in zip((E, F, D), _kernels(nodes, r[:, None], z[i], most), strict=True):
+                for m, kernel in enumerate(of_order):
+                    whole[m, :, i] = np.einsum("brt,rt->br", nodes.weight, kernel)
+    return Integrals(E, F, D)
+
+
+class _Nodes(NamedTuple):
+    """Nodes t (R, T) of the integrals over t, their distance t - r, and φ dt there (B, R, T)."""
+
+    t: np.ndarray
+    beyond: np.ndarray
+    weight: np.ndarray
+
+    @classmethod
+    def of(cls, pressure, r, halvings):
+        """For radii r (R,), on panels halved so many times towards t = r."""
+        centre, mesh = np.arcsin(np.minimum(r, 1.0))[:, None], pressure.mesh
+        fixed = np.arccos(np.array(mesh.breaks[::-1]))
+        widths = np.diff(fixed)
+        pieces = np.ceil(widths * mesh.order / _WIDTH).astype(int)
+        starts = zip(fixed[:-1], widths, pieces, strict=True)
+        fixed = np.concatenate([low + width * np.arange(n) / n for low, width, n in starts])
+        graded = np.pi / 2 * 0.5 ** np.arange(1, halvings + 1)
+        graded = np.concatenate([-graded, [0.0], graded]) + 0 * centre
+        # distances from the centre, because angles lose the digits of small ones
+        ends = np.concatenate([graded, fixed - centre, np.pi / 2 - centre], axis=1)
+        ends = np.sort(np.clip(ends, -centre, np.pi / 2 - centre), axis=1)
+        x, w = gauss_legendre(_POINTS)
+        width = np.diff(ends)[..., None]
+        distance = (ends[:, :-1, None] + width * x).reshape(len(r), -1)
+        angle = centre + distance
+        t, s = np.sin(angle), np.maximum(np.cos(angle), 0.0)
+        beyond = 2 * np.cos(centre + distance / 2) * np.sin(distance / 2) - np.maximum(r - 1, 0.0)[:, None]
+        density = pressure.density(s) * s + (2 / np.pi * pressure.at_edge())[:, None, None]
+        return cls(t, beyond, density * t * (width * w).reshape(len(r), -1))
+
+
+def _halvings(r, z):
+    """(Z,) int: how often panels are halved, until they are as narrow as the singularity is far away."""
+    most = np.where(z == 0, _ON_SURFACE, _BELOW)
+    far = np.abs(np.arcsin(r + 1j * z[:, None]).imag).min(axis=1)
+    needed = np.ceil(np.log2(np.pi / 2 / np.maximum(far, 2.0 ** -(most - 1))) / _STEP).astype(int)
+    return np.clip(needed * _STEP, 0, most)
+
+
+def _kernels(nodes, r, z, most):
+    """Kernels (R, T) of E, F, D, lists over the order, at the depth z."""
+    t = nodes.t
+    real, imaginary = z * z - nodes.beyond * (t + r), z * t  # of rho², the latter over -2
+    large = np.sqrt((np.hypot(real, 2 * imaginary) + np.abs(real)) / 2) + _TINY
+    small = imaginary / large
+    rho = np.where(real >= 0, large - 1j * small, small - 1j * large)
+    ze = z - 1j * t
+    g = r / (rho + ze + _TINY)
+    power, D = [np.ones_like(g), g], [np.arctan2(t - rho.imag, rho.real + z), g.imag]
+    power.append(g * g)
+    D.append(power[2].imag / 2)
+    if z == 0:
+        return [], [], D
+    power += [power[2] * g] if most > 2 else []
+    once = 1 / rho
+    cubed = z * once * once * once
+    E = [(p * once).imag for p in power]
+    F = [(p * (m * rho + ze) * cubed).imag for m, p in enumerate(power)]
+    return E, F, D
+
+
+def on_surface(pressure, r):
+    """E_1 and E_3 (2, B, R) at z = 0 and radii r (R,).
+
+    E_m = ∫ φ sin(mb) db with t = r sin(b), up to t = 1. For r = 1 this is smooth in the angle, elsewhere its panels are
+    halved towards t = min(1, r) until the other root is not near.
+    """
+    inner = np.minimum(r, 1.0)[:, None]
+    fixed = np.sqrt(np.maximum(1 - np.array(pressure.mesh.breaks[::-1]) ** 2, 0.0))
+    fixed = np.arcsin(np.minimum(fixed / np.maximum(inner, _TINY), 1.0))
+    graded = np.pi / 2 * (1 - 0.5 ** np.arange(1, _ON_SURFACE)) + 0 * inner
+    ends = np.sort(np.concatenate([fixed, graded, np.full(inner.shape, np.pi / 2)], axis=1), axis=1)
+    x, w = gauss_legendre(2 * _POINTS)
+    width = np.diff(ends)[..., None]
+    angle = (ends[:, :-1, None] + width * x).reshape(len(r), -1)
+    sin, cos = np.sin(angle), np.cos(angle)
+    t, within = inner * sin, r[:, None] <= 1
+    s = np.where(within, np.sqrt((1 - inner) * (1 + inner) + (inner * cos) ** 2), cos)
+    root = np.where(within, 1.0, np.sqrt(np.maximum(r[:, None] ** 2 - t**2, _TINY)) / s)
+    φ = (pressure.density(s) + (2 / np.pi * pressure.at_edge())[:, None, None] / s) * t
+    b = np.where(within, angle, np.arcsin(np.minimum(t / np.maximum(r[:, None], 1.0), 1.0)))
+    weight = (width * w).reshape(len(r), -1) / root
+    return np.stack([np.einsum("brt,rt->br", φ, weight * np.sin(m * b)) for m in (1, 3)])

@@ -1,0 +1,27 @@
+"""Principal stresses, von Mises' and Tresca's, of stresses without shear across the plane of r and z."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+
+class Invariants(NamedTuple):
+    """Principal stresses s1 >= s2 >= s3, von Mises' and Tresca's equivalent stress s1 - s3; arrays of one shape."""
+
+    s1: np.ndarray
+    s2: np.ndarray
+    s3: np.ndarray
+    mises: np.ndarray
+    tresca: np.ndarray
+
+
+def invariants(sr, st, sz, trz):
+    """:class:`Invariants` of the stresses; arrays of any shape. For sliding in the plane y = 0 trz is sxz."""
+    middle, radius = (sr + sz) / 2, np.hypot((sr - sz) / 2, trz)
+    s3, s2, s1 = np.sort(np.stack([middle - radius, middle + radius, st]), axis=0)
+    return Invariants(s1, s2, s3, mises(sr, st, sz, trz), s1 - s3)
+
+
+def mises(sr, st, sz, trz):
+    """von Mises' stress of the stresses; arrays of any shape."""
+    return np.sqrt(((sr - st) ** 2 + (st - sz) ** 2 + (sz - sr) ** 2) / 2 + 3 * trz * trz)

@@ -1,0 +1,52 @@
+"""The field of normal pressure: docs/stresses.md, Pressure."""
+
+import numpy as np
+
+from .half_space import integrals
+from .transfer import Kind, radial_sum
+from .waves import Load
+
+
+def amplitudes(kind, bodies, X, x, v):
+    """Of sr + st, sr - st, sz, trz, 2 G ur and 2 G uz."""
+    u, w, S, T = v
+    return radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1), -u, S, T, u, w
+
+
+def in_closed_form(pressure, r, z, nu):
+    """The same (6, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
+    nu, depth = nu[:, None, None], z[:, None]
+    E, F, D = integrals(pressure, r, z)
+    whole = np.stack(
+        [
+            F[0] - (1 + 2 * nu) * E[0],
+            (1 - 2 * nu) * E[2] - F[2],
+            -(E[0] + F[0]),
+            -F[1],
+            depth * E[1] - (1 - 2 * nu) * D[1],
+            2 * (1 - nu) * D[0] + depth * E[0],
+        ]
+    )
+    surface = z == 0
+    if surface.any():
+        p, mean = pressure.at(r)[:, None], pressure.mean(r)[:, None]
+        whole[:4, :, surface] = np.stack([-(1 + 2 * nu) * p, (1 - 2 * nu) * (2 * mean - p), -p, 0 * p])
+    return whole
+
+
+NAMES = ("sr", "st", "sz", "trz", "ur", "uz")
+NORMAL = Load((-1.0, 0.0), (0, 2, 0, 1, 1, 0), 4, amplitudes, in_closed_form)
+
+
+def components(whole, G2):
+    """sr, st, sz, trz, ur, uz of these six; G2 : 2 G (B,) or what broadcasts."""
+    total, difference, sz, trz, ur, uz = whole
+    parts = (
+        (total + difference) / 2,
+        (total - difference) / 2,
+        sz,
+        trz,
+        ur / G2,
+        uz / G2,
+    )
+    return dict(zip(NAMES, parts, strict=True))

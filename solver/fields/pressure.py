@@ -1,0 +1,87 @@
+"""Pressures p(r) of cases on one mesh (a = 1), and what the fields need of them: docs/stresses.md, Pressure.
+
+p is the polynomial in s = sqrt(1 - r²) through the values at the nodes, one on each panel.
+"""
+
+from functools import lru_cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.legendre import legder, legvander
+
+from ..body.tables import transform
+from ..numerics.mesh import Mesh
+from ..numerics.quadrature import gauss_legendre, lagrange, radau_nodes
+
+#: Gauss points of ∫ p' db on a panel beyond half its number of nodes. With 16 a polynomial of degree 63 is right to
+#: rounding, which grows like the square of the degree in p' (tests/fields/test_half_space.py).
+_MORE = 16
+#: An edge pressure below this part of the largest is rounding, and would make stresses infinite at the edge.
+_ROUNDING = 1e-12
+
+
+class Pressure(NamedTuple):
+    """`values` (B, n), the pressures of B cases at the nodes of a mesh."""
+
+    mesh: Mesh
+    values: np.ndarray
+
+    def transform(self, k):
+        """p^(k) = ∫ p J0(kr) r dr (B, K) at k (K,)."""
+        return self.values @ transform(self.mesh, k).T
+
+    def at(self, r):
+        """p at radii r (R,), (B, R); 0 outside."""
+        s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
+        return np.where(r <= 1, self.values @ self.mesh.basis(s).T, 0.0)
+
+    def at_edge(self):
+        """p at s = 0, (B,): rounding and taken for 0, but for the polynomials of films."""
+        p = self.values @ self.mesh.basis(np.zeros(1))[0]
+        return np.where(np.abs(p) > _ROUNDING * np.abs(self.values).max(axis=1), p, 0.0)
+
+    def mean(self, r):
+        """∫₀^r p r' dr'/r² (B, R) at radii r (R,): p(0)/2 in the centre, and P/(2 pi r²) outside."""
+        breaks, order = np.array(self.mesh.breaks), self.mesh.order
+        s = np.sqrt(np.maximum((1 - r) * (1 + r), 0.0))
+        # s' = s + (1 - s) t; panels end at these t. Where s = 1 the last panel is all there is
+        ends = np.clip((breaks - s[:, None]) / np.maximum(1 - s, np.finfo(float).tiny)[:, None], 0.0, 1.0)
+        ends[:, -1] = 1.0
+        t, weight = gauss_legendre(order // 2 + 2)
+        width = np.diff(ends)[..., None]
+        points = s[:, None, None] + (1 - s)[:, None, None] * (ends[:, :-1, None] + width * t)
+        weights = width * weight * points / (1 + s)[:, None, None] / np.maximum(r, 1.0)[:, None, None] ** 2
+        basis = self.mesh.basis(np.minimum(points, 1.0).ravel()).reshape(len(r), -1, self.mesh.n)
+        return self.values @ np.einsum("rgn,rg->nr", basis, weights.reshape(len(r), -1))
+
+    def density(self, s):
+        """φ/t of Abel's φ(t) (B, ...) at s = sqrt(1 - t²) (...), without what :meth:`at_edge` adds."""
+        nodal = self.values @ _density(self.mesh).T
+        return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
+
+
+@lru_cache(maxsize=16)
+def _density(mesh):
+    """From values at the nodes to (2/pi) ∫ p'(s cos b) db, b from 0 to pi/2, at the nodes: (n, n)."""
+    breaks, order, own = np.array(mesh.breaks), mesh.order, radau_nodes(mesh.order)
+    t, weight = gauss_legendre(order // 2 + _MORE)
+    angles = np.arcsin(np.minimum(breaks / mesh.s[:, None], 1.0))  # where the path s' = s sin(angle) leaves a panel
+    made = np.zeros((mesh.n, mesh.n))
+    slope = _slopes(order)
+    for i, (low, high) in enumerate(zip(breaks[:-1], breaks[1:], strict=True)):
+        rows = np.flatnonzero(mesh.s > low)
+        start, width = angles[rows, i, None], np.diff(angles[rows, i : i + 2])
+        points = mesh.s[rows, None] * np.sin(start + width * t)
+        local = np.clip((points - low) / (high - low), 0.0, 1.0)
+        basis = lagrange(own, local.ravel()).reshape(*local.shape, order)
+        summed = np.einsum("rg,rgj->rj", width * weight, basis)
+        made[rows, i * order : (i + 1) * order] = summed @ slope * (2 / np.pi / (high - low))
+    made.flags.writeable = False
+    return made
+
+
+@lru_cache(maxsize=64)
+def _slopes(order):
+    """From values at Radau nodes to the derivative of the polynomial through them there: (n, n)."""
+    inverse = np.linalg.inv(legvander(2 * radau_nodes(order) - 1, order - 1))
+    return 2 * legvander(2 * radau_nodes(order) - 1, order - 1)[:, : order - 1] @ legder(inverse)

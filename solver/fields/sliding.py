@@ -1,0 +1,74 @@
+"""The field of sliding, the traction q = p along x (times mu): docs/stresses.md, Sliding.
+
+Its fields have factors cos and sin of the polar angle, so that amplitudes in (r, z) suffice.
+"""
+
+import numpy as np
+
+from .half_space import integrals, on_surface
+from .transfer import Kind, antiplane, radial_sum
+from .waves import Load
+
+
+def amplitudes(kind, bodies, X, x, v):
+    """Of the nine integrals from which :func:`components` come."""
+    u, w, S, T = v
+    Q, across = antiplane(kind, bodies, X, x)
+    both, less = u + across, u - across
+    M = radial_sum(v, bodies.nu2 if kind == Kind.BODY else bodies.nu1)
+    return M, both, -less, S, T + Q, T - Q, w, both, less
+
+
+def in_closed_form(pressure, r, z, nu):
+    """The same (9, B, Z, R) of half-spaces of Poisson ratios nu (B,), at radii r (R,) and depths z (Z,) in a."""
+    nu, depth = nu[:, None, None], z[:, None]
+    E, F, D = integrals(pressure, r, z, 3)
+    surface = z == 0
+    if surface.any():
+        E[0][:, surface] = pressure.at(r)[:, None]
+        E[1::2, :, surface] = on_surface(pressure, r)[:, :, None]
+    return np.stack(
+        [
+            F[1] - 2 * (1 + nu) * E[1],
+            F[1] - 2 * (2 - nu) * E[1],
+            -F[3] - 2 * nu * E[3],
+            -F[1],
+            2 * E[0] - F[0],
+            -F[2],
+            depth * E[1] + (1 - 2 * nu) * D[1],
+            depth * E[0] - 2 * (2 - nu) * D[0],
+            depth * E[2] + 2 * nu * D[2],
+        ]
+    )
+
+
+NAMES = ("sr_c", "st_c", "sz_c", "srt_s", "sxz_0", "sxz_2", "uz_c", "ux_0", "ux_2")
+SLIDING = Load((0.0, 1.0), (1, 1, 3, 1, 0, 2, 1, 0, 2), 6, amplitudes, in_closed_form)
+
+
+def components(whole, G2):
+    """The amplitudes of the field of those nine integrals for mu = 1; G2 : 2 G."""
+    total, first, third, sz, even, odd, uz, ux, across = whole
+    difference = (first + third) / 2
+    parts = (
+        (total + difference) / 2,
+        (total - difference) / 2,
+        sz,
+        (third - first) / 4,
+        -even / 2,
+        odd / 2,
+        uz / G2,
+        -ux / (2 * G2),
+        across / (2 * G2),
+    )
+    return dict(zip(NAMES, parts, strict=True))
+
+
+def in_plane(names, behind):
+    """The field of pressure and friction together in the plane y = 0, where nothing shears across it: sr, st, sz, trz
+    (which is sxz), ur (ux), uz, of the mapping `names` of both; `behind` : bool, where x < 0, the trailing side."""
+    sign = np.where(behind, -1.0, 1.0)
+    along = {name: names[name] + sign * names[f"{name}_c"] for name in ("sr", "st", "sz", "uz")}
+    along["trz"] = sign * names["trz"] + names["sxz_0"] + names["sxz_2"]
+    along["ur"] = sign * names["ur"] + names["ux_0"] + names["ux_2"]
+    return along

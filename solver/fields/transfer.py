@@ -1,0 +1,164 @@
+"""The state of layer and body under a wave of unit traction: docs/stresses.md, Transfer.
+
+A traction J0(kr) (normal, S) or J1(kr) (tangential, T) on the surface makes in each body the state v = (u, w, S, T) of
+x = kz: u and w are the displacements along r and z times 2 G k, S and T the stresses sz and trz, as amplitudes of J1,
+J0, J0 and J1. In a body dv/dx = A v, whose solutions are e^(-x) and e^x times polynomials of degree one. Nothing is
+divided by 1 - 2 nu. Where X = kh is below about 1 the state is carried from the surface down, which cancels nothing.
+Above, it is the sum of a wave that decays from the surface and one that decays from the interface: nothing overflows.
+"""
+
+from enum import IntEnum
+from typing import NamedTuple
+
+import numpy as np
+
+#: Where X = kh is below it, the layer is thin. Against 113 bits 0.5 and 1.5 do as well (docs/stresses.md), so that
+#: cases whose h differ by a factor of 2 may have one limit in k.
+THIN = 1.0
+#: Below _SERIES, x cosh x - sinh x is the sum of its first _TERMS powers: the difference loses digits.
+_SERIES, _TERMS = 0.8, 10
+
+
+class Kind(IntEnum):
+    """Where a state is, and whether that of a half-space of the layer's material is left out of it: the difference is
+    formed without cancellation, and decays like a wave that was at the interface."""
+
+    DIFFERENCE = 0
+    LAYER = 1
+    BODY = 2
+
+
+class Bodies(NamedTuple):
+    """Layers on bodies; the fields broadcast.
+
+    alpha : G1/G2 = n (1 - nu1)/(1 - nu2), 0 of a rigid base; nu1, nu2 : Poisson ratios; bonded : bool
+    """
+
+    alpha: np.ndarray
+    nu1: np.ndarray
+    nu2: np.ndarray
+    bonded: np.ndarray
+
+    @classmethod
+    def of(cls, layers):
+        """Those of :class:`~solver.kernels.two_layers.TwoLayers`."""
+        return cls(layers.n * (1 - layers.nu1) / (1 - layers.nu2), layers.nu1, layers.nu2, layers.bonded)
+
+    def jumps(self, v):
+        """What is 0 at an interface with the state v above it, over 1 + alpha, two arrays. Bonded: the displacements
+        less those of the body; frictionless: T, and the normal displacement less that of the body."""
+        u, w, S, T = v
+        above, below = 1 / (1 + self.alpha), self.alpha / (1 + self.alpha)
+        normal, cross = 2 * (1 - self.nu2), 1 - 2 * self.nu2
+        along = above * u - below * (cross * S - normal * T)
+        deep = above * w + below * (normal * S - np.where(self.bonded, cross * T, 0.0))
+        return np.where(self.bonded, along, T), deep
+
+
+def decaying(x, nu, S, T):
+    """State at the depth x under surface tractions S, T of a half-space, H(x) (S, T)."""
+    decay, shift = np.exp(-x), x * (S - T)
+    u = decay * ((1 - 2 * nu) * S - 2 * (1 - nu) * T - shift)
+    w = decay * ((1 - 2 * nu) * T - 2 * (1 - nu) * S - shift)
+    return u, w, decay * (S + shift), decay * (T + shift)
+
+
+def growing(y, nu, S, T):
+    """Its mirror image: the state at the height y above tractions S, T, decaying upwards."""
+    u, w, S, T = decaying(y, nu, S, -T)
+    return u, -w, S, -T
+
+
+def _derivative(v, nu):
+    """A v."""
+    u, w, S, T = v
+    return w + 2 * T, ((1 - 2 * nu) * S - nu * u) / (1 - nu), -T, (u + nu * S) / (1 - nu)
+
+
+def carried(x, nu, v):
+    """State at the depth x below one of state v, e^(Ax) v = [cosh x + sinh x A + (x sinh x)/2 N + (x cosh x - sinh x)/2
+    A N] v with N = A A - 1; for x below about 1.5."""
+    first = _derivative(v, nu)
+    second = tuple(a - b for a, b in zip(_derivative(first, nu), v, strict=True))
+    third = _derivative(second, nu)
+    cosh, sinh = np.cosh(x), np.sinh(x)
+    half, rest = x * sinh / 2, np.where(x < _SERIES, _odd_series(np.minimum(x, _SERIES)), x * cosh - sinh) / 2
+    return tuple(cosh * a + sinh * b + half * c + rest * d for a, b, c, d in zip(v, first, second, third, strict=True))
+
+
+def _odd_series(x):
+    """x cosh x - sinh x, the sum of 2j x^(2j + 1)/(2j + 1)!."""
+    square, term, total = x * x, x, 0.0
+    for j in range(1, _TERMS + 1):
+        term = term * square / (2 * j * (2 * j + 1))
+        total = total + 2 * j * term
+    return total
+
+
+def _solved(first, second, right):
+    """The two numbers by which `first` and `second` (two arrays each) are `right`."""
+    (a, c), (b, d), (e, f) = first, second, right
+    determinant = a * d - b * c
+    return (e * d - b * f) / determinant, (a * f - e * c) / determinant
+
+
+def thin_surface(bodies, X, S, T):
+    """State of the surface of a thin layer under the tractions S, T."""
+    nu = bodies.nu1
+    ends = (bodies.jumps(carried(X, nu, v)) for v in ((1.0, 0.0, 0.0, 0.0), (0.0, 1.0, 0.0, 0.0), (0.0, 0.0, S, T)))
+    along, deep, right = ends
+    u, w = _solved(along, deep, tuple(-v for v in right))
+    return u, w, S, T
+
+
+def thick_waves(bodies, X, S, T):
+    """Tractions (S, T) of the two waves of a thick layer: of the one that decays from the surface, less those of a
+    half-space; and of the one that decays from the interface."""
+    nu = bodies.nu1
+
+    def column(S, T):
+        up = growing(X, nu, S, T)[2:]
+        here = growing(0.0, nu, S, T)
+        return bodies.jumps(tuple(a - b for a, b in zip(here, decaying(X, nu, *up), strict=True)))
+
+    right = bodies.jumps(decaying(X, nu, S, T))
+    b = _solved(column(1.0, 0.0), column(0.0, 1.0), tuple(-v for v in right))
+    return tuple(-v for v in growing(X, nu, *b)[2:]), b
+
+
+def wave_state(kind, bodies, X, x, load, thin):
+    """State (u, w, S, T) under a unit wave.
+
+    kind : :class:`Kind`; bodies : :class:`Bodies`; X, x : kh and kz; all broadcast
+    load : (S, T) at the surface, (-1, 0) or (0, 1)
+    thin : bool, whether X is below about 1 (:data:`THIN`)
+    """
+    if kind == Kind.BODY:
+        _, _, S, T = wave_state(Kind.LAYER, bodies, X, X, load, thin)
+        return decaying(x - X, bodies.nu2, S, np.where(bodies.bonded, T, 0.0))
+    nu, less = bodies.nu1, kind == Kind.DIFFERENCE
+    if thin:
+        v = carried(x, nu, thin_surface(bodies, X, *load))
+        return tuple(a - b for a, b in zip(v, decaying(x, nu, *load), strict=True)) if less else v
+    down, up = thick_waves(bodies, X, *load)
+    down = down if less else tuple(a + b for a, b in zip(down, load, strict=True))
+    return tuple(a + b for a, b in zip(decaying(x, nu, *down), growing(X - x, nu, *up), strict=True))
+
+
+def antiplane(kind, bodies, X, x):
+    """The pair (Q, v') of a wave of tangential traction: shear stress and displacement across the plane of the wave.
+    Frictionless or rigid bodies have none."""
+    alpha, bonded = bodies.alpha, bodies.bonded
+    returned, passed = np.where(bonded, (alpha - 1) / (alpha + 1), 1.0), np.where(bonded, 2 / (alpha + 1), 0.0)
+    around = passed * np.exp(-2 * X) - np.expm1(-2 * X)  # 1 - returned e^(-2X)
+    if kind == Kind.BODY:
+        Q = np.where(alpha > 0, passed, 0.0) * np.exp(-x) / around
+        return Q, -2 * Q
+    up = returned * np.exp(x - 2 * X)
+    down = returned * np.exp(-2 * X - x) if kind == Kind.DIFFERENCE else np.exp(-x)
+    return (down - up) / around, -2 * (down + up) / around
+
+
+def radial_sum(v, nu):
+    """M of sr + st = ∫ M p^ J0 k dk, of a state v."""
+    return (2 * nu * v[2] + (1 + nu) * v[0]) / (1 - nu)

@@ -1,0 +1,122 @@
+"""Integrals over the waves k of the layer and of the body: docs/stresses.md, Waves.
+
+Each row is a depth. It is of a kind: in the layer, all of the field or its difference to that of a half-space of the
+layer's material; or in the body. The rows of one kind go together, and each ends at its own largest k.
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from scipy.special import j0, j1
+
+from ..numerics.quadrature import gauss_legendre
+from .transfer import THIN, Bodies, Kind, wave_state
+
+#: A panel of _POINTS Gauss points holds at most so many radians of p^ J_m, and is no longer than its distance from 0,
+#: over which the state is smooth however stiff the layer is. Half of the radians change no stress by more than 1e-15 of
+#: the largest (tests/fields/test_waves.py).
+_POINTS, _RADIANS = 20, 20.0
+#: The first panel ends at this times min(1/a, 1/h), over n of stiff layers, which bend over 1/n of that.
+_FIRST = 1e-4
+#: A field that decays like e^(-kz) ends at k = _END/z.
+_END = 36.0
+#: Below _SMALL, J3 is a series of _TERMS terms: from J1 and J2 it loses digits.
+_SMALL, _TERMS = 3.0, 14
+#: Numbers in an array of states: so many waves are taken at once.
+_AT_ONCE = 200_000
+
+
+class Load(NamedTuple):
+    """What presses or rubs on the surface, and which integrals make its field.
+
+    traction : (S, T) of its unit wave
+    orders : of the Bessel function of each integral; the first `stresses` of them have a factor k
+    amplitudes : ``amplitudes(kind, bodies, X, x, state)``, the other factor of each integrand, but for p^
+    in_closed_form : ``in_closed_form(pressure, r, z, nu)``, the integrals of half-spaces (fields, B, Z, R)
+    """
+
+    traction: tuple
+    orders: tuple
+    stresses: int
+    amplitudes: Callable
+    in_closed_form: Callable
+
+
+class Row(NamedTuple):
+    """Depths of B cases: their :class:`Kind`, and z (B,) in a."""
+
+    kind: Kind
+    z: np.ndarray
+
+    def reach(self, h):
+        """How far from the source the waves are, (B,)."""
+        return 2 * h - self.z if self.kind == Kind.DIFFERENCE else self.z
+
+
+def quadrature(first, last, reach):
+    """Nodes k and weights (K,) from 0 to `last`: the first panel ends at `first`, further ones are as long as their
+    distance from 0 until that is _RADIANS/reach."""
+    widest = _RADIANS / reach
+    doubling = first * 2.0 ** np.arange(max(np.ceil(np.log2(min(widest, last) / first)), 0) + 1)
+    rest = np.arange(doubling[-1], last, widest)[1:] if doubling[-1] < last else []
+    ends = np.concatenate([[0.0], doubling, rest, [last] if last > doubling[-1] else []])
+    t, weight = gauss_legendre(_POINTS)
+    width = np.diff(ends)[:, None]
+    return (ends[:-1, None] + width * t).ravel(), (width * weight).ravel()
+
+
+def integrals(load, layers, h, pressure, r, rows):
+    """The integrals of a :class:`Load` at the `rows` (Z) and radii r (R,): (fields, B, Z, R).
+
+    layers : :class:`~solver.kernels.two_layers.TwoLayers` of B cases; h : (B,), their thickness in a, no two of which
+    are as different as 1 and 2
+    """
+    z = np.array([row.z for row in rows]).T
+    kinds = np.array([row.kind for row in rows])
+    last = _END / np.array([row.reach(h) for row in rows]).min(axis=1)
+    first = _FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
+    k, weight = quadrature(first, last.max(), 1 + r.max())
+    bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))
+    thin = np.sqrt(h.min() * h.max()) * k < THIN
+    p = (pressure.transform(k) * weight)[:, None]
+    whole = np.zeros((len(load.orders), len(h), len(rows), len(r)))
+    for part in _parts(thin, z.size):
+        J, X = bessel(k[part], r, max(load.orders)), k[part] * h[:, None, None]
+        for kind in Kind:
+            index = np.flatnonzero((kinds == kind) & (last > k[part.start]))
+            if len(index):
+                x = k[part] * z[:, index, None]
+                v = wave_state(kind, bodies, X, x, load.traction, thin[part.start])
+                for i, amplitude in enumerate(load.amplitudes(kind, bodies, X, x, v)):
+                    weights = p[..., part] * k[part] if i < load.stresses else p[..., part]
+                    whole[i][:, index] += (amplitude * weights) @ J[load.orders[i]]
+    return whole
+
+
+def _parts(thin, rows):
+    """Slices of the nodes, none of which are thin and thick."""
+    size = max(_AT_ONCE // rows // _POINTS * _POINTS, _POINTS)
+    middle = int(thin.sum())
+    starts = [*range(0, middle, size), *range(middle, len(thin), size)]
+    return [slice(*ends) for ends in zip(starts, [*starts[1:], len(thin)], strict=True)]
+
+
+def bessel(k, r, most):
+    """J_m (K, R) of k r, m from 0 to `most`, 2 or 3; right to 1e-15 absolutely."""
+    x = k[:, None] * r
+    away = np.where(x > 0, x, 1.0)
+    J = [j0(x), j1(x)]
+    J.append(2 * J[1] / away - J[0] * (x > 0))
+    return (
+        J if most == 2 else [*J, np.where(x < _SMALL, _series_of_third(np.minimum(x, _SMALL)), 4 * J[2] / away - J[1])]
+    )
+
+
+def _series_of_third(x):
+    """J3 below _SMALL."""
+    square, term, total = -((x / 2) ** 2), (x / 2) ** 3 / 6, 0.0
+    for j in range(1, _TERMS + 1):
+        total = total + term
+        term = term * square / (j * (j + 3))
+    return total

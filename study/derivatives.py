@@ -1,5 +1,6 @@
 """Sensitivities of results: d ln result/d ln input, over the dimensions of the results and `input`."""
 
+from collections.abc import Callable, Iterable
 from typing import Any
 
 import numpy as np
@@ -16,12 +17,14 @@ from .inputs.laws import recall
 from .inputs.scene.changes import RATIOS, SCALES, changes
 from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
-from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
+from .inputs.vocabulary import BODIES, CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
 from .terminal import shown
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
+#: By which part of its spread an input is moved for a formula, whose change is then linear to 1e-6.
+_STEP = 1e-3
 _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
 
 
@@ -52,8 +55,21 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
     0.333333
     """
-    inputs = _checked(contact)
+    logs, _ = _by_inputs(contact, ())
     dims, shape = contact["status"].dims, contact["status"].shape
+    variables = {}
+    for name in QUANTITIES:
+        values = np.stack(list(logs[name].values()), axis=-1)
+        about = {"long_name": f"sensitivity of {name}", "comment": _COMMENT}
+        variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
+    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
+    return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
+
+
+def _by_inputs(contact: xr.Dataset, x: Any) -> tuple[dict, dict]:
+    """Result -> input -> (B,), as `sensitivities`, with A0 besides; and input -> d p/d ln input (B, m) at the radii x,
+    in the unit of p. NaN of cases that have not converged."""
+    inputs, (dims, shape) = _checked(contact), (contact["status"].dims, contact["status"].shape)
     scene = _scene(inputs) if "R" in inputs else None
     numbers = scene.parameters if scene else inputs
     try:
@@ -61,22 +77,61 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     except ValueError as error:
         raise StudyError([f"sensitivities: {error}"]) from None
     used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
-    solution = solve(problem)
-    solved = derivatives(problem, solution, inputs=(problem.control, *used))
+    solution = solve(problem, x)
+    solved = derivatives(problem, solution, x, inputs=(problem.control, *used))
     logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
+    p = dict(zip(solved.inputs, np.moveaxis(solved.p, 1, 0), strict=True))
     if scene:
         of_si = _in_si(scene, dims, shape)
-        logs = {name: _by_si(logs[name], of_si, VOCABULARY[name].powers) for name in QUANTITIES}
+        logs = {name: _by_si(own, of_si, VOCABULARY[name].powers) for name, own in logs.items()}
+        p = _by_si(p, of_si, VOCABULARY["p"].powers, solution.p)
+        p = {name: values * _flat(scene.unit, dims, shape)[:, None] for name, values in p.items()}
     # of the control they are known, to the last bit
     control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
     logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
-    variables = {}
-    for name in QUANTITIES:
-        values = np.where(good[:, None], np.stack(list(logs[name].values()), axis=-1), np.nan)
-        about = {"long_name": f"sensitivity of {name}", "comment": _COMMENT}
-        variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
-    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
-    return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
+    logs = {name: {key: np.where(good, values, np.nan) for key, values in own.items()} for name, own in logs.items()}
+    return logs, p
+
+
+def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) -> float:
+    """The standard deviation of what a formula makes of one contact whose inputs have independent spreads.
+
+    It is given the contact moved along its derivatives: results and profile p, and the inputs. NaN where spreads hang
+    together, or the case cannot be solved again.
+    """
+    if correlated(case):
+        return np.nan
+    try:
+        (logs, p), scene = _by_inputs(case, case["x"].values), _scene(_checked(case))
+    except StudyError:
+        return np.nan
+    changes_of, sum_of_squares = _in_si(scene, (), ()), 0.0
+    for name, part in relative_spreads(case, logs["a"]).items():
+        by = {key: own[name] * case[key].values for key, own in logs.items() if key in case} | {"p": p[name][0]}
+        for key, own in {"length": "R", "n": "n", "m": "m"}.items():
+            by |= {own: changes_of[name].get(key, 0.0) * case[own].values} if own in case else {}
+        by[name] = 1.0 if name in RATIOS else case[name].values
+        ends = []
+        for step in (_STEP * part, -_STEP * part):
+            moved = {
+                key: case[key].copy(data=np.reshape(case[key].values + step * own, case[key].shape))
+                for key, own in by.items()
+            }
+            ends.append(float(formula(case.assign(moved))))
+        sum_of_squares += ((ends[0] - ends[1]) / (2 * _STEP)) ** 2
+    return float(np.sqrt(sum_of_squares))
+
+
+def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
+    """Those of the inputs of one contact that have a spread -> it over the value; of a Poisson ratio the spread."""
+    spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case}
+    return {name: spread if name in RATIOS else spread / float(case[name]) for name, spread in spreads.items()}
+
+
+def correlated(contact: xr.Dataset) -> bool:
+    """Whether the spreads of some inputs hang together, so that none has a share of its own."""
+    bodies = [contact[body] for body in BODIES if body in contact]
+    return "correlations" in contact.attrs or any("comment" in body.attrs for body in bodies)
 
 
 def _checked(contact: xr.Dataset) -> dict[str, Any]:
@@ -141,13 +196,15 @@ def _flat(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
     return np.broadcast_to(over(value, dims), shape).ravel()
 
 
-def _by_si(logs: dict, inputs: dict, powers: tuple[int, int]) -> dict[str, np.ndarray]:
-    """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j."""
+def _by_si(logs: dict, inputs: dict, powers: tuple[int, int], value: Any = 1.0) -> dict[str, np.ndarray]:
+    """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j. `value`: of
+    the result, if the derivatives are not of its logarithm."""
     scales = dict(zip(SCALES, powers[::-1], strict=True))
     still = 0 * next(iter(logs.values()))
 
     def by(changes: dict) -> np.ndarray:
+        changes = {key: change.reshape(-1, *[1] * (still.ndim - 1)) for key, change in changes.items()}
         parts = [logs[key] * change for key, change in changes.items() if key in logs]
-        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES)
+        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES) * value
 
     return {name: by(changes) for name, changes in inputs.items() if any(key in logs for key in changes)}

@@ -7,7 +7,7 @@ from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
 from .inputs import is_rigid, used_inputs
-from .numbers import given_text, in_its_unit, result_text, ring_text, spread_of
+from .numbers import given_text, peak_text, result_text, ring_text, spread_of
 from .pressures import largest
 from .sentences import sentences
 
@@ -107,9 +107,7 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
         if name == "p0" and top.place is not None:
             rows.append((RING_LABEL, VOCABULARY["p_ring"].symbol, ring_text(case, top.place)))
         if name == "p_max" and top.place is not None and np.isfinite(top.real):
-            real = in_its_unit(case, name, float(f"{top.real:.3g}"))
-            unknown = " ± unknown" * ("p_max_spread" in case)  # the inputs would have to be moved
-            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, real + unknown))
+            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, peak_text(case, top.real)))
     return rows
 
 

@@ -6,13 +6,15 @@ CONTROLS = ("P", "a", "D")
 #: Results that are compared; `error` of the page is the largest relative error of these.
 RESULTS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
 #: Contacts of each control. Some are left out: too thin a layer, or a punch that lifts off.
-MANY = 8000
+MANY = 6900
+#: So many apart the indices of the controls begin.
+_APART = 8000
 
 
 def parameters(control: str) -> dict[str, np.ndarray]:
     """Parameters (MANY,) of `solver.Problem` with one control. They are multiples of roots modulo 1, evenly spread and
     the same with every version of numpy."""
-    index = np.arange(1, MANY + 1) + MANY * CONTROLS.index(control)
+    index = np.arange(1, MANY + 1) + _APART * CONTROLS.index(control)
     primes = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31)
     of_value, of_h, of_n, nu1, nu2, of_m, bonded, rough, of_Nbar, of_Ra, base = (index * np.sqrt(p) % 1 for p in primes)
     value = {"P": 10 ** (4 * of_value - 7), "a": 10 ** (1.5 * of_value - 2.3), "D": 10 ** (3 * of_value - 4.5)}[control]

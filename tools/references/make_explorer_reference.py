@@ -1,7 +1,7 @@
-"""Write explorer.npz: what the solver answers to the 24,000 contacts of explorer_cases.py.
+"""Write explorer.npz: what the solver answers to the 20,700 contacts of explorer_cases.py.
 
 Status quo, not independent: the page of the explorer solves the same equation (tests/explorer/test_core.py). NaN where
-the program has no solution. float32 has a rounding of 6e-8, far below what is tested. It takes some minutes:
+the program has no solution. float32 has a rounding of 6e-8, far below what is tested. It takes a minute:
 ``python tools/references/make_explorer_reference.py``.
 """
 

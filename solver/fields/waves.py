@@ -21,8 +21,8 @@ _POINTS, _RADIANS = 20, 20.0
 _FIRST = 1e-4
 #: A field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
-#: But no later than at SHORTEST, whose waves take seconds: in thinner films, h below THINNEST, a stress next to the
-#: edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
+#: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
+#: the edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
 SHORTEST, MISSED = 1.5e5, 1e-3
 THINNEST = _END / SHORTEST
 #: Below _SMALL, J3 is a series of _TERMS terms: from J1 and J2 it loses digits.

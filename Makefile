@@ -13,13 +13,13 @@ RUN := $(VENV)/bin/python -m study
 PYTEST := PYTHONDONTWRITEBYTECODE= $(VENV)/bin/python -m pytest -q --numprocesses logical --maxprocesses 8 --dist worksteal
 
 .DEFAULT_GOAL := help
-.PHONY: always $(shell sed -n 's/^\([a-z0-9_]*\): .*/\1/p' Makefile)
+.PHONY: always $(shell sed -n 's/^\([a-z0-9_-]*\): .*/\1/p' Makefile)
 .NOTPARALLEL:
 .DELETE_ON_ERROR:
 .PRECIOUS: results/%.nc
 
 help: ## this list
-	@awk -F ':.*## ' '/^[a-z0-9_]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z0-9_-]+:.*## / { printf "  make %-14s %s\n", $$1, $$2 }' Makefile
 
 setup: $(READY) ## install the pinned packages and roughcoat into .venv
 
@@ -44,9 +44,9 @@ tradeoff: figures/tradeoff.pdf ## error against time of every way to solve: docs
 
 picard_domain: figures/picard_domain.pdf ## where the paper's successive approximations converge: figures/picard_domain.*
 
-literature: figures/literature.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
+literature: figures/literature.pdf figures/yielding.pdf ## published formulas beside the exact layer, and their safe ranges: docs/literature.md, .png
 	$(RUN) table --run literature literature_coatings literature_decided literature_rough
-	@cp figures/literature.png docs/
+	@cp figures/literature.png figures/yielding.png docs/
 	$(VENV)/bin/python tools/literature_page.py docs/literature.md
 
 validate: $(READY) ## rough spheres with every asperity resolved beside the two scales: docs/validate.md, .nc, .png
@@ -54,6 +54,13 @@ validate: $(READY) ## rough spheres with every asperity resolved beside the two 
 
 test: $(READY) ## all tests
 	$(PYTEST)
+
+# Debian's node and chromium; without them these tests are skipped.
+explorer-test: $(READY) ## install node, chromium and playwright, and test the page of `roughcoat explore` with them
+	@command -v node >/dev/null && command -v chromium >/dev/null || \
+	  apt-get install --yes --no-install-recommends nodejs chromium
+	$(VENV)/bin/python -m pip install --quiet --editable '.[explorer]' --no-build-isolation
+	$(VENV)/bin/python -m pytest -q -s tests/explorer
 
 # Of each room what is quick, against references where there are any: no test that starts Python anew, or that takes
 # the shrunken results of all studies, which are twenty seconds of computing.

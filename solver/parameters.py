@@ -25,9 +25,12 @@ class Parameter(NamedTuple):
         (tools/fuzz/fuzz_solver.py): each case is solved, or has a status.
     also : single values allowed outside the interval.
     needed_by : (name of another parameter, some of its choices), a condition: the cases that meet it need this
-        parameter. For these it is checked, and must be given if it has no default. EVERY: all need it.
+        parameter. Several such pairs one after the other: the cases that meet one of them. For these it is checked, and
+        must be given if it has no default. EVERY: all need it.
     used_by : a second condition: the answer depends on the parameter in those cases only that meet both.
     powers : (i, j), its unit is E2*^i R^j.
+    instead : of a parameter without a default, the name of another one that serves where it is not given; "": a case
+        can do without both. None: it must be given.
     symbol, long_name : what tables and figures call a parameter that a registered law declares.
     """
 
@@ -36,9 +39,10 @@ class Parameter(NamedTuple):
     whole: bool = False
     interval: str = ""
     also: tuple = ()
-    needed_by: tuple[str, tuple[str, ...]] = EVERY
-    used_by: tuple[str, tuple[str, ...]] = EVERY
+    needed_by: tuple = EVERY
+    used_by: tuple = EVERY
     powers: tuple[int, int] = (0, 0)
+    instead: str | None = None
     symbol: str = ""
     long_name: str = ""
 
@@ -81,8 +85,13 @@ PARAMETERS = {
 def among(condition, values):
     """(...) bool: the cases that meet a condition such as `needed_by`. `values(name)` gives the texts of a parameter,
     in an array of any shape."""
-    name, words = condition
-    return np.any([values(name) == word for word in words], axis=0) if name else np.True_
+    if condition == EVERY:
+        return np.True_
+    met = np.False_
+    for name, words in zip(condition[::2], condition[1::2], strict=True):
+        for word in words:
+            met = met | (values(name) == word)
+    return met
 
 
 def uses(name, values):

@@ -37,8 +37,11 @@ class Problem:
     model_check = "closed_form" : `model_error` of the base "thin_layer" is estimated free of cost; "first_order", by
         solving the exact layer from there, on a coarse mesh
     micro = "disc_cell" : the law of Eqs (6) and (7); "smooth", no asperities; "power_law", A = B Ra (p/E1*)^beta (E2*
-        without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; or the name of a
-        registered law, or such a :class:`~solver.laws.Law` itself
+        without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; "elastic_plastic", the
+        first with asperities that yield while the load rises; or the name of a registered law, or such a
+        :class:`~solver.laws.Law` itself
+    hardness, yield_strength : of the softer of asperity and what it presses on, of "elastic_plastic". One of both is
+        enough: the hardness is then 2.84 times the yield strength
     B, beta : coefficient, without unit, and exponent, of the "power_law"
     sigma, cut = 4 : standard deviation of random heights; and of the "normal_heights" the largest above their mean,
         over sigma
@@ -147,6 +150,11 @@ class Problem:
         new = {name: np.broadcast_to(v, len(self)) for name, v in parameters.items()}
         return Problem(self.control, self.value, self.parameters | new)
 
+    @property
+    def nu(self) -> np.ndarray:
+        """Poisson's ratio of what the asperities press on, the layer or the body without one; (B,)."""
+        return np.where(self.base == "half_space", self.nu2, self.nu1)
+
     def rough(self) -> np.ndarray:
         """Which cases are rough.
 
@@ -170,7 +178,8 @@ class Problem:
 
         Returns
         -------
-        numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds
+        numpy.ndarray : (B,) bool: a number that the case needs is not finite or out of bounds, or those of its micro
+            law do not go together
         """
         bad = ~allowed(CONTROL[self.control], self.value)
         having = {}
@@ -178,7 +187,13 @@ class Problem:
             if own.interval:
                 if own.needed_by not in having:
                     having[own.needed_by] = among(own.needed_by, lambda name: getattr(self, name))
-                bad |= having[own.needed_by] & ~allowed(own, getattr(self, name))
+                values = getattr(self, name)
+                left_out = np.isnan(values) & (own.instead is not None)
+                bad |= having[own.needed_by] & ~(allowed(own, values) | left_out)
+        for law in (law for law in laws.LAWS.values() if law.allows):
+            index = np.flatnonzero(self.micro == law.name)
+            if len(index):
+                bad[index] |= ~law.allows(**{name: getattr(self, name)[index] for name in law.arguments})
         return bad
 
 
@@ -196,8 +211,9 @@ def _array(name, value):
 def _missing(given, arrays):
     """Yield a message for each parameter that is not `given` and has no default, though some case needs it."""
     for name, own in PARAMETERS.items():
-        selector, needing = own.needed_by
-        if name not in given and own.default is None:
+        if own.default is None and not {name, own.instead} & {*given} and own.instead != "":
+            selector, needing = own.needed_by
             found = [f'"{word}"' for word in needing if word in arrays[selector]]
             if found:
-                yield f"{name} is missing: {selector} = {' or '.join(found)} needs it"
+                either = f" or {own.instead}" * bool(own.instead)
+                yield f"{name}{either} is missing: {selector} = {' or '.join(found)} needs it"

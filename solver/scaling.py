@@ -88,7 +88,7 @@ def law_of(part):
     """The one law of the cases with their numbers, :class:`~solver.laws.Bound`. ValueError where
     :func:`~solver.laws.try_out` finds a slip in a law of somebody else's."""
     law = LAWS[str(part.micro[0])]
-    E, given = layer_modulus(part.n) / (1 + part.m), {name: getattr(part, name) for name in law.parameters}
+    E, given = layer_modulus(part.n) / (1 + part.m), {name: getattr(part, name) for name in law.arguments}
     try_out(law, E, given)
     return law.bind(E, **given)
 

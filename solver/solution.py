@@ -51,6 +51,7 @@ class Solution:
     p0, p_max : > 0; nominal pressure p(0), and real pressure in the middle of the central spot (13), which is p(0) of a
         smooth punch (E2)
     Ar_An : in (0, 1]; real over nominal contact area (12), 1 for a smooth punch
+    plastic_share : in [0, 1]; share of the nominal contact area whose spots have yielded, NaN of a law without yield
     A0 : >= 0; additional displacement A[p(0)] of the asperities (6) (R)
     dP_dD : > 0; contact stiffness (E2 R)
     residual : >= 0; largest residual of the discrete equation, relative to its right-hand side
@@ -71,6 +72,7 @@ class Solution:
     p0: np.ndarray
     p_max: np.ndarray
     Ar_An: np.ndarray
+    plastic_share: np.ndarray
     A0: np.ndarray
     dP_dD: np.ndarray
     residual: np.ndarray

@@ -8,6 +8,7 @@ from numpy.typing import ArrayLike
 from .models.auto import cheapest
 from .models.model_error import judged
 from .models.named import model_of, solve_named
+from .models.plastic_share import has_yield, plastic_share
 from .models.range_of_law import RADII, has_range
 from .problem import Problem
 from .scaling import dimensionless, refused
@@ -50,7 +51,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
     x = np.asarray(x, dtype=float)
     if x.ndim != 1 or not np.all((x >= 0) & (x <= 1)):
         raise ValueError("x must be one-dimensional and within [0, 1]")
-    radii = np.append(x, RADII) if has_range(problem) else x
+    yields = has_yield(problem).any()
+    radii = np.append(x, RADII) if yields or has_range(problem) else x
     invalid = refused(problem, dimensionless(problem)) | problem.without_scheme()
     is_auto = problem.base == "auto"
     is_judged = (problem.base == "thin_layer") & (problem.model_check == "first_order")
@@ -61,6 +63,8 @@ def solve(problem: Problem, x: ArrayLike = (0.0, 1.0)) -> Solution:
         if len(index):
             pieces.append((index, way(problem.take(index), radii)))
     solution = Solution.join(*size, pieces)
+    if yields:
+        solution = replace(solution, plastic_share=plastic_share(problem, solution.lam[:, len(x) :]))
     profiles = {name: getattr(solution, name)[:, : len(x)] for name in ("p", "lam")}
     value = problem.value * 1.0  # exactly as given, also where a case is refused
     return replace(solution, **profiles, **{problem.control: value})

@@ -1,6 +1,6 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-point | list | check | run | retry | status | verify | clean | plot | table | tradeoff.
+point | explore | list | check | run | retry | status | verify | clean | plot | table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
@@ -43,7 +43,7 @@ def parser() -> argparse.ArgumentParser:
         if items:
             argument = sub.add_argument("items", nargs="+", metavar=items)
             argument.completer = partial(proposed, name)
-        if name != "point":
+        if name not in ("point", "explore"):
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
@@ -52,6 +52,8 @@ def parser() -> argparse.ArgumentParser:
     sub.epilog = (
         'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
     )
+    sub = command("exploring", "explore", "write a page that solves contacts in a browser, without a network")
+    sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
     sub = command("computing", "list_", "list the study files, their size and state")
     sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
     command("checking", "check", "check study files without computing", "FILE")

@@ -1,5 +1,8 @@
 """Sensitivities of results: d ln result/d ln input, over the dimensions of the results and `input`."""
 
+from collections.abc import Callable, Iterable
+from typing import Any
+
 import numpy as np
 import xarray as xr
 
@@ -9,12 +12,15 @@ from solver.parameters import PARAMETERS as SOLVER_PARAMETERS
 from solver.parameters import uses
 
 from .again import Again, of_all_cases
-from .inputs.scene.changes import SCALES, changes
+from .inputs.definition import StudyError
+from .inputs.scene.changes import RATIOS, SCALES, changes
 from .inputs.scene.scene import Scene
-from .inputs.vocabulary import PARAMETERS, VOCABULARY
+from .inputs.vocabulary import BODIES, PARAMETERS, VOCABULARY
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
+#: By which part of its spread an input is moved for a formula, whose change is then linear to 1e-6.
+_STEP = 1e-3
 _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
 
 
@@ -45,25 +51,78 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
     >>> study.sensitivities(contact).a_sensitivity.sel(P=2e-5, input="P").round(6).item()
     0.333333
     """
-    again = Again.of(contact, "sensitivities")
-    problem, numbers, scene, dims, shape = again
-    used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
-    solution = solve(problem)
-    solved = derivatives(problem, solution, inputs=(problem.control, *used))
-    logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
-    if scene:
-        of_si = _in_si(scene, dims, shape)
-        logs = {name: _by_si(logs[name], of_si, VOCABULARY[name].powers) for name in QUANTITIES}
-    # of the control they are known, to the last bit
-    control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
-    logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
+    logs, _ = _by_inputs(contact, Again.of(contact, "sensitivities"), ())
+    dims, shape = contact["status"].dims, contact["status"].shape
     variables = {}
     for name in QUANTITIES:
-        values = np.where(good[:, None], np.stack(list(logs[name].values()), axis=-1), np.nan)
+        values = np.stack(list(logs[name].values()), axis=-1)
         about = {"long_name": f"sensitivity of {name}", "comment": _COMMENT}
         variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
     left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
     return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
+
+
+def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
+    """Result -> input -> (B,), as `sensitivities`, with A0 besides; and input -> d p/d ln input (B, m) at the radii x,
+    in the unit of p. NaN of cases that have not converged."""
+    problem, numbers, scene, dims, shape = again
+    used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
+    solution = solve(problem, x)
+    solved = derivatives(problem, solution, x, inputs=(problem.control, *used))
+    logs = {name: dict(zip(solved.inputs, values.T, strict=True)) for name, values in solved.logs.items()}
+    p = dict(zip(solved.inputs, np.moveaxis(solved.p, 1, 0), strict=True))
+    if scene:
+        of_si = _in_si(scene, dims, shape)
+        logs = {name: _by_si(own, of_si, VOCABULARY[name].powers) for name, own in logs.items()}
+        p = _by_si(p, of_si, VOCABULARY["p"].powers, solution.p)
+        p = {name: values * of_all_cases(scene.unit, dims, shape)[:, None] for name, values in p.items()}
+    # of the control they are known, to the last bit
+    control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
+    logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
+    logs = {name: {key: np.where(good, values, np.nan) for key, values in own.items()} for name, own in logs.items()}
+    return logs, p
+
+
+def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) -> float:
+    """The standard deviation of what a formula makes of one contact whose inputs have independent spreads.
+
+    It is given the contact moved along its derivatives: results and profile p, and the inputs. NaN where spreads hang
+    together, or the case cannot be solved again.
+    """
+    if correlated(case):
+        return np.nan
+    try:
+        again = Again.of(case, "sensitivities")
+    except StudyError:
+        return np.nan
+    logs, p = _by_inputs(case, again, case["x"].values)
+    changes_of, sum_of_squares = _in_si(again.scene, (), ()), 0.0
+    for name, part in relative_spreads(case, logs["a"]).items():
+        by = {key: own[name] * case[key].values for key, own in logs.items() if key in case} | {"p": p[name][0]}
+        for key, own in {"length": "R", "n": "n", "m": "m"}.items():
+            by |= {own: changes_of[name].get(key, 0.0) * case[own].values} if own in case else {}
+        by[name] = 1.0 if name in RATIOS else case[name].values
+        ends = []
+        for step in (_STEP * part, -_STEP * part):
+            moved = {
+                key: case[key].copy(data=np.reshape(case[key].values + step * own, case[key].shape))
+                for key, own in by.items()
+            }
+            ends.append(float(formula(case.assign(moved))))
+        sum_of_squares += ((ends[0] - ends[1]) / (2 * _STEP)) ** 2
+    return float(np.sqrt(sum_of_squares))
+
+
+def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
+    """Those of the inputs of one contact that have a spread -> it over the value; of a Poisson ratio the spread."""
+    spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case}
+    return {name: spread if name in RATIOS else spread / float(case[name]) for name, spread in spreads.items()}
+
+
+def correlated(contact: xr.Dataset) -> bool:
+    """Whether the spreads of some inputs hang together, so that none has a share of its own."""
+    bodies = [contact[body] for body in BODIES if body in contact]
+    return "correlations" in contact.attrs or any("comment" in body.attrs for body in bodies)
 
 
 def _counts(problem: Problem, name: str) -> bool:
@@ -88,13 +147,15 @@ def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[
     return flat | {name: {name: ones} for name in own}
 
 
-def _by_si(logs: dict, inputs: dict, powers: tuple[int, int]) -> dict[str, np.ndarray]:
-    """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j."""
+def _by_si(logs: dict, inputs: dict, powers: tuple[int, int], value: Any = 1.0) -> dict[str, np.ndarray]:
+    """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j. `value`: of
+    the result, if the derivatives are not of its logarithm."""
     scales = dict(zip(SCALES, powers[::-1], strict=True))
     still = 0 * next(iter(logs.values()))
 
     def by(changes: dict) -> np.ndarray:
+        changes = {key: change.reshape(-1, *[1] * (still.ndim - 1)) for key, change in changes.items()}
         parts = [logs[key] * change for key, change in changes.items() if key in logs]
-        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES)
+        return sum(parts, still) + sum(scales[key] * changes.get(key, 0.0) for key in SCALES) * value
 
     return {name: by(changes) for name, changes in inputs.items() if any(key in logs for key in changes)}

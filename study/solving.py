@@ -18,6 +18,7 @@ from .data.dataset import parts
 from .data.si import dataset_of
 from .derivatives import sensitivities as derivatives_of
 from .in_words import FarOutside, doubts, far_outside
+from .inputs.checks import unloading
 from .inputs.definition import POINTS, StudyError
 from .inputs.reading import from_call
 from .inputs.vocabulary import VOCABULARY
@@ -50,7 +51,14 @@ class Parameters(TypedDict, total=False):
     Ra: Value
     micro: (
         Literal[
-            "disc_cell", "power_law", "smooth", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights"
+            "disc_cell",
+            "power_law",
+            "smooth",
+            "square_lattice",
+            "hex_lattice",
+            "normal_heights",
+            "uniform_heights",
+            "elastic_plastic",
         ]
         | str
         | Law
@@ -60,6 +68,8 @@ class Parameters(TypedDict, total=False):
     beta: Value
     sigma: Value
     cut: Value
+    hardness: Value
+    yield_strength: Value
     R: Value
     R1: Value
     R2: Value
@@ -114,6 +124,8 @@ def solve(
         Nbar and Ra, as the paper's is
     sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
         "uniform_heights" has sigma alone
+    hardness, yield_strength : of micro = "elastic_plastic", of the softer of asperity and what it presses on. One of
+        both is enough: the hardness is then 2.84 times the yield strength
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative, a flat body "flat"
@@ -181,6 +193,8 @@ def solve(
         raise StudyError([f"sensitivities = {shown(sensitivities)}: must be true or false, and false beside chunks"])
     tables = {"title": title, "output": {"x": x, "profiles": profiles}}
     definition = from_call(parameters, rows, same_piece, tables, correlations)
+    for text in unloading(definition):
+        warnings.warn(text, stacklevel=2)
     if far := far_outside(definition):
         warnings.warn("\n".join(far), FarOutside, stacklevel=2)
     if chunks is None:

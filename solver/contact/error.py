@@ -75,18 +75,20 @@ class Refined(NamedTuple):
 def refine(ev, coarse):
     """:class:`Refined` of the equation at a solution with the quantities `coarse`.
 
-    For a law with corners, Ar/An is the coarse one plus what the step changes on the finer mesh. That the two meshes
-    see the corners differently is no error: such a law has another quadrature (:func:`~.results.cornered`).
+    Where λ bends (:meth:`~solver.laws.Bound.bent`), Ar/An is the coarse one plus what the step changes on the finer
+    mesh. That the two meshes see the bends differently is no error: such cases have another quadrature
+    (:func:`~.results.cornered`).
     """
-    fine, corners = finer_mesh(ev.mesh), ev.cases.law.law.corners
-    y = interpolate(ev, fine.s, 1e-10 if corners else _NEAR)
+    fine, law = finer_mesh(ev.mesh), ev.cases.law
+    bent = law.bent(ev.state.y, ev.curve.q)
+    y = interpolate(ev, fine.s, np.where(bent, 1e-10, _NEAR)[:, None])
     start = evaluate(ev.cases, State(y, ev.state.eta), fine, ev.operator)
     state, dq_deta = newton.advance(start)
     end = nearby(start, state)
     numbers = quantities(end)
-    if corners:
-        before = 2 * (ev.cases.law.area(start.state.y, start.curve.q) @ fine.w)
-        numbers = numbers._replace(Ar_An=coarse.Ar_An + numbers.Ar_An - before)
+    if bent.any():
+        before = 2 * (law.area(start.state.y, start.curve.q) @ fine.w)
+        numbers = numbers._replace(Ar_An=np.where(bent, coarse.Ar_An + numbers.Ar_An - before, numbers.Ar_An))
     return Refined(start, end, numbers, newton.stiffness(start, dq_deta, numbers.P, numbers.D))
 
 
@@ -197,16 +199,30 @@ def completed(ev, Ar_An, error, rows):
 
     Ar_An : (B,), by the quadrature of the nodes; error : (B,), of :func:`estimate`
 
-    If λ has risen before the first node, what is missed there is counted by _UNSEEN. Where λ may rise sharply, Ar/An is
-    compared with another quadrature; where the displacement hardly depends on the pressure, with one for corners too. A
-    law with corners has a quadrature of its own.
+    Where λ bends, Ar/An has a quadrature of its own.
     """
-    law, mesh, area, error = ev.cases.law.take(rows), ev.mesh, Ar_An[rows], error[rows]
-    if not law.rough or not len(rows):
+    area, error = Ar_An[rows], error[rows]
+    if not ev.cases.law.rough or not len(rows):
         return area, error
-    if law.law.corners:
-        area, of_area, missed, largest = cornered(ev, rows)
-        return area, np.maximum(error + MARGIN * missed + _CHANCE * largest, MARGIN * of_area)
+    bent = ev.cases.law.take(rows).bent(ev.state.y[rows], ev.curve.q[rows])
+    for part, judge in ((np.flatnonzero(~bent), _without_bends), (np.flatnonzero(bent), _with_bends)):
+        if len(part):
+            area[part], error[part] = judge(ev, area[part], error[part], rows[part])
+    return area, error
+
+
+def _with_bends(ev, area, error, rows):
+    area, of_area, missed, largest = cornered(ev, rows)
+    return area, np.maximum(error + MARGIN * missed + _CHANCE * largest, MARGIN * of_area)
+
+
+def _without_bends(ev, area, error, rows):
+    """:func:`completed` of cases `rows` whose λ does not bend.
+
+    If λ has risen before the first node, what is missed there is counted by _UNSEEN. Where λ may rise sharply, Ar/An is
+    compared with another quadrature; where the displacement hardly depends on the pressure, with one for corners too.
+    """
+    law, mesh = ev.cases.law.take(rows), ev.mesh
     ends = law.area(ev.state.y[rows][:, [0, -1]], ev.curve.q[rows][:, [0, -1]])
     ring = np.where(ends[:, 0] > _RISEN, _UNSEEN * mesh.s[0] ** 2 / 2 * ends[:, 0] / area, 0.0)
     _, exponent = law.edge()

@@ -14,7 +14,7 @@ _STEPS = 40
 #: Where s is below this, the pressure of a smooth punch is taken to be proportional to s. Nearer to the edge, rounding
 #: in the equation would be larger than this pressure.
 _APART = 1e-4
-#: For a law with corners: between two nodes y is interpolated to _FEW Gauss points, with the relative tolerance _NEAR,
+#: Where λ bends: between two nodes y is interpolated to _FEW Gauss points, with the relative tolerance _NEAR,
 #: and λ is looked up at _MANY.
 _FEW, _MANY, _NEAR = 5, 10, 1e-10
 #: Arrays (B,) in units R = E2* = 1, named as in :class:`~solver.solution.Solution`.
@@ -70,8 +70,8 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         (X κ + Y) q + Z g(q) = drop - X (K[q_L] - κ q_L).
 
     Near the edge, where asperities or springs yield most, its solution is far more accurate than q_L; where they yield
-    nothing it is q_L. Newton's method solves it to the relative `tolerance`. It starts from a closed form for two terms
-    times the factor by which this form is wrong at the nodes, interpolated.
+    nothing it is q_L. Newton's method solves it to the relative `tolerance`, a number or (B, 1). It starts from a
+    closed form for two terms times the factor by which this form is wrong at the nodes, interpolated.
     """
     s = np.ascontiguousarray(s, dtype=float)
     L, H, kappa, node_kappa = _between(ev.mesh, s.tobytes())
@@ -92,7 +92,7 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
     missed = np.nan_to_num(ev.state.y[rows] / guess(node_linear, node_linear * q + Z * g), nan=1.0)
     missed = np.clip(missed, 0.5, 2.0) @ L.T
     y = guess(linear, right) * np.clip(missed, 0.7, 1.4)
-    active = np.arange(len(y))
+    active, tolerance = np.arange(len(y)), np.broadcast_to(tolerance, (len(y), 1))
     for _ in range(_STEPS):
         old, slope, weight = y[active], linear[active], Z[active]
         curve = law.take(active).evaluate(old)
@@ -100,14 +100,14 @@ def interpolate(ev, s, tolerance=1e-13, rows=slice(None)):
         new = law.limit(old - f / (slope * curve.dq + weight * curve.dg), old)
         y[active] = new
         # what a step leaves is about the square of its relative size
-        active = active[np.any((new - old) ** 2 > tolerance * new**2, axis=1)]
+        active = active[np.any((new - old) ** 2 > tolerance[active] * new**2, axis=1)]
         if not len(active):
             break
     return y
 
 
 def cornered(ev, rows):
-    """Of the cases `rows` (b,) of a law with corners: Ar/An; its relative error; the part of the load that the
+    """Of the cases `rows` (b,) whose λ bends: Ar/An; its relative error; the part of the load that the
     polynomial through the nodes misses between them; the largest part that it misses from the edge to any radius.
 
     Where λ has a corner, a quadrature errs by about the cube of the distance of its points, and the nodes are too far

@@ -17,6 +17,7 @@ from ..threads import one_blas_thread
 from . import normal, sliding
 from .field import integrals
 from .pressure import Pressure
+from .waves import MISSED, THINNEST
 
 #: The pressure is solved again with at most this rtol, whatever that of the contact was.
 _RTOL = 1e-8
@@ -61,9 +62,10 @@ def of_contacts(problem, solution, r, z, mu=0.0):
     if len(index):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
+        film = (scaled.base != "half_space") & (scaled.h / a < THINNEST)
         for rows, pressure, missed in pressures(scaled, ended, a):
             here = index[rows]
-            error[here] = missed
+            error[here] = np.maximum(missed, np.where(film[rows], MISSED, 0.0))
             for some, field in _of_pressures(scaled.take(rows), a[rows], pressure, r, z, mu):
                 units = problem.E2[here[some], None, None], solution.a[here[some], None, None]
                 for name, values in field.items():

@@ -21,6 +21,10 @@ _POINTS, _RADIANS = 20, 20.0
 _FIRST = 1e-4
 #: A field that decays like e^(-kz) ends at k = _END/z.
 _END = 36.0
+#: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
+#: the edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
+SHORTEST, MISSED = 1.5e5, 1e-3
+THINNEST = _END / SHORTEST
 #: Below _SMALL, J3 is a series of _TERMS terms: from J1 and J2 it loses digits.
 _SMALL, _TERMS = 3.0, 14
 #: Numbers in an array of states: so many waves are taken at once.
@@ -80,7 +84,7 @@ def integrals(load, layers, h, pressure, r, rows):
     """
     z = np.array([row.z for row in rows]).T
     kinds = np.array([row.kind for row in rows])
-    last = _END / np.array([row.reach(h) for row in rows]).min(axis=1)
+    last = np.minimum(_END / np.array([row.reach(h) for row in rows]).min(axis=1), SHORTEST)
     first = _FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
     k, weight = quadrature(first, last.max(), 1 + r.max())
     bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))

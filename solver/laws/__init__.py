@@ -6,8 +6,8 @@ from weakref import WeakSet
 
 import numpy as np
 
-from ..parameters import CONTROL, PARAMETERS
-from . import disc_cell, heights, lattice, own_table, power_law, smooth, trial
+from ..parameters import BONDED, CONTROL, LAYERED, PARAMETERS
+from . import disc_cell, elastic_plastic, heights, lattice, own_table, power_law, trial
 from .law import Bound, Curve, Law, Spots
 
 __all__ = [
@@ -27,9 +27,10 @@ __all__ = [
 
 #: Entry points of this group are laws of installed packages.
 GROUP = "roughcoat.laws"
-#: Names that no parameter of a law can have: the attributes of a Problem, and E, which `scales` gets. The package
-#: `study` adds results and its other inputs.
-RESERVED = {*CONTROL, "E", "control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme"}
+#: Names that no parameter of a law can have: the attributes of a Problem, and E and nu, which `scales` gets. The
+#: package `study` adds results and its other inputs.
+_OF_PROBLEM = ("control", "value", "parameters", "of", "take", "but", "rough", "invalid", "without_scheme")
+RESERVED = {*CONTROL, *_OF_PROBLEM, "E", "nu"}
 #: Laws whose functions have been tried.
 _TRIED: WeakSet[Law] = WeakSet()
 
@@ -102,6 +103,9 @@ def _declare(laws):
         del PARAMETERS[name]  # of a law that has been replaced
     PARAMETERS.update({name: own._replace(needed_by=("micro", names)) for name, (own, names) in declared.items()})
     PARAMETERS["micro"] = PARAMETERS["micro"]._replace(choices=tuple(laws))
+    of_laws = "micro", tuple(law.name for law in laws.values() if law.poisson)
+    PARAMETERS["nu1"] = PARAMETERS["nu1"]._replace(used_by=(*BONDED, *of_laws))
+    PARAMETERS["nu2"] = PARAMETERS["nu2"]._replace(needed_by=(*LAYERED, *of_laws), used_by=(*BONDED, *of_laws))
     return laws
 
 
@@ -168,6 +172,9 @@ def name_in(identity):
     return identity.rpartition(" ")[0] if identity.startswith(own_table.PREFIX) else identity.partition(" ")[0]
 
 
-BUILT_IN = (smooth.LAW, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW)
+BUILT_IN = (
+    *(disc_cell.SMOOTH, disc_cell.LAW, power_law.LAW, lattice.SQUARE, lattice.HEX, heights.LAW, heights.UNIFORM_LAW),
+    elastic_plastic.LAW,
+)
 #: Name -> Law.
 LAWS = _declare({law.name: law for law in BUILT_IN})

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from ..parameters import Parameter
 from .law import Curve, Law, inverse, log_step, where_positive
 
-__all__ = ["LAW", "PARAMETERS", "contact_fraction", "displacement", "largest_pressure"]
+__all__ = ["LAW", "PARAMETERS", "SMOOTH", "contact_fraction", "displacement", "largest_pressure"]
 
 #: Asperities per unit area, in R⁻², and their radius, in R.
 PARAMETERS = {
@@ -126,6 +126,18 @@ LAW = Law(
     from_pressure=spot_from_pressure,
     from_displacement=spot_from_displacement,
     guess=spot_guess,
+)
+
+#: No asperities: A = 0, and the equation is linear in y = q, with p* = E.
+SMOOTH = Law(
+    name="smooth",
+    scales=lambda E: (E, 0.0),
+    curve=lambda y: Curve(y, np.zeros_like(y), np.ones_like(y), np.zeros_like(y)),
+    area=lambda y, q: np.ones_like(y),
+    peak=lambda y, q: q,
+    edge=lambda: (1.0, 1.0),
+    rough=False,
+    from_pressure=lambda q: q,
 )
 
 

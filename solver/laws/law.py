@@ -72,6 +72,9 @@ class Law:
     corners : whether λ(y) has corners, for example where the lowest summits touch; Ar/An then has its own quadrature
     smears : whether it spreads the pressure of the neighbours evenly, and so errs where the spots merge
     touching : (A, **parameters) -> share of the summits that touch where the displacement is A; None: all do
+    poisson : whether `scales` and `allows` also get `nu`, Poisson's ratio of the layer, or of the body without one
+    allows : (**parameters) -> (B,) bool, whether the parameters of a case go together; None: always
+    yielded : (*own) -> λ above which the spots have yielded; None: they never do
     rise : how much the displacement of the asperities saves nodes on the mesh to begin with: 0.5 for power laws, 1.1
         for a law that saturates, fitted to random cases. A wrong value costs time, and nothing else
     from_pressure : (q, *own) -> y with q(y) = q >= 0. This and the next two may be left out: they are then found from
@@ -95,10 +98,18 @@ class Law:
     corners: bool = False
     smears: bool = True
     touching: Callable | None = None
+    poisson: bool = False
+    allows: Callable | None = None
+    yielded: Callable | None = None
     rise: float = 0.5
     from_pressure: Callable | None = None
     from_displacement: Callable | None = None
     guess: Callable | None = None
+
+    @property
+    def arguments(self) -> tuple[str, ...]:
+        """Names of what `scales` gets beside E."""
+        return (*self.parameters, *["nu"] * self.poisson)
 
     def bind(self, E: np.ndarray, **values: np.ndarray) -> "Bound":
         """The law of B cases, in units R = E2* = 1.
@@ -106,13 +117,13 @@ class Law:
         Parameters
         ----------
         E : (B,), modulus that the asperities feel
-        values : the parameters of the law, (B,) each
+        values : the `arguments` of the law, (B,) each
 
         Returns
         -------
         Bound
         """
-        p_star, A_star, *own = self.scales(E, **{name: values[name] for name in self.parameters})
+        p_star, A_star, *own = self.scales(E, **{name: values[name] for name in self.arguments})
         one = np.ones(np.shape(E))
         return Bound(self, p_star * one, A_star * one, tuple((v * one)[:, None] for v in own))
 
@@ -123,13 +134,13 @@ class Law:
         ----------
         p : nominal pressure >= 0 (unit of E); NaN stays NaN
         E : modulus that the asperities feel, > 0
-        numbers : the parameters of the law
+        numbers : the `arguments` of the law
 
         Returns
         -------
         Spots : A, lam and p_max, of the shape to which all arguments broadcast
         """
-        names = list(self.parameters)
+        names = self.arguments
         p, E, *values = np.broadcast_arrays(*(np.asarray(v, float) for v in (p, E, *(numbers[name] for name in names))))
         flat = {name: v.ravel() for name, v in zip(names, values, strict=True)}
         with np.errstate(all="ignore"):
@@ -159,6 +170,12 @@ class Bound(NamedTuple):
     def area(self, y, q):
         """λ (B, m), Eq. (11), at y and q (B, m) of the same points."""
         return self.law.area(y, q, *self.own)
+
+    def bent(self, y, q):
+        """(B,) bool: the cases whose λ bends, in corners or where spots begin to yield, at their y and q (B, m)."""
+        if self.law.yielded is None:
+            return np.full(len(y), self.law.corners)
+        return np.any(self.area(y, q) > self.law.yielded(*self.own), axis=1)
 
     def peak(self, y, q):
         """p_max (B, m), Eq. (13), at y and q (B, m) of the same points."""

@@ -70,7 +70,7 @@ def tried(law, E, given):
     increase from 0; a derivative or an inverse is not that of the curve.
     """
     places = np.linspace(0, len(E) - 1, len(_Y)).astype(int)
-    E, given = E[places], {name: given[name][places] for name in law.parameters}
+    E, given = E[places], {name: given[name][places] for name in law.arguments}
     bound, curve, area = _shapes(law, E, given)
     # no contact is beyond full contact, or where p is above E: there a law may be what it likes
     here = (area <= 1) & (bound.p_star[:, None] * curve.q <= E[:, None])

@@ -12,7 +12,8 @@ import numpy as np
 from ..contact.start import guess_radius
 from ..kernels.closed_form import decaying_part, whole
 from ..kernels.two_layers import layer_modulus
-from ..laws import LAWS, smooth
+from ..laws import LAWS
+from ..laws.disc_cell import SMOOTH
 from ..numerics.quadrature import gauss_legendre
 from ..scaling import as_cases, dimensionless, law_of, restore
 from ..solution import Model, Solution
@@ -86,12 +87,12 @@ def bounds(part):
 def _on_model(model, part, x):
     """:class:`Solution` of the cases `part` on a cheap model, with their asperities."""
     thin = model in (Model.THIN_LAYER, Model.SMOOTH_THIN_LAYER)
-    base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n))
+    base = part.but(base="thin_layer") if thin else part.but(base="half_space", E2=layer_modulus(part.n), nu2=part.nu1)
     if model not in _SMOOTH or not LAWS[str(part.micro[0])].rough:
         return solve_named(base, x)
     s, _ = area_rule()
     radii = np.concatenate([x, np.sqrt((1 - s) * (1 + s))])
-    solution = solve_named(base.but(micro=smooth.LAW.name, scheme="newton"), radii)
+    solution = solve_named(base.but(micro=SMOOTH.name, scheme="newton"), radii)
     p, p_area = np.split(solution.p, [len(x)], axis=1)
     law = law_of(part)
     return replace(solution, **spots_under(law, solution.p0, p_area), p=p, lam=law.at(p).lam)

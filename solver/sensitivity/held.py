@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..kernels.two_layers import layer_modulus
-from ..laws import smooth
+from ..laws.disc_cell import SMOOTH
 from ..problem import Problem
 from ..scaling import dimensionless, with_a_stiff_base, with_rigid_punch
 from ..solution import Model
@@ -41,8 +41,9 @@ def held(scaled, used):
     of_model = np.select([thin, exact], ["thin_layer", "layered"], "half_space")
     named = scaled.but(
         base=np.where(auto, of_model, scaled.base),
-        micro=np.where(added, smooth.LAW.name, scaled.micro),
+        micro=np.where(added, SMOOTH.name, scaled.micro),
         E2=np.where(alone, layer_modulus(scaled.n), 1.0),
+        nu2=np.where(alone, scaled.nu1, scaled.nu2),
         scheme="newton",
         model_check="closed_form",
     )

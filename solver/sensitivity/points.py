@@ -1,4 +1,4 @@
-"""Derivatives of pressure and λ between the nodes: of profiles, and of Ar/An where λ has corners."""
+"""Derivatives of pressure and λ between the nodes: of profiles, and of Ar/An where λ bends."""
 
 from typing import NamedTuple
 
@@ -8,7 +8,7 @@ from ..contact.results import interpolate, stiffness_between
 from ..numerics.mesh import gauss_rule
 from .state import along, moving_numbers, of_law
 
-#: Gauss points between any two nodes at which a λ with corners is differentiated. With 5 points the derivatives of
+#: Gauss points between any two nodes at which a λ that bends is differentiated. With 5 points the derivatives of
 #: Ar/An are as right as the other ones (tests/sensitivity/test_sensitivities.py).
 _FEW = 5
 
@@ -56,7 +56,7 @@ def _between_nodes(ev, changes, derivatives, s, curve, at_s):
 
 
 def of_corners(ev, changes, derivatives):
-    """Derivatives (k, B) of ln Ar/An of a law whose λ has corners."""
+    """Derivatives (k, B) of ln Ar/An of cases whose λ bends."""
     s, w = gauss_rule(_FEW, (0.0, *ev.mesh.s.tolist()))
     at = at_points(ev, changes, derivatives, s)
     return (at.d_lam @ (w * s)) / (at.lam @ (w * s))

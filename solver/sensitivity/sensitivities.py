@@ -133,8 +133,9 @@ def _of_stack(now: Held, beside: Held, above, solution, nodes, x):
     operators = operators_of(ev, changes)
     derivatives = implicit(ev, changes, operators)
     logs = derivatives.logs | {"dP_dD": stiffness_slopes(ev, beside.written, derivatives, operators)}
-    if ev.cases.law.law.corners:
-        logs["Ar_An"] = of_corners(ev, changes, derivatives)
+    bent = ev.cases.law.bent(ev.state.y, ev.curve.q)
+    if bent.any():
+        logs["Ar_An"] = np.where(bent, of_corners(ev, changes, derivatives), logs["Ar_An"])
     logs |= {name: logs[name] + d_E2 for name in _OF_MODULUS}
     at = profiles(ev, changes, derivatives, x)
     d_p, d_lam = now.E2[:, None] * (at.d_p + d_E2[..., None] * at.p), at.d_lam

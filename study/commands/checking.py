@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from ..inputs.checks import unloading
 from ..inputs.definition import Definition
 from ..inputs.places import study_file
 from ..inputs.reading import read
@@ -25,10 +26,10 @@ def assumed_lines(definition: Definition) -> list[str]:
 
 
 def doubtful_lines(definition: Definition) -> list[str]:
-    """A line for each input of a study with units that no body has, such as 210 TPa, or whose spread is too wide, and
-    for what it is far outside of."""
+    """A line for loads that fall though asperities yield, and for each input of a study with units that no body has,
+    such as 210 TPa, or whose spread is too wide, and for what it is far outside of."""
     if not definition.scene:
-        return []
+        return [f"{definition.name}: beware: {text}" for text in unloading(definition)]
     from ..in_words.early import far_outside
     from ..inputs.scene.scene import bare_variable  # here: these import xarray
     from ..rules.rule import sentences
@@ -36,7 +37,10 @@ def doubtful_lines(definition: Definition) -> list[str]:
     scene, v = definition.scene, {}
     for name, value in (scene.given | {f"{name}_spread": spread for name, spread in scene.spreads.items()}).items():
         v[name] = bare_variable(value, {"units": ROWS[name].unit} if name in ROWS else {})
-    return [f"{definition.name}: beware: {text}" for text in (*sentences(v), *far_outside(definition))]
+    return [
+        f"{definition.name}: beware: {text}"
+        for text in (*sentences(v), *unloading(definition), *far_outside(definition))
+    ]
 
 
 def law_lines(definition: Definition) -> list[str]:

@@ -11,6 +11,7 @@ import xarray as xr
 
 from ..data.dataset import decode
 from ..data.derived import QUANTITIES
+from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..in_words.inputs import all_inputs
 from ..inputs.definition import StudyError
@@ -79,17 +80,26 @@ def as_numbers(contact: xr.Dataset) -> dict:
 def _spreads_of_derived(contact: xr.Dataset) -> dict[str, xr.DataArray]:
     """NAME_spread of derived quantities, if results have spreads: NaN where it does not follow from these.
 
-    A largest pressure does not change with its place to first order. The spreads of a ring's radius, of the real
-    pressure in a ring and of the share of an elastic punch would need moved inputs.
+    A largest pressure does not change with its place to first order. That of the centre stays there.
     """
     if "p_spread" not in contact:
         return {}
-    place, unknown = int(np.argmax(contact["p"].values)), xr.DataArray(math.nan)
-    spreads = {"p_ring": contact["p_spread"][place].drop_vars("x"), "r_ring": unknown, "p_peak": unknown}
-    if place == 0:
-        spreads["p_peak"] = contact["p_max_spread"]
-    spreads["D_body"] = unknown if float(contact.get("m", 0.0)) else contact.get("D_spread")
+    place = int(np.argmax(contact["p"].values))
+    spreads = {"p_ring": contact["p_spread"][place].drop_vars("x"), "p_peak": contact["p_max_spread"]}
+    spreads["D_body"] = contact.get("D_spread")
+    formulas = {"r_ring": _ring if place else lambda _: math.nan}
+    formulas |= {name: QUANTITIES[name] for name in ["p_peak"] * bool(place) + ["D_body"] * bool(contact.get("m", 0.0))}
+    spreads |= {name: xr.DataArray(spread_of_formula(contact, formula)) for name, formula in formulas.items()}
     return {f"{name}_spread": spread for name, spread in spreads.items() if spread is not None}
+
+
+def _ring(dataset: xr.Dataset) -> float:
+    """The radius of the ring of one contact, where the parabola through the three points at the largest pressure has
+    its top: it moves with the inputs, which the point of `r_ring` does not."""
+    p, x = dataset["p"].values, dataset["x"].values
+    place = min(max(int(np.argmax(p)), 1), len(p) - 2)
+    bend, slope, _ = np.polyfit(x[place - 1 : place + 2] - x[place], p[place - 1 : place + 2], 2)
+    return float(dataset["a"]) * (x[place] - slope / (2 * bend))
 
 
 def described(contact: xr.Dataset, name: str) -> dict | str:

@@ -34,7 +34,7 @@ def failed_cases(status: np.ndarray) -> np.ndarray:
 
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     """What `arrays_of` gives for `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
-    found = {name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *names("result"))}
+    found = {name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *definition.results)}
     found |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
     if definition.inputs:
         with_spreads = [(name, found[name]) for name in (*WITH_SPREADS, *definition.profiles)]

@@ -15,7 +15,7 @@ from solver.kernels.two_layers import layer_modulus
 from solver.laws import LAWS, identity, name_in
 
 from ..inputs.scene.scales import without_unit
-from ..inputs.vocabulary import VOCABULARY, attributes
+from ..inputs.vocabulary import ROWS, VOCABULARY, attributes
 from ..rules import rule
 from ..rules.assumptions import (  # noqa: F401 - names of study.derived
     COMPRESSED,
@@ -161,8 +161,9 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         if stated.get(law.name, identity(law.name)) != identity(law.name):
             continue
         given = [without_unit(dataset.get(name, np.nan), VOCABULARY[name].powers, unit, R) for name in law.parameters]
-        p = pressures / unit
-        spots = xr.apply_ufunc(_largest(law), p, E1, *given, dask="parallelized", output_dtypes=[float])
+        nu = xr.where(dataset["base"] == "half_space", dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
+        given += [nu] * law.poisson
+        spots = xr.apply_ufunc(_largest(law), pressures / unit, E1, *given, dask="parallelized", output_dtypes=[float])
         found = xr.where(dataset["micro"] == law.name, spots, found)
     return unit * found.max("x", skipna=False)
 
@@ -226,8 +227,7 @@ def _scales(dataset: xr.Dataset, name: str) -> tuple:
     """The modulus and the radius that are 1 for the solver, in SI units: E2*, E1* on a rigid base, and R."""
     if not rule.has_units(dataset):
         return 1.0, 1.0
-    wanted = {"R": "m", "E2": "Pa", "p": "Pa"}
-    if any(name not in dataset or dataset[name].attrs.get("units") != unit for name, unit in wanted.items()):
+    if any(name not in dataset or dataset[name].attrs.get("units") != ROWS[name].unit for name in ("R", "E2", "p")):
         raise ValueError(f"{name} needs R, E2 and p in SI units, as study.solve gives them, or all without units")
     unit = reduced_modulus(dataset["E2"], dataset["nu2"])
     if np.isinf(unit).any():
@@ -236,8 +236,8 @@ def _scales(dataset: xr.Dataset, name: str) -> tuple:
 
 
 def _largest(law):
-    """p_max of nominal pressures, of the modulus that the asperities feel, and of the parameters of the law."""
-    return lambda p, E, *given: law.at(p, E, **dict(zip(law.parameters, given, strict=True))).p_max
+    """p_max of nominal pressures, of the modulus that the asperities feel, and of the arguments of the law."""
+    return lambda p, E, *given: law.at(p, E, **dict(zip(law.arguments, given, strict=True))).p_max
 
 
 @quantity("E_eff")

@@ -6,8 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.figure import Figure
 
-from ..derivatives import QUANTITIES, sensitivities
-from ..in_words.influence import relative_changes
+from ..derivatives import QUANTITIES, relative_spreads, sensitivities
 from ..inputs.definition import StudyError
 from .labels import stated, symbol, wrapped
 from .registry import Columns
@@ -30,7 +29,7 @@ def tornado(contact: xr.Dataset, name: str, new: Callable[..., Figure]) -> tuple
         raise StudyError([f"y = {ORDINATE} is of one contact: choose one of {sizes}, such as --where P=VALUE"])
     contact = contact.squeeze(contact["status"].dims)
     by_input = sensitivities(contact)[f"{name}_sensitivity"].to_series().to_dict()
-    parts = relative_changes(contact, by_input)
+    parts = {key: by_input[key] * part for key, part in relative_spreads(contact, by_input).items()}
     about = "one standard deviation" if parts else "1 % (a Poisson ratio by 0.01)"
     parts = parts or {key: by * _STEP for key, by in by_input.items()}
     parts = dict(sorted(((key, 100 * part) for key, part in parts.items() if part), key=lambda one: abs(one[1])))

@@ -40,10 +40,10 @@ def target(path: Path) -> Path:
 def remove_temporary(path: Path, age: float = 0.0) -> None:
     """Remove the temporary files beside `path` of writers that were killed, those that are `age` seconds old."""
     path = target(path)
-    for found in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
+    for temporary in path.parent.glob(f".{escape(path.name)}.????????.tmp"):
         with suppress(FileNotFoundError):  # its writer has just ended
-            if time.time() - found.stat().st_mtime >= age:
-                found.unlink()
+            if time.time() - temporary.stat().st_mtime >= age:
+                temporary.unlink()
 
 
 def make_folder(path: Path) -> None:

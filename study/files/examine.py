@@ -81,7 +81,7 @@ def examine(path, most: float = inf) -> Condition:
         if path.stat().st_size > most or is_whole(path) is not False:
             with File(path) as file:
                 state = _described(file)
-                if state.kind == "sound" and state.unpacked <= most and contents(file) != file.attribute(ATTRIBUTE):
+                if state.kind == "sound" and state.unpacked <= most and contents(file) != file.attributes[ATTRIBUTE]:
                     state = replace(state, kind="damaged", reason=CHANGED)
     except FileNotFoundError:
         state = Condition(path, "missing")
@@ -111,15 +111,15 @@ def statuses(path: Path) -> np.ndarray:
 
 def _described(file: File) -> Condition:
     """What a file says of itself."""
-    there = file.attributes()
-    if not {*OURS} & {*there}:
-        return Condition(file.path, "foreign", "is a netCDF file of another program", unpacked=file.unpacked)
-    names = (*OURS, "title", "study", "command")
-    about = [str(file.attribute(name)) if name in there else "" for name in names]
-    dims, sizes = file.variables.get("status", ()), file.sizes
-    of_cases = {dim: sizes[dim] for dim in dims}
-    kind = "sound" if ATTRIBUTE in there else "unverified"
-    return Condition(file.path, kind, "", *about, of_cases, unpacked=file.unpacked)
+    attributes, variables = file.attributes, file.variables
+    unpacked = sum(variable.unpacked for variable in variables.values())
+    if not {*OURS} & {*attributes}:
+        return Condition(file.path, "foreign", "is a netCDF file of another program", unpacked=unpacked)
+    about = [str(attributes.get(name, "")) for name in (*OURS, "title", "study", "command")]
+    status = variables.get("status")
+    of_cases = dict(zip(status.dims, status.shape, strict=True)) if status else {}
+    kind = "sound" if ATTRIBUTE in attributes else "unverified"
+    return Condition(file.path, kind, "", *about, of_cases, unpacked=unpacked)
 
 
 class Sums:
@@ -142,9 +142,9 @@ class Sums:
 
 def contents(file: File) -> str:
     """The digest of all that an open file holds; it is in memory part by part."""
-    sums, sizes = Sums(), file.sizes
-    for name, dims in file.variables.items():
-        for window in _pieces({dim: sizes[dim] for dim in dims}):
+    sums = Sums()
+    for name, variable in file.variables.items():
+        for window in _pieces(dict(zip(variable.dims, variable.shape, strict=True))):
             sums.add(name, file.read(name, window, characters=True))
     return sums.digest(file)
 
@@ -156,14 +156,13 @@ def _pieces(sizes: dict[str, int]) -> Iterator[dict[str, slice]]:
 
 
 def _head(file: File) -> list:
-    """Dimensions, types and attributes of all variables, and attributes of the file but those of the run."""
-    described, sizes = {}, file.sizes
-    for name, dims in file.variables.items():
-        kind = "str" if file.dtype(name) is str else file.dtype(name).str
-        attributes = {key: _typed(file.attribute(key, name)) for key in file.attributes(name)}
-        described[name] = [kind, dims, [sizes[dim] for dim in dims], attributes]
-    kept = [name for name in file.attributes() if name not in (ATTRIBUTE, *OF_THE_RUN)]
-    return [described, {name: _typed(file.attribute(name)) for name in kept}]
+    """Types, dimensions and attributes of all variables, and attributes of the file but those of the run."""
+    described = {}
+    for name, (kind, dims, shape, attributes) in file.variables.items():
+        typed = {key: _typed(value) for key, value in attributes.items()}
+        described[name] = ["str" if kind is str else kind.str, dims, shape, typed]
+    left_out = (ATTRIBUTE, *OF_THE_RUN)
+    return [described, {key: _typed(value) for key, value in file.attributes.items() if key not in left_out}]
 
 
 def _typed(value) -> list:

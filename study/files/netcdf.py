@@ -5,6 +5,7 @@ import stat
 from contextlib import suppress
 from math import prod
 from pathlib import Path
+from typing import NamedTuple
 
 import netCDF4
 import numpy as np
@@ -17,6 +18,24 @@ HDF5 = b"\x89HDF\r\n\x1a\n"
 MOST_INDEXED = 1_000_000  # values of a coordinate: an axis of a study has no more
 END = {0: 40, 1: 44, 2: 28, 3: 28}
 """Version of an HDF5 file, which is its byte 8 -> place of the 8 bytes that tell the length of the file."""
+
+
+class Described(NamedTuple):
+    """A variable without its values.
+
+    kind : its type, `str` for netCDF's own texts; dims : names of its dimensions, a text of ours has one more, of its
+    characters
+    """
+
+    kind: np.dtype | type
+    dims: tuple[str, ...]
+    shape: tuple[int, ...]
+    attributes: dict
+
+    @property
+    def unpacked(self) -> int:
+        """Bytes in memory; a text of netCDF's own counts as eight."""
+        return prod(self.shape) * int(getattr(self.kind, "itemsize", 8))
 
 
 class File:
@@ -51,45 +70,18 @@ class File:
     def _access(self):
         return access(self.path, self._writing)
 
-    def _file_or_variable(self, name: str):
-        return self._file[name] if name else self._file
+    @property
+    def attributes(self) -> dict:
+        """Attributes of the file."""
+        with self._access():
+            return _attributes(self._file)
 
     @property
-    def sizes(self) -> dict[str, int]:
-        """Dimension -> its length."""
+    def variables(self) -> dict[str, Described]:
+        """Variables by their names."""
         with self._access():
-            return {name: len(dimension) for name, dimension in self._file.dimensions.items()}
-
-    @property
-    def variables(self) -> dict[str, tuple[str, ...]]:
-        """Name -> dimensions; a text has one more, of its characters."""
-        with self._access():
-            return {name: variable.dimensions for name, variable in self._file.variables.items()}
-
-    @property
-    def unpacked(self) -> int:
-        """Bytes of all variables in memory; a text of netCDF's own counts as eight."""
-        with self._access():
-            variables = self._file.variables.values()
-            return sum(prod(one.shape) * int(getattr(one.dtype, "itemsize", 8)) for one in variables)
-
-    def dtype(self, name: str) -> np.dtype | type:
-        """Type of a variable, `str` for netCDF's own texts."""
-        with self._access():
-            return self._file[name].dtype
-
-    def attributes(self, name: str = "") -> list[str]:
-        """Names of the attributes of a variable, or of the file."""
-        with self._access():
-            return self._file_or_variable(name).ncattrs()
-
-    def attribute(self, name: str, of: str = ""):
-        """An attribute of a variable, or of the file. A text that is not UTF-8 is read as Latin-1."""
-        with self._access():
-            try:
-                return self._file_or_variable(of).getncattr(name)
-            except UnicodeDecodeError:
-                return self._file_or_variable(of).getncattr(name, encoding="latin-1")
+            variables = self._file.variables.items()
+            return {name: Described(of.dtype, of.dimensions, of.shape, _attributes(of)) for name, of in variables}
 
     def read(self, name: str, window: dict[str, slice] | None = None, characters: bool = False) -> np.ndarray:
         """A variable, or its part within a window, a slice for each dimension; texts as `characters` if asked for."""
@@ -121,6 +113,17 @@ class File:
         with self._access():
             variable, window = self._file[name], window or {}
             variable[tuple(window.get(dim, slice(None)) for dim in variable.dimensions)] = array
+
+
+def _attributes(of: netCDF4.Dataset | netCDF4.Variable) -> dict:
+    """Attributes of a file or a variable. A text that is not UTF-8 is read as Latin-1."""
+    attributes = {}
+    for name in of.ncattrs():
+        try:
+            attributes[name] = of.getncattr(name)
+        except UnicodeDecodeError:
+            attributes[name] = of.getncattr(name, encoding="latin-1")
+    return attributes
 
 
 def read(path: Path) -> xr.Dataset:

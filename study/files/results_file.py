@@ -98,7 +98,7 @@ def finish(file: File, sums: Sums) -> None:
 
 
 def put(there: Condition, digest: str, temporary: Path, path: Path) -> None:
-    """Give a complete file its place, where `there` was found before. A damaged file is kept as NAME.nc.damaged.
+    """Give a complete file its place, where before it was `there`. A damaged file is kept as NAME.nc.damaged.
 
     Raises StudyError when a file has appeared or changed meanwhile, unless it has the results of the study `digest`.
     """
@@ -118,8 +118,8 @@ def numbers_digest(path: Path) -> str:
     check_regular(path)
     try:
         with File(path) as file:
-            if ATTRIBUTE in file.attributes():
-                return str(file.attribute(ATTRIBUTE))
+            if ATTRIBUTE in file.attributes:
+                return str(file.attributes[ATTRIBUTE])
     except Unusable:
         pass
     return hashlib.sha256(path.read_bytes()).hexdigest()
@@ -145,24 +145,24 @@ def open_results(path: str | os.PathLike) -> xr.Dataset:
     StudyError : it is damaged, or cannot be read; also an OSError
     """
     path = Path(os.path.expanduser(path))
-    found = examine(path, most=LAZY)
-    if found.kind != "foreign":
-        return opened(found)
+    condition = examine(path, most=LAZY)
+    if condition.kind != "foreign":
+        return opened(condition)
     try:
-        return _for_users(read_of_others(path) if found.unpacked > LAZY else read(path))
+        return _for_users(read_of_others(path) if condition.unpacked > LAZY else read(path))
     except OSError:
-        found.raise_if_bad()
+        condition.raise_if_bad()
         raise
     except Exception as error:  # of xarray, which takes attributes of variables for units of time and so on
-        reason = f"{found.reason}, which xarray cannot read: {on_one_line(str(error), 200)}"
+        reason = f"{condition.reason}, which xarray cannot read: {on_one_line(str(error), 200)}"
         raise Unusable(path, "foreign", reason) from error
 
 
-def opened(found: Condition) -> xr.Dataset:
+def opened(condition: Condition) -> xr.Dataset:
     """The dataset in a results file that has been examined. A large one has dask arrays in the chunks of the file:
     numbers are read when they are asked for, in any thread, and netCDF verifies each chunk (StudyError, an OSError)."""
-    found.raise_if_bad()
-    return _for_users(read_lazily(found.path) if found.unpacked > LAZY else read(found.path))
+    condition.raise_if_bad()
+    return _for_users(read_lazily(condition.path) if condition.unpacked > LAZY else read(condition.path))
 
 
 def _for_users(dataset: xr.Dataset) -> xr.Dataset:

@@ -16,8 +16,8 @@ PIECE = 1 << 20
 def seal(path: Path) -> None:
     """Append the seal to a complete file. Other programs read it as before, since HDF5 data tell their own length."""
     with open(path, "rb+") as file:
-        found = _checksum(file, os.fstat(file.fileno()).st_size)
-        file.write(MARK + b"%08x" % found)
+        checksum = _checksum(file, os.fstat(file.fileno()).st_size)
+        file.write(MARK + b"%08x" % checksum)
 
 
 def is_whole(path: Path) -> bool | None:
@@ -36,7 +36,7 @@ def is_whole(path: Path) -> bool | None:
 
 def _checksum(file, size: int) -> int:
     """CRC-32 of the next `size` bytes."""
-    found = 0
+    checksum = 0
     while piece := file.read(min(size, PIECE)):
-        found, size = zlib.crc32(piece, found), size - len(piece)
-    return found
+        checksum, size = zlib.crc32(piece, checksum), size - len(piece)
+    return checksum

@@ -3,10 +3,9 @@
 import numpy as np
 import xarray as xr
 
-from ..derivatives import sensitivities
+from ..derivatives import correlated, relative_spreads, sensitivities
 from ..inputs.definition import StudyError
-from ..inputs.scene.changes import RATIOS
-from ..inputs.vocabulary import BODIES, VOCABULARY
+from ..inputs.vocabulary import VOCABULARY
 
 #: An input that makes more of the variance makes "nearly all" of it.
 _NEARLY = 0.99
@@ -25,7 +24,8 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
         by_input = sensitivities(case)[f"{name}_sensitivity"].to_series().to_dict()
     except StudyError:  # the dataset has lost an input
         return []
-    symbol, parts = VOCABULARY[name].symbol, relative_changes(case, by_input)
+    symbol = VOCABULARY[name].symbol
+    parts = {key: by_input[key] * part for key, part in relative_spreads(case, by_input).items()}
     found = []
     if not correlated(case):
         largest = max(parts, key=lambda one: abs(parts[one]))
@@ -38,14 +38,3 @@ def influence(case: xr.Dataset, name: str) -> list[str]:
     elif by_h:
         found.append(f"h hardly changes {symbol}")
     return ["; ".join(found) + "."] if found and np.isfinite([*by_input.values()]).all() else []
-
-
-def relative_changes(case: xr.Dataset, by_input: dict) -> dict[str, float]:
-    """Input with a spread -> the relative change of a result with this spread, of the sensitivities of the result."""
-    spreads = {name: float(case[f"{name}_spread"]) for name in by_input if f"{name}_spread" in case}
-    return {n: by_input[n] * (s if n in RATIOS else s / float(case[n])) for n, s in spreads.items()}
-
-
-def correlated(case: xr.Dataset) -> bool:
-    """Whether the spreads of some inputs hang together, so that none has a share of its own."""
-    return "correlations" in case.attrs or any("comment" in case[body].attrs for body in BODIES if body in case)

@@ -3,7 +3,9 @@
 import numpy as np
 import xarray as xr
 
+from ..data.derived import QUANTITIES
 from ..data.si import ASSUMED
+from ..derivatives import spread_of_formula
 from ..inputs.vocabulary import BODIES, CONTROLS
 from ..specimen.quantities import READABLE, readable
 
@@ -48,11 +50,19 @@ def ring_text(case: xr.Dataset, place: int) -> str:
     return f"{pressure} at r = {in_its_unit(case, 'a', float(case['a'] * case['x'][place]))}"
 
 
+def peak_text(case: xr.Dataset, pressure: float) -> str:
+    """The largest real pressure, in a ring, with ± where inputs have spreads."""
+    if "p_max_spread" not in case:
+        return in_its_unit(case, "p_max", float(f"{pressure:.3g}"))
+    spread = spread_of_formula(case, QUANTITIES["p_peak"])
+    return _with_spread(case, "p_max", pressure, spread, "profile_error")
+
+
 def _with_spread(case: xr.Dataset, name: str, value: float, spread: float, error: str) -> str:
     """A value with ±: of its spread, of its `error` and of `model_error`. error : "" of what was given."""
     if not np.isfinite(value):
         return "unknown"
-    if not np.isfinite(spread):  # the case was not solved with one of its inputs moved
+    if not np.isfinite(spread):
         return f"{in_its_unit(case, name, value)} ± unknown"
     kinds = [kind for kind in (error, "model_error") if error and kind in case and np.isfinite(case[kind])]
     parts = [spread, *(value * float(case[kind]) for kind in kinds)]

@@ -7,7 +7,7 @@ from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
 from .inputs import is_rigid, used_inputs
-from .numbers import given_text, in_its_unit, result_text, ring_text, spread_of
+from .numbers import given_text, peak_text, result_text, ring_text, spread_of
 from .pressures import largest
 from .sentences import sentences
 
@@ -17,7 +17,7 @@ _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is th
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
-_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta")
+_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength")
 #: What stands behind "indentation depth" where the punch yields too, or may.
 OF_BOTH = " (approach of both bodies)"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
@@ -91,6 +91,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     lines = ["Given: " + ", ".join(given)]
     lines += [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused) + [""]
     names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
+    names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
     rows = _rows(case, names)
     width = max(len(label) for label, _, _ in rows)
     lines += [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
@@ -106,9 +107,7 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
         if name == "p0" and top.place is not None:
             rows.append((RING_LABEL, VOCABULARY["p_ring"].symbol, ring_text(case, top.place)))
         if name == "p_max" and top.place is not None and np.isfinite(top.real):
-            real = in_its_unit(case, name, float(f"{top.real:.3g}"))
-            unknown = " ± unknown" * ("p_max_spread" in case)  # the inputs would have to be moved
-            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, real + unknown))
+            rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, peak_text(case, top.real)))
     return rows
 
 

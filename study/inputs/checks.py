@@ -15,6 +15,9 @@ from .grid import Grid, along, same_labels, twins
 from .laws import smooth_laws
 from .vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, VOCABULARY, cases_with
 
+LOADING = 'micro = "elastic_plastic" is for loading. Spots that have yielded stay flat when the load falls, so that \
+these contacts are no unloading (docs/model.md, Microscale).'
+"""What is said of loads that fall though asperities yield."""
 FITTED = ("B", "beta")
 """Parameters that are fitted to Nbar and Ra where neither is given (`fitted.py`)."""
 
@@ -31,8 +34,9 @@ def not_given(names: Collection[str], texts: Callable[[str], Iterable], errors: 
     neither = not {*FITTED} & {*names}  # is given: then both are fitted, and it is said once to what
     for name in PARAMETERS:
         parameter = VOCABULARY[name].own
-        selector, words = parameter.needed_by
-        if name in names or name in CONTROLS or parameter.default is not None:
+        selector, words, *_ = parameter.needed_by
+        needed = parameter.default is None and parameter.instead != ""
+        if {name, parameter.instead} & {*names} or name in CONTROLS or not needed:
             continue
         values = texts(selector)
         users = " or ".join(shown(word) for word in words if word in values)
@@ -40,7 +44,8 @@ def not_given(names: Collection[str], texts: Callable[[str], Iterable], errors: 
             if users and name == FITTED[0] and not {"Nbar", "Ra"} <= {*names}:
                 messages.append("B and beta may be given; if neither is, they are fitted to Nbar and Ra")
         elif users:
-            messages.append(f"{name} is missing: {selector} = {users} needs it")
+            either = f" or {parameter.instead}" * bool(parameter.instead)
+            messages.append(f"{name}{either} is missing: {selector} = {users} needs it")
     if messages and "micro = " in messages[-1] and "micro" not in names:
         messages[-1] += ' (without asperities: micro = "smooth")'
     return messages
@@ -111,15 +116,17 @@ def _taken(given: Given, name: str) -> list[str]:
 def missing_parameters(grid: Grid) -> list[str]:
     """Messages for parameters that are given, but not in some case that needs them."""
     messages = []
-    for name in grid.values:
-        gaps = np.isnan(along(grid, name)) if VOCABULARY[name].own.default is None else np.False_
+    for name in (name for name in PARAMETERS if {name, VOCABULARY[name].own.instead} & {*grid.values}):
+        own = VOCABULARY[name].own
+        gaps = np.isnan(along(grid, name)) if own.default is None and own.instead != "" else np.False_
+        gaps = gaps & np.isnan(along(grid, own.instead)) if own.instead else gaps
         gaps = gaps & cases_with(name, partial(along, grid)) if gaps.any() else gaps
         if gaps.any():
-            selector, words = VOCABULARY[name].own.needed_by
+            selector, words, *_ = own.needed_by
             case = np.argwhere(gaps)[0][list(grid.sizes).index("case")]
             users = " or ".join(shown(word) for word in words if word in along(grid, selector))
             reason = f": {selector} = {users} needs it" if users else ""
-            messages.append(f"{name} is missing in case {case}{reason}")
+            messages.append(f"{name}{f' or {own.instead}' * bool(own.instead)} is missing in case {case}{reason}")
     return messages
 
 
@@ -145,6 +152,29 @@ def picard_for_nothing(grid: Grid) -> list[str]:
     others = " or ".join(shown(name) for name in VOCABULARY["micro"].own.choices if name not in smooth)
     names = " or ".join(map(shown, smooth))
     return [f'scheme = "picard" has no case to solve: micro must be {others} there, not {names}']
+
+
+def heights_that_yield(grid: Grid) -> list[str]:
+    """A message if heights are given for asperities that yield, and no other case has a use for them."""
+    micro = along(grid, "micro")
+    heights = [name for name in ("sigma", "cut") if name in grid.values]
+    if not heights or not (micro == "elastic_plastic").any() or cases_with(heights[0], partial(along, grid)).any():
+        return []
+    of_heights = " or ".join(map(shown, VOCABULARY[heights[0]].own.needed_by[1]))
+    text = "asperities that yield have one height; random heights, elastic, are micro ="
+    return [f'{heights[0]} is given with micro = "elastic_plastic": {text} {of_heights}']
+
+
+def unloading(definition) -> list[str]:
+    """A sentence if asperities that yield have an axis of loads, radii or depths that falls somewhere."""
+    grid = definition.grid
+    if not (along(grid, "micro") == "elastic_plastic").any():
+        return []
+    given = definition.scene.given if definition.scene else {name: array for name, (_, array) in grid.values.items()}
+    axes = [name for name in CONTROLS if name in definition.in_results(grid.sizes).keys() & {*given}]
+    values = {name: np.asarray(given[name]) for name in axes}
+    falls = [name for name, array in values.items() if (np.diff(array.reshape(len(array), -1)[:, 0]) < 0).any()]
+    return [f"{name} falls along its axis: {LOADING}" for name in falls]
 
 
 def slips_of_laws(grid: Grid) -> list[str]:

@@ -40,6 +40,7 @@ class Definition:
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
     laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
+    results : names of the results, without profiles and flags
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
     inputs : of the solver, by which results have derivatives: those that change with the spread of some input
     """
@@ -55,6 +56,7 @@ class Definition:
     digest: str
     laws: tuple[str, ...] = ()
     scene: Any = None
+    results: tuple[str, ...] = names("result")
     inputs: tuple[str, ...] = ()
 
     def __repr__(self) -> str:

@@ -7,6 +7,7 @@ import numpy as np
 from .checks import (
     dimensions_that_differ,
     equal_cases,
+    heights_that_yield,
     missing_parameters,
     mixed_units,
     not_given,
@@ -89,7 +90,7 @@ class Draft:
         _, laws = values.get("micro", ((), ""))  # "" if what was given has been refused
         for name in [name for name in PARAMETERS if name not in given.sections]:
             parameter = VOCABULARY[name].own  # of a law that no case has it stays away
-            selector, owners = parameter.needed_by
+            selector, owners, *_ = parameter.needed_by
             if parameter.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
                 values[name] = (), np.array(parameter.default)
         names = {*given.sections, *["n"] * given.physical}  # n follows from moduli
@@ -129,7 +130,7 @@ class Draft:
             self.errors += errors
             grid = replace(self._grid(), fitted=True)
         if not self.errors:
-            self.errors += missing_parameters(grid) + picard_for_nothing(grid)
+            self.errors += missing_parameters(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
             self.errors += [] if self.given.physical else mixed_units(grid)
         self.errors += [] if self.errors else slips_of_laws(grid)
         return grid

@@ -73,6 +73,12 @@ def is_parameter(name: str) -> bool:
     return name in PARAMETERS
 
 
+def results_of(micro: np.ndarray) -> tuple[str, ...]:
+    """Names of the results of these laws. The share of what has yielded is there if some have spots that yield."""
+    yields = np.isin(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
+    return tuple(name for name in names("result") if yields or name != "plastic_share")
+
+
 def smooth_laws() -> list[str]:
     """Names of the laws without asperities."""
     return [name for name, law in laws.LAWS.items() if not law.rough]

@@ -19,6 +19,7 @@ from .draft import Draft
 from .given import MOST_MESSAGES, Given
 from .grid import usual_block
 from .identity import digest_of, law_versions
+from .laws import results_of
 from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
@@ -90,7 +91,10 @@ def complete(given: Given, tables: dict, name: str, text: str, where: str, most:
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
-    made = Definition(name, title, text, grid, x, profiles, dtype, block, "", scene=scene, inputs=inputs)
+    results = results_of(grid.values["micro"][1] if "micro" in grid.values else ())
+    made = Definition(
+        name, title, text, grid, x, profiles, dtype, block, "", scene=scene, results=results, inputs=inputs
+    )
     if made.numbers > most:
         errors.append(
             f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"

@@ -145,7 +145,10 @@ def cases_with(name: str, values) -> np.ndarray:
 def matters(name: str, values) -> bool:
     """Whether the answer of some case may depend on a parameter; `values` as in `cases_with`."""
     parameter = VOCABULARY[name].own
-    return all(np.any(among(condition, values)) for condition in (parameter.needed_by, parameter.used_by))
+    return all(
+        any(np.any(among(pair, values)) for pair in zip(condition[::2], condition[1::2], strict=True))
+        for condition in (parameter.needed_by, parameter.used_by)
+    )
 
 
 def attributes(name: str, rigid: bool = False) -> dict:

@@ -16,14 +16,14 @@ def clean(store: Store) -> list[str]:
     with held(store.lock, wait=False) as alone:
         if not alone:
             raise StudyError([f"{store.folder}: a run of this study is going on; clean when it has ended"])
-        known = inventory(store)
-        used = {known.sources[number].path for number in set(known.source[known.source >= 0].tolist())}
-        gone = [path for path in known.blocks if path not in used and path.is_file()]
+        stock = inventory(store)
+        used = {stock.sources[number].path for number in set(stock.source[stock.source >= 0].tolist())}
+        gone = [path for path in stock.blocks if path not in used and path.is_file()]
         for path in gone:
             path.unlink(missing_ok=True)
         remove_litter(store)
     kept = f"; the study needs the other {counted(len(used), 'block')}" if used else ""
-    what = f"removed {_counted([known.blocks[path] for path in gone])}" if gone else "nothing to remove"
+    what = f"removed {_counted([stock.blocks[path] for path in gone])}" if gone else "nothing to remove"
     return [f"{store.folder}: {what}{kept}"]
 
 

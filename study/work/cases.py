@@ -16,7 +16,7 @@ from solver.laws.trial import going_on
 
 from ..inputs.definition import Definition
 from ..inputs.grid import columns
-from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS, names
+from ..inputs.vocabulary import BY_INPUT, CONTROLS, INTEGERS
 
 
 @dataclass(frozen=True, eq=False)
@@ -25,7 +25,7 @@ class Parcel:
 
     first, last : numbers of the first and the last case
     parameters : name -> (n,), or (1,) for all cases
-    x : (m,) points of the profiles; profiles : names of those that are wanted
+    x : (m,) points of the profiles; results, profiles : names of those that are wanted
     inputs : of the solver, by which derivatives are wanted
     numerics : version of the solver's numerics that is wanted
     laws : micro laws that the worker may not have registered
@@ -35,6 +35,7 @@ class Parcel:
     last: int
     parameters: dict[str, np.ndarray]
     x: np.ndarray
+    results: tuple[str, ...]
     profiles: tuple[str, ...]
     inputs: tuple[str, ...]
     numerics: str
@@ -54,7 +55,7 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
     own = tuple(own_laws(found["micro"]))
-    wanted = definition.x, definition.profiles, definition.inputs
+    wanted = definition.x, definition.results, definition.profiles, definition.inputs
     return Parcel(int(index[0]), int(index[-1]), found, *wanted, NUMERICS_VERSION, own)
 
 
@@ -83,14 +84,14 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
     with going_on():  # the functions of a law of one's own
         problem = Problem.of(**wanted.parameters)
         solution = solve(problem, wanted.x)
-        arrays = arrays_of(solution, wanted.profiles)
+        arrays = arrays_of(solution, wanted.results, wanted.profiles)
         return arrays | (derivatives_of(problem, solution, wanted) if wanted.inputs else {})
 
 
-def arrays_of(solution: Solution, profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
+def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
     """What is stored of a solution: name in the vocabulary -> (B,), and (B, m) of the wanted profiles."""
     special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
-    kept = (*CONTROLS, *names("result"), *INTEGERS)
+    kept = (*CONTROLS, *results, *INTEGERS)
     found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
     found |= {name: getattr(solution, name) for name in profiles}
     return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}

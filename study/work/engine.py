@@ -59,7 +59,7 @@ class _Pool:
         return min(self.count, most)
 
     def feed(self, feeder: Callable, count: int) -> list[Future]:
-        """Start feeder(call) in `count` threads; call(function, given) computes in the process of the thread."""
+        """Start feeder(call) in `count` threads; call(function, task) computes in the process of the thread."""
         if self.reuse(count) < count:
             self.end()
             self.count, self._owner, self._processes = count, os.getpid(), Processes()

@@ -99,75 +99,75 @@ class Order:
         """Whether other runs compute other parts at the same time."""
         return self.part[1] > 1
 
-    def done(self, found: Condition) -> bool:
+    def done(self, condition: Condition) -> bool:
         """Whether an examined results file is that of this study, with its title, and holds no case to be tried again.
 
         One with another title is written anew, if it was written from the blocks that are there.
         """
-        edited = found.title != (self.definition.title or self.definition.name)
-        if not belongs(self.definition, found) or (edited and self.store.record(found.digest).exists()):
+        edited = condition.title != (self.definition.title or self.definition.name)
+        if not belongs(self.definition, condition) or (edited and self.store.record(condition.digest).exists()):
             return False
         return not (self.retry and np.isin(statuses(self.store.path), self.retry).any())
 
-    def report(self, known: Inventory | None = None, **what) -> Report:
-        counts = count_statuses(known.status) if known else {}
-        found = Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
-        return replace(found, **what)
+    def report(self, stock: Inventory | None = None, **what) -> Report:
+        counts = count_statuses(stock.status) if stock else {}
+        report = Report(self.store.path, self.definition.grid.size, 0, {}, counts, not counts.get(NOT_RUN))
+        return replace(report, **what)
 
 
 def look(store: Store, most: float = inf) -> Condition:
     """`examine` the results file of a study. One with other dimensions than the study is foreign."""
-    definition, found = store.definition, examine(store.path, most)
+    definition, condition = store.definition, examine(store.path, most)
     sizes = list(definition.in_results(definition.grid.sizes).items())
-    if found.good and found.digest == definition.digest and list(found.sizes.items()) != sizes:
-        dims = f"{list(found.sizes)}, not {[dim for dim, _ in sizes]}"
-        return replace(found, kind="foreign", reason=f"another program has changed it: its dimensions are {dims}")
-    return found
+    if condition.good and condition.digest == definition.digest and list(condition.sizes.items()) != sizes:
+        dims = f"{list(condition.sizes)}, not {[dim for dim, _ in sizes]}"
+        return replace(condition, kind="foreign", reason=f"another program has changed it: its dimensions are {dims}")
+    return condition
 
 
-def belongs(definition: Definition, found: Condition) -> bool:
+def belongs(definition: Definition, condition: Condition) -> bool:
     """Whether an undamaged results file is that of this very study."""
-    return found.good and found.digest == definition.digest
+    return condition.good and condition.digest == definition.digest
 
 
-def of_what(found: Condition) -> str:
+def of_what(condition: Condition) -> str:
     """What the results in a sound file belong to, if not to the study as it is now: "another definition"."""
-    return "another definition" if found.numerics == NUMERICS_VERSION else "another version of the numerics"
+    return "another definition" if condition.numerics == NUMERICS_VERSION else "another version of the numerics"
 
 
-def check_replaceable(order: Order, found: Condition) -> None:
+def check_replaceable(order: Order, condition: Condition) -> None:
     """Raise StudyError when a results file has cases that are not in the study, which would replace it.
 
     A file that roughcoat has not written is never replaced.
     """
     store, definition = order.store, order.definition
-    if found.kind in ("foreign", "unreadable"):
-        raise Unusable(found.path, found.kind, f"{found.reason}; move it away, or use --results DIR")
-    nothing = found.kind == "missing" or not found.digest  # nothing in it can be read
-    same_file = order.renew and same_tables(found.text, definition.text)
-    if order.force or nothing or same_file or found.digest == definition.digest:
+    if condition.kind in ("foreign", "unreadable"):
+        raise Unusable(condition.path, condition.kind, f"{condition.reason}; move it away, or use --results DIR")
+    nothing = condition.kind == "missing" or not condition.digest  # nothing in it can be read
+    same_file = order.renew and same_tables(condition.text, definition.text)
+    if order.force or nothing or same_file or condition.digest == definition.digest:
         return
     way = f"{program()} run --force {definition.name}" if order.renew else "--force"
-    made = f'; it was made by "{on_one_line(found.command, 80)}"' if found.command else ""
-    if found.numerics != NUMERICS_VERSION:
-        owner = f"version {found.numerics} of the numerics, this is {NUMERICS_VERSION}"
+    made = f'; it was made by "{on_one_line(condition.command, 80)}"' if condition.command else ""
+    if condition.numerics != NUMERICS_VERSION:
+        owner = f"version {condition.numerics} of the numerics, this is {NUMERICS_VERSION}"
         choice = f"{way} computes them again, --results DIR elsewhere"
-        raise StudyError([f"{found.path}: holds results of {owner}: {choice}{made}"])
-    lost = lost_cases(store, found.digest)
+        raise StudyError([f"{condition.path}: holds results of {owner}: {choice}{made}"])
+    lost = lost_cases(store, condition.digest)
     if lost is None or lost[0]:
-        owner = f"another definition (digest {found.digest[:8]}, here {definition.digest[:8]})"
+        owner = f"another definition (digest {condition.digest[:8]}, here {definition.digest[:8]})"
         what = f"{lost[0]} of its {lost[1]} cases are not in this one" if lost else "which cases cannot be told"
         choice = f"{way} replaces them, --results DIR writes elsewhere"
-        raise StudyError([f"{found.path}: holds results of {owner}, {what}: {choice}{made}"])
+        raise StudyError([f"{condition.path}: holds results of {owner}, {what}: {choice}{made}"])
 
 
 def status_values(words: list[str]) -> tuple[int, ...]:
     """Values of `status` by their words. Raises StudyError for a word that is none."""
-    known = {word: value for value, word in status_words().items()}
-    wrong = [f'--status "{word}" is not known{suggest(word, known)}' for word in words if word not in known]
+    values = {word: value for value, word in status_words().items()}
+    wrong = [f'--status "{word}" is not known{suggest(word, values)}' for word in words if word not in values]
     if wrong:
         raise StudyError(wrong)
-    return tuple(known[word] for word in words)
+    return tuple(values[word] for word in words)
 
 
 def check_writable(path: Path) -> None:
@@ -194,8 +194,8 @@ def check_countable(store: Store, yes: bool) -> bool:
         return False
     if definition.numbers > LARGE and not yes:
         needed = f"{PER_CASE * definition.grid.size / 1e9:.2g} GB of memory"
-        found = f"{definition.grid.size} cases: to find which of them are computed takes up to {needed}"
-        raise StudyError([f"{definition.name}: {found}; --yes does it"])
+        counting = f"{definition.grid.size} cases: to find which of them are computed takes up to {needed}"
+        raise StudyError([f"{definition.name}: {counting}; --yes does it"])
     return True
 
 

@@ -47,9 +47,9 @@ class Processes:
         self._changing = threading.Lock()
         self._ended = False
 
-    def call(self, function: Callable, *given) -> object:
-        """function(*given), computed in the process of this thread; Failure when that was killed ATTEMPTS times."""
-        task = pickle.dumps((function, given))
+    def call(self, function: Callable, *arguments) -> object:
+        """function(*arguments), computed in the process of this thread; Failure when that was killed ATTEMPTS times."""
+        task = pickle.dumps((function, arguments))
         for _ in range(ATTEMPTS):
             try:
                 process = self._mine.process = getattr(self._mine, "process", None) or self._started()
@@ -110,9 +110,9 @@ def serve() -> None:
         except Empty:
             os._exit(0)
         try:
-            function, given = pickle.loads(task)
-            found = function(*given)
+            function, arguments = pickle.loads(task)
+            result = function(*arguments)
         except Exception as error:  # the function is not defined in this process, say
-            found = Failure(f"{type(error).__name__}: {error}", traceback.format_exc())
-        pickle.dump(found, answers)
+            result = Failure(f"{type(error).__name__}: {error}", traceback.format_exc())
+        pickle.dump(result, answers)
         answers.flush()

@@ -34,35 +34,35 @@ def run(definition: Definition, results="results", **options) -> Report:
     blocks written so far stay and are used by the next run.
     """
     order = Order(definition, Path(results), **options)
-    found = look(order.store)
-    if order.done(found):
+    condition = look(order.store)
+    if order.done(condition):
         return order.report()
-    check_replaceable(order, found)
+    check_replaceable(order, condition)
     check_size(order)
     check_writable(order.store.path)
     with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-        if stamp(order.store.path) != found.seen:  # the run for which this one has waited has written it
-            found = look(order.store)
-            if order.done(found):
+        if stamp(order.store.path) != condition.seen:  # the run for which this one has waited has written it
+            condition = look(order.store)
+            if order.done(condition):
                 return order.report()
-            check_replaceable(order, found)
-        if found.kind == "damaged":
+            check_replaceable(order, condition)
+        if condition.kind == "damaged":
             kept = f"it is written again, {target(order.store.path)}.damaged keeps it"
-            log.warning("%s: %s; %s", order.store.path, found.reason, kept)
-        report = _compute(order, found)
+            log.warning("%s: %s; %s", order.store.path, condition.reason, kept)
+        report = _compute(order, condition)
     return _export_if_last(order, report) if order.shared else report
 
 
-def _compute(order: Order, found: Condition) -> Report:
+def _compute(order: Order, condition: Condition) -> Report:
     """Compute what is missing, and write the results unless other runs compute other parts."""
     if not order.shared:
         remove_litter(order.store)
-    known = inventory(order.store, order.retry)
-    missing = len(known.missing)
-    failures = compute_blocks(order, known)
-    if not order.shared and not len(known.missing):
-        export(order.store, known, order.command, found)
-    return order.report(known, computed=missing - len(known.missing), failures=failures)
+    stock = inventory(order.store, order.retry)
+    missing = len(stock.missing)
+    failures = compute_blocks(order, stock)
+    if not order.shared and not len(stock.missing):
+        export(order.store, stock, order.command, condition)
+    return order.report(stock, computed=missing - len(stock.missing), failures=failures)
 
 
 def _export_if_last(order: Order, report: Report) -> Report:
@@ -70,32 +70,32 @@ def _export_if_last(order: Order, report: Report) -> Report:
     with held(order.store.lock, wait=False) as alone:
         if not alone:
             return report
-        found = look(order.store)
-        if replace(order, retry=()).done(found):
+        condition = look(order.store)
+        if replace(order, retry=()).done(condition):
             return replace(report, complete=True)
-        check_replaceable(order, found)
+        check_replaceable(order, condition)
         remove_litter(order.store)
-        known = inventory(order.store)
-        if not len(known.missing):
-            export(order.store, known, order.command, found)
-        return order.report(known, computed=report.computed, failures=report.failures)
+        stock = inventory(order.store)
+        if not len(stock.missing):
+            export(order.store, stock, order.command, condition)
+        return order.report(stock, computed=report.computed, failures=report.failures)
 
 
 def say_waiting(order: Order) -> None:
     say(f"{order.definition.name}: waiting for another run of this study to end", order.stream)
 
 
-def compute_blocks(order: Order, known: Inventory) -> dict[int, str]:
+def compute_blocks(order: Order, stock: Inventory) -> dict[int, str]:
     """Compute and store the missing cases; returns the failures.
 
     A block that raises does not stop the others.
     """
-    blocks, failures = blocks_of(known.missing, order.definition.block, order.part), {}
+    blocks, failures = blocks_of(stock.missing, order.definition.block, order.part), {}
     if not blocks:
         return failures
     size = order.definition.grid.size
     stream, passing = order.stream or screen_of(order.progress), order.stream is None
-    shown = Progress(order.definition.name, size, stream, size - len(known.missing), passing=passing)
+    shown = Progress(order.definition.name, size, stream, size - len(stock.missing), passing=passing)
     results = computed(order.definition, blocks, order.workers, order.scheduler, storing=True)
     with shown as progress, closing(results):
         for number, result in results:
@@ -103,7 +103,7 @@ def compute_blocks(order: Order, known: Inventory) -> dict[int, str]:
                 failures[number] = result.message
                 log.debug("block %d: %s", number, result.trace)
             else:
-                add(order.store, known, blocks[number], result)
+                add(order.store, stock, blocks[number], result)
                 failed = failed_cases(result["status"])
                 progress.update(len(result["status"]), len(failed))
                 if order.fail_fast and len(failed):
@@ -117,14 +117,14 @@ def compute_blocks(order: Order, known: Inventory) -> dict[int, str]:
 def dry_run(definition: Definition, results="results", *, workers=None, yes=False, force=False) -> Estimate:
     """As `study.api.Study.dry_run`."""
     order = Order(definition, Path(results), force=force)
-    found = look(order.store)
-    if order.done(found):
+    condition = look(order.store)
+    if order.done(condition):
         return estimate(definition, workers, definition.grid.size)
     if not check_countable(order.store, yes):
         return estimate(definition, workers)
     cost = estimate(definition, workers, definition.grid.size - len(inventory(order.store).missing))
     try:
-        check_replaceable(order, found)
+        check_replaceable(order, condition)
     except StudyError as refused:
         return replace(cost, refused=refused)
     return cost

@@ -11,8 +11,8 @@ GREETING = 1_000_000  # most bytes of the first message of a scheduler; it has s
 
 def address_error(text: str) -> str:
     """What is wrong with the form of an address, "" if nothing is."""
-    found = ADDRESS.fullmatch(text)
-    if found and (found[3] is None or 1 <= int(found[3]) <= 65535):
+    parts = ADDRESS.fullmatch(text)
+    if parts and (parts[3] is None or 1 <= int(parts[3]) <= 65535):
         return ""
     return "must be the address of a dask scheduler, such as tcp://127.0.0.1:8786 or tls://HOST:PORT"
 

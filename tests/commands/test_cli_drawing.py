@@ -205,7 +205,7 @@ def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
     assert main(["plot", "all"]) == 0
     paper = [f"fig{number:02}" for number in range(1, 11)]
     layered = [f"{name}_layered" for name in paper if name not in ("fig01", "fig02", "fig09")]
-    ours = ["fig09_lattice", "fig10_lattice", "coatings", "literature", "validity", "validity_load"]
+    ours = ["fig09_lattice", "fig10_lattice", "coatings", "literature", "validity", "validity_load", "yielding"]
     assert drawn == [*sorted([*paper, *layered, *ours]), "captions"]
     drawn.clear()
     assert main(["table", "all"]) == 0

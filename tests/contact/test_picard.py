@@ -166,7 +166,7 @@ def test_a_study_of_which_no_case_can_be_approximated_is_refused(asked):
         study.solve(P=LOAD, h=0.02, n=0.5, **asked)
     assert caught.value.messages == (
         'solve: scheme = "picard" has no case to solve: micro must be "disc_cell" or "power_law" or "square_lattice" '
-        'or "hex_lattice" or "normal_heights" or "uniform_heights" there, not "smooth"',
+        'or "hex_lattice" or "normal_heights" or "uniform_heights" or "elastic_plastic" there, not "smooth"',
     )
     assert caught.value.code == 2
 

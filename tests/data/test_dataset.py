@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 
 import study
+from solver import Status
+from study.data import dataset
 from study.files import access, results_file
 from study.files.examine import examine
 from study.inputs.vocabulary import NOT_RUN, PARAMETERS, attributes
@@ -134,3 +136,9 @@ def test_vocabulary_names_every_parameter_of_the_solver():
     from solver.parameters import PARAMETERS as OF_THE_SOLVER
 
     assert set(CONTROL) | (set(OF_THE_SOLVER) - {"R", "E2"}) == set(PARAMETERS)
+
+
+def test_cases_without_a_solution_have_not_failed():
+    """The model says so of them: `--fail-fast` goes on."""
+    status = np.array([0, Status.THIN_LAYER_NOT_APPLICABLE, Status.DIVERGED, 0, Status.LIFT_OFF, Status.INVALID_INPUT])
+    assert dataset.failed_cases(status).tolist() == [2, 5]

@@ -131,13 +131,13 @@ def test_smooth_cases_have_no_spots():
         assert np.isnan(function(made(micro="smooth"))) and np.isfinite(function(made()))
 
 
-@pytest.mark.parametrize(("base", "E1"), [("half_space", 1.0), ("layered", 0.5)])
-def test_peak_pressure_is_the_largest_of_the_spots(base, E1):
+@pytest.mark.parametrize(("base", "m", "E1"), [("half_space", 0.0, 1.0), ("layered", 0.0, 0.5), ("layered", 1.0, 0.25)])
+def test_peak_pressure_is_the_largest_of_the_spots(base, m, E1):
     """Eq. (13) where λ = 1/2, at the pressure that Eq. (7) has there: arccos(b/B̄) = arcsin(b/B̄) = π/4."""
     cell, b = 1 / np.sqrt(np.pi * 1e6), np.sqrt(0.5 / (np.pi * 1e6))
     p = 2 * E1 * b**3 / (3 * 0.004) / (cell**2 * np.pi / 4 + b * np.sqrt(cell**2 - b**2))
     profiles = {"p": ("x", [0.1 * p, p, 0.0])}
-    rough = made(base=base, Ra=0.004).assign(profiles)
+    rough = made(base=base, m=m, Ra=0.004).assign(profiles)
     found = derived.peak_pressure(rough)
     assert found.item() == pytest.approx(2 * E1 * b / (np.pi * 0.004) + 2 * p / np.pi * np.pi / 4, rel=1e-14)
     assert found.dims == () and found.attrs == attributes("p_peak")

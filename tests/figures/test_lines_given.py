@@ -122,3 +122,12 @@ def test_the_load_against_the_depth():
     for x in ("P", "nu2"):
         with pytest.raises(study.StudyError, match="y = P is an axis of these results"):
             study.plot(found, x, "P")
+
+
+def test_the_value_that_is_written_goes_before_those_near_to_it():
+    """A value that Python has computed, 0.1 + 0.2, is 0.3; of two neighbours the one that is meant is drawn."""
+    h = [0.02, 0.02 * (1 + 5e-7), 0.03]
+    found = study.solve(P=[1e-6, 1e-5], h=h, n=0.5, micro="smooth", x=2)
+    for value, nearest in ((h[0], h[0]), (h[1], h[1]), (0.03 * (1 + 1e-7), 0.03)):
+        (axes,) = study.plot(found, "P", "a", h=value).axes
+        np.testing.assert_array_equal(axes.lines[-2].get_ydata(), found.a.sel(h=nearest))

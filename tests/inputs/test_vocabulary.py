@@ -18,6 +18,8 @@ DIMENSIONS = {
     "Nbar": (PER_AREA, "1/m^2"),
     "Ra": (LENGTH, "m"),
     "sigma": (LENGTH, "m"),
+    "hardness": (PRESSURE, "Pa"),
+    "yield_strength": (PRESSURE, "Pa"),
     "p0": (PRESSURE, "Pa"),
     "p_max": (PRESSURE, "Pa"),
     "A0": (LENGTH, "m"),
@@ -44,9 +46,9 @@ UNITS = {
 # fmt: off
 PURE = {
     "n", "m", "nu1", "nu2", "bonding", "base", "micro", "B", "beta", "cut", "scheme", "k", "rtol", "accuracy",
-    "model_check", "nodes", "max_iterations", "Ar_An", "lam0", "lam", "status", "error", "profile_error",
-    "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio", "spots", "x",
-    "case", "label",
+    "model_check", "nodes", "max_iterations", "Ar_An", "plastic_share", "lam0", "lam", "status", "error",
+    "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio",
+    "spots", "x", "case", "label",
 }
 # fmt: on
 
@@ -115,10 +117,11 @@ WORDS = words("""
 CHOICES = {
     "bonding": {"frictionless", "bonded"},
     "base": {"half_space", "thin_layer", "layered", "auto"},
-    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights"},
+    "micro": {"smooth", "disc_cell", "power_law", "square_lattice", "hex_lattice", "normal_heights", "uniform_heights",
+              "elastic_plastic"},
     "scheme": {"newton", "picard"},
     "model_check": {"closed_form", "first_order"},
-}
+}  # fmt: skip
 AXES = {
     "P": "P/(E2* R^2)", "a": "a/R", "D": "D/R", "h": "h/R", "n": "n", "m": "m", "nu1": "ν1", "nu2": "ν2",
     "Nbar": "N̄ R^2", "Ra": "Ra/R", "B": "B", "beta": "β", "sigma": "σ/R", "cut": "c", "k": "k", "p0": "p(0)/E2*",
@@ -153,8 +156,8 @@ def test_labels_of_xarray_are_fit_for_a_plot():
 def test_parameters_are_in_their_order():
     """In this order they are columns of an inventory, and coordinates of a file."""
     assert " ".join(PARAMETERS) == (
-        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta sigma cut scheme k rtol accuracy model_check nodes "
-        "max_iterations"
+        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta sigma cut hardness yield_strength scheme k rtol "
+        "accuracy model_check nodes max_iterations"
     )
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
 
@@ -176,6 +179,8 @@ LIMITS = {
     "beta": (0.01, 0.0099, 1, 1.001),
     "sigma": (0, -1e-9, 10, 10.1),
     "cut": (3, 2.99, 5, 5.01),
+    "hardness": (1e-15, 0.99e-15, 1e15, 1.01e15),
+    "yield_strength": (1e-15, 0.99e-15, 1e15, 1.01e15),
     "k": (0, -1e-9, 1e6, 1.01e6),
     "rtol": (1e-12, 0.99e-12, 0.1, 0.101),
     "accuracy": (1e-12, 0, 0.999, 1),

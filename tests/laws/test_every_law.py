@@ -9,10 +9,11 @@ from solver.laws import Curve, Law, heights
 
 ROUGH = [law for law in laws.BUILT_IN if law.rough]
 GIVEN = {"Nbar": 250_000.0, "Ra": 0.004, "B": 0.1, "beta": 0.53, "sigma": 1e-5, "cut": 3.0}
+GIVEN |= {"hardness": 0.02, "yield_strength": np.nan, "nu": 0.3}
 
 
 def at(law, p, **other):
-    return law.at(p, 1.0, **{name: (GIVEN | other)[name] for name in law.parameters})
+    return law.at(p, 1.0, **{name: (GIVEN | other)[name] for name in law.arguments})
 
 
 @pytest.mark.parametrize("law", ROUGH, ids=[law.name for law in ROUGH])

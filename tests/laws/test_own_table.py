@@ -243,3 +243,11 @@ def test_a_table_of_several_radii_is_doubted(table):
         warnings.simplefilter("error")
         study.solve(**given, cases=rows)
         study.solve(**given, **rows[0])
+
+
+@pytest.mark.parametrize("column", own_table.COLUMNS)
+def test_a_row_of_no_contact_is_refused(table, column):
+    """Many tables begin with zeros; no power law goes through them."""
+    first = dict(zip(own_table.COLUMNS, ROWS[0].split(","), strict=True)) | {column: "0"}
+    with pytest.raises(study.StudyError, match=f'column {column}, row 1: "0": must be a finite number > 0$'):
+        study.solve(P=1e-5, **CASE, micro=table("\n".join([HEAD + ",".join(first.values()), *ROWS[1:]])))

@@ -57,3 +57,10 @@ def test_a_law_may_be_given_in_cases_and_beside_others():
     for wrong in ([rows[0], 3], [None], "P", []):
         with pytest.raises(study.StudyError, match="^cases must be a list of dictionaries, at least one$"):
             study.solve(cases=wrong, **common)
+
+
+@pytest.mark.parametrize("shape", [np.s_[:, :1], np.s_[:1], np.s_[0], np.s_[0, 0]])
+def test_an_area_of_another_shape_is_refused(shape):
+    """One number for all points of a case, or for all cases, would be broadcast without a word."""
+    law = dataclasses.replace(cones.CONES, name="short", area=lambda y, q: q[shape])
+    assert "area must return an array of the shape of y, (cases, points)" in refused(law)

@@ -1,5 +1,6 @@
 """The model error of thin layers by "first_order": Newton's method on the exact layer, on a coarse mesh."""
 
+from dataclasses import replace
 from functools import cache
 
 import numpy as np
@@ -7,6 +8,7 @@ import pytest
 
 from solver import Problem, Status, solve
 from solver.contact.results import difference
+from solver.laws import LAWS
 from solver.models.model_error import NODES, distance
 from solver.numerics.mesh import mesh_of
 from solver.scaling import as_cases
@@ -68,3 +70,12 @@ def test_a_first_order_that_fails_has_no_error():
     solution = solve(Problem.of(**contact | thin, nu1=[0.3, 0.5, 0.3]))
     assert solution.status.tolist() == [Status.CONVERGED, Status.THIN_LAYER_NOT_APPLICABLE, Status.CONVERGED]
     assert solution.model_error[0] == solution.model_error[2] > 0 and np.isnan(solution.model_error[1])
+
+
+@pytest.mark.parametrize("check", ["closed_form", "first_order"])
+def test_the_error_of_the_law_is_added(check):
+    """Of a law that is right to 1 % only, beside the same law without an error."""
+    unsure = replace(LAWS["disc_cell"], name="unsure", version="1", error=0.01)
+    given = {"P": 1e-5, "h": 0.02, "n": 0.5, "Nbar": 250000.0, "Ra": 0.004, "base": "thin_layer", "model_check": check}
+    exact, right_to_1_percent = (solve(Problem.of(**given, micro=micro)) for micro in ("disc_cell", unsure))
+    np.testing.assert_allclose(right_to_1_percent.model_error, exact.model_error + 0.01, rtol=1e-12)  # one sum

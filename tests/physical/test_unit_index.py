@@ -43,3 +43,11 @@ def test_texts_are_no_new_coordinates(found):
     for texts in (["1 N"], ["1 N", "3 N"], np.array(["1 N"], dtype=object)):
         with pytest.raises(ValueError, match='P: give numbers in the SI unit here; texts such as "1 N" are for sel'):
             found.reindex(P=texts)
+
+
+@pytest.mark.parametrize(
+    ("ends", "loads"),
+    [(("1.5 N", "6 N"), [2, 5]), (("2 N", None), [2, 5]), ((None, "2 N"), [1, 2]), ((1.5, "2 N"), [2])],
+)
+def test_slices_have_texts_at_either_end(found, ends, loads):
+    assert found.sel(P=slice(*ends)).P.values.tolist() == loads

@@ -29,7 +29,8 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "rules", "data", "again", "derivatives", "fields", "in_words", "files"),
-        *("store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "commands", "__main__"),
+        *("store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "explorer"),
+        *("commands", "__main__"),
     ),
 }
 #: Rooms that do not know each other, though both are to the left of others.

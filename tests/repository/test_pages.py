@@ -90,7 +90,7 @@ def test_links_lead_somewhere(page):
 def test_what_a_page_names_exists(page):
     text = re.sub(r"```(?!sh).*?```", "", TEXT[page], flags=re.DOTALL)
     code = "\n".join(re.findall(r"```.*?```|`[^`]+`", text, re.DOTALL))
-    assert set(re.findall(r"\bmake ([a-z0-9_]+)\b", code)) <= set(TARGETS)
+    assert set(re.findall(r"\bmake ([a-z0-9_-]+)\b", code)) <= set(TARGETS)
     files = re.findall(r"`((?:studies|study|solver|tests)/[\w/]+\.(?:py|toml|csv))`", text)
     for path in set(files) - {"studies/mine.toml", "studies/figures.py"}:
         assert (ROOT / path).exists(), path

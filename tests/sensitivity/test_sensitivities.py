@@ -203,3 +203,12 @@ def test_a_solution_that_is_not_found_again(x):
         np.testing.assert_allclose(first.logs[name], second.logs[name], rtol=0, atol=1e-5)
         assert (first.logs[name] != second.logs[name]).any()
     np.testing.assert_allclose(first.p, second.p, rtol=1e-4, atol=1e-5 * solution.p0.max())
+
+
+def test_of_whatever_has_numbers():
+    """A tolerance that is not met leaves a contact, and an iteration that stops half-way none."""
+    problem = contacts("disc_cell", "layered", "P", size=2, nodes=6, rtol=1e-12, max_iterations=[0, 1])
+    solution = solve(problem)
+    assert solution.status.tolist() == [Status.TOLERANCE_NOT_MET, Status.ITERATION_LIMIT]
+    logs = sensitivities(problem, solution).logs["a"]
+    assert np.isfinite(logs[0]).all() and np.isnan(logs[1]).all()

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from study.specimen import materials
+from study.specimen.materials.entries import STRENGTHS
 
 ROOT = Path(__file__).resolve().parents[2]
 #: What each class of materials lies between: E in Pa, nu. A unit slip or exchanged numbers fall outside.
@@ -58,6 +59,32 @@ def test_every_entry_is_complete_and_plausible(name):
     assert len(entry.condition) > 10
     assert len(entry.source) > 20
     assert entry.checked != bool(re.search("not read|assumed|not\\)|table not", entry.source))
+
+
+@pytest.mark.parametrize("name", materials.names())
+def test_strengths_have_spread_and_source_and_are_plausible(name):
+    """Metals and plastics yield below E/20, and no hardness is above E/5."""
+    entry = materials.get(name)
+    known = [key for key in STRENGTHS if getattr(entry, key) is not None]
+    assert bool(known) == bool(entry.strength_source)
+    for key in known:
+        value, spread = getattr(entry, key), getattr(entry, f"{key}_spread")
+        assert 0.02 <= spread / value <= 0.25, key
+        assert entry.E / 2000 < value < entry.E / (20 if key == "yield_strength" else 5), key
+
+
+def test_strengths_of_a_file(mine):
+    own = materials.read(mine(STEEL + "hardness = 8e9\nhardness_spread = 0\n"))["my steel"]
+    assert (own.hardness, own.hardness_spread, own.yield_strength) == (8e9, 0.0, None)
+    for line, message in (
+        ("hardness = 8", "hardness = 8: must be a number of Pa from 1000 to 2e"),
+        ("hardness = 8e9", "hardness and hardness_spread go together"),
+        ("hardness = 8e9\nhardness_spread = 8e9", "hardness_spread = 8e+09: must be 0 or less than the strength"),
+        ("hardness = 8e9\nhardness_spread = -1", "hardness_spread = -1: must be 0 or less than the strength"),
+        ("strength_source = 1", "strength_source = 1: must be a text"),
+    ):
+        with pytest.raises(ValueError, match=re.escape(message)):
+            materials.read(mine(STEEL + line + "\n"))
 
 
 def test_a_steel_by_its_names():

@@ -10,6 +10,8 @@ from pages import check_examples
 from surfaces import random_surface
 
 from study import roughness
+from study.specimen.heights.asperities import density, length
+from study.specimen.quantities import quantity
 from study.studies.paper.numbers import TABLE1
 
 
@@ -86,3 +88,11 @@ def test_a_heading_with_more_units_than_are_read(tmp_path):
     assert scan.steps == (pytest.approx(5e-7),) and scan.z.max() == 2e-9
     with pytest.raises(ValueError, match="height_unit is um, but the heading has V"):
         roughness.read(tmp_path / "a.csv", unit="um", columns=(0, 2))
+
+
+def test_densities_and_lengths_that_are_said_are_read_again():
+    """To three digits, over all that surfaces have."""
+    for power in range(2, 19):
+        assert quantity("Nbar", density(1.234 * 10.0**power), "1/m^2").value == pytest.approx(1.23 * 10.0**power)
+    for power in range(-10, 4):
+        assert quantity("Ra", length(1.234 * 10.0**power), "m").value == pytest.approx(1.23 * 10.0**power)

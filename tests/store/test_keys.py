@@ -43,6 +43,7 @@ TWO = {
     "beta": (0.5, 0.53),
     "sigma": (1e-5, 2e-5),
     "cut": (4.0, 3.5),
+    **dict.fromkeys(("hardness", "yield_strength"), (0.02, 0.021)),
     "scheme": ("newton", "picard"),
     "k": (1.0, 0.0),
     "rtol": (1e-6, 1e-9),
@@ -58,7 +59,8 @@ def defined(**given) -> Definition:
     control = {"a", "D"} & set(given) or {"P"}
     values = {name: two[0] for name, two in TWO.items() if name not in ("P", "a", "D") or name in control} | given
     numerics = {name: value for name, value in values.items() if name in NUMERICS}
-    model = {name: value for name, value in values.items() if name not in NUMERICS}
+    refused = ("sigma", "cut") if values["micro"] == "elastic_plastic" else ()
+    model = {name: value for name, value in values.items() if name not in (*NUMERICS, *refused)}
     return from_tables({"model": model, "numerics": numerics}, "one", "", "one")
 
 
@@ -71,6 +73,7 @@ USED = {
     **dict.fromkeys(("nu1", "nu2"), {"bonding": "bonded"}),
     **dict.fromkeys(("B", "beta"), {"micro": "power_law"}),
     **dict.fromkeys(("sigma", "cut"), {"micro": "normal_heights"}),
+    **dict.fromkeys(("hardness", "yield_strength"), {"micro": "elastic_plastic"}),
     "k": {"scheme": "picard"},
     "accuracy": {"base": "auto"},
     "model_check": {"base": "thin_layer"},
@@ -84,6 +87,7 @@ UNUSED = {
     **dict.fromkeys(("Nbar", "Ra"), [SMOOTH]),
     **dict.fromkeys(("B", "beta"), [SMOOTH, *BASES]),
     **dict.fromkeys(("sigma", "cut"), [SMOOTH, HALF_SPACE]),
+    **dict.fromkeys(("hardness", "yield_strength"), [SMOOTH, *BASES, {"micro": "normal_heights"}]),
     "k": BASES,
     "accuracy": BASES[:3],
     "model_check": [*BASES[:1], *BASES[2:], BASES[3] | SMOOTH],

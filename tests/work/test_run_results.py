@@ -44,12 +44,12 @@ def test_results_that_are_removed_while_one_asks_for_them(file, monkeypatch):
     assert load(file).status()["state"] == "partial"
 
 
-@pytest.mark.parametrize("content", [b"", b"no netCDF"])
-def test_a_file_that_is_no_result_is_kept(file, content):
+@pytest.mark.parametrize(("content", "what"), [(b"", "is empty"), (b"no netCDF", "is no netCDF file")])
+def test_a_file_that_is_no_result_is_kept(file, content, what):
     opened = load(file)
     opened.results.mkdir()
     (opened.results / "line.nc").write_bytes(content)
-    with pytest.raises(study.StudyError, match="is empty; move it away|is no netCDF file; move it away"):
+    with pytest.raises(study.StudyError, match=f"line.nc: {what}; move it away"):
         opened.run()
     assert (opened.results / "line.nc").read_bytes() == content
 

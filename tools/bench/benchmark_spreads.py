@@ -35,7 +35,7 @@ def main() -> None:
     cases = int(sys.argv[1]) if len(sys.argv) > 1 else 4000
     seconds(100, True)  # tables of the exact layer
     alone, whole = (min(seconds(cases, spreads) for _ in range(2)) for spreads in (False, True))
-    solver.sensitivity.sensitivities.of_stiffness = lambda ev, part, derivatives, operators: 0 * derivatives.eta
+    solver.sensitivity.sensitivities.stiffness_slopes = lambda ev, part, derivatives, operators: 0 * derivatives.eta
     without = min(seconds(cases, True) for _ in range(2))
     print(f"{cases} contacts: {alone:.2f} s")
     for words, took in (("seven spreads", whole), ("those but dP/dD's", without)):

@@ -1,11 +1,12 @@
-"""How long fields of stresses take: `python tests/bench/benchmark_fields.py`.
+"""How long fields of stresses take: `python tools/fields/benchmark_fields.py`.
 
 Shortest processor times, of maps of one rough contact with 60 x 60 points, its pressure found again, and of the
 stresses of many contacts at 15 depths and 14 radii each.
 """
 
+import time
+
 import numpy as np
-from benchmark_cases import processor_seconds
 
 from solver import Problem, solve
 from solver.body import tables
@@ -22,13 +23,14 @@ CASES = 100
 
 
 def seconds_of(action) -> float:
-    """With nothing kept of transforms before."""
-
-    def anew() -> None:
+    """Of three times, with nothing kept of transforms before."""
+    times = []
+    for _ in range(3):
         tables._moments.cache_clear()
+        start = time.process_time()
         action()
-
-    return min(processor_seconds(anew) for _ in range(3))
+        times.append(time.process_time() - start)
+    return min(times)
 
 
 def main() -> None:

@@ -21,6 +21,7 @@ USED = {
     "Nbar": (1e-4, 1e16), "B": (1e-6, 100.0), "beta": (0.022, 1.0), "k": (0.0, 50.0), "nodes": (4, 256),
     "rtol": (1e-12, 0.1), "R": (1e-300, 1e300), "E2": (1e-300, 1e300), "nu1": (-0.9, 0.5), "nu2": (-0.9, 0.5),
     "accuracy": (1e-6, 0.5), "max_iterations": (1, 100_000), "sigma": (0.0, 1.0), "cut": (3.0, 5.0),
+    "hardness": (1e-12, 1e12), "yield_strength": (1e-12, 1e12),
 }  # fmt: skip
 BOUNDS = {name: ends(own.interval)[:2] for name, own in (CONTROL | PARAMETERS).items() if own.interval}
 X = np.linspace(0.0, 1.0, 5)
@@ -52,9 +53,21 @@ def just_outside(name):
 
 
 #: Powers of R = 2 and E2 = 4, which scale without rounding.
-UNITS = {"P": 16.0, "a": 2.0, "D": 2.0, "h": 2.0, "Ra": 2.0, "Nbar": 0.25, "sigma": 2.0}
+UNITS = {
+    "P": 16.0,
+    "a": 2.0,
+    "D": 2.0,
+    "h": 2.0,
+    "Ra": 2.0,
+    "Nbar": 0.25,
+    "sigma": 2.0,
+    "hardness": 4.0,
+    "yield_strength": 4.0,
+}
 CASE = MAIN | {"base": "auto", "R": 2.0, "E2": 4.0}
-HEIGHTS = ("sigma", "cut")
+LAWS = dict.fromkeys(("sigma", "cut"), "normal_heights") | dict.fromkeys(
+    ("hardness", "yield_strength"), "elastic_plastic"
+)
 
 
 @pytest.mark.parametrize("name", BOUNDS)
@@ -64,7 +77,7 @@ def test_a_number_is_allowed_up_to_its_bounds(name):
     inside = [low if with_low else 0.1, high if with_high else 0.1, *(CONTROL | PARAMETERS)[name].also]
 
     def problem(values):
-        law = "normal_heights" if name in HEIGHTS else "power_law"
+        law = LAWS.get(name, "power_law")
         case = ({} if name in CONTROL else {"P": LOAD}) | CASE | {"micro": law, "sigma": 1e-4, "cut": 4.0, name: values}
         return Problem.of(**{key: np.multiply(v, UNITS[key]) if key in UNITS else v for key, v in case.items()})
 
@@ -144,3 +157,10 @@ def test_what_no_floating_point_carries_is_not_solved(base, micro):
         case = MAIN | {"a": 0.04, "base": base, "micro": micro, "rtol": 1e-3}
         s = solve(Problem.of(**case | {name: [case[name], value]}))
         assert s.status.tolist() == [Status.CONVERGED, Status.INVALID_INPUT], name
+
+
+@pytest.mark.parametrize("name", [name for name, own in PARAMETERS.items() if own.choices])
+def test_a_word_that_is_no_choice_is_answered_with_all(name):
+    with pytest.raises(ValueError, match="must be one of") as error:
+        Problem.of(P=LOAD, **MAIN | {name: "nothing"})
+    assert all(choice in str(error.value) for choice in PARAMETERS[name].choices)

@@ -161,3 +161,14 @@ def test_poison_among_extreme_cases(base, law):
     assert_array_equal(s.status[::2], clean.status)
     for name in JUDGED:
         assert_allclose(getattr(s, name)[::2], getattr(clean, name), rtol=1e-9, atol=0, err_msg=name)
+
+
+@pytest.mark.parametrize("name", ["max_iterations", "nodes", "rtol"])
+def test_each_case_has_its_own_limits(name):
+    """Three values in one batch, of which the first is too little for one of the others."""
+    values = {"max_iterations": [1, 40, 2], "nodes": [6, 40, 20], "rtol": [1e-3, 1e-9, 1e-6]}[name]
+    together = solve(Problem.of(**MAIN | {"P": LOAD, name: values}))
+    for i, value in enumerate(values):
+        alone = solve(Problem.of(**MAIN | {"P": LOAD, name: value}))
+        for quantity in ("status", "a", "D", "error"):  # the numbers of a case alone to rounding, see above
+            assert_allclose(getattr(together, quantity)[i], getattr(alone, quantity)[0], rtol=1e-9, atol=1e-12)

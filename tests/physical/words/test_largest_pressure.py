@@ -9,6 +9,8 @@ import pytest
 
 import study
 from study.__main__ import main
+from study.commands.point import _ring as ring
+from study.data.derived import depth_of_the_body, peak_pressure
 from study.in_words import STRENGTHS
 
 PLATE = {"R": "3 mm", "punch": "rigid", "layer": "ta-C", "h": "20 um", "bonding": "bonded", "body": "PEEK", "P": "20 N"}
@@ -20,6 +22,25 @@ def quiet(**given):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         return study.solve(**given)
+
+
+def moved_spread(given: dict, formula) -> float:
+    """The spread of what a formula makes of a contact, by differences of solutions over a tenth of each spread."""
+    contact, total = quiet(**given, rtol=1e-8), 0.0
+    names = ("R", "E1", "nu1", "E2", "nu2", "E_punch", "nu_punch", "h", "P", "Nbar", "Ra")
+    exact = {name: (contact[name].item(), contact[name].attrs.get("units")) for name in names if name in contact}
+    exact = {name: own for name, own in exact.items() if name != "nu_punch" or np.isfinite(contact.E_punch)}
+    words = {name: given[name] for name in ("bonding", "micro") if name in given} | {"rtol": 1e-8}
+
+    def moved(name: str, by: float) -> float:
+        values = {key: value + by * (key == name) for key, (value, _) in exact.items() if np.isfinite(value)}
+        values = {key: f"{value!r} {exact[key][1]}" if exact[key][1] else value for key, value in values.items()}
+        return float(formula(quiet(**values, **words)))
+
+    for name in [name for name in exact if f"{name}_spread" in contact]:
+        step = 0.05 * contact[f"{name}_spread"].item()
+        total += ((moved(name, step) - moved(name, -step)) / 0.1) ** 2
+    return total**0.5
 
 
 def needed(text) -> list[float]:
@@ -47,10 +68,11 @@ def test_under_asperities_both_pressures_are_those_of_the_ring():
     found = quiet(**PLATE | ROUGH)
     text, peak = study.summary(found), study.derived.peak_pressure(found).item()
     assert peak > 1.1 * found.p_max
-    number, unit = re.search(
-        r"\n  largest real pressure, in the ring +ppeak  = ([\d.]+) (\w+) ± unknown\n", text
+    number, spread, unit = re.search(
+        r"\n  largest real pressure, in the ring +ppeak  = ([\d.]+) ± ([\d.]+) (\w+)\n", text
     ).groups()
-    assert float(number) * SIZES[unit] == pytest.approx(peak, rel=5e-3), "three digits"
+    assert float(number) * SIZES[unit] == pytest.approx(peak, rel=5e-3), "two digits of the spread"
+    assert float(spread) * SIZES[unit] == pytest.approx(moved_spread(PLATE | ROUGH, peak_pressure), rel=0.06)
     assert needed(text) == pytest.approx([float(found.p.max()) / STRENGTHS, peak / STRENGTHS], rel=0.05)
     plain = study.solve(P=1e-5, h=0.002, n=100, bonding="bonded", Nbar=1e5, Ra=0.004)
     assert re.search(r"ppeak  = \S+ E2\*\n", study.summary(plain)), "no input has a spread"
@@ -103,18 +125,20 @@ def test_point_solves_for_the_profile(capsys):
     assert printed["p_ring"] == {"value": found.p.max().item(), "unit": "Pa", "spread": spread} and spread > 0
     assert printed["r_ring"]["value"] == pytest.approx(0.9375 * found.a.item(), rel=1e-12)
     assert printed["D_body"] == {"value": found.D.item(), "unit": "m", "spread": found.D_spread.item()}, "rigid punch"
-    assert printed["r_ring"]["spread"] is printed["p_peak"]["spread"] is None, "not known"
+    assert printed["p_peak"]["spread"] == pytest.approx(spread, rel=1e-6), "without asperities"
+    assert printed["r_ring"]["spread"] == pytest.approx(moved_spread(PLATE | {"micro": "smooth"}, ring), rel=1e-3)
     assert main(["point", "--json", *words, "P=20 N", "micro=smooth"]) == 2
 
 
 def test_spreads_of_what_follows_without_a_ring(capsys):
-    """In the centre the largest pressures are those of the results. Of an elastic punch's share nothing is known."""
+    """In the centre the largest pressures are those of the results. An elastic punch yields a part of the depth."""
     given = PLATE | {"layer": "PTFE", "punch": "steel 52100"} | ROUGH
     assert main(["point", "--json", *(f"{name}={value}" for name, value in given.items())]) == 0
     found, printed = quiet(**given), json.loads(capsys.readouterr().out)
     assert printed["p_ring"]["spread"] == pytest.approx(found.p0_spread.item(), rel=1e-9)
     assert printed["p_peak"]["spread"] == found.p_max_spread.item()
-    assert printed["D_body"]["spread"] is printed["r_ring"]["spread"] is None
+    wanted = moved_spread(given, depth_of_the_body)
+    assert printed["D_body"]["spread"] == pytest.approx(wanted, rel=1e-3) and printed["r_ring"]["spread"] is None
     exact = {"R": "3 mm", "E2": "210 GPa", "base": "half_space", "P": "20 N", "micro": "smooth"}
     assert main(["point", "--json", *(f"{name}={value}" for name, value in exact.items())]) == 0
     assert "spread" not in capsys.readouterr().out

@@ -80,3 +80,13 @@ def test_the_sphere_that_fits_a_scan_nearly_as_large(ratio):
     answer = roughness.measure(roughness.height_map(z + noise, dx=1e-6), form="sphere")
     assert f"{R * 1e3:.3g} mm" in answer.filter or f"{R * 1e6:.3g} µm" in answer.filter
     assert_allclose(answer.iso_Ra, np.sqrt(2 / np.pi) * 1e-9, rtol=0.05)
+
+
+@pytest.mark.parametrize(("form", "degree"), [("mean", 0), ("plane", 1), ("quadratic", 2)])
+def test_a_polynomial_is_of_its_degree(form, degree):
+    """What is left of a random profile on a cubic is what NumPy leaves: its mean height, the ISO Ra."""
+    x = np.linspace(-1.0, 1.0, 512)
+    z = rough(512, 12, 3, 50e-9)[0] + 1e-7 * (x + x**2 + x**3)
+    left = z - np.polynomial.Polynomial.fit(x, z, degree)(x)
+    answer = roughness.measure(roughness.profile(z, dx=2e-7), form=form)
+    assert_allclose(answer.iso_Ra, np.abs(left - left.mean()).mean(), rtol=1e-9)  # two ways of least squares

@@ -16,6 +16,7 @@ from same import assert_same_numbers
 import study
 from study.work import cases, engine
 from study.work import cluster as engines
+from study.work.scheduler import address_error
 
 
 @pytest.fixture
@@ -229,3 +230,12 @@ def test_a_block_whose_worker_is_lost_when_it_is_here_has_not_failed(monkeypatch
         monkeypatch.setattr(engines, "connected", lambda *_: client)
         found = engines.computed_there("any", None, str.split, ["one two"])
         assert list(found) == [(0, ["one", "two"])]
+
+
+ADDRESSES = {"tcp://127.0.0.1:1": True, "host:65535": True, "tls://[::1]:8786": True, "inproc://10.0.0.1/7/1": True}
+ADDRESSES |= dict.fromkeys(("host", "host:0", "host:65536", "tcp://host:99999", "http://host:1", "tcp://:1"), False)
+
+
+@pytest.mark.parametrize(("address", "allowed"), ADDRESSES.items())
+def test_forms_of_an_address(address, allowed):
+    assert (address_error(address) == "") == allowed

@@ -1,0 +1,48 @@
+"""The share of the nominal contact area on which the asperities have yielded."""
+
+import numpy as np
+
+from ..laws import LAWS
+from ..scaling import dimensionless, law_of
+from .range_of_law import RADII
+
+#: The places s² = 1 - (r/a)² of the profile, ascending from the edge.
+_S2 = (1 - RADII) * (1 + RADII)
+#: Between two radii ln s² is a polynomial of ln λ through this many of them, all on the elastic side of the bound, at
+#: which λ bends. Of 40 random contacts the largest error was 9e-7, with two on each side 4e-6.
+_POINTS = 4
+
+
+def has_yield(problem):
+    """(B,) bool: the cases whose micro law has spots that yield."""
+    return np.isin(problem.micro, [name for name, law in LAWS.items() if law.yielded])
+
+
+def plastic_share(problem, lam):
+    """(B,): the share of pi a² on which the spots have yielded; NaN of a law that has none, and where λ is NaN.
+
+    lam : (B, m), λ at the radii RADII
+    """
+    share = np.full(len(problem), np.nan)
+    for name in np.unique(problem.micro[has_yield(problem)]):
+        index = np.flatnonzero(problem.micro == name)
+        law = law_of(dimensionless(problem.take(index)))
+        share[index] = _share_above(np.log(lam[index] / law.law.yielded(*law.own)))
+    return share
+
+
+def _share_above(level):
+    """Share (B,) of s² from 0 to 1 on which `level` (B, m), at the places _S2, is above 0."""
+    size, m = level.shape
+    above = np.concatenate([np.zeros((size, 1), bool), level > 0], axis=1)  # at the edge, s = 0, nothing yields
+    share = np.where(above[:, -1], 1.0, 0.0)
+    rows, after = np.nonzero(above[:, 1:] != above[:, :-1])
+    rises = above[rows, after + 1]
+    first = np.clip(np.where(rises, after - _POINTS, after), 0, m - _POINTS)
+    places = first[:, None] + np.arange(_POINTS)
+    x, others = level[rows[:, None], places], ~np.eye(_POINTS, dtype=bool)
+    weights = [np.prod(x[:, own] / (x[:, own] - x[:, i, None]), axis=1) for i, own in enumerate(others)]
+    crossing = np.exp((np.stack(weights, axis=1) * np.log(_S2[places])).sum(axis=1))
+    crossing = np.clip(crossing, np.append(0.0, _S2)[after], _S2[after])
+    np.subtract.at(share, rows, np.where(rises, crossing, -crossing))
+    return np.where(np.isnan(level).any(axis=1), np.nan, share)

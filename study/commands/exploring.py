@@ -1,0 +1,20 @@
+"""The command `explore`: the page that solves contacts in a browser."""
+
+from pathlib import Path
+
+from ..explorer.page import MARK, page
+from ..files.atomic import replacing
+from ..inputs.definition import StudyError
+from ..terminal import answer
+
+
+def explore(options, _) -> int:
+    """Write the page. A file that is no such page is not replaced."""
+    path = Path(options.out)
+    if path.is_dir():
+        raise StudyError([f"--out {path} is a folder: name a file in it, such as {path / 'contact.html'}"])
+    if path.exists() and MARK not in path.read_bytes()[: 10 * len(MARK)]:
+        raise StudyError([f"--out {path}: there is a file that is no page of the explorer; it stays"])
+    with replacing(path) as temporary:
+        temporary.write_text(page(), encoding="utf-8")
+    return answer(f"{path}: open it in a browser; it needs no network")

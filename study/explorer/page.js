@@ -1,0 +1,241 @@
+"use strict";
+/* The form, and what is shown of the contact that it describes. */
+(() => {
+  const $ = (id) => document.getElementById(id);
+  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, drawn = "";
+  /** What was typed before a material or no layer took its place. */
+  const kept = { E_punch: "210 GPa", nu_punch: "0.3", E1: "200 GPa", nu1: "0.25", h: "2 um", E2: "210 GPa", nu2: "0.3",
+    layer: "DLC a-C:H", Nbar: "4 1/um^2", Ra: "2 um" };
+  const OWN = "own E and ν", NONE = "no layer";
+
+  /* ---- form ---- */
+
+  function make() {
+    for (const box of document.querySelectorAll("[data-field]")) field(box, box.dataset.field);
+    for (const box of document.querySelectorAll("[data-body]")) material(box, box.dataset.body);
+    choice("bonding", [["bonded", "bonded"], ["frictionless", "slides"]], () => texts.bonding, (value) => { texts.bonding = value; });
+    choice("micro", [["smooth", "smooth"], ["disc_cell", "rough: asperities"]], () => texts.micro, (value) => {
+      texts.micro = value;
+      if (value === "disc_cell") for (const name of ["Nbar", "Ra"]) texts[name] ??= kept[name];
+    });
+    choice("control", [["P", "load P"], ["a", "radius a"], ["D", "depth D"]], () => Contact.CONTROLS.find((name) => texts[name] !== undefined), control);
+    choice("copy", [["command", "command line"], ["python", "Python"], ["toml", "study file (TOML)"]], () => copy, (value) => { copy = value; });
+    for (const id of ["tornado-of", "map-of"]) for (const [name, own] of Object.entries(Contact.RESULTS)) $(id).add(new Option(`${own.label} ${own.symbol}`, name));
+    $("tornado-of").value = "p0";
+    $("map-of").value = "p0";
+    for (const id of ["tornado-of", "tornado-by", "map-of", "map-x", "map-y", "map-wide"]) $(id).addEventListener("change", redraw);
+    $("restart").addEventListener("click", () => change(Contact.fromHash("")));
+    $("copy").addEventListener("click", () => toClipboard($("copied").textContent));
+    $("copy-link").addEventListener("click", () => toClipboard(location.href));
+    $("version").textContent = DATA.version;
+    addEventListener("hashchange", () => { if (location.hash !== Contact.toHash(texts)) change(Contact.fromHash(location.hash)); });
+    addEventListener("resize", redraw);
+    matchMedia("(prefers-color-scheme: dark)").addEventListener("change", ContactMap.paint);
+    change(texts);
+  }
+
+  /** A text with unit, and a slider on a logarithmic scale (of a Poisson ratio linear). */
+  function field(box, name) {
+    const own = Contact.INPUTS[name], ratio = own.unit === "1", [low, high] = own.range;
+    box.className = "field";
+    box.dataset.field = name;
+    box.innerHTML = `<label>${own.label} <input type="text" id="in-${name}" aria-describedby="wrong-${name}" spellcheck="false"></label>
+      <input type="range" min="0" max="1000" step="1" aria-label="${own.label}, slider"><p class="complaint" id="wrong-${name}" hidden></p>`;
+    const [input, slider] = box.querySelectorAll("input");
+    input.addEventListener("input", () => { texts[name] = input.value; redraw(); });
+    slider.addEventListener("input", () => {
+      const share = slider.value / 1000, value = ratio ? low + (high - low) * share : low * (high / low) ** share;
+      texts[name] = withSpread(name, value);
+      input.value = texts[name];
+      redraw();
+    });
+  }
+
+  /** A number moved by the slider, with the relative spread that was typed. */
+  function withSpread(name, value) {
+    const text = ContactMap.textOf(name, value, 3);
+    try {
+      const before = Contact.parse(name, texts[name]);
+      if (!before.spread) return text;
+      return `${text} ± ${Number((100 * before.spread / before.value).toPrecision(2))} %`;
+    } catch { return text; }
+  }
+
+  function material(box, body) {
+    const names = DATA.materials.map((own) => own.name), extra = body === "layer" ? [NONE] : ["rigid"];
+    const called = { punch: "material of the ball", layer: "material of the layer", body: "material of the body" }[body];
+    box.className = "field";
+    box.innerHTML = `<label>${called} <select id="in-${body}">${[...extra, OWN, ...names].map((name) => `<option>${name}</option>`).join("")}</select></label>
+      <p class="complaint" id="wrong-${body}" hidden></p><p class="hint"></p>`;
+    const select = box.querySelector("select");
+    for (const name of Contact.BODIES[body]) { const one = document.createElement("div"); box.after(one); field(one, name); }
+    box.after(...[...box.parentElement.querySelectorAll(":scope > .field")].filter((one) => Contact.BODIES[body].includes(one.dataset.field)).reverse());
+    select.addEventListener("change", () => {
+      const own = Contact.BODIES[body], value = select.value;
+      if (body === "layer") { delete texts.base; texts.h ??= kept.h; }
+      if (value === OWN) { // the numbers of the material that was chosen, to be changed
+        for (const name of own) texts[name] = contact?.inputs?.v[name] && Number.isFinite(contact.inputs.v[name].value) ? ContactMap.textOf(name, contact.inputs.v[name].value) : kept[name];
+        delete texts[body];
+      } else if (value === NONE) texts.base = "half_space";
+      else texts[body] = value;
+      change(texts);
+    });
+  }
+
+  function choice(key, options, value, set) {
+    const box = document.querySelector(`[data-choice="${key}"]`);
+    box.innerHTML = options.map(([word, label]) => `<label><input type="radio" name="${key}" value="${word}">${label}</label>`).join("");
+    box.addEventListener("change", (event) => { set(event.target.value); change(texts); });
+    box.show = () => { for (const radio of box.querySelectorAll("input")) radio.checked = radio.value === value(); };
+  }
+
+  /** Another control: its number is that of the contact as it is. */
+  function control(name) {
+    const value = contact?.Q ? contact.Q[name] : Contact.INPUTS[name].range[0];
+    for (const other of Contact.CONTROLS) delete texts[other];
+    texts[name] = ContactMap.textOf(name, value);
+  }
+
+  /** Take new texts, and show them in the form. */
+  function change(next) {
+    texts = next;
+    const layered = texts.base !== "half_space";
+    for (const body of Object.keys(Contact.BODIES)) {
+      const select = $(`in-${body}`);
+      select.value = body === "layer" && !layered ? NONE : texts[body] ?? OWN;
+      for (const name of Contact.BODIES[body]) document.querySelector(`[data-field="${name}"]`).hidden = select.value !== OWN;
+    }
+    for (const name of Object.keys(Contact.INPUTS)) if (texts[name] !== undefined) $(`in-${name}`).value = texts[name];
+    document.querySelector('[data-field="h"]').hidden = !layered;
+    document.querySelector('[data-choice="bonding"]').hidden = !layered;
+    for (const name of Contact.CONTROLS) document.querySelector(`[data-field="${name}"]`).hidden = texts[name] === undefined;
+    for (const name of ["Nbar", "Ra"]) document.querySelector(`[data-field="${name}"]`).hidden = texts.micro !== "disc_cell";
+    for (const box of document.querySelectorAll("[data-choice]")) box.show();
+    redraw();
+  }
+
+  /* ---- results ---- */
+
+  function redraw() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => { waiting = false; show(); });
+  }
+
+  function show() {
+    const begin = performance.now(), found = Contact.solve(texts);
+    contact = found.inputs ? found : contact && { ...contact, Q: null, inputs: Contact.read(texts) };
+    complaints(found.problems);
+    slides(Contact.read(texts).v);
+    $("copied").textContent = Contact.COPIES[copy](texts);
+    const solved = found.status === "converged";
+    for (const box of document.querySelectorAll("#results > section")) box.hidden = !solved && !["answer-title", "copy-title"].includes(box.getAttribute("aria-labelledby"));
+    $("trouble").innerHTML = solved ? "" : `<p>${trouble(found)}</p>`;
+    $("words").hidden = $("numbers").hidden = !solved;
+    if (Object.keys(found.problems).length === 0) history.replaceState(null, "", Contact.toHash(texts));
+    clearTimeout(later);
+    $("brief").textContent = solved ? ["a", "D", "p0"].map((name) => `${Contact.RESULTS[name].symbol} ${Contact.shown({ ...found, spread: {} }, name).whole}`).join(" · ") : "no solution";
+    if (!solved) return;
+    const words = Contact.words(found);
+    $("words").innerHTML = "";
+    words.forEach((sentence, i) => {
+      const last = i === words.length - 1;
+      if (i === 0 || last || i === 2) $("words").append(Object.assign(document.createElement("p"), { className: last ? "last" : i === 0 ? "first" : "" }));
+      $("words").lastChild.append(`${sentence} `);
+    });
+    table(found);
+    const width = Math.max(320, Math.min(960, $("section").clientWidth));
+    $("section").innerHTML = Drawing.section(found, width);
+    lights(found);
+    $("tornado").innerHTML = Drawing.tornado(found, $("tornado-of").value, $("tornado-by").value, width);
+    $("time").textContent = `Solved and drawn in ${(performance.now() - begin).toFixed(0)} ms.`;
+    $("map").ariaBusy = "true"; // until it is whole
+    later = setTimeout(() => map(found), 150);
+  }
+
+  function trouble(found) {
+    const command = "The command below solves it.";
+    if (found.status === "film") return `The layer is thinner than 1/256 of the contact radius (about ${Contact.readable(found.ev.a * found.case_.R, "m")}). This page does not solve that. ${command}`;
+    if (found.status === "lift_off") return "The ball lifts off inside the contact, or the pressure is tensile there: there is no full disc of contact, and the model has no solution.";
+    if (found.status === "open") return `This page finds no solution here. ${command.replace("solves it", "may solve it, or says what is wrong")}`;
+    return "Some input is missing or wrong; see the form.";
+  }
+
+  function complaints(problems) {
+    for (const name of [...Object.keys(Contact.INPUTS), ...Object.keys(Contact.BODIES)]) {
+      const line = $(`wrong-${name}`);
+      line.textContent = problems[name] || "";
+      line.hidden = !problems[name];
+      line.parentElement.classList.toggle("wrong", Boolean(problems[name]));
+    }
+  }
+
+  /** Put the sliders where the numbers are, and say of materials what they stand for. */
+  function slides(v) {
+    for (const [name, own] of Object.entries(Contact.INPUTS)) {
+      const slider = document.querySelector(`[data-field="${name}"] input[type="range"]`), [low, high] = own.range;
+      if (!v[name]) continue;
+      const share = own.unit === "1" ? (v[name].value - low) / (high - low) : Math.log(v[name].value / low) / Math.log(high / low);
+      slider.value = Math.round(1000 * Math.min(1, Math.max(0, share)));
+      slider.setAttribute("aria-valuetext", texts[name] || "");
+    }
+    for (const body of Object.keys(Contact.BODIES)) {
+      const own = Contact.MATERIALS[texts[body]], hint = document.querySelector(`[data-body="${body}"] .hint`), shown = own && !(body === "layer" && texts.base === "half_space");
+      hint.textContent = shown ? `E = ${Contact.written(own.E, "Pa", 4, own.E_spread).whole}, ν = ${Contact.written(own.nu, "1", 3, own.nu_spread).whole}` : "";
+      hint.title = shown ? `${own.condition}. ${own.source}` : "";
+    }
+    $("diameter").textContent = v.R ? `diameter ${Contact.readable(2 * v.R.value, "m", 4)}` : "";
+  }
+
+  function table(found) {
+    const names = Object.keys(Contact.RESULTS).filter((name) => found.case_.p.rough || !["p_max", "Ar_An"].includes(name));
+    const head = ["", "", "this contact", ...found.limits.map((own) => own.name)].map((word) => `<th scope="col">${word}</th>`).join("");
+    const rows = names.map((name) => {
+      const { label, symbol, unit } = Contact.RESULTS[name];
+      const others = found.limits.map((own) => `<td class="limit">${own.Q && own.Q[name] !== null ? Contact.readable(own.Q[name], unit, 4) : "–"}</td>`).join("");
+      return `<tr><th scope="row">${label}</th><td>${symbol}</td><td class="value" data-result="${name}">${Contact.shown(found, name).whole}</td>${others}</tr>`;
+    });
+    if (found.ring) {
+      const ring = `<tr><th scope="row">largest nominal pressure, in a ring at r = ${Contact.readable(found.ring.r, "m")}</th><td>pring</td><td class="value" data-result="p_ring">${Contact.readable(found.ring.p, "Pa", found.digits)}</td>${found.limits.map(() => "<td></td>").join("")}</tr>`;
+      rows.splice(names.indexOf("p0") + 1, 0, ring);
+    }
+    $("numbers").innerHTML = `<caption class="note">Beside: Hertz's smooth contact of the same ball and ${Contact.RESULTS[found.inputs.control].label}.</caption><thead><tr>${head}</tr></thead><tbody>${rows.join("")}</tbody>`;
+  }
+
+  function lights(found) {
+    const words = { good: "holds", near: "nearly", beyond: "fails" };
+    $("lights").innerHTML = found.lights.map((row) => `<li data-name="${row.name}" data-state="${row.state}"><span class="state ${row.state}">${words[row.state]}</span><span>${row.title}</span><span class="size">${row.size}</span></li>`).join("");
+  }
+
+  function map(found) {
+    const names = Object.keys(found.sensitivities);
+    ["map-x", "map-y"].forEach((id, i) => {
+      const select = $(id), before = select.value;
+      if (names.join() !== [...select.options].map((one) => one.value).join()) {
+        select.replaceChildren(...names.map((name) => new Option(Contact.INPUTS[name].label, name)));
+        const first = [names.includes("h") ? "h" : "R", found.inputs.control];
+        select.value = names.includes(before) ? before : first[i];
+      }
+    });
+    if ($("map-x").value === $("map-y").value) $("map-y").value = names.find((name) => name !== $("map-x").value);
+    const key = [Contact.toHash(texts), ...["map-of", "map-x", "map-y", "map-wide"].map((id) => $(id).value)].join(" ");
+    if (key === drawn) { $("map").ariaBusy = "false"; return; }
+    drawn = key;
+    const chosen = { of: $("map-of").value, x: $("map-x").value, y: $("map-y").value, wide: Number($("map-wide").value) };
+    ContactMap.draw($("map"), found, chosen, (next) => change(next));
+  }
+
+  async function toClipboard(text) {
+    try { await navigator.clipboard.writeText(text); } catch {
+      const area = Object.assign(document.createElement("textarea"), { value: text });
+      document.body.append(area);
+      area.select();
+      document.execCommand("copy");
+      area.remove();
+    }
+    $("copy-said").textContent = "copied";
+    setTimeout(() => { $("copy-said").textContent = ""; }, 2000);
+  }
+
+  make();
+})();

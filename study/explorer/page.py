@@ -1,0 +1,65 @@
+"""The page of the explorer: its parts, and what it takes from the program, in one HTML file."""
+
+import base64
+import json
+from importlib.resources import files
+
+import numpy as np
+
+from solver.numerics.mesh import mesh_of
+from solver.parameters import ends
+
+from ..data.provenance import package_version
+from ..in_words import pressures
+from ..inputs.vocabulary import VOCABULARY
+from ..rules import assumptions, doubts
+from ..specimen import materials
+
+#: How the page begins: by this a file is known to be one.
+MARK = b"<!-- a page of roughcoat explore -->"
+#: Nodes of the two meshes that the page solves on; their difference is its error (tests/explorer/test_core.py).
+NODES = (16, 22)
+_SCRIPTS = ("core.js", "contact.js", "drawing.js", "map.js", "page.js")
+#: Limits of assumptions and doubts, which the page looks at as the program does.
+_LIMITS = {
+    assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT", "SPOT_OVER_LAYER")
+    + ("PITCH_OVER_LAYER", "HARDEST"),
+    doubts: ("YIELD", "STIFF"),
+    pressures: ("STRENGTHS", "RUBBER", "RING"),
+}
+#: λ(0) -> by how much disc_cell overestimates what the asperities yield, against a square lattice
+#: (docs/model.md, Microscale; tests/laws/lattice/test_lattice.py).
+_MERGING = ((0.0, 0.0), (0.04, 0.02), (0.17, 0.05), (0.4, 0.10), (1.0, 0.27))
+
+
+def page() -> str:
+    """The whole page as HTML: opened from disk it needs neither a network nor a server."""
+    room = files(__package__)
+    data = json.dumps(contents(), ensure_ascii=False, separators=(",", ":")).replace("</", "<\\/")
+    scripts = "\n".join(room.joinpath(name).read_text("utf-8") for name in _SCRIPTS)
+    text = room.joinpath("page.html").read_text("utf-8")
+    text = text.replace("/* style */", room.joinpath("style.css").read_text("utf-8"))
+    return text.replace("/* scripts */", f"const DATA = {data};\n{scripts}")
+
+
+def contents() -> dict:
+    """What the scripts take from the program: meshes, materials, bounds, limits of assumptions."""
+    known = (materials.get(name) for name in materials.names())
+    numbers = ("name", "E", "nu", "E_spread", "nu_spread", "condition", "source")
+    bounded = ("P", "a", "D", "h", "n", "m", "Nbar", "Ra")
+    return {
+        "version": package_version("roughcoat"),
+        "meshes": {n: mesh(n) for n in NODES},
+        "materials": [{key: getattr(own, key) for key in numbers} for own in known],
+        "bounds": {name: ends(VOCABULARY[name].own.interval)[:2] for name in bounded},
+        "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
+        "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
+        "merging": _MERGING,
+    }
+
+
+def mesh(n: int) -> str:
+    """The mesh of n nodes: s, x, w, edge (n,) and K (n, n) as float64, little endian, in base64."""
+    own = mesh_of(n)
+    numbers = np.concatenate([own.s, own.x, own.w, own.edge, own.K.ravel()])
+    return base64.b64encode(numbers.astype("<f8").tobytes()).decode("ascii")

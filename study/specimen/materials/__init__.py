@@ -1,0 +1,125 @@
+"""Elastic constants and strengths of common materials by name, with spreads and sources; and of the user's own file.
+
+>>> steel = get("100Cr6")
+>>> steel.name, steel.E, steel.nu
+('steel 52100', 207000000000.0, 0.29)
+>>> f"{steel.reduced_modulus:.3g} +- {steel.reduced_modulus_spread:.1g} Pa"
+'2.26e+11 +- 4e+09 Pa'
+"""
+
+import difflib
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib import resources
+
+from ..quantities import multiple
+from .entries import STRENGTHS, Material, of_sections, plainly, read, written
+
+__all__ = ["Material", "get", "names", "read", "table"]
+
+
+def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
+    """The material of this name, or of this other name; capitals, hyphens and spaces do not matter.
+
+    Parameters
+    ----------
+    name : such as "steel 52100" or "100Cr6"
+    among : where to look, as `read` returns it; without it the table of this package
+
+    Returns
+    -------
+    Material
+
+    Raises
+    ------
+    LookupError : there is none; names like it are suggested
+
+    Examples
+    --------
+    >>> get("ptfe").nu
+    0.46
+    """
+    known = _built_in() if among is None else among
+    spelled = {plainly(word): entry for entry in known.values() for word in entry.also}
+    spelled |= {plainly(entry.name): entry for entry in known.values()}  # names win over other names
+    plain = plainly(name)
+    if plain in spelled:
+        return spelled[plain]
+    near = [word for word in spelled if plain and plain in word] or difflib.get_close_matches(plain, spelled, n=3)
+    meant = [f'"{name}"' for name in known if name in {spelled[word].name for word in near}]
+    hint = f"did you mean {' or '.join(meant[:6])}?" if meant else f"known: {', '.join(known)}"
+    raise LookupError(f"{written(name)} is no material; {hint}")
+
+
+def names() -> tuple[str, ...]:
+    """The names of the materials of this package, in the order of its table.
+
+    Returns
+    -------
+    tuple of str
+    """
+    return tuple(_built_in())
+
+
+def table() -> str:
+    """Every material in aligned columns, for a terminal: name, E, nu, E* = E/(1 - nu²), each with its spread.
+
+    Returns
+    -------
+    str
+    """
+    rows = [("material", "E", "nu", "E/(1 - nu²)"), *(_numbers(entry) for entry in _built_in().values())]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    return "\n".join(
+        "  ".join(cell.ljust(width) for cell, width in zip(row, widths, strict=True)).rstrip() for row in rows
+    )
+
+
+def markdown() -> str:
+    """The table of docs/materials.md: what `table` shows, other names, strengths, condition and sources."""
+    head = ("material", "E", "ν", "E/(1 − ν²)", "strengths", "holds for", "source", "read", "source of the strengths")
+    rows = [head, ("---",) * len(head)]
+    for entry in _built_in().values():
+        name, *numbers = _numbers(entry)
+        named = f"**{name}** ({', '.join(entry.also)})" if entry.also else f"**{name}**"
+        read_in = "yes" if entry.checked else "in part"
+        rows.append((named, *numbers, _strengths(entry), entry.condition, entry.source, read_in, entry.strength_source))
+    return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in row)} |" for row in rows)
+
+
+@cache
+def _built_in() -> dict[str, Material]:
+    text = resources.files(__package__).joinpath("materials.toml").read_text("utf-8")
+    return of_sections(tomllib.loads(text), "materials.toml")
+
+
+def _numbers(entry: Material) -> tuple[str, str, str, str]:
+    return (
+        entry.name,
+        _in_multiples(entry.E, entry.E_spread),
+        _with_spread(entry.nu, entry.nu_spread),
+        _in_multiples(entry.reduced_modulus, entry.reduced_modulus_spread),
+    )
+
+
+def _strengths(entry: Material) -> str:
+    """The strengths that are known: "hardness 8.0 ± 0.7 GPa"."""
+    known = [(name, getattr(entry, name), getattr(entry, f"{name}_spread")) for name in STRENGTHS]
+    words = [f"{name.replace('_', ' ')} {_in_multiples(value, spread)}" for name, value, spread in known if value]
+    return "; ".join(words)
+
+
+def _in_multiples(value: float, spread: float) -> str:
+    """A modulus in kPa, MPa or GPa."""
+    unit, size = multiple(value, "Pa")
+    return f"{_with_spread(value / size, spread / size)} {unit}"
+
+
+def _with_spread(value: float, spread: float) -> str:
+    """A number and its spread, with the fewest decimals that change neither by more than a twentieth of the spread."""
+    if spread == 0:
+        return f"{value:.4g}"
+    enough = (n for n in range(9) if all(abs(round(x, n) - x) <= spread / 20 for x in (value, spread)))
+    decimals = next(enough, 9)
+    return f"{value:.{decimals}f} ± {spread:.{decimals}f}"

@@ -1,0 +1,183 @@
+"""A material: its elastic constants and strengths, each with its spread, and the file that holds some."""
+
+import math
+import os
+import tomllib
+from dataclasses import dataclass
+from pathlib import Path
+
+from ...terminal import shown
+
+SOFTEST, STIFFEST = 1e3, 2e12
+"""Bounds of E in Pa. Each E of the table, 8.6 kPa to 1143 GPa, is between them; one in GPa by mistake is below."""
+LEAST_SPREAD = 1e-6
+"""Least spread of E, over E: no E is known better. A spread given in GPa by mistake, 5 beside 207e9 Pa, is below."""
+
+NUMBERS = {
+    "E": f"a number of Pa from {SOFTEST:g} to {STIFFEST:g} (210 GPa is 210e9)",
+    "nu": "a number above -1 and at most 0.5",
+    "E_spread": f"0 or a number of Pa from {LEAST_SPREAD:g} E to E (5 GPa is 5e9), one standard deviation",
+    "nu_spread": "a number from 0 to 0.5, one standard deviation",
+}
+"""The keys that a section must have, and what is allowed."""
+STRENGTHS = ("yield_strength", "hardness", "fracture_strength", "interface_strength")
+"""The strengths that it may have, each with its spread: NAME and NAME_spread, Pa."""
+WEAKEST, STRONGEST = 1e3, 2e11
+"""Bounds of a strength in Pa: gels break at some kPa, the hardness of diamond is some 0.1 TPa."""
+_STRENGTH = dict.fromkeys(STRENGTHS, f"a number of Pa from {WEAKEST:g} to {STRONGEST:g} (1 GPa is 1e9)")
+_STRENGTH |= {f"{name}_spread": "0 or less than the strength, one standard deviation in Pa" for name in STRENGTHS}
+OTHERS = {"condition": "a text", "source": "a text", "also": "a list of texts", "checked": "true or false"}
+OTHERS |= _STRENGTH | {"strength_source": "a text"}
+"""The keys that it may have, and what is allowed."""
+
+
+@dataclass(frozen=True)
+class Material:
+    """An isotropic elastic material; what `get` and `read` return has passed their checks.
+
+    Attributes
+    ----------
+    name : as in the table
+    E, nu : Young's modulus, Pa, and Poisson's ratio
+    E_spread, nu_spread : one standard deviation of each, Pa and 1, among the pieces that bear the name
+    yield_strength, hardness : Pa; None: not known. The hardness is a mean pressure, on the projected area
+    fracture_strength : of a coating, the tensile stress at which it cracks, Pa; None: not known
+    interface_strength : of a coating, the stress at which it comes off what the source names, Pa; None: not known
+    yield_strength_spread, hardness_spread, fracture_strength_spread, interface_strength_spread : one standard deviation
+        of each of these, Pa
+    strength_source : where the strengths are from
+    condition : what the values hold for, and what they depend on
+    source : where they are from
+    also : other names
+    checked : whether both numbers were read in the source; if not, the source says which were not
+    """
+
+    name: str
+    E: float
+    nu: float
+    E_spread: float
+    nu_spread: float
+    condition: str = ""
+    source: str = ""
+    also: tuple[str, ...] = ()
+    checked: bool = False
+    yield_strength: float | None = None
+    yield_strength_spread: float = 0.0
+    hardness: float | None = None
+    hardness_spread: float = 0.0
+    fracture_strength: float | None = None
+    fracture_strength_spread: float = 0.0
+    interface_strength: float | None = None
+    interface_strength_spread: float = 0.0
+    strength_source: str = ""
+
+    @property
+    def reduced_modulus(self) -> float:
+        """E* = E/(1 - nu²), Pa."""
+        return self.E / (1 - self.nu**2)
+
+    @property
+    def reduced_modulus_spread(self) -> float:
+        """One standard deviation of E*, Pa, to first order in the spreads of E and nu, which are taken as independent.
+
+        (dE*)² = (dE/(1 - nu²))² + (2 nu E dnu/(1 - nu²)²)²
+        """
+        less = 1 - self.nu**2
+        return math.hypot(self.E_spread / less, 2 * self.nu * self.E * self.nu_spread / less**2)
+
+
+def read(path: str | os.PathLike) -> dict[str, Material]:
+    """The materials of a TOML file of the user's own; `get(name, among)` finds them by their other names too.
+
+    Each is a section `["my steel"]` with the numbers E (Pa), nu, E_spread (Pa), nu_spread, and if wanted the texts
+    condition and source, the list `also` of other names, and checked = true.
+
+    Parameters
+    ----------
+    path : of the file
+
+    Returns
+    -------
+    dict : name -> Material
+
+    Raises
+    ------
+    OSError : the file cannot be read
+    ValueError : it is no TOML, or a value is missing or not allowed: a line for each, with file, section, key, value
+    """
+    path = Path(path)
+    try:
+        sections = tomllib.loads(path.read_text(encoding="utf-8-sig"))
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path.name} is not UTF-8 (byte {error.start}): save it with the encoding UTF-8") from None
+    except (ValueError, RecursionError) as error:
+        raise ValueError(f"{path.name} is no TOML file: {error}") from None
+    return of_sections(sections, path.name)
+
+
+def of_sections(sections: dict, file: str) -> dict[str, Material]:
+    """The materials of the sections of a file. Raises ValueError with every complaint, a line each."""
+    errors = [f"{file}: [{written(name)}] {error}" for name, given in sections.items() for error in _errors(given)]
+    if errors:
+        raise ValueError("\n".join(errors))
+    found: dict[str, Material] = {}
+    owners: dict[str, str] = {}
+    for name, given in sections.items():
+        numbers = {key: float(given[key]) for key in (*NUMBERS, *_STRENGTH) if key in given}
+        found[name] = Material(name, **(given | numbers | {"also": tuple(given.get("also", ()))}))
+        for word in (name, *found[name].also):
+            first = owners.setdefault(plainly(word), name)
+            if first != name:
+                errors.append(f"{file}: [{written(name)}] is called {written(word)}, and so is [{written(first)}]")
+    if errors:
+        raise ValueError("\n".join(errors))
+    return found
+
+
+def _errors(given) -> list[str]:
+    """What is wrong with a section of the file."""
+    if not isinstance(given, dict):
+        return [f"= {written(given)}: must be a section with the keys {', '.join(NUMBERS)}"]
+    allowed = NUMBERS | OTHERS
+    errors = [f"{written(key)} is no key; known: {', '.join(allowed)}" for key in given if key not in allowed]
+    errors += [f"{key} is missing: must be {words}" for key, words in NUMBERS.items() if key not in given]
+    modulus = given.get("E")
+    for key in allowed:
+        if key in given and not _is_allowed(key, given[key], modulus):
+            errors.append(f"{key} = {written(given[key])}: must be {allowed[key]}")
+    for name in STRENGTHS:
+        strength, spread = given.get(name), given.get(f"{name}_spread")
+        if (strength is None) != (spread is None):
+            errors.append(f"{name} and {name}_spread go together: one of them is missing")
+        elif strength is not None and _is_number(strength) and _is_number(spread) and spread >= strength:
+            errors.append(f"{name}_spread = {written(spread)}: must be {allowed[f'{name}_spread']}")
+    return errors
+
+
+def _is_number(value) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool)
+
+
+def _is_allowed(key: str, value, modulus=None) -> bool:
+    if key == "also":
+        return isinstance(value, list) and all(isinstance(word, str) for word in value)
+    if key in OTHERS and key not in _STRENGTH:
+        return isinstance(value, bool if key == "checked" else str)
+    if not _is_number(value):
+        return False
+    if key in STRENGTHS:
+        return WEAKEST <= value <= STRONGEST
+    if key in _STRENGTH:
+        return value >= 0
+    if key == "E_spread":  # where E is wrong itself, its spread is not compared with it
+        return value == 0 or value > 0 and (not _is_allowed("E", modulus) or LEAST_SPREAD * modulus <= value < modulus)
+    return {"E": SOFTEST <= value <= STIFFEST, "nu": -1 < value <= 0.5, "nu_spread": 0 <= value <= 0.5}[key]
+
+
+def plainly(name) -> str:
+    """A name in small letters, with single blanks for hyphens and underscores."""
+    return " ".join(str(name).casefold().replace("-", " ").replace("_", " ").split())
+
+
+def written(value) -> str:
+    return f"{value:g}" if isinstance(value, float) else shown(value)

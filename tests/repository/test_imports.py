@@ -25,7 +25,7 @@ ROOMS = {
     "solver": (
         *("threads", "status", "closed_forms", "numerics", "parameters", "punches", "laws", "kernels", "body"),
         *("edges", "problem", "solution", "contact", "scaling", "estimate", "schemes", "models", "solve"),
-        *("sensitivity", "fields"),
+        *("sensitivity", "fields", "yields"),
     ),
     "study": (
         *("terminal", "specimen", "inputs", "rules", "data", "derivatives", "in_words", "files", "store", "work"),

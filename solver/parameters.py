@@ -51,6 +51,11 @@ class Parameter(NamedTuple):
 LAYERED = ("base", tuple(base for base in BASES if base != "half_space"))
 BONDED = ("bonding", ("bonded",))
 
+#: A condition that no case meets.
+NEVER = ("base", ())
+#: A yield strength, which may be left out: it is compared with the answer and changes none.
+STRENGTH = Parameter(interval="[1e-15, 1e15]", powers=(1, 0), used_by=NEVER, instead="")
+
 #: What controls a case: one of these is given.
 CONTROL = {
     "P": Parameter(interval="[1e-24, 1e3]", powers=(1, 2)),
@@ -67,6 +72,9 @@ PARAMETERS = {
     "m": Parameter(0.0, interval="[0, 1e9]"),
     "nu1": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
     "nu2": Parameter(0.3, interval="(-1, 0.5]", needed_by=LAYERED, used_by=BONDED),
+    "Y1": STRENGTH._replace(needed_by=LAYERED),
+    "Y2": STRENGTH,
+    "Y_punch": STRENGTH,
     "bonding": Parameter("frictionless", BONDINGS, needed_by=LAYERED),
     "base": Parameter("layered", BASES),
     "accuracy": Parameter(1e-2, interval="(0, 1)", needed_by=("base", ("auto",))),

@@ -28,6 +28,7 @@ class Problem:
     m = 0 : ratio of the reduced moduli E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch. The
         displacements of both bodies add; D is the approach of their distant points
     nu1, nu2 = 0.3 : Poisson ratios of layer and half-space. Without friction between them these change nothing
+    Y1, Y2, Y_punch : yield strengths of layer, half-space and punch, if they are known; they change no answer
     bonding = "frictionless" : the interface between layer and half-space, or "bonded"
     Nbar, Ra : asperities per unit area, and their radius; needed by the micro laws that declare them, of this package's
         all but "smooth"

@@ -45,6 +45,9 @@ class Parameters(TypedDict, total=False):
     m: Value
     nu1: Value
     nu2: Value
+    Y1: Value
+    Y2: Value
+    Y_punch: Value
     bonding: Literal["frictionless", "bonded"] | Many
     base: Literal["half_space", "thin_layer", "layered", "auto"] | Many
     Nbar: Value
@@ -116,6 +119,7 @@ def solve(
     h, n : thickness of the layer, and E1*/E2*; needed by every base but "half_space"
     m : E1*/E3* of layer and punch (E2*/E3* without a layer); 0 is a rigid punch
     nu1, nu2 : Poisson ratios of the layer and of the body under it
+    Y1, Y2, Y_punch : yield strengths of layer, body and punch, if they are known. They change no result of these
     bonding : the interface of layer and body
     base : what lies under the punch
     Nbar, Ra : number of asperities per unit area, and the radius of an asperity; not needed by micro = "smooth"
@@ -125,7 +129,8 @@ def solve(
     sigma, cut : of micro = "normal_heights", standard deviation of the heights, and the largest above the mean over it;
         "uniform_heights" has sigma alone
     hardness, yield_strength : of micro = "elastic_plastic", of the softer of asperity and what it presses on. One of
-        both is enough: the hardness is then 2.84 times the yield strength
+        both is enough: the hardness is then 2.84 times the yield strength. Beside
+        other rough laws they set `validity`
     R, E1, E2, E_punch : radius of the punch, Young's moduli of layer, body and punch; a punch without one is rigid, and
         so is a body of E2 = "rigid"
     R1, R2 : in place of R, of two bodies: R = 1/(1/R1 + 1/R2), a cup negative, a flat body "flat"

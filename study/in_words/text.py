@@ -17,7 +17,7 @@ _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is th
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 _OF_ASPERITIES = ("p_max", "Ar_An")
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
-_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength")
+_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 #: What stands behind "indentation depth" where the punch yields too, or may.
 OF_BOTH = " (approach of both bodies)"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"

@@ -21,6 +21,9 @@ from solver.parameters import uses
 from .grid import Grid, along
 from .vocabulary import PARAMETERS, VOCABULARY
 
+#: What the answer is compared with: no case depends on it, but the flags in a results file do.
+STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
+
 
 def counts(grid: Grid, name: str) -> np.ndarray:
     """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
@@ -53,6 +56,8 @@ def digest_of(definition) -> str:
         "dtype": definition.dtype,
     }
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
+    compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
+    content |= {"strengths": {name: digest_of_array(along(grid, name)) for name in compared}} if compared else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     return _digest_of_scene(digest, definition.scene) if definition.scene else digest

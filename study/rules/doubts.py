@@ -16,8 +16,9 @@ _REAL |= dict.fromkeys(("R", "Ra"), (1e-10, 1e3, "radii of bodies are 0.1 nm to 
 _REAL |= {"h": (5e-11, 1e3, "layers are 0.05 nm to 1 km thick")}
 _RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
 #: What may have a spread: inputs with a unit that cannot be zero, and Poisson ratios.
+_STRENGTHS = ("hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 _LENGTHS = ("a", "D", "h", "Ra", "sigma", "R", "R1", "R2")
-_SPREAD = ("P", *_LENGTHS, "Nbar", "E1", "E2", "E_punch", "hardness", "yield_strength", *_RATIOS)
+_SPREAD = ("P", *_LENGTHS, "Nbar", "E1", "E2", "E_punch", *_STRENGTHS, *_RATIOS)
 #: The yield strength is below E/50 of every metal. Plastics, rubber and gels, softer than 10 GPa, bear a larger share.
 YIELD, STIFF = 0.03, 1e10
 

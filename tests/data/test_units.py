@@ -16,7 +16,21 @@ SCALE = {"R": 5e-3, "E2_star": 2e11}
 FACTORS = {
     **dict.fromkeys(("a", "D", "h", "Ra", "sigma", "A0", "b0", "r_ring", "D_body"), 5e-3),  # m
     **dict.fromkeys(
-        ("p0", "p_max", "p", "p_mean", "p_peak", "p_ring", "E_eff", "hardness", "yield_strength"), 2e11
+        (
+            "p0",
+            "p_max",
+            "p",
+            "p_mean",
+            "p_peak",
+            "p_ring",
+            "E_eff",
+            "hardness",
+            "yield_strength",
+            "Y1",
+            "Y2",
+            "Y_punch",
+        ),
+        2e11,
     ),  # Pa
     "P": 5e6,  # N: 2e11 Pa (5e-3 m)²
     "Nbar": 4e4,  # 1/(5 mm)²

@@ -22,7 +22,7 @@ SIZES = {
     "km": 1e3, "m": 1.0, "mm": 1e-3, "µm": 1e-6, "nm": 1e-9, "kN": 1e3, "N": 1.0, "mN": 1e-3, "µN": 1e-6, "nN": 1e-9,
     "GPa": 1e9, "MPa": 1e6, "kPa": 1e3, "Pa": 1.0, "MN/m": 1e6, "kN/m": 1e3, "N/m": 1.0, "mN/m": 1e-3, "": 1.0,
 }  # fmt: skip
-#: Masks that the page looks at; the others are of thin layers and cups, which it does not have.
+#: Masks that the page looks at; the others are of thin layers, cups and strengths, which it does not have.
 LOOKED_AT = {"few_spots", "spot_not_small_against_h", "spots_merging", "strain_not_small"}
 LOOKED_AT |= {"asperity_strain_not_small", "pitch_not_small_against_h"}
 SHOWN = """async (hash) => {

@@ -16,7 +16,6 @@ NONE_HERE = {
         "sigma_y",
         "Sigma_Y",
         "Y",
-        "Y2",
         "yield_stress_layer",
         "H",
         "Hv",

@@ -19,7 +19,7 @@ DIMENSIONS = {
     "Ra": (LENGTH, "m"),
     "sigma": (LENGTH, "m"),
     "hardness": (PRESSURE, "Pa"),
-    "yield_strength": (PRESSURE, "Pa"),
+    **dict.fromkeys(("yield_strength", "Y1", "Y2", "Y_punch"), (PRESSURE, "Pa")),
     "p0": (PRESSURE, "Pa"),
     "p_max": (PRESSURE, "Pa"),
     "A0": (LENGTH, "m"),
@@ -156,8 +156,8 @@ def test_labels_of_xarray_are_fit_for_a_plot():
 def test_parameters_are_in_their_order():
     """In this order they are columns of an inventory, and coordinates of a file."""
     assert " ".join(PARAMETERS) == (
-        "P a D h n m nu1 nu2 bonding base Nbar Ra micro B beta sigma cut hardness yield_strength scheme k rtol "
-        "accuracy model_check nodes max_iterations"
+        "P a D h n m nu1 nu2 Y1 Y2 Y_punch bonding base Nbar Ra micro B beta sigma cut hardness yield_strength scheme "
+        "k rtol accuracy model_check nodes max_iterations"
     )
     assert names("control") == ("P", "a", "D") and names("profile") == ("p", "lam")
 
@@ -180,7 +180,7 @@ LIMITS = {
     "sigma": (0, -1e-9, 10, 10.1),
     "cut": (3, 2.99, 5, 5.01),
     "hardness": (1e-15, 0.99e-15, 1e15, 1.01e15),
-    "yield_strength": (1e-15, 0.99e-15, 1e15, 1.01e15),
+    **dict.fromkeys(("yield_strength", "Y1", "Y2", "Y_punch"), (1e-15, 0.99e-15, 1e15, 1.01e15)),
     "k": (0, -1e-9, 1e6, 1.01e6),
     "rtol": (1e-12, 0.99e-12, 0.1, 0.101),
     "accuracy": (1e-12, 0, 0.999, 1),

@@ -22,6 +22,7 @@ USED = {
     "rtol": (1e-12, 0.1), "R": (1e-300, 1e300), "E2": (1e-300, 1e300), "nu1": (-0.9, 0.5), "nu2": (-0.9, 0.5),
     "accuracy": (1e-6, 0.5), "max_iterations": (1, 100_000), "sigma": (0.0, 1.0), "cut": (3.0, 5.0),
     "hardness": (1e-12, 1e12), "yield_strength": (1e-12, 1e12),
+    **dict.fromkeys(("Y1", "Y2", "Y_punch"), (1e-12, 1e12)),
 }  # fmt: skip
 BOUNDS = {name: ends(own.interval)[:2] for name, own in (CONTROL | PARAMETERS).items() if own.interval}
 X = np.linspace(0.0, 1.0, 5)
@@ -62,7 +63,7 @@ UNITS = {
     "Nbar": 0.25,
     "sigma": 2.0,
     "hardness": 4.0,
-    "yield_strength": 4.0,
+    **dict.fromkeys(("yield_strength", "Y1", "Y2", "Y_punch"), 4.0),
 }
 CASE = MAIN | {"base": "auto", "R": 2.0, "E2": 4.0}
 LAWS = dict.fromkeys(("sigma", "cut"), "normal_heights") | dict.fromkeys(

@@ -9,7 +9,7 @@ import numpy as np
 _NODES, _POINTS = 7, 33
 #: A patch shrinks so much once the largest value is inside it, until that has changed by less than _SAME of itself,
 #: which is far below the 1e-6 that is promised; or until a patch is smaller than _SMALLEST. It moves or shrinks at most
-#: _MOST times (tests/yields/test_extremes.py).
+#: _MOST times (tests/yields/test_largest_stresses.py).
 _SHRINK, _SAME, _SMALLEST, _MOST = 5.0, 1e-9, 1e-7, 40
 
 

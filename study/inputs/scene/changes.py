@@ -49,6 +49,8 @@ def changes(scene: Scene, name: str, fitted: bool = False) -> dict[str, Any]:
 
 
 def _slope(key: str, up: Any, down: Any, step: Any) -> Any:
+    if np.array_equal(np.asarray(up), np.asarray(down), equal_nan=True):  # most of them: labelled arrays are slow
+        return 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = (up - down if is_ratio(key) else np.log(np.divide(up, down))) / (2 * step)
     # NaN: of 0, or of a rigid body
@@ -61,7 +63,7 @@ def of_spreads(scene: Scene, fitted: bool) -> dict[str, dict[str, Any]]:
     for name, spread in scene.spreads.items():
         value = scene.given[name]
         part = spread if name in RATIOS else spread / (value + (value == 0))  # what is 0 has no spread
-        found[name] = {key: part * change for key, change in changes(scene, name, fitted).items()}
+        found[name] = {key: part * change for key, change in changes(scene, name, fitted).items() if np.any(change)}
     return found
 
 

@@ -92,6 +92,14 @@ def pressures(scaled, solution, a):
         yield rows, pressure, np.maximum(_OF_PROFILE * error, edge)
 
 
+def bodies_of(scaled, bare):
+    """Layer and body of cases, :class:`~solver.kernels.two_layers.TwoLayers`; of bare half-spaces two of one material,
+    bonded, whatever the problem says of an interface."""
+    if not bare:
+        return TwoLayers.of(scaled)
+    return TwoLayers(np.ones(len(scaled)), scaled.nu2, scaled.nu2, np.ones(len(scaled), dtype=bool))
+
+
 def _of_pressures(scaled, a, pressure, r, z, mu):
     """Yield indices of cases of one kind, and their fields, name -> (b, Z + 2, R): at z, and on both sides of the
     interface."""
@@ -103,13 +111,10 @@ def _of_pressures(scaled, a, pressure, r, z, mu):
     kinds = np.stack([bare, np.floor(np.log2(h)), *body.T], axis=1)
     _, kind = np.unique(kinds, axis=0, return_inverse=True)
     most = max(_AT_ONCE // (len(r) * depths.shape[1]), 1)
-    for one in range(kind.max() + 1):
-        index = np.flatnonzero(kind.ravel() == one)
+    for number in range(kind.max() + 1):
+        index = np.flatnonzero(kind.ravel() == number)
         for some in np.array_split(index, -(-len(index) // most)):
-            part, rows = scaled.take(some), (depths[some], body[some[0]])
-            layers = TwoLayers.of(part)
-            if bare[some[0]]:
-                layers = TwoLayers(np.ones(len(some)), part.nu2, part.nu2, np.ones(len(some), dtype=bool))
+            rows, layers = (depths[some], body[some[0]]), bodies_of(scaled.take(some), bare[some[0]])
             here = h[some], pressure._replace(values=pressure.values[some]), r, *rows
             G2 = np.where(rows[1], 1 - layers.nu2[:, None], (layer_modulus(layers.n) * (1 - layers.nu1))[:, None])
             field = normal.components(integrals(normal.NORMAL, layers, *here), G2[..., None])

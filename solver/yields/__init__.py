@@ -1,1 +1,1 @@
-"""Where and how large stresses are at most, and at which load a body yields: docs/stresses.md."""
+"""Where and how large stresses are at most (docs/stresses.md), and whether elastic asperities would yield."""

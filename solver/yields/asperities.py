@@ -51,10 +51,10 @@ def stress_on_axis(nu: ArrayLike, c: ArrayLike, ratio: ArrayLike, tension: Array
     -------
     numpy.ndarray : of the arguments broadcast
     """
-    arrays = np.broadcast_arrays(*(np.asarray(own, dtype=float) for own in (nu, c, ratio, tension)))
-    flat = [own.reshape(-1, 1) for own in arrays]
+    arrays = np.broadcast_arrays(*(np.asarray(array, dtype=float) for array in (nu, c, ratio, tension)))
+    flat = [array.reshape(-1, 1) for array in arrays]
     rows = (slice(first, first + _AT_ONCE) for first in range(0, len(flat[0]), _AT_ONCE))
-    parts = [_largest([own[some] for own in flat]) for some in rows]
+    parts = [_largest([array[some] for array in flat]) for some in rows]
     return np.concatenate([*parts, np.zeros(0)]).reshape(arrays[0].shape)
 
 

@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from ..fields.contact import pressures
-from ..kernels.two_layers import TwoLayers
+from ..fields.contact import bodies_of, pressures
 from ..scaling import dimensionless
 from ..status import Status
 from ..threads import one_blas_thread
@@ -46,12 +45,8 @@ def _alike(scaled, a, pressure, mu, residual):
     n = np.where(bare, 1.0, scaled.n)
     kinds = np.stack([bare, n == 0, np.floor(np.log2(h)), np.floor(np.log2(np.maximum(n, 1.0)))], axis=1)
     _, kind = np.unique(kinds, axis=0, return_inverse=True)
-    for one in range(kind.max() + 1):
-        index = np.flatnonzero(kind.ravel() == one)
+    for number in range(kind.max() + 1):
+        index = np.flatnonzero(kind.ravel() == number)
         for some in np.array_split(index, -(-len(index) // _TOGETHER)):
-            part = scaled.take(some)
-            layers = TwoLayers.of(part)
-            if bare[some[0]]:
-                layers = TwoLayers(np.ones(len(some)), part.nu2, part.nu2, np.ones(len(some), dtype=bool))
-            own = pressure._replace(values=pressure.values[some])
-            yield some, Loaded(layers, h[some], own, bool(bare[some[0]]), mu, residual[some])
+            layers, part = bodies_of(scaled.take(some), bare[some[0]]), pressure._replace(values=pressure.values[some])
+            yield some, Loaded(layers, h[some], part, bool(bare[some[0]]), mu, residual[some])

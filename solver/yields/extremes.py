@@ -35,8 +35,8 @@ EXTREMES = {
 _MAY_LACK, _NOTHING = ("s1_surface", "s1_layer", "sr_interface1", "tau_interface", "sz_interface_max"), 1e-11
 #: A second place of the coarse grid is looked at too where it has this part of the best.
 _RIVAL = 0.9
-#: The coarse grid, of STRESS 3.3 with more radii beyond the edge: radii in a; beyond the edge in lengths over which
-#: a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
+#: The coarse grid (tests/yields/test_largest_stresses.py finds all references from it): radii in a; beyond the edge in
+#: lengths over which a layer bends, h or n^(1/3) h; depths in a, in octaves of h, and below the interface in a.
 _RADII = np.array([0, 0.15, 0.3, 0.45, 0.6, 0.7, 0.8, 0.9, 0.95, 1, 1.05, 1.15, 1.3, 1.6])
 _BEYOND = np.array([0.25, 0.5, 1, 1.5, 2, 3, 4.5, 6.5])
 _DEPTHS = np.array([0.06, 0.12, 0.2, 0.3, 0.4, 0.48, 0.6, 0.8, 1.1])
@@ -85,7 +85,7 @@ def extremes(loaded, names=EXTREMES):
             peaks = [
                 p for start in _starts(i, value, kinds, coarse, grids) for p in [_refined(i, value, start, grids, fine)]
             ]
-            best = np.array(max(peaks, key=lambda found: found[0]))
+            best = np.array(max(peaks, key=lambda value_and_place: value_and_place[0]))
             if name == "sz_interface_min":
                 best[0] *= -1
             if name in _MAY_LACK and best[0] <= _NOTHING * largest:

@@ -44,13 +44,13 @@ def page() -> str:
 
 def contents() -> dict:
     """What the scripts take from the program: meshes, materials, bounds, limits of assumptions."""
-    known = (materials.get(name) for name in materials.names())
+    entries = (materials.get(name) for name in materials.names())
     numbers = ("name", "E", "nu", "E_spread", "nu_spread", "condition", "source")
     bounded = ("P", "a", "D", "h", "n", "m", "Nbar", "Ra")
     return {
         "version": package_version("roughcoat"),
         "meshes": {n: mesh(n) for n in NODES},
-        "materials": [{key: getattr(own, key) for key in numbers} for own in known],
+        "materials": [{key: getattr(entry, key) for key in numbers} for entry in entries],
         "bounds": {name: ends(VOCABULARY[name].own.interval)[:2] for name in bounded},
         "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
         "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
@@ -60,6 +60,6 @@ def contents() -> dict:
 
 def mesh(n: int) -> str:
     """The mesh of n nodes: s, x, w, edge (n,) and K (n, n) as float64, little endian, in base64."""
-    own = mesh_of(n)
-    numbers = np.concatenate([own.s, own.x, own.w, own.edge, own.K.ravel()])
+    points = mesh_of(n)
+    numbers = np.concatenate([points.s, points.x, points.w, points.edge, points.K.ravel()])
     return base64.b64encode(numbers.astype("<f8").tobytes()).decode("ascii")

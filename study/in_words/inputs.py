@@ -39,6 +39,7 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
     unknown_law = not np.isin(values("micro"), list(LAWS)).all()
     certain = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
     certain |= set(names("roughness")) if unknown_law else set()
+    certain |= {"hardness", "yield_strength"} if "micro" not in hidden else set()  # a rule compares with them
     return [
         name
         for name in all_inputs()

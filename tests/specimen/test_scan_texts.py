@@ -2,6 +2,7 @@
 
 import gzip
 import sys
+from itertools import product
 
 import numpy as np
 import pytest
@@ -36,12 +37,14 @@ def read(tmp_path, content, name="a.txt", encoding="utf-8", **given):
     return roughness.read(file, **given)
 
 
-@pytest.mark.parametrize("separator", [" ", ";", "\t", ","])
-@pytest.mark.parametrize("token", ["", "nan", "NaN", "Bad", "BAD", "bad", "***", "--", "-", " Bad "])
+SEPARATORS = (" ", ";", "\t", ",")
+TOKENS = ("", "nan", "NaN", "Bad", "BAD", "bad", "***", "--", "-", " Bad ")
+
+
+# between spaces there are no empty fields
+@pytest.mark.parametrize("token, separator", [pair for pair in product(TOKENS, SEPARATORS) if pair != ("", " ")])
 def test_a_missing_point_in_the_first_rows_is_one(tmp_path, token, separator):
     """These rows were taken for a heading: of 40 × 40 heights 30 × 40 were left."""
-    if separator == " " and not token:
-        pytest.skip("spaces have no empty fields")
     rows = table(Z)
     for i in range(10):
         rows[i][(5 * i) % 40] = token

@@ -68,6 +68,8 @@ def test_what_is_given_and_not_used_is_said():
     assert "\nNot used: Nbar = 2 1/µm², Ra = 10 µm, sigma = 10 nm\n\n" in text
     text = study.summary(quiet(**COATED | rough | {"micro": "disc_cell"}, P="10 N", x=2))
     assert "Ra = 10 µm\nNot used: sigma = 10 nm\n\n" in text
+    strong = study.summary(quiet(**COATED | rough | {"micro": "disc_cell", "hardness": "20 GPa"}, P="10 N", x=2))
+    assert "hardness = 20 GPa\nNot used: sigma = 10 nm\n\n" in strong, "a rule compares with it"
     text = study.summary(quiet(**COATED | {"base": "half_space"}, P="10 N", x=2))
     assert "\nNot used: E1 = 200 GPa, h = 2 µm\n\n" in text
     both = study.solve(P=1e-5, h=0.02, n=0.5, micro=["smooth", "power_law"], Nbar=250000, Ra=0.004, x=2)

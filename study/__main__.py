@@ -1,10 +1,11 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-point | explore | list | check | run | retry | status | verify | clean | plot | table | tradeoff.
+point | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot | table |
+tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (point, list, check, status, --dry-run).
+that do nothing but answer (point, scan, materials, docs, list, check, status, --dry-run).
 """
 
 import argparse
@@ -37,13 +38,13 @@ def parser() -> argparse.ArgumentParser:
     top.add_argument("--version", action=Version, nargs=0, help="say which version this is")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
 
-    def command(module: str, name: str, text: str, items: str = "") -> argparse.ArgumentParser:
+    def command(module: str, name: str, text: str, items: str = "", *, least: str = "+") -> argparse.ArgumentParser:
         sub = commands.add_parser(name.removesuffix("_"), help=text, description=text)
         sub.set_defaults(action=(module, name), items=[name])
         if items:
-            argument = sub.add_argument("items", nargs="+", metavar=items)
+            argument = sub.add_argument("items", nargs=least, metavar=items, default=[])
             argument.completer = partial(proposed, name)
-        if name not in ("point", "explore"):
+        if module not in ("point", "exploring", "reading"):
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
@@ -54,6 +55,11 @@ def parser() -> argparse.ArgumentParser:
     )
     sub = command("exploring", "explore", "write a page that solves contacts in a browser, without a network")
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
+    sub = command("reading", "scan", "measure the asperities of a scan of a rough surface", "FILE")
+    sub.usage = "%(prog)s FILE [NAME=VALUE ...]"
+    sub.epilog = "such as wafer.csv unit=um height_unit=nm cutoff='2.5 um'; all names: " + f"{program()} docs roughness"
+    command("reading", "materials_", "list the materials that are known by name; say all of one", "NAME", least="*")
+    command("reading", "docs", "list the pages of the documentation; show one: docs/model.md", "PAGE", least="*")
     sub = command("computing", "list_", "list the study files, their size and state")
     sub.add_argument("folder", type=folder, nargs="?", help="default: studies, or those of this package")
     command("checking", "check", "check study files without computing", "FILE")
@@ -79,6 +85,9 @@ def parser() -> argparse.ArgumentParser:
         sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
         if name == "plot":
             add_curves(sub)
+        else:
+            text = "of the rows of a study, or of a file .nc, that is named (default: csv)"
+            sub.add_argument("--format", choices=("csv", "xlsx"), default="csv", help=text)
     sub = command("drawing", "tradeoff", "measure error against time of every way to solve")
     sub.add_argument("--force", action="store_true", help="measure again what has been measured")
     return top

@@ -1,4 +1,4 @@
-"""The field of normal pressure: docs/stresses.md, Pressure."""
+"""The field of normal pressure: docs/stresses.md, Waves."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Pressures p(r) of cases on one mesh (a = 1), and what the fields need of them: docs/stresses.md, Pressure.
+"""Pressures p(r) of cases on one mesh (a = 1), and what the fields need of them: docs/stresses.md, Waves.
 
 p is the polynomial in s = sqrt(1 - r²) through the values at the nodes, one on each panel.
 """

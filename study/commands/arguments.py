@@ -11,6 +11,7 @@ from ..inputs.places import STUDIES, files_in, known_studies
 from ..terminal import on_one_line, say
 from ..work.scheduler import address_error
 
+SWITCH = {"true": True, "false": False}
 MOST_DIGITS = 9  # of a whole number: Python refuses to read 4301
 
 
@@ -71,6 +72,16 @@ def proposed(command: str, prefix: str, **_) -> list[str]:
         from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, names
 
         words = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]
+    elif command == "docs":
+        from ..pages import titles
+
+        words = list(titles())
+    elif command == "materials_":
+        from ..specimen import materials
+
+        words = list(materials.names())
+    elif command == "scan":
+        words = sorted(path.as_posix() for path in Path().iterdir())
     elif command in ("plot", "table"):
         from ..figures import beside
 

@@ -1,13 +1,11 @@
 """The commands that draw and tabulate results. Each takes one name and returns an exit code."""
 
 import logging
-import os
 import sys
 from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
-from xarray import Dataset
 
 from .. import catalogue
 from ..api import load
@@ -16,13 +14,12 @@ from ..figures import measured
 from ..figures.lines import drawn
 from ..figures.registry import is_measured, study_beside
 from ..figures.style import style
-from ..files.access import Unusable
-from ..files.results_file import open_results
 from ..inputs.definition import StudyError
 from ..inputs.grid import twins
 from ..inputs.places import known_studies, study_file
 from ..terminal import answer, on_one_line, say
 from .computing import completed
+from .rows import results_of, write_rows
 
 log = logging.getLogger(__name__)
 KINDS = {"plot": "figure", "table": "table"}
@@ -56,13 +53,9 @@ def _curves(options, name: str) -> int:
         raise StudyError(["curves of results need both --x and --y, such as --x P --y p_max"])
     for i, _ in twins([axis for axis, _ in options.where]):
         raise StudyError([f"--where {options.where[i][0]} is given twice"])
-    if Path(name).suffix == ".nc":
-        dataset = _of_file(name)
-    else:
-        study = load(study_file(name), options.results)
-        if options.run and (code := completed(study)):
-            return code
-        dataset = study.open()
+    dataset = results_of(options, name)
+    if isinstance(dataset, int):
+        return dataset
     stem, title = f"{Path(name).stem}_{options.y}", f"{Path(name).stem}: {options.y} against {options.x}"
     try:
         with style():
@@ -77,24 +70,16 @@ def _curves(options, name: str) -> int:
     return 0
 
 
-def _of_file(name: str) -> Dataset:
-    """The dataset of a results file, or of a netCDF file of another program."""
-    if not Path(os.path.expanduser(name)).exists():
-        raise StudyError([f"{name}: does not exist"])
-    try:
-        return open_results(name)
-    except Unusable as error:
-        raise StudyError(error.messages) if error.kind == "foreign" else error from None
-
-
 def _said(error: Exception) -> str:
     """What an exception says, and where to look."""
     return f"{type(error).__name__}: {on_one_line(str(error), 300)}; -v before the command shows where"
 
 
 def table(options, name: str) -> int:
-    """Write a table, and say which files it is in."""
-    return _write(options, name)
+    """Write a table, or the results of a study or of a file as rows, and say which files they are in."""
+    if name in catalogue.names("table") or not (Path(name).suffix == ".nc" or name in known_studies()):
+        return _write(options, name)
+    return write_rows(options, name)
 
 
 def tradeoff(options, name: str) -> int:

@@ -2,9 +2,11 @@
 
 import json
 import math
+import re
 import sys
 import warnings
 from argparse import ArgumentTypeError
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -13,15 +15,16 @@ from ..data.dataset import decode
 from ..data.derived import QUANTITIES
 from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
+from ..in_words.columns import columns
 from ..in_words.inputs import all_inputs
 from ..inputs.definition import StudyError
 from ..inputs.scene.names import INFINITE
 from ..solving import solve
 from ..terminal import answer, say
-from .arguments import assignment
+from .arguments import SWITCH, assignment
 
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
-_SWITCH = {"true": True, "false": False}
+_LIST = re.compile(r",\s")
 
 
 def items(options) -> list[list[str]]:
@@ -30,7 +33,7 @@ def items(options) -> list[list[str]]:
 
 
 def point(options, texts: list[str]) -> int:
-    """Solve the contact and say its numbers; exit code 1 if it has no solution."""
+    """Solve the contact and say its numbers; of lists of values a table. Exit code 1 if one has no solution."""
     parameters = parameters_of(texts)
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it; but that may take long
@@ -40,11 +43,21 @@ def point(options, texts: list[str]) -> int:
             contact = solve(**parameters)  # with the profile p, which may be largest in a ring
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
-    text = json.dumps(as_numbers(contact), indent=2, ensure_ascii=False) if options.json else summary(contact)
-    return answer(text) or (0 if int(contact["status"]) == 0 else 1)
+    text = _as_json(contact) if options.json else columns(contact) if contact["status"].dims else summary(contact)
+    return answer(text) or int((contact["status"] != 0).any())
 
 
-def parameters_of(texts: list[str]) -> dict[str, float | str | bool]:
+def _as_json(contacts: xr.Dataset) -> str:
+    """The numbers of a contact; of several a list, in the order of the words."""
+    if not contacts["status"].dims:
+        numbers: dict | list = as_numbers(contacts)
+    else:
+        cases = contacts.stack({"case": contacts["status"].dims}, create_index=False)
+        numbers = [as_numbers(cases.isel(case=i)) for i in range(cases.sizes["case"])]
+    return json.dumps(numbers, indent=2, ensure_ascii=False)
+
+
+def parameters_of(texts: list[str]) -> dict[str, Any]:
     """Arguments of `study.solve` from texts NAME=VALUE. Raises StudyError with a message for each that is none."""
     parameters, errors = {}, []
     for text in texts:
@@ -55,14 +68,29 @@ def parameters_of(texts: list[str]) -> dict[str, float | str | bool]:
             continue
         errors += [f"{name} is given twice"] * (name in parameters)
         if name == "same_piece":
-            errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in _SWITCH)
-            value = _SWITCH.get(str(value).lower())
+            errors += [f"{text}: must be same_piece=true or same_piece=false"] * (str(value).lower() not in SWITCH)
+            value = SWITCH.get(str(value).lower())
         elif name in solve.__kwdefaults__:
             errors.append(f"{name} says nothing of one contact: leave it out")
-        parameters[name] = value
+        parameters[name] = listed(value)
     if errors:
         raise StudyError(errors)
     return parameters
+
+
+def listed(value: float | str | bool) -> float | str | bool | list[str | float]:
+    """The values of a list: "1 N, 2 N" has two. Without a blank behind it a comma may be that of a decimal, "1,5 N"."""
+    if not isinstance(value, str) or not _LIST.search(value):
+        return value
+    return [float(part) if _is_number(part) else part for part in map(str.strip, value.split(","))]
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
 
 
 def as_numbers(contact: xr.Dataset) -> dict:

@@ -15,7 +15,7 @@ MOST_CASES = 20  # of a grid that a summary writes out
 SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is the largest error of
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
-_OF_ASPERITIES = ("p_max", "Ar_An")
+OF_ASPERITIES = ("p_max", "Ar_An")
 #: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
 _OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 #: What stands behind "indentation depth" where the punch yields too, or may.
@@ -90,7 +90,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     given = [*rigid, *(given_text(case, name) for name in inputs), *_pieces(case, used)]
     lines = ["Given: " + ", ".join(given)]
     lines += [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused) + [""]
-    names = [name for name in SHOWN if rough or name not in _OF_ASPERITIES]
+    names = [name for name in SHOWN if rough or name not in OF_ASPERITIES]
     names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
     rows = _rows(case, names)
     width = max(len(label) for label, _, _ in rows)

@@ -42,7 +42,7 @@ def run(folder: Path, *command) -> subprocess.CompletedProcess:
 def python(request, tmp_path_factory) -> Path:
     """The Python of an environment in which roughcoat has been installed, and what it needs is that of this one."""
     clone, home = tmp_path_factory.mktemp("clone"), tmp_path_factory.mktemp("home")
-    for name in ("roughcoat", "solver", "study", "studies"):
+    for name in ("roughcoat", "solver", "study", "studies", "docs"):
         shutil.copytree(ROOT / name, clone / name, ignore=shutil.ignore_patterns("__pycache__"))
     for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, clone)

@@ -36,7 +36,7 @@ def installed(tmp_path_factory) -> Path:
     """The packages as a wheel has them; where setuptools cannot build one, those of the repository."""
     clone, folder = tmp_path_factory.mktemp("clone"), tmp_path_factory.mktemp("installed")
     unwanted = shutil.ignore_patterns("__pycache__")
-    for name in ("roughcoat", "solver", "study", "studies"):
+    for name in ("roughcoat", "solver", "study", "studies", "docs"):
         shutil.copytree(ROOT / name, clone / name, ignore=unwanted)
     for name in ("pyproject.toml", "setup.py", "README.md", "LICENSE"):
         shutil.copy(ROOT / name, clone)

@@ -28,7 +28,10 @@ ROOMS = {
         *("sensitivity", "fields", "yields"),
     ),
     "study": (
-        *("terminal", "specimen", "inputs", "rules", "data", "again", "derivatives", "fields", "in_words", "files"),
+        *("terminal", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields", "in_words"),
+        *("files", "store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "explorer"),
+        *("commands", "__main__"),
+    ),
         *("store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "explorer"),
         *("commands", "__main__"),
     ),
@@ -84,10 +87,10 @@ def test_importing_the_solver_does_nothing_to_the_process(path):
 
 @pytest.mark.parametrize("path", STUDY, ids=name)
 def test_study_imports_what_is_declared(path):
-    """And extras in one file each: SurfaceTopography, which reads scans, and argcomplete, which serves shells."""
+    """And extras in one file each: SurfaceTopography, which reads scans, openpyxl, argcomplete, which serves shells."""
     allowed = {"numpy", "scipy", "xarray", "netCDF4", "dask", "matplotlib", "pint", "solver", "study"}
     allowed |= {"SurfaceTopography"} if path.name == "scan_files.py" else set()
-    allowed |= {"argcomplete"} if path.name == "__main__.py" else set()
+    allowed |= {"rows.py": {"openpyxl"}, "__main__.py": {"argcomplete"}}.get(path.name, set())
     allowed |= {"roughcoat"} if path.name in ("cluster.py", "lazy.py") else set()  # so that a worker takes our packages
     assert tops(path) - set(sys.stdlib_module_names) <= allowed
 

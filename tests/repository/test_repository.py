@@ -168,6 +168,8 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
         built = {path.relative_to(tmp_path) for path in (tmp_path / package).rglob("*")}
         assert ours - built == set()
     assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 21
+    pages = {path.name for path in (tmp_path / "study/docs").glob("*.md")}
+    assert pages == {path.name for path in (ROOT / "docs").glob("*.md")} and len(pages) > 12
     assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}
     assert PROJECT["project"]["scripts"] == {"roughcoat": "roughcoat.__main__:command"}
 

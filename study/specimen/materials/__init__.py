@@ -88,6 +88,20 @@ def markdown() -> str:
     return "\n".join(f"| {' | '.join(cell.replace('|', '/') for cell in row)} |" for row in rows)
 
 
+def in_words(entry: Material) -> str:
+    """All that is known of a material, a line each, for a terminal."""
+    name, E, nu, reduced = _numbers(entry)
+    lines = {"E": E, "nu": nu, "E/(1 - nu²)": reduced}
+    lines |= {
+        name.replace("_", " "): _in_multiples(value, getattr(entry, f"{name}_spread")) if value else "not known"
+        for name, value in ((name, getattr(entry, name)) for name in STRENGTHS)
+    }
+    lines |= {"also called": ", ".join(entry.also), "holds for": entry.condition, "source": entry.source}
+    lines |= {"read there": "yes" if entry.checked else "in part", "source of the strengths": entry.strength_source}
+    width = max(map(len, lines))
+    return "\n".join([entry.name, *(f"  {label:{width}}  {text}" for label, text in lines.items() if text)])
+
+
 @cache
 def _built_in() -> dict[str, Material]:
     text = resources.files(__package__).joinpath("materials.toml").read_text("utf-8")

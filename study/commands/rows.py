@@ -1,0 +1,80 @@
+"""The results of a study as rows, for a spreadsheet: what `table` writes where its name is that of a study."""
+
+import io
+import os
+from importlib.util import find_spec
+from pathlib import Path
+
+from xarray import Dataset
+
+from ..api import load
+from ..data.frames import frames
+from ..figures.formats import write
+from ..files.access import Unusable
+from ..files.results_file import open_results
+from ..inputs.definition import StudyError
+from ..inputs.places import study_file
+from ..terminal import answer
+from .computing import completed
+
+MOST_ROWS = 1_048_575
+"""Rows of a sheet of .xlsx, below its headings."""
+
+
+def results_of(options, name: str) -> Dataset | int:
+    """The results of a study, which `--run` computes first, or those in a file; an exit code if they do not get ready.
+
+    Raises StudyError if there are none.
+    """
+    if Path(name).suffix == ".nc":
+        return _of_file(name)
+    study = load(study_file(name), options.results)
+    if options.run and (code := completed(study)):
+        return code
+    return study.open()
+
+
+def _of_file(name: str) -> Dataset:
+    """The dataset of a results file, or of a netCDF file of another program."""
+    if not Path(os.path.expanduser(name)).exists():
+        raise StudyError([f"{name}: does not exist"])
+    try:
+        return open_results(name)
+    except Unusable as error:
+        raise StudyError(error.messages) if error.kind == "foreign" else error from None
+
+
+def write_rows(options, name: str) -> int:
+    """Write a row for each contact, and one for each point of each profile, and say which files they are in."""
+    if options.format == "xlsx" and find_spec("openpyxl") is None:
+        raise StudyError(["table --format xlsx needs openpyxl: pip install 'roughcoat[xlsx]', or leave it out for CSV"])
+    dataset = results_of(options, name)
+    if isinstance(dataset, int):
+        return dataset
+    if "status" not in dataset:
+        raise StudyError([f"{name}: this dataset is not one of contacts: it has no status"])
+    tables, stem = frames(dataset), Path(options.folder) / Path(name).stem
+    if options.format == "csv":
+        names = {kind: stem.with_name(f"{stem.name}{f'_{kind}' * (kind != 'contacts')}.csv") for kind in tables}
+        answer(*(write(names[kind], table.to_csv(index=False)) for kind, table in tables.items()))
+        return 0
+    for kind, table in tables.items():
+        if len(table) > MOST_ROWS:
+            rows = f"{len(table)} rows of {kind}"
+            raise StudyError([f"{name}: {rows}; a sheet of .xlsx has at most {MOST_ROWS}: leave out --format xlsx"])
+    answer(write(stem.with_suffix(".xlsx"), _workbook(tables)))
+    return 0
+
+
+def _workbook(tables: dict) -> bytes:
+    """A sheet for each table."""
+    from openpyxl import Workbook  # an extra, found above
+
+    page, book = io.BytesIO(), Workbook(write_only=True)
+    for kind, table in tables.items():
+        sheet = book.create_sheet(kind)
+        sheet.append([*table.columns])
+        for row in table.itertuples(index=False):
+            sheet.append([None if cell != cell else cell for cell in row])
+    book.save(page)
+    return page.getvalue()

@@ -1,0 +1,35 @@
+"""Several contacts as a table for a terminal: a line for each, with units and ±."""
+
+import numpy as np
+import xarray as xr
+
+from ..data.dataset import decode
+from ..inputs.laws import smooth_laws
+from .numbers import given_text, result_text
+from .text import MOST_CASES, OF_ASPERITIES, SHOWN
+
+
+def columns(contacts: xr.Dataset) -> str:
+    """A line for each contact of a grid: what differs, the results that `summary` has, status and validity.
+
+    contacts : of `study.solve`, over one dimension or more; above 20 the last lines are counted, not written
+    """
+    dims = list(contacts["status"].dims)
+    cases = contacts.stack({"case": dims}, create_index=False)
+    shown = [cases.isel(case=i) for i in range(min(cases.sizes["case"], MOST_CASES))]
+    smooth = all(case["micro"].values in smooth_laws() for case in shown)
+    names = [name for name in SHOWN if name not in dims and not (smooth and name in OF_ASPERITIES)]
+    rows = [[*dims, *names, "status", "validity"], *(_row(case, dims, names) for case in shown)]
+    if not any(row[-1] for row in rows[1:]):
+        rows = [row[:-1] for row in rows]
+    widths = [max(map(len, cells)) for cells in zip(*rows, strict=True)]
+    lines = ["  ".join(f"{cell:{w}}" for cell, w in zip(row, widths, strict=True)).rstrip() for row in rows]
+    more = cases.sizes["case"] - len(shown)
+    return "\n".join([*lines, *[f"... and {more} more contacts"] * bool(more)])
+
+
+def _row(case: xr.Dataset, dims: list, names: list[str]) -> list[str]:
+    """The cells of one contact. A result that is not known stands as "-"."""
+    inputs = [given_text(case, dim).removeprefix(f"{dim} = ").removeprefix(f"{dim} of ") for dim in dims]
+    results = [result_text(case, name) if np.isfinite(case[name]) else "-" for name in names]
+    return [*inputs, *results, str(decode(case["status"]).values), str(decode(case["validity"]).values)]

@@ -1,0 +1,140 @@
+"""Several contacts from the command line: lists in `point`, and the rows of a study for a spreadsheet."""
+
+import csv
+import json
+
+import numpy as np
+import pytest
+from test_cli import GOOD, studies  # noqa: F401
+
+import study
+from study.__main__ import main
+from study.commands import rows
+from study.in_words.columns import columns
+
+BALL = {"R": "5 mm", "E2": "70 ± 7 GPa", "nu2": 0.33, "base": "half_space", "micro": "smooth"}
+WORDS = [f"{name}={value}" for name, value in BALL.items()]
+
+
+def cells(line: str) -> list[str]:
+    return [cell for cell in line.split("  ") if cell]
+
+
+def test_a_list_is_a_table_of_the_contacts(capsys):
+    """Each cell is what `point` says of that load alone."""
+    assert main(["point", *WORDS, "P=1 N, 2 N,  5 N"]) == 0
+    head, *lines = capsys.readouterr().out.splitlines()
+    assert head.split() == ["P", "a", "D", "p0", "dP_dD", "status"]
+    assert [cells(line)[0] for line in lines] == ["1 N", "2 N", "5 N"]
+    for line in lines:
+        load, *found, status = cells(line)
+        assert main(["point", *WORDS, f"P={load}"]) == 0
+        alone = capsys.readouterr().out
+        assert all(f"= {text.strip()}\n" in alone for text in found) and status.strip() == "converged"
+
+
+def test_two_lists_are_all_their_contacts(capsys):
+    given = [word for word in WORDS if not word.startswith("E2")]
+    assert main(["point", *given, "E2=70 GPa, 210 GPa", "P=1 N, 2 N"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [[cell.strip() for cell in cells(line)[:2]] for line in lines[1:]] == [
+        [load, E2] for load in ("1 N", "2 N") for E2 in ("70 GPa", "210 GPa")
+    ]
+
+
+def test_numbers_of_a_list_without_units(capsys):
+    assert main(["point", "--json", "P=1e-5, 2e-5", "base=half_space", "micro=smooth"]) == 0
+    found = study.solve(P=[1e-5, 2e-5], base="half_space", micro="smooth", x=2)
+    assert [contact["a"]["value"] for contact in json.loads(capsys.readouterr().out)] == found.a.values.tolist()
+
+
+def test_a_comma_without_a_blank_may_be_that_of_a_decimal(capsys):
+    assert main(["point", *WORDS, "P=1,5 N"]) == 2
+    assert capsys.readouterr().err.startswith('P = "1,5 N"')
+
+
+def test_one_contact_of_a_list_without_a_solution(capsys):
+    """The others are said; its results are no numbers."""
+    assert (
+        main(
+            [
+                "point",
+                "P=1e-5",
+                "h=0.01",
+                "nu1=0.4",
+                "n=0.5, 2",
+                "bonding=bonded",
+                "base=thin_layer",
+                "Nbar=250000",
+                "Ra=0.004",
+            ]
+        )
+        == 1
+    )
+    head, good, bad = capsys.readouterr().out.splitlines()
+    place = head.split().index("a")
+    assert good.split()[place + 4] != "-" and "converged" in good
+    assert cells(bad)[2].strip() == "-" and "converged" not in bad
+
+
+def test_a_long_list_is_cut():
+    contacts = study.solve(**BALL, P=[f"{load} N" for load in range(1, 26)], x=2)
+    lines = columns(contacts).splitlines()
+    assert len(lines) == 22 and lines[-1] == "... and 5 more contacts"
+
+
+@pytest.fixture
+def results(studies, capsys):  # noqa: F811
+    """The results of the study "good"."""
+    assert main(["run", "good"]) == 0
+    capsys.readouterr()
+    return study.load("good").open()
+
+
+def test_a_study_as_rows(results, capsys):
+    assert main(["table", "good"]) == 0
+    assert capsys.readouterr().out.splitlines() == ["tables/good.csv", "tables/good_profiles.csv"]
+    with open("tables/good.csv", encoding="utf-8", newline="") as file:
+        contacts = list(csv.DictReader(file))
+    assert [float(row["a (R)"]) for row in contacts] == results.a.values.tolist()
+    assert [float(row["P (E2* R^2)"]) for row in contacts] == results.P.values.tolist()
+    assert {row["status"] for row in contacts} == {"converged"} and next(iter(contacts[0])) == "P (E2* R^2)"
+    with open("tables/good_profiles.csv", encoding="utf-8", newline="") as file:
+        points = list(csv.DictReader(file))
+    expected = results.p.transpose("P", "x").values
+    assert np.array_equal([float(row["p (E2*)"]) for row in points], expected.ravel())
+    assert len(points) == expected.size and {"x", "lam"} <= {name.split()[0] for name in points[0]}
+
+
+def test_a_file_of_results_as_rows_with_units_and_spreads(studies, capsys):  # noqa: F811
+    contact = study.solve(**BALL, P="10 N")
+    contact.to_netcdf("steel.nc")
+    assert main(["table", "steel.nc"]) == 0
+    with open("tables/steel.csv", encoding="utf-8", newline="") as file:
+        heads, row = csv.reader(file)
+    assert heads.index("a_spread (m)") == heads.index("a (m)") + 1
+    assert float(row[heads.index("a_spread (m)")]) == contact.a_spread.item()
+    assert float(row[heads.index("E2_spread (Pa)")]) == 7e9
+
+
+def test_rows_of_xlsx(results, capsys):
+    openpyxl = pytest.importorskip("openpyxl")
+    assert main(["table", "good", "--format", "xlsx"]) == 0
+    assert capsys.readouterr().out == "tables/good.xlsx\n"
+    book = openpyxl.load_workbook("tables/good.xlsx")
+    assert book.sheetnames == ["contacts", "profiles"]
+    heads, *lines = book["contacts"].values
+    assert [line[heads.index("a (R)")] for line in lines] == pytest.approx(results.a.values, rel=1e-15)
+
+
+def test_what_cannot_be_written_as_rows(results, monkeypatch, capsys):
+    results[["a"]].to_netcdf("no_status.nc")
+    assert main(["table", "no_status.nc"]) == 2
+    assert capsys.readouterr().err == "no_status.nc: this dataset is not one of contacts: it has no status\n"
+    monkeypatch.setattr(rows, "find_spec", lambda _: None)
+    assert main(["table", "good", "--format", "xlsx"]) == 2
+    assert capsys.readouterr().err.startswith("table --format xlsx needs openpyxl: pip install 'roughcoat[xlsx]'")
+    monkeypatch.setattr(rows, "find_spec", lambda _: True)
+    monkeypatch.setattr(rows, "MOST_ROWS", 2)
+    assert main(["table", "good", "--format", "xlsx"]) == 2
+    assert capsys.readouterr().err.startswith("good: 3 rows of contacts; a sheet of .xlsx has at most 2: ")

@@ -32,9 +32,6 @@ ROOMS = {
         *("files", "store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "explorer"),
         *("commands", "__main__"),
     ),
-        *("store", "work", "carried", "lazy", "solving", "figures", "api", "catalogue", "explorer"),
-        *("commands", "__main__"),
-    ),
 }
 #: Rooms that do not know each other, though both are to the left of others.
 APART = {"body": {"laws"}, "kernels": {"laws", "punches"}, "edges": {"laws", "punches"}}

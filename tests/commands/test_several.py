@@ -75,6 +75,7 @@ def test_one_contact_of_a_list_without_a_solution(capsys):
     place = head.split().index("a")
     assert good.split()[place + 4] != "-" and "converged" in good
     assert cells(bad)[2].strip() == "-" and "converged" not in bad
+    assert head.split()[-1] == "validity" and bad.endswith("n_not_below_one")
 
 
 def test_a_long_list_is_cut():

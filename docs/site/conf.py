@@ -1,4 +1,4 @@
-"""Settings of the site that `make docs` builds: Sphinx reads the pages of docs/ as they are, and those of reference.py."""
+"""Settings of the site that `make docs` builds: Sphinx reads docs/ as it is, and the pages of reference.py."""
 
 import re
 import sys
@@ -74,7 +74,9 @@ def _mathjax(app, error) -> None:
 
 def _plain(app, what, name, thing, options, lines) -> None:
     """Docstrings are plain text: E2* begins no emphasis, |x| is no substitution."""
-    lines[:] = [line if line.lstrip().startswith(">>>") else re.sub(r"(?<!`)([*|])(?!`)", r"\\\1", line) for line in lines]
+    lines[:] = [
+        line if line.lstrip().startswith(">>>") else re.sub(r"(?<!`)([*|])(?!`)", r"\\\1", line) for line in lines
+    ]
 
 
 def _links_out(app, docname, source) -> None:

@@ -1,4 +1,4 @@
-"""The pages of the site that are made of the code: public names, command line, parameters, statuses, validity, files."""
+"""Pages of the site that are made of the code: public names, command line, parameters, statuses, validity, files."""
 
 import argparse
 import inspect
@@ -39,7 +39,7 @@ def write(folder: Path) -> None:
 
 
 def links_inside(text: str, page: str) -> str:
-    """A page of docs/ without links out of docs/: README becomes the start, other files of the repository their names."""
+    """A page of docs/ without links out of docs/: README becomes the start, other files become their names."""
     if page == "index":  # it includes README.md, which stands one folder up
         return text
     text = re.sub(r"\]\(\.\./README\.md(#[^)]*)?\)", r"](index.md)", text)
@@ -49,7 +49,9 @@ def links_inside(text: str, page: str) -> str:
 def table(heads: list[str], rows: list[list[str]]) -> str:
     """A table in Markdown."""
     lines = [heads, ["---"] * len(heads), *rows]
-    return "\n".join(f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in line)} |" for line in lines) + "\n"
+    return (
+        "\n".join(f"| {' | '.join(str(cell).replace('|', chr(92) + '|') for cell in line)} |" for line in lines) + "\n"
+    )
 
 
 def names() -> Iterator[tuple[str, str]]:
@@ -169,8 +171,8 @@ def file_format() -> str:
     flags = ", ".join(f"`{name}`" for name, kind in kinds.items() if kind or "flag_masks" in found[name].attrs)
     return f"""# File format
 
-`roughcoat run NAME` writes `results/NAME.nc`, netCDF-4. `xarray.open_dataset` and every other reader of netCDF-4 opens it.
-The dimensions are the axes of the study, and x = r/a of the profiles. Units are SI where the study has physical values;
+`roughcoat run NAME` writes `results/NAME.nc`, netCDF-4. `xarray.open_dataset` and every other reader of netCDF-4 opens
+it. The dimensions are the axes of the study, and x = r/a of the profiles. Units are SI where the study has physical values;
 otherwise the attribute `scale` says in what a number is measured, such as `E2* R^2`. {flags} are flags after the
 conventions CF: `flag_values` or `flag_masks`, and `flag_meanings`.
 

@@ -25,7 +25,7 @@ def peak(stresses, value, start, half, region):
     before = np.nan
     for _ in range(_MOST):
         ends = np.maximum(centre - half, low), np.minimum(centre + half, high)
-        axes = [_on(*end, nodes(_NODES)) if end[1] > end[0] else end[:1] for end in zip(*ends, strict=True)]
+        axes = [_on(*end, chebyshev_nodes(_NODES)) if end[1] > end[0] else end[:1] for end in zip(*ends, strict=True)]
         largest, place = in_patch(stresses(*axes), value)
         centre = np.array([_on(*end, p) for *end, p in zip(*ends, place, strict=True)])
         outside = (np.abs(place) == 1) & (centre > low) & (centre < high)
@@ -45,14 +45,14 @@ def _on(low, high, place):
 
 
 @lru_cache(maxsize=8)
-def nodes(count):
+def chebyshev_nodes(count):
     """Chebyshev's nodes in [-1, 1], with both ends."""
     return -np.cos(np.pi * np.arange(count) / (count - 1))
 
 
 @lru_cache(maxsize=8)
 def _inverse(count):
-    return np.linalg.inv(np.polynomial.chebyshev.chebvander(nodes(count), count - 1))
+    return np.linalg.inv(np.polynomial.chebyshev.chebvander(chebyshev_nodes(count), count - 1))
 
 
 def between(points, count):

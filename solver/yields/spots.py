@@ -13,13 +13,13 @@ from ..status import Status
 from ..threads import one_blas_thread
 from .asperities import POINTS, hertz_part
 from .contact import alike
-from .peaks import between, in_patch, nodes
+from .peaks import between, chebyshev_nodes, in_patch
 
 #: Spots that are looked at: at so many radii r, nodes of the angle arcsin(r/a), and at so many depths between these, in
 #: b. The stresses are polynomials through these (tests/yields/test_spots.py has twice as many).
 _SPOTS, _DEPTHS, _ENDS = 17, 20, (0.1, 1.5)
-_RADII = np.sin(np.pi / 4 * (1 + nodes(_SPOTS)))
-_Z = _ENDS[0] + (_ENDS[1] - _ENDS[0]) * (1 + nodes(_DEPTHS)) / 2
+_RADII = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_SPOTS)))
+_Z = _ENDS[0] + (_ENDS[1] - _ENDS[0]) * (1 + chebyshev_nodes(_DEPTHS)) / 2
 #: The stress of the contact as a whole, between the surface and the deepest place, is a polynomial through so many
 #: depths; through few where b is below _SMALL a.
 _MANY, _FEW, _SMALL = 8, 4, 0.02
@@ -77,7 +77,7 @@ def _largest(loaded, nu, c, p0s, b):
     cell = _cell(nu[:, None], c, p0s, loaded.pressure.at(_RADII))
     count = _FEW if np.nanmax(b) < _SMALL else _MANY
     deepest = _ENDS[1] * np.nanmax(b, axis=1)
-    whole = loaded.stresses(_RADII, deepest[:, None] * (1 + nodes(count)) / 2, loaded.bare)
+    whole = loaded.stresses(_RADII, deepest[:, None] * (1 + chebyshev_nodes(count)) / 2, loaded.bare)
     made = np.full((3, len(c)), np.nan)
     for i in range(len(c)):
         spots = slice(None) if np.isfinite(c[i]).all() else slice(1)  # at all radii, or in the centre

@@ -9,7 +9,7 @@ from solver import Problem, solve
 from solver.fields.contact import of_contacts as fields_of
 from solver.yields import spots
 from solver.yields.asperities import hertz_part, stress_on_axis
-from solver.yields.peaks import nodes
+from solver.yields.peaks import chebyshev_nodes
 
 ROUGH = {"Nbar": 250000.0, "Ra": 0.004}
 LAYER = {"h": 0.02, "n": [0.5, 5.0, 20.0], "nu1": 0.25, "nu2": 0.3, "bonding": "bonded"}
@@ -40,7 +40,7 @@ def test_half_as_many_spots_would_do(monkeypatch):
     usual = spots.of_contacts(problem, solution, mu=0.3)
     monkeypatch.setattr(spots, "_SPOTS", 33)
     monkeypatch.setattr(spots, "_MANY", 14)
-    monkeypatch.setattr(spots, "_RADII", np.sin(np.pi / 4 * (1 + nodes(33))))
+    monkeypatch.setattr(spots, "_RADII", np.sin(np.pi / 4 * (1 + chebyshev_nodes(33))))
     assert_allclose(spots.of_contacts(problem, solution, mu=0.3), usual, rtol=1e-6, atol=1e-9)
 
 

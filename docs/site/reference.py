@@ -173,8 +173,8 @@ def file_format() -> str:
 
 `roughcoat run NAME` writes `results/NAME.nc`, netCDF-4. `xarray.open_dataset` and every other reader of netCDF-4 opens
 it. The dimensions are the axes of the study, and x = r/a of the profiles. Units are SI where the study has physical
-values; otherwise the attribute `scale` says in what a number is measured, such as `E2* R^2`. {flags} are flags after the
-conventions CF: `flag_values` or `flag_masks`, and `flag_meanings`.
+values; otherwise the attribute `scale` says in what a number is measured, such as `E2* R^2`. {flags} are flags after
+the conventions CF: `flag_values` or `flag_masks`, and `flag_meanings`.
 
 These are the variables of the smallest study, two smooth contacts on a half-space:
 

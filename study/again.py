@@ -1,5 +1,6 @@
-"""Contacts of a dataset, solved again from the inputs that it has."""
+"""Contacts of a dataset, solved again from the inputs that it has; and their strengths."""
 
+from collections.abc import Mapping
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -7,6 +8,7 @@ import xarray as xr
 
 from solver import Problem
 from solver.laws import LAWS
+from solver.laws.elastic_plastic import TABOR
 
 from .inputs.definition import StudyError
 from .inputs.laws import recall
@@ -15,6 +17,8 @@ from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
+from .specimen import materials
+from .specimen.materials import Material
 from .terminal import shown
 
 
@@ -86,3 +90,42 @@ def _scene(inputs: dict[str, Any]) -> Scene:
 def of_all_cases(value: Any, dims: tuple, shape: tuple[int, ...]) -> np.ndarray:
     """A number, a text or a DataArray for all cases, (B,)."""
     return np.broadcast_to(over(value, dims), shape).ravel()
+
+
+STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
+"""Body -> the input that is its yield strength."""
+
+
+def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material]) -> dict[str, np.ndarray]:
+    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
+
+    That of asperities is of the softer of what meets there. A hardness is 2.84 yield strengths.
+
+    own : materials of the call by name, which the table need not have
+    """
+    unit = of_all_cases(again.scene.unit, again.dims, again.shape).astype(float) if again.scene else 1.0
+    named = {body: _of_materials(contact, again, body, own) / unit for body in STRENGTHS}
+    given = again.problem.parameters
+    found = {body: np.where(np.isnan(given[name]), named[body], given[name]) for body, name in STRENGTHS.items()}
+    bare = again.problem.base == "half_space"
+    softer = np.where(bare, named["body"], named["layer"])
+    softer = np.where(again.problem.m > 0, np.minimum(softer, named["punch"]), softer)
+    Y = np.where(np.isnan(given["yield_strength"]), given["hardness"] / TABOR, given["yield_strength"])
+    return found | {"asperities": np.where(np.isnan(Y), softer, Y)}
+
+
+def _of_materials(contact: xr.Dataset, again: Again, body: str, own: Mapping[str, Material]) -> np.ndarray:
+    """In Pa, (B,)."""
+    if body not in contact.coords or again.scene is None:
+        return np.full(len(again.problem), np.nan)
+    names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
+    known = {name: _strength(name, own) for name in np.unique(names)}
+    return np.array([known[name] for name in names])
+
+
+def _strength(name: str, own: Mapping[str, Material]) -> float:
+    try:
+        material = own.get(name) or materials.get(name)
+    except LookupError:  # of a file of the user
+        return np.nan
+    return material.yield_strength or (material.hardness or np.nan) / TABOR

@@ -18,10 +18,14 @@ def _folder():
 
 
 def titles() -> dict[str, str]:
-    """The name of each page, which is that of its file without .md, and its title."""
+    """The name of each page, which is that of its file without .md, and its title.
+
+    Pages without a title include a file that stands elsewhere in the repository, for the site.
+    """
     folder = _folder()
     pages = sorted(page.name for page in folder.iterdir() if page.name.endswith(".md")) if folder.is_dir() else []
-    return {name.removesuffix(".md"): _text(name).partition("\n")[0].lstrip("# ") for name in pages}
+    heads = {name.removesuffix(".md"): _text(name).partition("\n")[0] for name in pages}
+    return {name: head.removeprefix("# ") for name, head in heads.items() if head.startswith("# ")}
 
 
 def page(name: str) -> str:

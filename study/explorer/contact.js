@@ -291,16 +291,7 @@ const Contact = ((Core, DATA) => {
     if (rough) found.push(`The asperities really touch on a share ${show("Ar_An")} of that circle; in the central spot the pressure is ${show("p_max")}.`);
     if (contact.ring) found.push(`The layer bends like a plate: the largest nominal pressure, ${readable(contact.ring.p, "Pa", contact.digits)}, is in a ring at r = ${readable(contact.ring.r, "m", contact.digits)}.`);
     found.push(`Its stiffness dP/dD is ${show("dP_dD")}.`);
-    const moduli = Object.values(BODIES).map(([modulus]) => inputs.v[modulus]?.value).filter((E) => E !== undefined);
-    const notes = ["adhesion, and whether the bodies stay elastic"], strength = (p) => readable(p / DATA.limits.STRENGTHS, "Pa", 2);
-    if (Math.min(...moduli) >= DATA.limits.RUBBER) {
-      const p = contact.ring?.p ?? Q.p0, through = rough && case_.p.layered && contact.lights.some((row) => row.name === "pitch_not_small_against_h" && row.state === "beyond");
-      const who = [...(Number.isFinite(case_.E2) && !through ? [case_.p.layered ? "the body below" : "the body"] : []), ...(case_.p.m > 0 ? ["the ball"] : [])];
-      if (who.length) notes.push(`${who.join(" and ")} need${who.length > 1 ? "" : "s"} a yield strength above some ${strength(p)}`);
-      if (rough) notes.push(`what meets at the asperities${through ? ", and the body below so thin a layer," : ""} needs above some ${strength(contact.ring?.p_peak ?? Q.p_max)}`);
-      if (case_.p.layered) notes.push("the layer is not assessed: where it bends over a softer body it may need many times more");
-    }
-    found.push(`Not checked: ${notes.join("; ")}.`);
+    found.push("Not checked on this page: adhesion, and whether the bodies stay elastic. The command below says which of them is nearest to its limit, and at which load.");
     return found;
   }
 

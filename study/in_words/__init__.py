@@ -1,7 +1,6 @@
 """A contact in words: each quantity with its unit and how sure it is, how it was solved, and what it rests on."""
 
 from .early import FarOutside, far_outside
-from .pressures import STRENGTHS
 from .sentences import MODELS, NOT_VIOLATED, doubts
 from .text import MOST_CASES, SHOWN, Summary, summary
 
@@ -10,7 +9,6 @@ __all__ = [
     "MOST_CASES",
     "NOT_VIOLATED",
     "SHOWN",
-    "STRENGTHS",
     "FarOutside",
     "Summary",
     "doubts",

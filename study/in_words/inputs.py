@@ -32,14 +32,15 @@ def used_inputs(contacts: xr.Dataset) -> list[str]:
 
     hidden = {"R"} if "R1" in contacts else set()
     hidden |= {"n", "m"} if "E2" in contacts else set()
-    hidden |= {"m", "punch", "E_punch", "nu_punch"} if is_rigid(contacts, "punch") else set()
-    hidden |= {"n", "body", "E2", "nu2"} if is_rigid(contacts, "base") else set()
-    hidden |= {"layer", "E1", "nu1"} if (values("base") == "half_space").all() else set()
+    hidden |= {"m", "punch", "E_punch", "nu_punch", "Y_punch"} if is_rigid(contacts, "punch") else set()
+    hidden |= {"n", "body", "E2", "nu2", "Y2"} if is_rigid(contacts, "base") else set()
+    hidden |= {"layer", "E1", "nu1", "Y1"} if (values("base") == "half_space").all() else set()
     hidden |= {"micro"} if np.isin(values("micro"), smooth_laws()).all() else set()
     unknown_law = not np.isin(values("micro"), list(LAWS)).all()
     certain = {ratio for modulus, ratio, _ in BODIES.values() if modulus in contacts}
     certain |= set(names("roughness")) if unknown_law else set()
-    certain |= {"hardness", "yield_strength"} if "micro" not in hidden else set()  # a rule compares with them
+    certain |= {"hardness", "yield_strength"} if "micro" not in hidden else set()  # rules compare with them
+    certain |= {name for name in ("Y1", "Y2", "Y_punch") if name in contacts and np.isfinite(values(name)).any()}
     return [
         name
         for name in all_inputs()

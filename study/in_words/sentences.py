@@ -9,7 +9,8 @@ from ..data.si import ASSUMED
 from ..inputs.vocabulary import BODIES, VOCABULARY
 from ..rules import rule
 from .influence import influence
-from .pressures import RUBBER, largest_of_all, not_checked
+from .pressures import largest_of_all
+from .strength import RUBBER, holds, which_yields
 
 _BASES = {
     "half_space": "a half-space",
@@ -30,13 +31,16 @@ does not slide, and if it is soft it is then much stiffer: bonding = "bonded".'
 def doubts(contact: xr.Dataset) -> list[str]:
     """A sentence for each assumption of the model that some cases violate, and for inputs that nothing real has."""
     v = dict(contact.variables)  # arithmetic of DataArrays takes longer than solving a contact
-    return rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
+    found = rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
+    yields = rule.RULES["body_yields"].sentence
+    return [f"{text} {which_yields(contact)}".rstrip() if text.endswith(yields) else text for text in found]
 
 
-def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
+def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
     """How well the case is solved, by which model, and which assumptions it violates.
 
     judged : the quantities shown of which `error` is the largest error; p_max is among them where there are asperities
+    alone : whether it is no case of many; then it is said whether it holds
     """
     word, used = decode(case["status"]).item(), decode(case["model_used"]).item()
     if word == "converged":
@@ -58,7 +62,11 @@ def sentences(case: xr.Dataset, judged: list[str]) -> list[str]:
     beyond = doubts(case)
     found += [f"Beware: {sentence}" for sentence in beyond]
     found += [NOT_VIOLATED] * (not beyond and word == "converged")
-    found += [f"Not checked (docs/model.md, Limits): {not_checked(case, 'p_max' in judged)}."] * (word == "converged")
+    if word == "converged":
+        strength = holds(case) if alone else []
+        found += [f"Strength: {' '.join(strength)}"] * bool(strength)
+        unknown = ", and whether the bodies stay elastic" * (not strength)
+        found.append(f"Not checked (docs/model.md, Limits): adhesion{unknown}.")
     return found + [f"Assumed: {sentence}" for sentence in _assumed(case.variables)]
 
 

@@ -95,7 +95,7 @@ def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     rows = _rows(case, names)
     width = max(len(label) for label, _, _ in rows)
     lines += [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
-    return "\n".join([*lines, "", *sentences(case, [name for name in names if name in _JUDGED])])
+    return "\n".join([*lines, "", *sentences(case, [name for name in names if name in _JUDGED], not dims)])
 
 
 def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:

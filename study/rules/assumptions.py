@@ -2,10 +2,6 @@
 
 import numpy as np
 
-from solver.laws import LAWS
-from solver.laws.elastic_plastic import TABOR
-from solver.yields.asperities import hertz_part, stress_on_axis
-
 from ..inputs.vocabulary import ROWS
 from .rule import have, rule
 
@@ -127,17 +123,3 @@ def wide_in_cup(v, times):
     """The contact is wide against the smaller body (a > {STEEP:g} of its radius), as in a cup that fits closely: the
     bodies are no half-spaces there."""
     return v["a"] > times * STEEP * np.minimum(np.abs(v["R1"]), np.abs(v["R2"]))
-
-
-@rule(1024, "asperities would yield", "0.65")
-def asperities_yield(v, times):
-    """The asperities would yield: on the axis of the largest spot the stress exceeds the yield strength, from hardness
-    or yield_strength. The real area is then larger than this one, and pmax smaller (micro = "elastic_plastic")."""
-    Y = np.where(np.isnan(v["yield_strength"]), v["hardness"] / TABOR, v["yield_strength"])
-    elastic = have("rough", v["micro"]) & ~np.isin(v["micro"], [name for name, law in LAWS.items() if law.yielded])
-    if not np.any(np.isfinite(Y) & elastic):
-        return np.False_
-    E = np.where(v["layered"], v["E1*"], 1.0) / (1 + v["m"])
-    p0s, c = hertz_part(v["p_max"], v["p0"], E, v["Nbar"], v["Ra"])
-    nu = np.where(v["layered"], v["nu1"], v["nu2"])
-    return elastic & (p0s * stress_on_axis(nu, c, v["p0"] / p0s) > times * Y)

@@ -10,7 +10,7 @@ from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
 from solver.yields.protect import protection
 
-from ..again import Again, of_all_cases
+from ..again import Again, of_all_cases, strengths
 from ..fields import carried, friction, residual_stress, units_of
 from ..in_words import FarOutside
 from ..inputs.definition import StudyError
@@ -18,7 +18,6 @@ from ..inputs.given import Given
 from ..inputs.vocabulary import CONTROLS
 from ..solving import solve
 from ..specimen.materials import Material
-from .strengths import strengths
 
 BODIES = {"layer": "_Y1", "body": "_Y2", "asperities": "_Ya", "punch": "_Y_punch"}
 """What may yield, in the order of the codes of `first_yield` -> the end of the names of its numbers."""

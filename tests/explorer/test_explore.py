@@ -31,7 +31,7 @@ def test_the_page_is_small_and_whole():
     assert text.count("</script>") == 1, "no text in the data ends the script"
 
 
-@pytest.mark.parametrize("limit", ["STEEP", "YIELD", "STRENGTHS"])
+@pytest.mark.parametrize("limit", ["STEEP", "YIELD", "RING"])
 def test_limits_are_those_of_the_program(limit):
     from study.in_words import pressures
     from study.rules import assumptions, doubts

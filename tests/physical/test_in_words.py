@@ -216,6 +216,10 @@ def test_stacked_cases_and_lost_attributes():
 def test_inputs_that_xarray_has_made_variables_or_dropped():
     """All inputs were said to be not used, and a missing one was a KeyError."""
     one = quiet(**COATED, P="1 N", x=2)
-    assert str(study.summary(one.reset_coords())) == study.summary(one)
+    without = [line for line in study.summary(one).splitlines() if not line.startswith(("Strength", "Not checked"))]
+    said = str(study.summary(one.reset_coords())).splitlines()
+    assert [line for line in said if not line.startswith("Not checked")] == without, (
+        "solved again from coordinates alone"
+    )
     with pytest.raises(ValueError, match="not one of contacts: it has no micro"):
         study.summary(one.drop_vars("micro"))

@@ -38,6 +38,7 @@ WORDS = {  # of the legend, by the masks of `validity`
     64: r"spots steep, $b > 0.5\,R_a$",
     128: r"asperities far apart, pitch $> 2\,h$",
     256: r"wide in a cup, $a > 0.2\,\min(|R_1|, |R_2|)$",
+    512: "a body would yield",
     1024: "asperities would yield",
 }
 NOTED = WORDS | {1: WORDS[1] + r" in $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$"}  # above the axes

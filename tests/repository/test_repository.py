@@ -15,8 +15,8 @@ from lowest import lowest
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 LOCK = (ROOT / "requirements.lock").read_text(encoding="utf-8")
 TARGETS = ("help", "setup", "figures", "table1", "paper_numbers", "validity", "map", "extremes", "tradeoff",
-           "picard_domain", "literature", "validate", "test", "explorer-test", "check", "kernels", "lowest", "mutants",
-           "fresh_mutants", "fuzz", "bench", "speed", "lint", "clean")  # fmt: skip
+           "picard_domain", "literature", "yield_maps", "validate", "test", "explorer-test", "check", "kernels",
+           "lowest", "mutants", "fresh_mutants", "fuzz", "bench", "speed", "lint", "clean")  # fmt: skip
 
 
 def make(folder: Path, *arguments: str) -> subprocess.CompletedProcess:
@@ -74,6 +74,7 @@ def calls(folder: Path) -> list[str]:
         ("tables/validity.txt", ["table --run validity"]),
         ("picard_domain", ["plot --run picard_domain"]),
         ("map", ["run parameter_map"]),
+        ("yield_maps", ["plot --run first_yield what_fails_first"]),
         ("results/mine.nc", ["run mine"]),
     ],
 )

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 
 import study
 from study.figures.stresses.picture import drawn
+from study.figures.stresses.places import of_one_contact
 from study.inputs.definition import StudyError
 
 COATED = {"P": 1e-5, "h": 0.02, "n": 4.0, "nu1": 0.25, "bonding": "bonded", "micro": "smooth", "base": "layered"}
@@ -63,6 +64,15 @@ def test_maps_are_the_stresses_of_layer_and_body(coated):
         np.testing.assert_allclose(at, line.levels[2], rtol=0.05)  # it is straight between the nodes
     assert f"largest ${float(largest.mises1) / 1e-2:.3g}\\times10^{{-2}}\\,E_2^*$" in titles(panels)[0]
     assert panels[0].spines["bottom"].get_linewidth() == 2, "the interface"
+
+
+def test_the_maps_meet_at_the_interface_each_with_its_own_side(coated):
+    _, shown = of_one_contact(coated, 0.0, 0.0)
+    assert shown.layer.z[-1] == shown.body.z[0] == shown.h
+    fields = study.stresses(coated, r=shown.r, z=[0.0])
+    np.testing.assert_allclose(shown.layer.mises[-1], fields.mises_above, rtol=1e-12)
+    np.testing.assert_allclose(shown.body.mises[0], fields.mises_below, rtol=1e-12)
+    np.testing.assert_allclose(shown.layer.mises[0], fields.mises[:, 0], rtol=1e-12)
 
 
 def test_curves_are_the_stresses_of_surface_and_interface(coated):

@@ -74,7 +74,6 @@ def calls(folder: Path) -> list[str]:
         ("tables/validity.txt", ["table --run validity"]),
         ("picard_domain", ["plot --run picard_domain"]),
         ("map", ["run parameter_map"]),
-        ("yield_maps", ["plot --run first_yield what_fails_first"]),
         ("results/mine.nc", ["run mine"]),
     ],
 )
@@ -168,7 +167,7 @@ def test_what_is_installed_has_every_package_and_the_studies(tmp_path):
         ours = {path.relative_to(ROOT) for path in (ROOT / package).rglob("*") if "__pycache__" not in path.parts}
         built = {path.relative_to(tmp_path) for path in (tmp_path / package).rglob("*")}
         assert ours - built == set()
-    assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 21
+    assert contents(tmp_path / "study/studies") == contents(ROOT / "studies") and len(STUDIES) == 23
     pages = {path.name for path in (tmp_path / "study/docs").glob("*.md")}
     assert pages == {path.name for path in (ROOT / "docs").glob("*.md")} and len(pages) > 12
     assert {path.name for path in tmp_path.iterdir()} == {"roughcoat", "solver", "study"}

@@ -39,8 +39,8 @@ class Problem:
         solving the exact layer from there, on a coarse mesh
     micro = "disc_cell" : the law of Eqs (6) and (7); "smooth", no asperities; "power_law", A = B Ra (p/E1*)^beta (E2*
         without a layer); "square_lattice", "hex_lattice"; "normal_heights", "uniform_heights"; "elastic_plastic", the
-        first with asperities that yield while the load rises; or the name of a registered law, or such a
-        :class:`~solver.laws.Law` itself
+        first with asperities that yield while the load rises; or the name of a registered law, or a
+        `solver.Law` itself
     hardness, yield_strength : of the softer of asperity and what it presses on, of "elastic_plastic". One of both is
         enough: the hardness is then 2.84 times the yield strength
     B, beta : coefficient, without unit, and exponent, of the "power_law"

@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from .inputs.definition import StudyError
     from .solving import solve
     from .specimen import materials, roughness
+    from .yields.first import first_yield, h_protect
 
     __version__: str
 
@@ -44,7 +45,9 @@ __all__ = [
     "drawing",
     "extremes",
     "figure",
+    "first_yield",
     "from_physical",
+    "h_protect",
     "load",
     "materials",
     "open_results",
@@ -66,6 +69,8 @@ _HOME = {
     "solve": "solving",
     "sensitivities": "derivatives",
     "extremes": "fields",
+    "first_yield": "yields.first",
+    "h_protect": "yields.first",
     "stresses": "fields",
     "load": "api",
     "Study": "api",

@@ -86,14 +86,14 @@ def stresses(
     >>> round(study.stresses(contact, r=[0.0], z=[0.0]).sz.item() / contact.p0.item(), 9)
     -1.0
     """
-    mu = _friction(mu)
+    mu = friction(mu)
     r = _axis("r", _mirrored(_RADII) if r is None and mu > 0 else _RADII if r is None else r, mu > 0)
     z = _axis("z", _DEPTHS if z is None else z, False)
     again = Again.of(contact, "stresses")
-    unit, size = _units(again)
+    unit, size = units_of(again)
     solution = _solved(again, contact)
     fields = fields_of(again.problem, solution, np.abs(r), z, mu)
-    residual, bare = _residual(sigma_res, again) / unit, again.problem.base == "half_space"
+    residual, bare = residual_stress(sigma_res, again) / unit, again.problem.base == "half_space"
     within = (z <= (again.problem.h / solution.a)[:, None]) & ~bare[:, None]
     variables = {}
     places = ("", "r", "z"), ("_above", "r"), ("_below", "r")
@@ -117,7 +117,7 @@ def stresses(
         for name, axis in (("r", r), ("z", z)):
             about = {"long_name": "radius" if name == "r" else "depth", "units": "m"}
             coords[f"{name}_length"] = _labelled(again, lengths * axis, (name,), about)
-    return _carried(contact, variables).assign_coords(coords)
+    return carried(contact, variables).assign_coords(coords)
 
 
 _WHERE = {"": "", "_above": ", in the layer at the interface", "_below": ", in the body at the interface"}
@@ -154,9 +154,9 @@ def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0)
     >>> round(study.extremes(contact).mises2.item() / contact.p0.item(), 5)
     0.62004
     """
-    mu, again = _friction(mu), Again.of(contact, "extremes")
-    unit, _ = _units(again)
-    residual = _residual(sigma_res, again) / unit
+    mu, again = friction(mu), Again.of(contact, "extremes")
+    unit, _ = units_of(again)
+    residual = residual_stress(sigma_res, again) / unit
     values = extremes_of(again.problem, _solved(again, contact), mu, residual)
     variables = {}
     for name, long_name in _EXTREMES.items():
@@ -165,7 +165,7 @@ def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0)
         variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))
         variables[f"{name}_r"] = _labelled(again, r, (), place)
         variables[f"{name}_z"] = _labelled(again, z, (), {"long_name": f"{long_name}: its depth over a"})
-    return _carried(contact, variables)
+    return carried(contact, variables)
 
 
 def _solved(again: Again, contact: xr.Dataset) -> Any:
@@ -175,14 +175,14 @@ def _solved(again: Again, contact: xr.Dataset) -> Any:
     return replace(solution, status=np.where(there, solution.status, Status.INVALID_INPUT))
 
 
-def _units(again: Again) -> tuple[np.ndarray, np.ndarray]:
+def units_of(again: Again) -> tuple[np.ndarray, np.ndarray]:
     """The stress and the length that are 1 for the solver, (B,)."""
     scene = again.scene
     values = (scene.unit, scene.R) if scene else (1.0, 1.0)
     return tuple(of_all_cases(value, again.dims, again.shape).astype(float) for value in values)
 
 
-def _friction(mu: Any) -> float:
+def friction(mu: Any) -> float:
     if np.ndim(mu) or isinstance(mu, (str, bool)) or not (np.isfinite(mu) and mu >= 0):
         raise StudyError([f"mu = {shown(mu)}: must be a finite number, at least 0"])
     return float(mu)
@@ -205,7 +205,7 @@ def _axis(name: str, values: Any, signed: bool) -> np.ndarray:
     return values
 
 
-def _residual(sigma_res: Any, again: Again) -> float:
+def residual_stress(sigma_res: Any, again: Again) -> float:
     """In Pa, or without a unit where the contact has none."""
     sigma_res = plain(sigma_res)
     try:
@@ -231,7 +231,7 @@ def _labelled(again: Again, values: np.ndarray, axes: Any, about: dict[str, str]
     return xr.Variable((*again.dims, *axes), values.reshape((*again.shape, *values.shape[1:])), about)
 
 
-def _carried(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:
+def carried(contact: xr.Dataset, variables: dict[str, xr.Variable]) -> xr.Dataset:
     """A dataset of these variables with the coordinates of the contact; `x` is dropped."""
     dims = {*contact["status"].dims}
     left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - dims]

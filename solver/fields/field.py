@@ -13,13 +13,14 @@ _NEAR = 0.06
 _SURFACE = 1e-21
 
 
-def integrals(load, layers, h, pressure, r, z, body):
+def integrals(load, layers, h, pressure, r, z, body, roughly=False):
     """The integrals of a :class:`~.waves.Load` (fields, B, Z, R) on layers.
 
     layers : :class:`~solver.kernels.two_layers.TwoLayers` of B cases
     h : (B,), thickness in a; all of one octave
     pressure : :class:`~.pressure.Pressure` of the cases
     r : (R,), radii in a; z : (B, Z), depths; body : (Z,) bool, in the body. There it is NaN below a rigid base
+    roughly : some percent do
     """
     same = np.all((layers.n == 1) & (layers.nu1 == layers.nu2) & layers.bonded)
     z = np.where(z < _SURFACE, 0.0, z)
@@ -31,7 +32,7 @@ def integrals(load, layers, h, pressure, r, z, body):
     waves, closed = np.flatnonzero(~(near & same)), np.flatnonzero(near)
     if len(waves):
         rows = [Row(Kind(kinds[i]), z[:, i]) for i in waves]
-        whole[:, :, waves] = of_waves(load, layers, h, pressure, r, rows)
+        whole[:, :, waves] = of_waves(load, layers, h, pressure, r, rows, roughly)
     alike = np.all(z[:, closed] == z[:1, closed])  # depths that all cases share are one batch
     for case in [slice(None)] if alike else map(slice, range(len(h)), range(1, len(h) + 1)):
         if len(closed):

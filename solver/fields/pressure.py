@@ -21,6 +21,8 @@ _MORE = 16
 #: distribution with the width _WIDE/k, whose own waves and tails are 1e-14. So p^ takes as long at any k
 #: (tests/fields/test_half_space.py).
 _LONG, _WINDOW, _WIDE = 500.0, 120.0, 8.0
+#: Rows of so many numbers in all are kept for other cases and other points.
+_KEPT = 250_000
 #: An edge pressure below this part of the largest is rounding, and would make stresses infinite at the edge.
 _ROUNDING = 1e-12
 
@@ -36,20 +38,11 @@ class Pressure(NamedTuple):
         first = max(_LONG, self.mesh.order**2 / 50)  # of shorter waves the polynomial has none but at the edge
         octaves = first * 2.0 ** np.arange(max(np.ceil(np.log2(k[-1] / first)), 0))
         pieces = [piece for piece in np.split(k, np.searchsorted(k, octaves)) if len(piece)]
-        return np.concatenate([self._transform(piece) for piece in pieces], axis=1)
-
-    def _transform(self, k):
-        """The same at k of one octave, from the edge alone where that is enough."""
-        deep = _deep(self.mesh, k[0])
-        if k[0] < _LONG or deep > 0.5:
-            return self.values @ transform(self.mesh, k).T
-        s, weight = _edge_rule(self.mesh, k[-1], deep)
-        x, middle = np.sqrt((1 - s) * (1 + s)), 1 - _WINDOW / (2 * k[0]) - (deep - _WINDOW / k[0])
-        window = ndtr((x - middle) * (k[0] / _WIDE))
-        weights = (self.values @ self.mesh.basis(s).T) * (weight * s * window)
-        return np.concatenate(
-            [weights @ j0(x[:, None] * part) for part in np.array_split(k, len(k) // 1000 + 1)], axis=1
-        )
+        rows = [
+            (_kept_waves if piece.size * self.mesh.n <= _KEPT else _waves)(self.mesh, piece.tobytes())
+            for piece in pieces
+        ]
+        return np.concatenate([self.values @ piece.T for piece in rows], axis=1)
 
     def at(self, r):
         """p at radii r (R,), (B, R); 0 outside."""
@@ -79,6 +72,22 @@ class Pressure(NamedTuple):
         """φ/t of Abel's φ(t) (B, ...) at s = sqrt(1 - t²) (...), without what :meth:`at_edge` adds."""
         nodal = self.values @ _density(self.mesh).T
         return (nodal @ self.mesh.basis(s.ravel()).T).reshape(len(nodal), *s.shape)
+
+
+def _waves(mesh, k_bytes):
+    """From values at the nodes to p^ at k of one octave, from the edge alone where that is enough: (K, n)."""
+    k = np.frombuffer(k_bytes)
+    deep = _deep(mesh, k[0])
+    if k[0] < _LONG or deep > 0.5:
+        return transform(mesh, k)
+    s, weight = _edge_rule(mesh, k[-1], deep)
+    x, middle = np.sqrt((1 - s) * (1 + s)), 1 - _WINDOW / (2 * k[0]) - (deep - _WINDOW / k[0])
+    window = ndtr((x - middle) * (k[0] / _WIDE))
+    weights = mesh.basis(s) * (weight * s * window)[:, None]
+    return np.concatenate([j0(part[:, None] * x) @ weights for part in np.array_split(k, len(k) // 1000 + 1)])
+
+
+_kept_waves = lru_cache(maxsize=64)(_waves)
 
 
 def _deep(mesh, k):

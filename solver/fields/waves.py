@@ -24,7 +24,11 @@ _END = 36.0
 #: But no later than at SHORTEST, whose waves take some seconds: in thinner films, h below THINNEST, a stress next to
 #: the edge is wrong by up to MISSED of the largest, and farther away by far less (tests/fields/test_of_pressure.py).
 SHORTEST, MISSED = 1.5e5, 1e-3
+#: Where some percent do, these are the ends.
+_ROUGH_END, _ROUGH_SHORTEST = 8.0, 2e3
 THINNEST = _END / SHORTEST
+#: The ends of rules and the reach of their panels are rounded up to such parts of an octave.
+_OF_OCTAVE = 3
 #: Below _SMALL, J3 is a series of _TERMS terms: from J1 and J2 it loses digits.
 _SMALL, _TERMS = 3.0, 14
 #: Numbers in an array of states: so many waves are taken at once.
@@ -66,7 +70,8 @@ class Row(NamedTuple):
 
 def quadrature(first, last, reach):
     """Nodes k and weights (K,) from 0 to `last`: the first panel ends at `first`, further ones are as long as their
-    distance from 0 until that is _RADIANS/reach."""
+    distance from 0 until that is _RADIANS/reach. All three are rounded, so that many points and cases have one rule."""
+    first, last, reach = 2.0 ** np.floor(np.log2(first)), _above(last), _above(reach)
     widest = _RADIANS / reach
     doubling = first * 2.0 ** np.arange(max(np.ceil(np.log2(min(widest, last) / first)), 0) + 1)
     rest = np.arange(doubling[-1], last, widest)[1:] if doubling[-1] < last else []
@@ -76,15 +81,21 @@ def quadrature(first, last, reach):
     return (ends[:-1, None] + width * t).ravel(), (width * weight).ravel()
 
 
-def integrals(load, layers, h, pressure, r, rows):
+def _above(value):
+    return 2.0 ** (np.ceil(np.log2(value) * _OF_OCTAVE) / _OF_OCTAVE)
+
+
+def integrals(load, layers, h, pressure, r, rows, roughly=False):
     """The integrals of a :class:`Load` at the `rows` (Z) and radii r (R,): (fields, B, Z, R).
 
     layers : :class:`~solver.kernels.two_layers.TwoLayers` of B cases; h : (B,), their thickness in a, no two of which
     are as different as 1 and 2
+    roughly : some percent do
     """
+    end, shortest = (_ROUGH_END, _ROUGH_SHORTEST) if roughly else (_END, SHORTEST)
     z = np.array([row.z for row in rows]).T
     kinds = np.array([row.kind for row in rows])
-    last = np.minimum(_END / np.array([row.reach(h) for row in rows]).min(axis=1), SHORTEST)
+    last = np.minimum(end / np.array([row.reach(h) for row in rows]).min(axis=1), shortest)
     first = _FIRST * min(1.0, 1 / h.max()) / max(1.0, layers.n.max())
     k, weight = quadrature(first, last.max(), 1 + r.max())
     bodies = Bodies(*(v[:, None, None] for v in Bodies.of(layers)))

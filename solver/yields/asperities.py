@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 from ..numerics.quadrature import gauss_legendre
 
 #: Points over t = B̄ sin(angle): at the depths below the integrals are then right to 1e-11.
-_POINTS = 20
+POINTS = 20
 #: Depths z/b among which the largest stress is looked for; around it so many times among nine more, then by a parabola.
 #: The references agree to 3e-9 (tests/yields/test_asperities.py). A spot that is alone yields at 0.38 b for nu = 0, at
 #: 0.55 b for nu = 1/2.
@@ -74,7 +74,7 @@ def _largest(spots):
 def _difference(z, nu, c, ratio, tension):
     """|sr - sz| (B, Z) over p0s at the depths z (B, Z) in b: (1 - 2 nu) E_0/2 + 1.5 F_0 of the spot, less that of p on
     the disc of the cell, plus that of p everywhere."""
-    x, weight = gauss_legendre(_POINTS)
+    x, weight = gauss_legendre(POINTS)
     angle = np.arcsin(c) * x
     t = np.sin(angle) / c
     density = (t * np.cos(angle) / c + 2 / np.pi * ratio * t) * np.arcsin(c) * weight

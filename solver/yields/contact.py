@@ -6,7 +6,7 @@ from ..fields.contact import bodies_of, pressures
 from ..scaling import dimensionless
 from ..status import Status
 from ..threads import one_blas_thread
-from .extremes import EXTREMES, extremes
+from .extremes import EXTREMES, coarsely, extremes
 from .loaded import Loaded
 
 #: Cases whose coarse grids are in memory together: each has some 1,000 points and as many waves.
@@ -15,7 +15,7 @@ _TOGETHER = 64
 
 @one_blas_thread()
 @np.errstate(all="ignore")  # a number that goes wrong is a NaN
-def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES)):
+def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES), punch=None, coarse=False):
     """Extremes of solved contacts, a batch of any mixture: name -> (3, B), the value in the unit of E2, and its place r
     (signed if mu > 0) and z in a. NaN where the contact is not solved, or has no such body.
 
@@ -23,6 +23,9 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES)):
     mu : >= 0, the coefficient of friction
     residual : (B,) or a number, biaxial stress of the layer, in the unit of E2
     names : of :data:`~.extremes.EXTREMES`
+    punch : (B,), Poisson ratios of the punches, if the stresses are those of the punch: a half-space under the same
+        pressure, whose stresses are those of a bare body, "mises2" and so on
+    coarse : the values alone, from the coarse grid: up to 10 % too small
     """
     made = {name: np.full((3, len(problem)), np.nan) for name in names}
     index = np.flatnonzero(solution.status == Status.CONVERGED)
@@ -31,16 +34,17 @@ def of_contacts(problem, solution, mu=0.0, residual=0.0, names=tuple(EXTREMES)):
         part, ended = problem.take(index), solution.take(index)
         scaled, a = dimensionless(part), ended.a / part.R
         for rows, pressure, _ in pressures(scaled, ended, a):
-            for some, loaded in _alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
-                for name, values in extremes(loaded, names).items():
+            nu = None if punch is None else punch[index[rows]]
+            for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]], nu):
+                for name, values in (coarsely if coarse else extremes)(loaded, names).items():
                     values[0] *= problem.E2[index[rows[some]]]
                     made[name][:, index[rows[some]]] = values
     return made
 
 
-def _alike(scaled, a, pressure, mu, residual):
+def alike(scaled, a, pressure, mu, residual, punch=None):
     """Yield indices of cases that have one coarse grid, and their :class:`~.loaded.Loaded`."""
-    bare = scaled.base == "half_space"
+    bare = (scaled.base == "half_space") | (punch is not None)
     h = np.where(bare, 1.0, scaled.h / a)
     n = np.where(bare, 1.0, scaled.n)
     kinds = np.stack([bare, n == 0, np.floor(np.log2(h)), np.floor(np.log2(np.maximum(n, 1.0)))], axis=1)
@@ -48,5 +52,6 @@ def _alike(scaled, a, pressure, mu, residual):
     for number in range(kind.max() + 1):
         index = np.flatnonzero(kind.ravel() == number)
         for some in np.array_split(index, -(-len(index) // _TOGETHER)):
-            layers, part = bodies_of(scaled.take(some), bare[some[0]]), pressure._replace(values=pressure.values[some])
+            own = scaled.take(some) if punch is None else scaled.take(some).but(nu2=punch[some])
+            layers, part = bodies_of(own, bare[some[0]]), pressure._replace(values=pressure.values[some])
             yield some, Loaded(layers, h[some], part, bool(bare[some[0]]), mu, residual[some])

@@ -67,13 +67,7 @@ class Grid(NamedTuple):
 def extremes(loaded, names=EXTREMES):
     """Of each name of :data:`EXTREMES`: its value (B,) in units of the pressure, and its place r (signed if mu > 0) and
     z in a; mapping name -> (3, B). NaN where there is no such body."""
-    made = {name: np.full((3, len(loaded.h)), np.nan) for name in names}
-    wanted = {name: EXTREMES[name][2 if loaded.bare else 1] for name in names}
-    grids = regions(loaded)
-    grids = {name: grid for name, grid in grids.items() if any(name in kinds for kinds in wanted.values())}
-    coarse = {
-        region: loaded.stresses(grid.radius(grid.u), grid.v, grid.body).swapaxes(0, 1) for region, grid in grids.items()
-    }
+    made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
     for i in np.flatnonzero(np.isfinite(loaded.pressure.values).all(axis=1)):
         alone, largest = loaded.take([i]), np.abs(loaded.pressure.values[i]).max()
         fine = {region: _Fine(alone, grid) for region, grid in grids.items()}
@@ -92,6 +86,32 @@ def extremes(loaded, names=EXTREMES):
                 best[:] = 0.0, np.nan, np.nan
             made[name][:, i] = best
     return made
+
+
+def coarsely(loaded, names=EXTREMES):
+    """The largest values on the coarse grids alone, name -> (3, B); their places are NaN."""
+    made, wanted, grids, coarse = _on_coarse_grids(loaded, names)
+    for name, kinds in wanted.items():
+        for region in kinds:
+            if region in grids:
+                values = VALUES[EXTREMES[name][0]](*coarse[region].swapaxes(0, 1))
+                there = grids[region].v <= grids[region].v_bounds[:, 1:]
+                values = np.where(there[:, None, :, None], values, -np.inf).max(axis=(1, 2, 3))
+                made[name][0] = np.fmax(made[name][0], values)
+    return made
+
+
+def _on_coarse_grids(loaded, names):
+    """The array of each name, its regions, their grids, and the stresses there, region -> (B, 4, S, V, U)."""
+    made = {name: np.full((3, len(loaded.h)), np.nan) for name in names}
+    wanted = {name: EXTREMES[name][2 if loaded.bare else 1] for name in names}
+    grids = regions(loaded)
+    grids = {name: grid for name, grid in grids.items() if any(name in kinds for kinds in wanted.values())}
+    coarse = {
+        region: loaded.stresses(grid.radius(grid.u), grid.v, grid.body, roughly=True).swapaxes(0, 1)
+        for region, grid in grids.items()
+    }
+    return made, wanted, grids, coarse
 
 
 def regions(loaded):

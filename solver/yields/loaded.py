@@ -40,14 +40,15 @@ class Loaded(NamedTuple):
             layers=self.layers.take(index), h=self.h[index], pressure=pressure, residual=self.residual[index]
         )
 
-    def stresses(self, r, z, body):
+    def stresses(self, r, z, body, roughly=False):
         """sr, st, sz, trz (4, B, S, Z, R), for each sign of x, at radii r (R,) and depths z (B, Z) or (Z,) in a of the
-        layer or of the `body`. A depth beyond the layer has what its field would be if it went on."""
+        layer or of the `body`. A depth beyond the layer has what its field would be if it went on. roughly : some
+        percent do."""
         z = np.broadcast_to(z, (len(self.h), np.shape(z)[-1]))
         here = self.layers, self.h, self.pressure, r, z, np.full(z.shape[1], body and not self.bare)
-        field = normal.components(integrals(normal.NORMAL.of_stresses(), *here))
+        field = normal.components(integrals(normal.NORMAL.of_stresses(), *here, roughly))
         if self.mu > 0:
-            rubbed = sliding.components(integrals(sliding.SLIDING.of_stresses(), *here))
+            rubbed = sliding.components(integrals(sliding.SLIDING.of_stresses(), *here, roughly))
             field |= {name: self.mu * values for name, values in rubbed.items()}
         sides = [sliding.in_plane(field, sign < 0) for sign in self.signs] if self.mu > 0 else [field]
         made = np.stack([[side[name] for side in sides] for name in STRESSES]).swapaxes(1, 2)

@@ -25,8 +25,8 @@ def peak(stresses, value, start, half, region):
     before = np.nan
     for _ in range(_MOST):
         ends = np.maximum(centre - half, low), np.minimum(centre + half, high)
-        axes = [_on(*end, _nodes()) if end[1] > end[0] else end[:1] for end in zip(*ends, strict=True)]
-        largest, place = _in_patch(stresses(*axes), value)
+        axes = [_on(*end, chebyshev_nodes(_NODES)) if end[1] > end[0] else end[:1] for end in zip(*ends, strict=True)]
+        largest, place = in_patch(stresses(*axes), value)
         centre = np.array([_on(*end, p) for *end, p in zip(*ends, place, strict=True)])
         outside = (np.abs(place) == 1) & (centre > low) & (centre < high)
         if not np.isfinite(largest) or (not outside.any() and abs(largest - before) <= _SAME * abs(largest)):
@@ -44,27 +44,28 @@ def _on(low, high, place):
     return np.where(place == 1, high, low + (high - low) * (1 + place) / 2)
 
 
-@lru_cache(maxsize=1)
-def _nodes():
-    return -np.cos(np.pi * np.arange(_NODES) / (_NODES - 1))
+@lru_cache(maxsize=8)
+def chebyshev_nodes(count):
+    """Chebyshev's nodes in [-1, 1], with both ends."""
+    return -np.cos(np.pi * np.arange(count) / (count - 1))
 
 
-@lru_cache(maxsize=1)
-def _inverse():
-    return np.linalg.inv(np.polynomial.chebyshev.chebvander(_nodes(), _NODES - 1))
+@lru_cache(maxsize=8)
+def _inverse(count):
+    return np.linalg.inv(np.polynomial.chebyshev.chebvander(chebyshev_nodes(count), count - 1))
 
 
-def _between(points):
+def between(points, count):
     """From values at the nodes to those at points in [-1, 1] of the polynomial through them."""
-    return np.polynomial.chebyshev.chebvander(points, _NODES - 1) @ _inverse()
+    return np.polynomial.chebyshev.chebvander(points, count - 1) @ _inverse(count)
 
 
-def _in_patch(values, value):
-    """The largest value, and its place (u, v) in [-1, 1], of polynomials through stresses (4, V, U)."""
+def in_patch(values, value):
+    """The largest value, and its place (u, v) in [-1, 1], of polynomials through stresses (4, V, U) at the nodes."""
     centre, half = np.zeros(2), 1.0
     for _ in range(4):
         points = [np.clip(c + half * np.linspace(-1, 1, _POINTS), -1, 1) for c in centre]
-        u, v = (_between(p) if n > 1 else np.ones((1, 1)) for p, n in zip(points, values.shape[:0:-1], strict=True))
+        u, v = (between(p, n) if n > 1 else np.ones((1, 1)) for p, n in zip(points, values.shape[:0:-1], strict=True))
         made = value(*(v @ values @ u.T))
         if not np.all(np.isfinite(made)):
             return np.nan, centre

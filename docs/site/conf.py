@@ -1,0 +1,91 @@
+"""Settings of the site that `make docs` builds: Sphinx reads docs/ as it is, and the pages of reference.py."""
+
+import re
+import sys
+from importlib.metadata import files
+from pathlib import Path
+
+HERE = Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE))
+
+import reference  # noqa: E402
+from sphinx.util.fileutil import copy_asset  # noqa: E402
+
+import roughcoat  # noqa: E402
+
+project, author, version = "roughcoat", "the authors of roughcoat", roughcoat.__version__
+copyright = author
+extensions = [
+    "myst_parser",
+    "sphinx.ext.autodoc",
+    "sphinx.ext.mathjax",
+    "numpydoc",
+    "sphinx_copybutton",
+    "sphinx_gallery.gen_gallery",
+]
+root_doc = "index"
+exclude_patterns = ["_build", "site", "gallery/*.rst"]
+source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
+suppress_warnings = ["config.cache"]  # the order of the gallery is a function, which Sphinx cannot keep
+pygments_style = "default"
+
+# The pages are written for GitHub: formulas in $ and ```math, links to headings by their words.
+myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_fence_as_directive = ["math"]
+myst_heading_anchors = 4
+
+# Browsable from disk without a network: one file of MathJax, no fonts or scripts of other hosts.
+mathjax_path = "tex-svg.js"
+html_theme = "pydata_sphinx_theme"
+html_title = f"roughcoat {version}"
+html_theme_options = {
+    "show_prev_next": False,
+    "secondary_sidebar_items": ["page-toc"],
+    "navbar_align": "left",
+    "header_links_before_dropdown": 8,
+    "footer_start": ["copyright"],
+    "footer_end": [],
+}
+html_show_sphinx = html_show_sourcelink = False
+html_copy_source = False
+
+numpydoc_show_class_members = False
+autodoc_typehints = "none"  # the sections of a docstring say what a parameter may be
+default_role = "code"  # `name` in a docstring
+nitpicky = True
+
+sphinx_gallery_conf = {
+    "examples_dirs": [str(HERE.parent / "gallery")],
+    "gallery_dirs": ["examples"],
+    "within_subsection_order": "FileNameSortKey",
+    "show_memory": False,
+    "write_computation_times": False,  # its pages load from another host
+    "download_all_examples": False,
+    "remove_config_comments": True,
+    "matplotlib_animations": False,
+}
+
+
+def _mathjax(app, error) -> None:
+    if error is None:
+        found = next(path for path in files("sphinx-mathjax-offline") if path.name == "tex-svg.js")
+        copy_asset(str(found.locate()), str(Path(app.outdir) / "_static"))
+
+
+def _plain(app, what, name, thing, options, lines) -> None:
+    """Docstrings are plain text: E2* begins no emphasis, |x| is no substitution."""
+    lines[:] = [
+        line if line.lstrip().startswith(">>>") else re.sub(r"(?<!`)([*|])(?!`)", r"\\\1", line) for line in lines
+    ]
+
+
+def _links_out(app, docname, source) -> None:
+    source[0] = reference.links_inside(source[0], docname)
+
+
+def setup(app) -> None:
+    """Write the pages of the reference before Sphinx reads, and copy MathJax when it has written."""
+    app.connect("builder-inited", lambda _: reference.write(HERE.parent / "reference"))
+    app.connect("autodoc-process-docstring", _plain, priority=100)  # before numpydoc
+    app.connect("source-read", _links_out)
+    app.connect("build-finished", _mathjax)

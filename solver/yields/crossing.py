@@ -1,0 +1,105 @@
+"""The first place at which a stress exceeds a strength, of many cases: by steps, then by false position."""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+
+#: A step is at most _STEP where the stress is near the strength; farther away the power _SLOWEST of what is missing, at
+#: most _LARGEST: the stress of films and of asperities that have only begun to touch grows like a^4 or less.
+_STEP, _SLOWEST, _LARGEST, _NEAR = 1.1, 0.2, 1.5, 0.7
+#: The coarse grid misses at most this part of the largest stress: above it the stress itself is computed.
+_MISSED = 0.15
+#: A place is found when the stress is the strength to _SAME, or given up after _MOST steps.
+_SAME, _MOST = 1e-7, 40
+#: Numbers of the contact that are kept.
+NUMBERS = ("P", "a", "D", "p0")
+
+
+class Crossing(NamedTuple):
+    """Where the stress first exceeds the strength, (B,) each; NaN where it does not.
+
+    crossed : bool
+    at : what was marched over, such as the radius
+    numbers : P, a, D, p0 of the contact there, in the units of the problem
+    r, z : the place in the contact, in a
+    unsolved : bool, nothing was found, and some contacts on the way have no solution; or it is before `start`
+    """
+
+    crossed: np.ndarray
+    at: np.ndarray
+    numbers: dict
+    r: np.ndarray
+    z: np.ndarray
+    unsolved: np.ndarray
+
+    @classmethod
+    def none(cls, count):
+        at, r, z, *numbers = np.full((3 + len(NUMBERS), count), np.nan)
+        return cls(np.zeros(count, bool), at, dict(zip(NUMBERS, numbers, strict=True)), r, z, np.zeros(count, bool))
+
+
+def first_crossing(stress: Callable, start: np.ndarray, last: np.ndarray) -> Crossing:
+    """From `start` (B,) up to `last` (B,), NaN or start > last: nothing is looked for.
+
+    stress : ``stress(index, at, coarse)``, of the cases `index` at the places `at` (b,): the stress over the strength,
+        with `coarse` up to a little too small, its r and z, and the :class:`~solver.solution.Solution`
+    """
+    made = Crossing.none(len(start))
+    index = np.flatnonzero(start <= last)
+    places, values, failed = _bracketed(stress, index, start[index], np.log(last[index]))
+    there = np.isfinite(places).all(axis=0)
+    made.unsolved[index] = ~there & (failed | np.isfinite(places[1]))
+    _searched(made, stress, index[there], places[:, there], values[:, there])
+    return made
+
+
+def _bracketed(stress, index, start, last):
+    """ln of the places before and behind the first crossing, NaN where there is none, and ln of the stress over the
+    strength there, (2, b) each; and whether some contact has no solution."""
+    places, values = np.full((2, 2, len(index)), np.nan)
+    failed, at, active = np.zeros(len(index), dtype=bool), np.log(start), np.arange(len(index))
+    while len(active):
+        value = stress(index[active], np.exp(at[active]), True)[0]
+        near = np.flatnonzero(value >= 1 - _MISSED)
+        if len(near):
+            some = active[near]
+            value[near] = stress(index[some], np.exp(at[some]), False)[0]
+        over, unknown = value >= 1, np.isnan(value)
+        failed[active] |= unknown
+        for side, here in enumerate((~over & ~unknown, over)):
+            places[side, active[here]] = at[active[here]]
+            values[side, active[here]] = np.log(np.maximum(value[here], np.finfo(float).tiny))
+        farther = np.clip((_NEAR / np.maximum(value, np.finfo(float).tiny)) ** _SLOWEST, _STEP, _LARGEST)
+        done = over | (at[active] >= last[active])
+        at[active] = np.minimum(at[active] + np.log(np.where(unknown, _STEP, farther)), last[active])
+        active = active[~done]
+    return places, values, failed
+
+
+def _searched(made, stress, index, places, values):
+    """Put the crossings between two places into `made`: by false position, where the value at an end that stays is
+    halved."""
+    (below, above), (left, right) = places, values
+    active, stays = np.arange(len(index)), np.zeros(len(index))
+    for _ in range(_MOST):
+        if not len(active):
+            break
+        at = (below * right - above * left)[active] / (right - left)[active]
+        at = np.where(np.isfinite(at), np.clip(at, below[active], above[active]), (below + above)[active] / 2)
+        value, r, z, solution = stress(index[active], np.exp(at), False)
+        f = np.log(value)
+        done, over = np.abs(f) <= _SAME, f > 0
+        rows = index[active[done]]
+        made.crossed[rows], made.at[rows] = True, np.exp(at[done])
+        made.r[rows], made.z[rows] = r[done], z[done]
+        for number in NUMBERS:
+            made.numbers[number][rows] = getattr(solution, number)[done]
+        some = active[over]
+        left[some] = np.where(stays[some] > 0, left[some] / 2, left[some])
+        above[some], right[some], stays[some] = at[over], f[over], 1
+        some = active[~over]
+        right[some] = np.where(stays[some] < 0, right[some] / 2, right[some])
+        below[some], left[some], stays[some] = at[~over], np.nan_to_num(f[~over], nan=-1.0), -1
+        active = active[~done]
+    made.unsolved[index[active]] = True

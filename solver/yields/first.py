@@ -1,0 +1,65 @@
+"""At which load a body or the asperities first yield: docs/stresses.md, First yield.
+
+The largest stress neither scales with the load nor grows with it everywhere: so the radius rises step by step from
+where nothing can yield.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from ..kernels.two_layers import layer_modulus
+from ..solve import solve
+from . import spots
+from .contact import of_contacts
+from .crossing import NUMBERS, first_crossing
+
+#: No body yields where (a/R) E*/strength is below _NEVER, E* the larger of layer and body; sliding adds so much.
+_NEVER, _BY_FRICTION = 0.3, 4.0
+#: No asperity yields where (a/R) E/strength is below this times sqrt(Ra/R), for p0s < 0.46 E a/sqrt(R Ra).
+_NO_SPOT = 0.7
+#: Radii in R that are looked at.
+NARROWEST, WIDEST = 1e-8, 0.2
+
+
+def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None):
+    """:class:`~.crossing.Crossing` of the "layer", the "body", the "punch" or the "asperities"; `at` is a/R.
+
+    problem : B cases, whatever controls them
+    strength : (B,), yield strength by von Mises, in the unit of E2; NaN: nothing is looked for
+    mu : >= 0, friction
+    residual : biaxial stress of the layer, in the unit of E2
+    punch : (B,), Poisson ratios of the punches, where these are looked at
+    """
+    felt = body in ("layer", "asperities")
+    residual = np.broadcast_to(residual, len(problem)) if felt else np.zeros(len(problem))
+    if body == "asperities":
+        problem = problem.but(micro=np.where(problem.micro == "elastic_plastic", "disc_cell", problem.micro))
+    at_radius = replace(problem, control="a", value=problem.R)
+
+    def stress(index, radius, coarse):
+        part = replace(at_radius.take(index), value=radius * problem.R[index])
+        solution = solve(part)
+        if body == "asperities":
+            value, r, z = spots.of_contacts(part, solution, mu, residual[index])
+        else:
+            name, nu = "mises1" if body == "layer" else "mises2", punch[index] if body == "punch" else None
+            value, r, z = of_contacts(part, solution, mu, residual[index], (name,), nu, coarse)[name]
+        return value / strength[index], r, z, solution
+
+    left = strength - np.where(problem.base == "half_space", 0.0, np.abs(residual))
+    start = _start(problem, body, left / problem.E2, mu)
+    made = first_crossing(stress, np.where(left > 0, np.maximum(start, NARROWEST), np.nan), np.full(len(left), WIDEST))
+    rest = left <= 0  # the residual stress alone is as large as the strength
+    made.crossed[rest], made.at[rest] = True, 0.0
+    for number in NUMBERS:
+        made.numbers[number][rest] = 0.0
+    return made
+
+
+def _start(problem, body, strength, mu):
+    """A radius over R below which nothing yields."""
+    n = np.where(problem.base == "half_space", 1.0, problem.n)
+    if body == "asperities":
+        return _NO_SPOT * strength / layer_modulus(n) * np.sqrt(problem.Ra / problem.R)
+    return _NEVER / (1 + _BY_FRICTION * mu) * strength / np.maximum(n, 1.0)

@@ -1,0 +1,112 @@
+"""The largest stress under the asperities of solved contacts: that of a spot and that of the contact as a whole, added
+as tensors on the axis of each spot (docs/stresses.md, Asperities)."""
+
+import numpy as np
+
+from ..fields.contact import pressures
+from ..fields.invariants import mises
+from ..kernels.two_layers import layer_modulus
+from ..numerics.quadrature import gauss_legendre
+from ..scaling import dimensionless
+from ..solve import solve
+from ..status import Status
+from ..threads import one_blas_thread
+from .asperities import POINTS, hertz_part
+from .contact import alike
+from .peaks import between, chebyshev_nodes, in_patch
+
+#: Spots that are looked at: at so many radii r, nodes of the angle arcsin(r/a), and at so many depths between these, in
+#: b. The stresses are polynomials through these (tests/yields/test_spots.py has twice as many).
+_SPOTS, _DEPTHS, _ENDS = 17, 20, (0.1, 1.5)
+_RADII = np.sin(np.pi / 4 * (1 + chebyshev_nodes(_SPOTS)))
+_Z = _ENDS[0] + (_ENDS[1] - _ENDS[0]) * (1 + chebyshev_nodes(_DEPTHS)) / 2
+#: The stress of the contact as a whole, between the surface and the deepest place, is a polynomial through so many
+#: depths; through few where b is below _SMALL a.
+_MANY, _FEW, _SMALL = 8, 4, 0.02
+#: A spot at the edge has no size; it is taken for one of this b/B̄.
+_LEAST = 1e-6
+#: Laws whose share λ is that of one spot in its cell at any radius. Of others the spot in the centre alone is known.
+_CELLS = ("disc_cell", "elastic_plastic")
+
+
+@one_blas_thread()
+@np.errstate(all="ignore")  # a number that goes wrong is a NaN
+def of_contacts(problem, solution, mu=0.0, residual=0.0):
+    """(3, B): the largest von Mises stress in the unit of E2, and the radius (signed if mu > 0) and depth in a of its
+    place. NaN of smooth contacts and of those that are not solved.
+
+    The asperities are those of an elastic disc cell, whatever yields; where spots yield the stress is that of spots of
+    this size which do not. Of lattices and random heights it is the largest spot in the centre.
+
+    problem, solution : B cases and their :class:`~solver.solution.Solution`
+    mu : >= 0, friction; residual : (B,) or a number, biaxial stress of the layer, in the unit of E2
+    """
+    made = np.full((3, len(problem)), np.nan)
+    rough = np.isfinite(problem.Nbar) & np.isfinite(problem.Ra) & (problem.micro != "smooth")
+    index = np.flatnonzero((solution.status == Status.CONVERGED) & rough)
+    residual = np.broadcast_to(residual, len(problem)) / problem.E2
+    if len(index):
+        part, ended = problem.take(index), solution.take(index)
+        scaled, a = dimensionless(part), ended.a / part.R
+        c, p0s = _of_spots(scaled, a)
+        for rows, pressure, _ in pressures(scaled, ended, a):
+            for some, loaded in alike(scaled.take(rows), a[rows], pressure, mu, residual[index[rows]]):
+                here = rows[some]
+                b = c[here] / np.sqrt(np.pi * scaled.Nbar[here, None]) / a[here, None]
+                nu = np.where(loaded.bare, scaled.nu2, scaled.nu1)[here]
+                values = _largest(loaded, nu, c[here], p0s[here], b)
+                values[0] *= part.E2[here]
+                made[:, index[here]] = values
+    return made
+
+
+def _of_spots(scaled, a):
+    """b/B̄ and Hertz's part of the largest pressure of the spots at :data:`_RADII`, (B, R) each; NaN where no spot is
+    known."""
+    at_a = scaled.but(micro=np.where(scaled.micro == "elastic_plastic", "disc_cell", scaled.micro))
+    found = solve(type(at_a)("a", a, at_a.parameters), _RADII)
+    E = np.where(scaled.base == "half_space", 1.0, layer_modulus(scaled.n)) / (1 + scaled.m)
+    c = np.where(np.isin(scaled.micro, _CELLS)[:, None], np.maximum(np.sqrt(found.lam), _LEAST), np.nan)
+    p0s = 2 * E[:, None] * c / (np.pi * np.sqrt(np.pi * scaled.Nbar) * scaled.Ra)[:, None]
+    p0s[:, :1], c[:, :1] = (values[:, None] for values in hertz_part(found.p_max, found.p0, E, scaled.Nbar, scaled.Ra))
+    return c, p0s
+
+
+def _largest(loaded, nu, c, p0s, b):
+    """(3, B): the largest stress, its radius and depth in a. b : (B, R), in a."""
+    cell = _cell(nu[:, None], c, p0s, loaded.pressure.at(_RADII))
+    count = _FEW if np.nanmax(b) < _SMALL else _MANY
+    deepest = _ENDS[1] * np.nanmax(b, axis=1)
+    whole = loaded.stresses(_RADII, deepest[:, None] * (1 + chebyshev_nodes(count)) / 2, loaded.bare)
+    made = np.full((3, len(c)), np.nan)
+    for i in range(len(c)):
+        spots = slice(None) if np.isfinite(c[i]).all() else slice(1)  # at all radii, or in the centre
+        share = b[i, spots, None] * _Z / deepest[i]  # (R, Z)
+        matrix = between((2 * share - 1).ravel(), count).reshape(*share.shape, count)
+        for side, sign in enumerate(loaded.signs):
+            stresses = np.einsum("rdz,fzr->fdr", matrix, whole[:, i, side, :, spots])
+            stresses[:2] += cell[0, i, spots].T
+            stresses[2] += cell[1, i, spots].T
+            largest, (u, v) = in_patch(stresses, mises)
+            if not largest <= made[0, i]:
+                alone = stresses.shape[2] == 1
+                r, size = (0.0, b[i, 0]) if alone else (np.sin(np.pi / 4 * (1 + u)), between([u], _SPOTS)[0] @ b[i])
+                depth = _ENDS[0] + (_ENDS[1] - _ENDS[0]) * (1 + v) / 2
+                made[:, i] = largest, sign * r + 0.0, depth * size
+    return made
+
+
+def _cell(nu, c, p0s, p):
+    """sr = st and sz (2, B, R, Z) on the axes of spots, at the depths in b, of a spot less p on its cell."""
+    x, weight = gauss_legendre(POINTS)
+    angle = np.arcsin(c)[..., None] * x
+    t = np.sin(angle) / c[..., None]
+    density = p0s[..., None] * t * np.cos(angle) / c[..., None] + 2 / np.pi * p[..., None] * t
+    density = density * np.arcsin(c)[..., None] * weight
+    z = _Z[:, None]
+    kernel = (density * t)[..., None, :] / (z * z + (t * t)[..., None, :])
+    E, F = kernel.sum(axis=-1), (kernel * 2 * z * z / (z * z + (t * t)[..., None, :])).sum(axis=-1)
+    z, nu, p = _Z, nu[..., None], p[..., None]
+    cos = z / np.hypot(1 / c[..., None], z)
+    sr = (F - (1 + 2 * nu) * E) / 2 + p / 2 * (1 + 2 * nu - 2 * (1 + nu) * cos + cos**3)
+    return np.stack([sr, -(E + F) + p * (1 - cos**3)])

@@ -1,0 +1,1 @@
+"""At which load bodies and asperities first yield, and which layer protects the body."""

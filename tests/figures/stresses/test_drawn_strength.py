@@ -66,6 +66,15 @@ def test_loads_at_which_stresses_reach_the_strengths(drawing, coated):
     np.testing.assert_allclose(steel, [8e9 / 2.84, 60e9 / 2.84, 7.3e9])
 
 
+def test_loads_are_those_of_first_yield(coated):
+    """What grows like a/R, and the search over the load, give the same."""
+    case = coated.isel(h=0)
+    factor = strength(MODES[0], coated) / study.extremes(case).mises2.item()
+    inputs = {name: case[name].item() for name in ("punch", "layer", "body", "bonding", "micro", "base")}
+    found = study.first_yield(**inputs, R="5 mm", h=f"{case.h.item() * factor * 1e6!r} um")
+    np.testing.assert_allclose(found.P_Y2, case.P * factor**3, rtol=1e-5)
+
+
 def test_map_of_what_comes_first(drawing):
     figure, columns, _ = drawing("what_fails_first")
     assert list(legend(figure.legends[0])) == [*(mode.words for mode in MODES), "interface shear 1 GPa"]

@@ -46,6 +46,7 @@ class Units(NamedTuple):
     @classmethod
     def of(cls, contact: xr.Dataset, largest: float, sliding: bool) -> "Units":
         """The units in which the radius of the contact and a stress are read most easily."""
+        largest = float(f"{largest:.6g}")  # else 1 GPa may be 1000 MPa
         if "units" not in contact["a"].attrs:
             power = int(np.floor(np.log10(largest)))
             return cls(1.0, "", rf"10^{{{power}}}\,E_{1 if is_rigid(contact, 'base') else 2}^*", 10.0**power, sliding)

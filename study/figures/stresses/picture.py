@@ -24,10 +24,11 @@ _LETTERS = 130  # on a line above the figure
 def plot_stresses(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0) -> Figure:
     """A figure of the stresses of one contact: docs/stresses.md.
 
-    Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest; the
-    stresses on the surface; those at the interface, on both of its sides. Dots are the largest tension of the surface,
-    and the largest tension and shear at the interface. A grey line is the edge of the contact. Where Y1 or Y2 stands in
-    the contact, a red line surrounds what yields. The figure is none of pyplot, as that of `study.plot`.
+    Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest;
+    the stresses on the surface; those at the interface, on both of its sides. Rings are the largest tension of the
+    surface, and the largest tension and shear at the interface. A grey line is the edge of the contact. Where the
+    yield strength is known, from Y1, Y2 or the named material, a red line surrounds what exceeds it. The figure is
+    none of pyplot, as that of `study.plot`.
 
     Parameters
     ----------
@@ -82,13 +83,14 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
     top = max(largest.values())
     one_scale = len(largest) == 2 and top < _ONE_SCALE * min(largest.values())
     for axes, (name, own_top) in zip(panels, largest.items(), strict=True):
-        region, Y = getattr(shown, name), {"layer": "Y1", "body": "Y2"}[name]
+        region, Y = getattr(shown, name), shown.Y[name]
         units = Units.of(contact, top if one_scale else own_top, shown.r[0] < 0)
         filled = section(axes, region, top if one_scale else own_top, _BOTH if one_scale else _MAPS[name], units)
         said = [f"{name}: largest {units.text(own_top)}"]
-        if Y in contact.coords:
-            outline(axes, region, float(contact[Y]), units)
-            said.append(f"red: {units.text(float(contact[Y]))}")
+        if np.isfinite(Y):
+            said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
+        if own_top > Y:
+            outline(axes, region, Y, units)
         if name == "layer" and shown.h > THICKEST:
             said.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")
         mark(axes, shown.largest, NAMES[name], units)

@@ -5,10 +5,12 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from ...again import Again
 from ...data.dataset import decode
 from ...fields import extremes, stresses
 from ...in_words.inputs import is_rigid
 from ...inputs.definition import StudyError
+from ...yields.strengths import strengths
 
 _NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4
 #: Radii that are shown, in a: 1, where the pressure ends, is among them, and they are closer there.
@@ -33,6 +35,7 @@ class Stresses(NamedTuple):
     layer, body : Region or None where it is not there, or a rigid body
     surface, interface : name -> values along r; the interface is {} without a layer, or under a thick one
     largest : of `study.extremes`
+    Y : yield strength of "layer" and "body", that of the call or of the named material; NaN where it is not known
     h : in a, None without a layer
     """
 
@@ -42,6 +45,7 @@ class Stresses(NamedTuple):
     interface: dict[str, np.ndarray]
     r: np.ndarray
     largest: xr.Dataset
+    Y: dict[str, float]
     h: float | None
 
 
@@ -67,8 +71,15 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     return contact, Stresses(
         Region(r, within, layer) if h else None,
         Region(r, below, body) if len(below) else None,
-        *(surface, interface, r, largest, h),
+        *(surface, interface, r, largest, _yield_strengths(contact), h),
     )
+
+
+def _yield_strengths(contact: xr.Dataset) -> dict[str, float]:
+    again = Again.of(contact, "plot_stresses")
+    unit = float(again.scene.unit) if again.scene else 1.0
+    known = strengths(contact, again, {})
+    return {body: known[body].item() * unit for body in ("layer", "body")}
 
 
 def _one(contact: xr.Dataset) -> xr.Dataset:

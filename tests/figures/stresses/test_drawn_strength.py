@@ -75,6 +75,11 @@ def test_loads_are_those_of_first_yield(coated):
     np.testing.assert_allclose(found.P_Y2, case.P * factor**3, rtol=1e-5)
 
 
+def test_a_contact_of_opened_results_is_drawn(coated):
+    titles = [axes.get_title(loc="left") for axes in study.plot_stresses(coated.isel(h=-1)).axes]
+    assert titles[0].endswith("yields at 21.1 GPa, interface at $z$ = 4$\\,a$")
+
+
 def test_map_of_what_comes_first(drawing):
     figure, columns, _ = drawing("what_fails_first")
     assert list(legend(figure.legends[0])) == [*(mode.words for mode in MODES), "interface shear 1 GPa"]

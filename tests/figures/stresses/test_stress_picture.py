@@ -9,6 +9,7 @@ from drawn import contours, frame, lines
 from matplotlib.figure import Figure
 
 import study
+from study.figures.stresses.panels import Units
 from study.figures.stresses.picture import drawn
 from study.figures.stresses.places import of_one_contact
 from study.inputs.definition import StudyError
@@ -108,12 +109,30 @@ def test_physical_units_and_a_line_around_what_yields(ball):
     np.testing.assert_allclose(panels[0].get_ylim(), (20, 0), rtol=1e-12)
     largest = study.extremes(ball)
     assert f"largest {largest.mises1.item() / 1e9:.3g} GPa" in titles(panels)[0]
-    assert titles(panels)[1].endswith(f"largest {largest.mises2.item() / 1e6:.3g} MPa, red: 50 MPa")
-    assert len(contours(panels[0])) == 2, "the strength of the layer is not known"
+    assert titles(panels)[1].endswith(f"largest {largest.mises2.item() / 1e6:.3g} MPa, yields at 50 MPa")
+    assert len(contours(panels[0])) == 2 and "yields" not in titles(panels)[0], "its strength is not known"
     yields = contours(panels[1])[2]
     np.testing.assert_allclose(yields.levels, 50e6)
     edge = next(line for line in panels[2].lines if len(line.get_xdata()) == 2 and line.get_xdata()[0] > 1)
     np.testing.assert_allclose(edge.get_xdata(), ball.a.item() * 1e6)
+
+
+def test_strengths_of_the_named_materials():
+    """PEEK has 95 MPa, ta-C a hardness of 60 GPa: neither is exceeded."""
+    named = {"R": "5 mm", "layer": "DLC ta-C", "body": "PEEK", "h": "20 um", "bonding": "bonded", "base": "layered"}
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        contact = study.solve(**named, P="10 N", micro="smooth", x=2)
+    panels, _ = picture(contact)
+    assert [title.rpartition("yields at ")[2] for title in titles(panels)[:2]] == ["21.1 GPa", "95 MPa"]
+    assert [len(contours(axes)) for axes in panels[:2]] == [2, 2]
+
+
+def test_a_strength_is_stated_as_it_was_given():
+    """1 GPa has come back from units of E2* as 999.9999999999999 MPa."""
+    for largest, label in ((1e9 - 1e-5, "1 GPa"), (1e9, "1 GPa"), (2.5e6, "2.5 MPa")):
+        contact = study.solve(R="5 mm", E2="70 GPa", P="1 N", base="half_space", micro="smooth", x=2)
+        assert Units.of(contact, largest, False).text(largest) == label
 
 
 def test_one_scale_where_layer_and_body_differ_little():

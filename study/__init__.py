@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from .fields import extremes, stresses
     from .figures.lines import plot
     from .figures.registry import drawing, figure, table
+    from .figures.stresses.picture import plot_stresses
     from .files.results_file import open_results
     from .in_words import summary
     from .inputs import vocabulary
@@ -51,6 +52,7 @@ __all__ = [
     "materials",
     "open_results",
     "plot",
+    "plot_stresses",
     "readable",
     "reduced_modulus",
     "roughness",
@@ -81,6 +83,7 @@ _HOME = {
     "summary": "in_words",
     "readable": "data.units",
     "plot": "figures.lines",
+    "plot_stresses": "figures.stresses.picture",
     "figure": "figures.registry",
     "table": "figures.registry",
     "drawing": "figures.registry",

@@ -50,6 +50,7 @@ def parser() -> argparse.ArgumentParser:
 
     sub = command("point", "point", "solve one contact and say in words what was found", "NAME=VALUE")
     sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.add_argument("--stresses", type=folder, metavar="FILE", help="draw its stresses too: .png, .pdf or .svg")
     sub.epilog = (
         'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
     )

@@ -1,11 +1,13 @@
 """The command `point`: one contact in the terminal, in words or as JSON."""
 
+import io
 import json
 import math
 import re
 import sys
 import warnings
 from argparse import ArgumentTypeError
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,6 +26,7 @@ from ..terminal import answer, say
 from .arguments import SWITCH, assignment
 
 _DERIVED = ("p_ring", "r_ring", "p_peak", "D_body")  # of QUANTITIES, that JSON has besides
+_PICTURES = (".png", ".pdf", ".svg")  # endings of `--stresses`
 _LIST = re.compile(r",\s")
 
 
@@ -34,7 +37,11 @@ def items(options) -> list[list[str]]:
 
 def point(options, texts: list[str]) -> int:
     """Solve the contact and say its numbers; of lists of values a table. Exit code 1 if one has no solution."""
-    parameters = parameters_of(texts)
+    parameters, picture = parameters_of(texts), options.stresses
+    if picture and not picture.lower().endswith(_PICTURES):
+        raise StudyError([f"--stresses {picture}: must end with one of {', '.join(_PICTURES)}"])
+    if picture and any(isinstance(value, list) for value in parameters.values()):
+        raise StudyError([f"--stresses {picture}: the picture is of one contact, and there is a list of values"])
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # the summary says it; but that may take long
         warnings.simplefilter("always", FarOutside)
@@ -44,7 +51,19 @@ def point(options, texts: list[str]) -> int:
         except StudyError as error:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     text = _as_json(contact) if options.json else columns(contact) if contact["status"].dims else summary(contact)
-    return answer(text) or int((contact["status"] != 0).any())
+    code = answer(text) or int((contact["status"] != 0).any())
+    return code or (_draw_stresses(contact, Path(picture)) if picture else 0)
+
+
+def _draw_stresses(contact: xr.Dataset, path: Path) -> int:
+    """Draw layer and body of the contact, and say so beside the answer. Returns the exit code."""
+    from ..figures.formats import write
+    from ..figures.stresses.picture import plot_stresses
+
+    page = io.BytesIO()
+    plot_stresses(contact).savefig(page, format=path.suffix[1:].lower())
+    say(f"stresses: {write(path, page.getvalue())}", sys.stderr)
+    return 0
 
 
 def _as_json(contacts: xr.Dataset) -> str:

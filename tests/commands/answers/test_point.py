@@ -140,3 +140,24 @@ def test_run_and_check_say_what_is_far_outside(tmp_path, capsys):
     assert main(["check", file]) == 0 and said in capsys.readouterr().out
     assert main(["run", "--dry-run", file, "--results", str(tmp_path)]) == 0
     assert said in capsys.readouterr().err
+
+
+def test_a_picture_of_the_stresses(capsys, tmp_path):
+    picture = tmp_path / "new" / "ball.PNG"
+    assert main(["point", "--json", "--stresses", str(picture), *words(**BALL, P="10 N")]) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["status"] == "converged" and printed.err == f"stresses: {picture}\n"
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert main(["point", "--stresses", str(tmp_path / "ball.svg"), *words(**BALL, P="10 N")]) == 0
+    assert b"<svg" in (tmp_path / "ball.svg").read_bytes()
+
+
+def test_a_picture_that_cannot_be_drawn_is_told_before_anything_is_solved(capsys, monkeypatch):
+    def never(*, x=65, **_):
+        raise AssertionError("it is solved")
+
+    monkeypatch.setattr("study.commands.point.solve", never)
+    assert main(["point", "--stresses", "ball.doc", *words(**BALL, P="10 N")]) == 2
+    assert "--stresses ball.doc: must end with one of .png, .pdf, .svg" in capsys.readouterr().err
+    assert main(["point", "--stresses", "ball.png", *words(**BALL, P="10 N, 20 N")]) == 2
+    assert "--stresses ball.png: the picture is of one contact, and there is a list" in capsys.readouterr().err

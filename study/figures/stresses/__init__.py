@@ -1,0 +1,1 @@
+"""A picture of the stresses of one contact."""

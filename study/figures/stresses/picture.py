@@ -1,0 +1,124 @@
+"""`plot_stresses`: where layer and body are stressed, and what surface and interface bear."""
+
+from collections.abc import Callable
+
+import numpy as np
+import xarray as xr
+from matplotlib.figure import Figure
+
+from ...in_words.inputs import is_rigid
+from ...rules.rule import RULES, broken
+from ..labels import stated, value_text, wrapped
+from ..registry import TWO_COLUMNS
+from ..style import StyledFigure, style
+from .panels import NAMES, Units, along, mark, outline, section
+from .places import DEPTH, THICKEST, Stresses, of_one_contact
+
+#: Layer and body have one scale of colours if their largest stresses differ by less than this factor.
+_ONE_SCALE = 2.0
+_BOTH, _MAPS = "viridis", {"layer": "Oranges", "body": "Blues"}  # of one scale, of two
+_SHARE = 0.3, 0.6  # of the height: the layer has no less, and no more
+_LETTERS = 130  # on a line above the figure
+
+
+def plot_stresses(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0) -> Figure:
+    """A figure of the stresses of one contact: docs/stresses.md.
+
+    Panels: von Mises' stress in a section of the layer and of the body under it, with a cross where it is largest;
+    the stresses on the surface; those at the interface, on both of its sides. Rings are the largest tension of the
+    surface, and the largest tension and shear at the interface. A grey line is the edge of the contact. Where the
+    yield strength is known, from Y1, Y2 or the named material, a red line surrounds what exceeds it. The figure is
+    none of pyplot, as that of `study.plot`.
+
+    Parameters
+    ----------
+    contact : one contact of `study.solve` or of a results file: a dataset without dimensions, but for `x`
+    mu, sigma_res : as of `study.stresses`; with mu > 0 the section is the plane y = 0, and the punch moves to the right
+
+    Returns
+    -------
+    matplotlib.figure.Figure
+
+    Raises
+    ------
+    StudyError : several contacts, one without a solution, or as `study.stresses`
+
+    Examples
+    --------
+    >>> import study
+    >>> contact = study.solve(P=1e-5, h=0.02, n=4.0, bonding="bonded", micro="smooth", base="layered")
+    >>> figure = study.plot_stresses(contact)
+    """
+    with style():
+        return drawn(contact, mu, sigma_res, StyledFigure)
+
+
+def drawn(contact: xr.Dataset, mu: float, sigma_res: float | str, new: Callable[..., Figure]) -> Figure:
+    """The figure of `plot_stresses`. `new` makes an empty figure."""
+    contact, shown = of_one_contact(contact, mu, sigma_res)
+    largest = {name: float(shown.largest[NAMES[name]]) for name in NAMES if getattr(shown, name)}
+    lines = {"surface": shown.surface} | ({"interface": shown.interface} if shown.interface else {})
+    figure = new(figsize=(TWO_COLUMNS, 3.0 if len(lines) == 1 else 5.0), layout="constrained")
+    left, right = figure.add_gridspec(1, 2, width_ratios=(1.2, 1))
+    heights = _heights(shown)
+    sections = left.subgridspec(len(heights), 1, height_ratios=heights).subplots(sharex=True, squeeze=False)[:, 0]
+    curves = right.subgridspec(len(lines), 1).subplots(sharex=True, squeeze=False)[:, 0]
+    _draw_sections(sections, contact, shown, largest)
+    for axes, (name, values) in zip(curves, lines.items(), strict=True):
+        units = Units.of(contact, max(np.abs(stress).max() for stress in values.values()), mu > 0)
+        along(axes, name, values, shown, units)
+    for letter, axes in zip("abcd", (*sections, *curves), strict=False):
+        axes.set_title(f"({letter}) {axes.get_title(loc='left')}", loc="left", fontsize=8)
+        axes.axvline(units.a, color="0.5", linewidth=0.6, zorder=2)
+        if mu > 0:
+            axes.axvline(-units.a, color="0.5", linewidth=0.6, zorder=2)
+    for axes in (sections[-1], curves[-1]):
+        axes.set_xlabel(units.length("x" if mu > 0 else "r"))
+    figure.suptitle("\n".join(_above(contact, mu, sigma_res)), fontsize=7)
+    return figure
+
+
+def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[str, float]) -> None:
+    """Layer and body, with one scale of colours or with two. largest : von Mises stress of each"""
+    top = max(largest.values())
+    one_scale = len(largest) == 2 and top < _ONE_SCALE * min(largest.values())
+    for axes, (name, own_top) in zip(panels, largest.items(), strict=True):
+        region, Y = getattr(shown, name), shown.Y[name]
+        units = Units.of(contact, top if one_scale else own_top, shown.r[0] < 0)
+        filled = section(axes, region, top if one_scale else own_top, _BOTH if one_scale else _MAPS[name], units)
+        said = [f"{name}: largest {units.text(own_top)}"]
+        if np.isfinite(Y):
+            said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
+        if own_top > Y:
+            outline(axes, region, Y, units)
+        if name == "layer" and shown.h > THICKEST:
+            said.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")
+        mark(axes, shown.largest, NAMES[name], units)
+        axes.set_title(", ".join(said), loc="left")
+        if not one_scale:
+            axes.figure.colorbar(filled, ax=axes, label=units.stress("von Mises stress"), aspect=15, pad=0.02)
+    if one_scale:
+        axes.figure.colorbar(filled, ax=list(panels), label=units.stress("von Mises stress"), aspect=35, pad=0.02)
+    if len(largest) == 2:
+        panels[0].spines["bottom"].set_linewidth(2)
+        panels[1].spines["top"].set_linewidth(2)
+
+
+def _heights(shown: Stresses) -> list[float]:
+    """Of the panels of layer and body: to scale, where the layer is neither very thin nor very thick."""
+    if not (shown.layer and shown.body):
+        return [1.0]
+    share = np.clip(shown.h / (shown.h + DEPTH), *_SHARE)
+    return [share, 1 - share]
+
+
+def _above(contact: xr.Dataset, mu: float, sigma_res: float | str) -> list[str]:
+    """What is stated above the panels: the inputs, and what the contact violates of the model's assumptions."""
+    stress = str(sigma_res).replace("-", "\u2212")
+    sliding = [rf"$\mu$ = {mu:g}"] * (mu > 0) + [rf"$\sigma_{{\mathrm{{res}}}}$ = {stress}"] * (sigma_res != 0)
+    bodies = [name for name in ("nu1", "nu2") if name in contact and not (name == "nu2" and is_rigid(contact, "base"))]
+    ratios = [value_text(name, contact[name], contact[name].item()) for name in bodies]
+    texts = dict.fromkeys([*stated([contact]), *ratios, *sliding])  # the pressure may not depend on them
+    violated = [name for name, where in broken(contact["validity"]).items() if where.any()]
+    names = [RULES[name].text + RULES[name].of_which if name in RULES else name for name in violated]
+    return [wrapped([*texts], _LETTERS), *([f"not valid: {', '.join(names)}"] if names else [])]

@@ -1,0 +1,95 @@
+"""The stresses that the picture of one contact shows: in a section of layer and body, and along two lines."""
+
+from typing import NamedTuple
+
+import numpy as np
+import xarray as xr
+
+from ...again import Again, strengths
+from ...data.dataset import decode
+from ...fields import extremes, stresses
+from ...in_words.inputs import is_rigid
+from ...inputs.definition import StudyError
+
+_NEAR = np.linspace(0, 0.4, 17) ** 2 / 0.4
+#: Radii that are shown, in a: 1, where the pressure ends, is among them, and they are closer there.
+_RADII = np.unique(np.concatenate([np.linspace(0, 2, 51), 1 - _NEAR, 1 + _NEAR]).round(12))
+_LAYER, _BODY = 41, 49  # depths that are computed in each
+_AT_INTERFACE = "trz_above", "sz_above", "sr_above", "sr_below"
+DEPTH = 1.6  # of the body, in a: where a half-space is stressed most, 0.48, is in the upper third
+THICKEST = 3.0  # layer in a that is shown as a whole; of a thicker one neither interface nor body are
+
+
+class Region(NamedTuple):
+    """Layer or body in the section. r, z : in a; mises : (z, r)"""
+
+    r: np.ndarray
+    z: np.ndarray
+    mises: np.ndarray
+
+
+class Stresses(NamedTuple):
+    """What the picture shows, in Pa or in units of the solver.
+
+    layer, body : Region or None where it is not there, or a rigid body
+    surface, interface : name -> values along r; the interface is {} without a layer, or under a thick one
+    largest : of `study.extremes`
+    Y : yield strength of "layer" and "body", that of the call or of the named material; NaN where it is not known
+    h : in a, None without a layer
+    """
+
+    layer: Region | None
+    body: Region | None
+    surface: dict[str, np.ndarray]
+    interface: dict[str, np.ndarray]
+    r: np.ndarray
+    largest: xr.Dataset
+    Y: dict[str, float]
+    h: float | None
+
+
+def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tuple[xr.Dataset, Stresses]:
+    """The contact without dimensions, and its stresses. Raises StudyError for several contacts, or one not solved."""
+    contact = _one(contact)
+    largest = extremes(contact, mu, sigma_res)
+    bare, rigid = str(contact["base"].values) == "half_space", is_rigid(contact, "base")
+    h = None if bare else float(contact["h"] / contact["a"])
+    r = np.concatenate([-_RADII[:0:-1], _RADII]) if mu > 0 else _RADII
+    within = np.linspace(0, min(h, THICKEST), _LAYER) if h else np.zeros(0)
+    below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or h <= THICKEST and not rigid else np.zeros(0)
+    whole = h is not None and h <= THICKEST  # down to the interface, which is on neither side
+    inside = within[:-1] if whole else within
+    fields = stresses(contact, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
+    mises = fields["mises"].values.T
+    above, under = (fields[f"mises_{side}"].values[None] for side in ("above", "below"))
+    layer = np.concatenate([mises[: len(inside)], *([above] if whole else [])])
+    body = np.concatenate([*([under] if h else []), mises[len(inside) :]])
+    surface = {name: fields[name].values[:, 0] for name in ("sr", "st")} | {"p": -fields["sz"].values[:, 0]}
+    names = [name for name in _AT_INTERFACE if whole and np.isfinite(fields[name]).any()]  # none in a rigid body
+    interface = {name: fields[name].values for name in names}
+    return contact, Stresses(
+        Region(r, within, layer) if h else None,
+        Region(r, below, body) if len(below) else None,
+        *(surface, interface, r, largest, _yield_strengths(contact), h),
+    )
+
+
+def _yield_strengths(contact: xr.Dataset) -> dict[str, float]:
+    again = Again.of(contact, "plot_stresses")
+    unit = float(again.scene.unit) if again.scene else 1.0
+    known = strengths(contact, again, {})
+    return {body: known[body].item() * unit for body in ("layer", "body")}
+
+
+def _one(contact: xr.Dataset) -> xr.Dataset:
+    if not isinstance(contact, xr.Dataset) or "status" not in contact:
+        raise StudyError(["plot_stresses takes a dataset of study.solve or of a results file, with its status"])
+    several = {dim: contact.sizes[dim] for dim in contact["status"].dims if contact.sizes[dim] != 1}
+    if several:
+        sizes = ", ".join(f"{dim} ({size})" for dim, size in several.items())
+        way_out = ", ".join(f"{dim}=0" for dim in several)
+        raise StudyError([f"plot_stresses draws one contact, not those of {sizes}: choose one, as .isel({way_out})"])
+    contact = contact.squeeze([*contact["status"].dims])
+    if int(contact["status"]) != 0:
+        raise StudyError([f"plot_stresses: the contact has no solution: {decode(contact['status']).item()}"])
+    return contact

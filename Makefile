@@ -56,6 +56,12 @@ yield_maps: $(READY) ## where coated bodies first yield, and what fails first of
 validate: $(READY) ## rough spheres with every asperity resolved beside the two scales: docs/validate.md, .nc, .png
 	$(VENV)/bin/python tools/resolved/validate.py docs
 
+# Sphinx and its themes are no part of the pinned packages: their versions do not change what is said.
+docs: $(READY) ## the site of the documentation, with a gallery: docs/_build/html/index.html, opened from disk
+	$(VENV)/bin/python -m pip install --quiet --editable '.[docs]' --no-build-isolation
+	$(VENV)/bin/sphinx-build --quiet -W -n --keep-going -c docs/site docs docs/_build/html
+	@echo docs/_build/html/index.html
+
 test: $(READY) ## all tests
 	$(PYTEST)
 

@@ -49,7 +49,9 @@ class Units(NamedTuple):
         largest = float(f"{largest:.6g}")  # else 1 GPa may be 1000 MPa
         if "units" not in contact["a"].attrs:
             power = int(np.floor(np.log10(largest)))
-            return cls(1.0, "", rf"10^{{{power}}}\,E_{1 if is_rigid(contact, 'base') else 2}^*", 10.0**power, sliding)
+            modulus = "E_1^*" if is_rigid(contact, "base") else "E_2^*"
+            unit = rf"10^{{{power}}}\,{modulus}" if power else modulus
+            return cls(1.0, "", unit, 10.0**power, sliding)
         long, length = multiple(contact["a"])
         strong, one = quantities.multiple(largest, "Pa")
         return cls(float(contact["a"]) / length, long, strong, one, sliding)
@@ -65,7 +67,8 @@ class Units(NamedTuple):
     def text(self, stress: float) -> str:
         """A stress with its unit: "1.51 GPa" or "$1.55\\times10^{-3} E_2^*$"."""
         number = f"{stress / self.one:.3g}"
-        return f"{number} {self.strong}" if self.long else rf"${number}\times{self.strong}$"
+        times = r"\times" if self.strong.startswith("10") else r"\,"
+        return f"{number} {self.strong}" if self.long else f"${number}{times}{self.strong}$"
 
 
 def section(axes, region: Region, top: float, colours: str, units: Units) -> QuadContourSet:

@@ -12,7 +12,7 @@ from ..labels import stated, value_text, wrapped
 from ..registry import TWO_COLUMNS
 from ..style import StyledFigure, style
 from .panels import NAMES, Units, along, mark, outline, section
-from .places import DEPTH, THICKEST, Stresses, of_one_contact
+from .places import DEPTH, Stresses, of_one_contact
 
 #: Layer and body have one scale of colours if their largest stresses differ by less than this factor.
 _ONE_SCALE = 2.0
@@ -91,7 +91,7 @@ def _draw_sections(panels, contact: xr.Dataset, shown: Stresses, largest: dict[s
             said.append(f"yields at {Units.of(contact, Y, units.sliding).text(Y)}")
         if own_top > Y:
             outline(axes, region, Y, units)
-        if name == "layer" and shown.h > THICKEST:
+        if name == "layer" and region.z[-1] < shown.h:
             said.append(f"interface at $z$ = {shown.h:.3g}$\\,a$")
         mark(axes, shown.largest, NAMES[name], units)
         axes.set_title(", ".join(said), loc="left")

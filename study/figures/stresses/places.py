@@ -17,7 +17,8 @@ _RADII = np.unique(np.concatenate([np.linspace(0, 2, 51), 1 - _NEAR, 1 + _NEAR])
 _LAYER, _BODY = 41, 49  # depths that are computed in each
 _AT_INTERFACE = "trz_above", "sz_above", "sr_above", "sr_below"
 DEPTH = 1.6  # of the body, in a: where a half-space is stressed most, 0.48, is in the upper third
-THICKEST = 3.0  # layer in a that is shown as a whole; of a thicker one neither interface nor body are
+THICKEST = 3.0  # layer in a that is shown as a whole; of a thicker one neither interface nor body are,
+_BENT = 0.3  # unless it bends: the tension at its lower side is more than this share of its largest stress
 
 
 class Region(NamedTuple):
@@ -55,10 +56,10 @@ def of_one_contact(contact: xr.Dataset, mu: float, sigma_res: float | str) -> tu
     bare, rigid = str(contact["base"].values) == "half_space", is_rigid(contact, "base")
     h = None if bare else float(contact["h"] / contact["a"])
     r = np.concatenate([-_RADII[:0:-1], _RADII]) if mu > 0 else _RADII
-    within = np.linspace(0, min(h, THICKEST), _LAYER) if h else np.zeros(0)
-    below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or h <= THICKEST and not rigid else np.zeros(0)
-    whole = h is not None and h <= THICKEST  # down to the interface, which is on neither side
-    inside = within[:-1] if whole else within
+    whole = h is not None and (h <= THICKEST or bool(largest["sr_interface1"] > _BENT * largest["mises1"]))
+    within = np.linspace(0, h if whole else THICKEST, _LAYER) if h else np.zeros(0)
+    below = (h or 0.0) + np.linspace(0, DEPTH, _BODY) if not h or whole and not rigid else np.zeros(0)
+    inside = within[:-1] if whole else within  # the interface is on neither side
     fields = stresses(contact, r, np.concatenate([inside, below[1:] if h else below]), mu, sigma_res)
     mises = fields["mises"].values.T
     above, under = (fields[f"mises_{side}"].values[None] for side in ("above", "below"))

@@ -159,6 +159,16 @@ def test_what_is_not_there_has_no_panel():
     assert panels[0].get_ylim() == (3.0, 0.0)
 
 
+def test_a_thick_layer_that_bends_is_shown_as_a_whole():
+    """A hard plate of 4 a on a soft body is torn at its lower side."""
+    plate = study.solve(**COATED | {"n": 1e4, "h": 0.004}, x=2)
+    panels, _ = picture(plate)
+    h, largest = (plate.h / plate.a).item(), study.extremes(plate)
+    assert h > 4 and len(panels) == 4 and largest.sr_interface1 > 0.3 * largest.mises1
+    np.testing.assert_allclose(panels[0].get_ylim(), (h, 0), rtol=1e-12)
+    assert titles(panels)[0] == f"(a) layer: largest ${largest.mises1.item():.3g}\\,E_2^*$"
+
+
 def test_in_sliding_the_plane_of_sliding_is_shown(coated):
     panels, _ = picture(coated, mu=0.3, sigma_res=-0.01)
     assert panels[0].get_xlim() == (-2, 2) and panels[3].get_xlabel() == "$x/a$"

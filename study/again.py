@@ -17,8 +17,7 @@ from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
-from .specimen import materials
-from .specimen.materials import Material
+from .specimen.materials import Material, strength_of
 from .terminal import shown
 
 
@@ -119,13 +118,5 @@ def _of_materials(contact: xr.Dataset, again: Again, body: str, own: Mapping[str
     if body not in contact.coords or again.scene is None:
         return np.full(len(again.problem), np.nan)
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    known = {name: _strength(name, own) for name in np.unique(names)}
+    known = {name: strength_of(own.get(name, name)) for name in np.unique(names)}
     return np.array([known[name] for name in names])
-
-
-def _strength(name: str, own: Mapping[str, Material]) -> float:
-    try:
-        material = own.get(name) or materials.get(name)
-    except LookupError:  # of a file of the user
-        return np.nan
-    return material.yield_strength or (material.hardness or np.nan) / TABOR

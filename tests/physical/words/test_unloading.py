@@ -1,4 +1,4 @@
-"""The elastic-plastic law is for loading: where the pressure of spots that have yielded falls with the load it is said."""
+"""The elastic-plastic law is for loading: where spots that have yielded unload it is said."""
 
 import warnings
 

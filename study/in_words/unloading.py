@@ -47,8 +47,6 @@ def falling(contacts: xr.Dataset) -> list[str]:
             yielded[some] = np.ravel(law.law.yielded(*law.own))
         falls = p > now.p + _SAME * now.p.max(axis=1, keepdims=True)
         where[index] = (falls & (lam > yielded[:, None])).any(axis=1)
-    text = (
-        "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
+    text = "The pressure falls somewhere while the load rises: spots that have yielded there unload, and stay flatter \
 than this law has them."
-    )
     return [of_cases(where) + text] * bool(where.any())

@@ -13,7 +13,7 @@ def with_picture(text: str, picture: str = "") -> str:
 
 
 def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
-    """A curve as SVG, with words for both axes; "" where there are no numbers. Many points are drawn as means of some."""
+    """A curve as SVG, with words for both axes; "" where there are no numbers. Many points are means of some."""
     x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
     known = np.isfinite(x) & np.isfinite(y)
     if known.sum() < 2:

@@ -38,9 +38,7 @@ def test_scans_and_what_is_measured_of_them():
     line = study.roughness.profile(random.normal(size=5000).cumsum() * 1e-9, dx=1e-7, name="wafer.csv")
     shown = line._repr_html_()
     points = picture(shown)
-    assert len(points) == 200 and shown.startswith(
-        '<pre style="white-space:pre-wrap">wafer.csv: 5000 heights, 499.9 µm'
-    )
+    assert len(points) == 200 and shown.startswith('<pre style="white-space:pre-wrap">wafer.csv: 5000 heights, 500 µm')
     highest = line.z.reshape(200, 25).mean(axis=1)
     assert np.corrcoef(-points[:, 1], highest)[0, 1] > 0.9999
     heights = random.normal(size=(64, 32))

@@ -1,8 +1,11 @@
 """A text with a small picture, for notebooks: HTML that loads nothing and fits light and dark pages."""
 
 from html import escape
+from typing import Any
 
 import numpy as np
+
+from .quantities import readable
 
 _WIDTH, _HEIGHT, _POINTS = 260, 90, 200
 
@@ -31,3 +34,13 @@ def curve(x: np.ndarray, y: np.ndarray, across: str, up: str) -> str:
         f'<path d="M0,0V{_HEIGHT}H{_WIDTH}" stroke-opacity="0.4"/><polyline points="{points}" stroke-width="1.5"/></g>'
         f'<text x="0" y="{_HEIGHT + 16}" font-size="11" fill="currentColor">{words}</text></svg>'
     )
+
+
+def of_heights(scan: Any) -> str:
+    """Of a `Scan`: what it is, and its heights; of a map those of its middle row."""
+    profile = scan.z.ndim == 1
+    row, step = (scan.z, scan.steps[0]) if profile else (scan.z[len(scan.z) // 2], scan.steps[1])
+    size = " x ".join(readable(float(f"{length:.3g}"), "m") for length in scan.sizes)
+    text = "\n".join([f"{scan.name}: {' x '.join(map(str, scan.z.shape))} heights, {size}", *scan.notes])
+    words = "height z" if profile else "height z of the middle row"
+    return with_picture(text, curve(np.arange(len(row)) * step, row - np.nanmin(row), "x", words))

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from .heights.missing import treated
-from .pictures import curve, with_picture
-from .quantities import readable
+from .pictures import of_heights
 
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
@@ -58,12 +57,7 @@ class Scan:
         return tuple((n - 1) * step for n, step in zip(self.z.shape, self.steps, strict=True))
 
     def _repr_html_(self) -> str:
-        """The first lines of its repr, and a picture of the heights; of a map those of its middle row."""
-        row, step = (self.z, self.steps[0]) if self.z.ndim == 1 else (self.z[len(self.z) // 2], self.steps[1])
-        which = "height z" if self.z.ndim == 1 else "height z of the middle row"
-        size = " x ".join(readable(float(f"{length:.3g}"), "m") for length in self.sizes)
-        text = "\n".join([f"{self.name}: {' x '.join(map(str, self.z.shape))} heights, {size}", *self.notes])
-        return with_picture(text, curve(np.arange(len(row)) * step, row - np.nanmin(row), "x", which))
+        return of_heights(self)
 
 
 def profile(

@@ -95,28 +95,53 @@ STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
 """Body -> the input that is its yield strength."""
 
 
-def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material]) -> dict[str, np.ndarray]:
+def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material], spread: bool = False) -> dict:
     """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
 
     That of asperities is of the softer of what meets there. A hardness is 2.84 yield strengths.
 
     own : materials of the call by name, which the table need not have
+    spread : their standard deviations instead, 0 where none is given
     """
-    unit = of_all_cases(again.scene.unit, again.dims, again.shape).astype(float) if again.scene else 1.0
-    named = {body: _of_materials(contact, again, body, own) / unit for body in STRENGTHS}
-    given = again.problem.parameters
-    found = {body: np.where(np.isnan(given[name]), named[body], given[name]) for body, name in STRENGTHS.items()}
+    unit = _of_all(again, again.scene.unit) if again.scene else 1.0
+    named = {
+        body: [_of_materials(contact, again, body, own, which) / unit for which in (False, True)] for body in STRENGTHS
+    }
+    given = {name: [again.problem.parameters[name], _spread(contact, again, name) / unit] for name in _GIVEN}
+    found = {body: _first(given[name], named[body]) for body, name in STRENGTHS.items()}
     bare = again.problem.base == "half_space"
-    softer = np.where(bare, named["body"], named["layer"])
-    softer = np.where(again.problem.m > 0, np.minimum(softer, named["punch"]), softer)
-    Y = np.where(np.isnan(given["yield_strength"]), given["hardness"] / TABOR, given["yield_strength"])
-    return found | {"asperities": np.where(np.isnan(Y), softer, Y)}
+    softer = [np.where(bare, *pair) for pair in zip(named["body"], named["layer"], strict=True)]
+    punch = (again.problem.m > 0) & ((named["punch"][0] < softer[0]) | np.isnan(named["punch"][0]))
+    softer = [np.where(punch, *pair) for pair in zip(named["punch"], softer, strict=True)]
+    hard = [values / TABOR for values in given["hardness"]]
+    found |= {"asperities": _first(_first(given["yield_strength"], hard), softer)}
+    return {who: np.where(np.isnan(pair[0]), np.nan, pair[spread]) for who, pair in found.items()}
 
 
-def _of_materials(contact: xr.Dataset, again: Again, body: str, own: Mapping[str, Material]) -> np.ndarray:
+_GIVEN = (*STRENGTHS.values(), "hardness", "yield_strength")
+
+
+def _first(one: list, other: list) -> list:
+    """Value and spread of the one where it is known, else those of the other."""
+    return [np.where(np.isnan(one[0]), *pair[::-1]) for pair in zip(one, other, strict=True)]
+
+
+def _of_all(again: Again, value: Any) -> np.ndarray:
+    return of_all_cases(value, again.dims, again.shape).astype(float)
+
+
+def _spread(contact: xr.Dataset, again: Again, name: str) -> np.ndarray:
+    name = f"{name}_spread"
+    found = _of_all(again, _without_coordinates(contact[name]) if name in contact.coords else 0.0)
+    return np.nan_to_num(found)
+
+
+def _of_materials(
+    contact: xr.Dataset, again: Again, body: str, own: Mapping[str, Material], spread: bool
+) -> np.ndarray:
     """In Pa, (B,)."""
     if body not in contact.coords or again.scene is None:
         return np.full(len(again.problem), np.nan)
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    known = {name: strength_of(own.get(name, name)) for name in np.unique(names)}
+    known = {name: strength_of(own.get(name, name), spread) for name in np.unique(names)}
     return np.array([known[name] for name in names])

@@ -56,9 +56,9 @@ def by_pitch(v, where: np.ndarray) -> str:
 
 @rule(
     1,
-    f"layer not thin, error > {100 * NOT_THIN:g} %",
+    f"layer not thin, some error > {100 * NOT_THIN:g} %",
     "0.87",
-    of_which=r" in $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$",
+    of_which=r" of $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$",
 )
 def layer_not_thin(v, times):
     """The layer is not thin: the thin-layer equation errs by more than {NOT_THIN:.0%} here. Take base = "layered"."""

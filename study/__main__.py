@@ -85,6 +85,7 @@ def parser() -> argparse.ArgumentParser:
         sub.add_argument(f"--{kind}", dest="folder", default=kind, **DIR, help=f"their folder (default: {kind})")
         sub.add_argument("--run", action="store_true", help="run the studies that they need; skip what is up to date")
         if name == "plot":
+            sub.add_argument("--bare", action="store_true", help="without the parameters above, which captions have")
             add_curves(sub)
         else:
             text = "of the rows of a study, or of a file .nc, that is named (default: csv)"

@@ -107,7 +107,7 @@ def compose(name: str, results: Folder = "results") -> tuple[Figure, Columns, st
     return figure, columns, f"{stem(name)}, studies {' '.join(digests)}".removesuffix(", studies ")
 
 
-def draw(name: str, results: Folder = "results", folder: Folder = "figures") -> list[Path]:
+def draw(name: str, results: Folder = "results", folder: Folder = "figures", bare: bool = False) -> list[Path]:
     """Write a figure as FOLDER/NAME.csv, its numbers, .pdf and .png.
 
     A drawing is copied as .svg, .pdf and .png; "captions" is FOLDER/captions.md. The same datasets give the same bytes:
@@ -117,6 +117,7 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures") -> 
     ----------
     name : of the figure
     results, folder : folders of the results, and of the files that are written
+    bare : without the parameters above the figure, which captions.md has
 
     Returns
     -------
@@ -131,7 +132,14 @@ def draw(name: str, results: Folder = "results", folder: Folder = "figures") -> 
     recipe = entry("figure", name)
     if isinstance(recipe, Drawing):  # the .svg is the original, to be edited by hand
         return [write(Path(folder) / f"{stem(name)}{path.suffix}", path.read_bytes()) for path in copies(recipe)]
-    return save(Path(folder) / stem(name), *compose(name, results))
+    figure, columns, title = compose(name, results)
+    return save(Path(folder) / stem(name), without_parameters(figure) if bare else figure, columns, title)
+
+
+def without_parameters(figure: Figure) -> Figure:
+    """The figure without what stands above it."""
+    figure.suptitle("").set_in_layout(False)
+    return figure
 
 
 def copies(drawing: Drawing) -> list[Path]:

@@ -60,6 +60,7 @@ def _curves(options, name: str) -> int:
     try:
         with style():
             figure, columns = drawn(dataset, options.x, options.y, options.hue, dict(options.where), Figure)
+        figure = catalogue.without_parameters(figure) if options.bare else figure
         written = catalogue.save(Path(options.folder) / stem, figure, columns, title)
     except (StudyError, OSError):
         raise
@@ -92,12 +93,14 @@ def tradeoff(options, name: str) -> int:
 
 def _write(options, name: str) -> int:
     kind = KINDS[options.command]
+    bare = kind == "figure" and options.bare
     make = catalogue.tabulate if kind == "table" else catalogue.draw
     if options.run:
         make, studies = partial(catalogue.renewed, kind), catalogue.needed(kind, name)
         code = max((_ready(options, study, study_beside(kind, name)) for study in studies), default=0)
-        if code or not catalogue.outdated(kind, name, options.results, options.folder):
+        if code or not (bare or catalogue.outdated(kind, name, options.results, options.folder)):
             return code
+    make = partial(catalogue.draw, bare=True) if bare else make
     try:
         answer(*make(name, options.results, options.folder))
     except (StudyError, OSError):

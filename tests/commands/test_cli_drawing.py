@@ -211,3 +211,14 @@ def test_all_means_what_no_long_study_is_needed_for(monkeypatch):
     assert main(["table", "all"]) == 0
     literature = ["literature", "literature_coatings", "literature_decided", "literature_rough"]
     assert drawn == [*literature, "paper_numbers", "table1", "table1_lattice", "validity"]
+
+
+def test_a_bare_figure_has_nothing_above_it(results, monkeypatch, capsys):
+    """And is written though the one with its parameters is up to date."""
+    titles = []
+    monkeypatch.setattr(catalogue, "save", lambda stem, figure, *_: titles.append(figure.get_suptitle()) or [stem])
+    for options in ([], ["--bare"]):
+        assert main(["plot", "fig03", "--results", str(results), *options]) == 0
+    assert titles[0].startswith("$") and titles[1] == ""
+    curves = ["--x", "x", "--y", "p", "--hue", "label"]
+    assert main(["plot", str(results / "main_case.nc"), *curves, "--bare"]) == 0 and titles[2:] == [""]

@@ -15,7 +15,7 @@ def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", 
     It stands "above" or "below" all the lines that belong to the curve, in the colour of the first.
     """
     heights = [np.interp(at, *line.get_data()) for line in lines]
-    gap, anchor, height = (2, "bottom", max(heights)) if side == "above" else (-2, "top", min(heights))
+    gap, anchor, height = (1, "bottom", max(heights)) if side == "above" else (-1, "top", min(heights))
     look = {"ha": align, "va": anchor, "color": lines[0].get_color(), "textcoords": "offset points"}
     axes.annotate(text, (at, height), (0, gap), path_effects=[withStroke(linewidth=2, foreground="white")], **look)
 

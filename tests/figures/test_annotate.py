@@ -55,8 +55,8 @@ def test_a_name_stands_above_or_below_and_to_the_side_that_is_asked():
     name_curve(axes, own, "under", 0.5, side="below", align="right")
     over, under = axes.texts
     assert over.xy == (1, 4) and under.xy == (0.5, 0.5)
-    assert (over.get_va(), over.get_ha(), over.xyann) == ("bottom", "center", (0, 2))
-    assert (under.get_va(), under.get_ha(), under.xyann) == ("top", "right", (0, -2))
+    assert (over.get_va(), over.get_ha(), over.xyann) == ("bottom", "center", (0, 1))
+    assert (under.get_va(), under.get_ha(), under.xyann) == ("top", "right", (0, -1))
 
 
 @pytest.mark.parametrize("mask", WORDS)

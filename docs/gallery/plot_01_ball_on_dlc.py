@@ -18,4 +18,5 @@ print(rc.summary(contact.sel(P=10)))
 bare = rc.solve(**ball, body="steel 52100", base="half_space", P=["1 N", "10 N", "100 N"])
 assert (abs(contact.a / bare.a - 1) < 0.02).all()
 
-rc.plot(contact, "p", "x", hue="P")
+figure = rc.plot(contact, "p", "x", hue="P")
+figure

@@ -25,4 +25,5 @@ print(rests.to_series().round(3).to_string())
 # Sharper asperities press harder. A load that is 1 % larger makes the pressure 0.1 to 0.3 % larger.
 assert rests.sel(input="Ra") < 0 and 0.05 < rests.sel(input="P") < 0.4
 
-rc.plot(contact, "p_max", "input")
+figure = rc.plot(contact, "p_max", "input")
+figure

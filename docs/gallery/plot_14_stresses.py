@@ -15,4 +15,5 @@ print({name: f"{largest[name].item() / 1e9:.2f} GPa" for name in ("mises1", "mis
 # The tension there exceeds the pressure in the centre several times.
 assert largest.s1_layer > 2 * contact.p0 and largest.s1_layer_z * contact.a > 0.9 * contact.h
 
-rc.plot_stresses(contact)
+figure = rc.plot_stresses(contact)
+figure

@@ -9,7 +9,9 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE))
 
 import reference  # noqa: E402
+from matplotlib.figure import Figure  # noqa: E402
 from sphinx.util.fileutil import copy_asset  # noqa: E402
+from sphinx_gallery.scrapers import figure_rst, matplotlib_scraper  # noqa: E402
 
 import roughcoat  # noqa: E402
 from study.explorer import page as explorer  # noqa: E402
@@ -55,7 +57,21 @@ autodoc_typehints = "none"  # the sections of a docstring say what a parameter m
 default_role = "code"  # `name` in a docstring
 nitpicky = True
 
+
+def _pictures(block, block_vars, conf):
+    """A scraper of pictures: those of pyplot, and the figures of `rc.plot`, which are none of pyplot."""
+    made, known = [], block_vars["example_globals"].setdefault("_pictures", set())
+    for figure in block_vars["example_globals"].values():
+        if isinstance(figure, Figure) and not hasattr(figure, "number") and id(figure) not in known:
+            known.add(id(figure))
+            made.append(next(block_vars["image_path_iterator"]))
+            figure.savefig(made[-1])
+    return figure_rst(made, conf["src_dir"]) + matplotlib_scraper(block, block_vars, conf)
+
+
 sphinx_gallery_conf = {
+    "image_scrapers": (_pictures,),
+    "capture_repr": ("_repr_html_",),
     "examples_dirs": [str(HERE.parent / "gallery")],
     "gallery_dirs": ["examples"],
     "within_subsection_order": "FileNameSortKey",

@@ -1,4 +1,4 @@
-"""Contacts of a dataset, solved again from the inputs that it has; and their strengths."""
+"""The contacts of a dataset as a problem that can be solved again, and the strengths of their bodies."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -38,7 +38,10 @@ class Again(NamedTuple):
 
     @classmethod
     def of(cls, contact: xr.Dataset, who: str) -> "Again":
-        """Raises StudyError, which names the function `who`, where a dataset is no result or has lost an input."""
+        """The problem of a dataset. Raises StudyError if it is no result, or has lost an input.
+
+        who : the name of the public function, for messages
+        """
         inputs = _checked(contact, who)
         dims, shape = contact["status"].dims, contact["status"].shape
         scene = _scene(inputs) if "R" in inputs else None
@@ -58,18 +61,18 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
     recall(contact.attrs.get("micro_laws", ""))
     settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
-    there = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
-    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in there]
-    wrong += ["must have one of P, a and D as a coordinate"] * (len({*there} & {*CONTROLS}) != 1)
+    coordinates = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
+    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in coordinates]
+    wrong += ["must have one of P, a and D as a coordinate"] * (len({*coordinates} & {*CONTROLS}) != 1)
     if wrong:
         raise StudyError([f"{who}: the dataset {wrong[0]}: its cases cannot be solved again"])
-    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in there if ROWS[name].unit != "1"}
-    if units == {True, False} or has_units(contact) != ("R" in there and "E2" in there):
+    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in coordinates if ROWS[name].unit != "1"}
+    if units == {True, False} or has_units(contact) != ("R" in coordinates and "E2" in coordinates):
         raise StudyError([f"{who} needs all in SI units, as study.solve gives them, or all without units"])
     unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
     if unknown:
         raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
-    return settings | {name: _without_coordinates(contact[name]) for name in there}
+    return settings | {name: _without_coordinates(contact[name]) for name in coordinates}
 
 
 def _without_coordinates(array: xr.DataArray) -> Any:
@@ -82,7 +85,7 @@ def _scene(inputs: dict[str, Any]) -> Scene:
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
     in_si = [name for name in inputs if name in SCENE or name in RATIOS or VOCABULARY[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
-    scene = Scene(given={name: inputs[name] for name in in_si}, parameters=others)
+    scene = Scene(values={name: inputs[name] for name in in_si}, parameters=others)
     make_dimensionless(scene)
     return scene
 
@@ -97,21 +100,21 @@ STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
 
 
 def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material]) -> dict[str, np.ndarray]:
-    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
+    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is unknown.
 
-    That of asperities is of the softer of what meets there. A hardness is 2.84 yield strengths.
+    Asperities have that of the softer of the two surfaces. A hardness is 2.84 yield strengths.
 
     own : materials of the call by name, which the table need not have
     """
     unit = of_all_cases(again.scene.unit, again.dims, again.shape).astype(float) if again.scene else 1.0
     named = {body: _of_materials(contact, again, body, own) / unit for body in STRENGTHS}
-    given = again.problem.parameters
-    found = {body: np.where(np.isnan(given[name]), named[body], given[name]) for body, name in STRENGTHS.items()}
+    inputs = again.problem.parameters
+    yields = {body: np.where(np.isnan(inputs[name]), named[body], inputs[name]) for body, name in STRENGTHS.items()}
     bare = again.problem.base == "half_space"
     softer = np.where(bare, named["body"], named["layer"])
     softer = np.where(again.problem.m > 0, np.minimum(softer, named["punch"]), softer)
-    Y = np.where(np.isnan(given["yield_strength"]), given["hardness"] / TABOR, given["yield_strength"])
-    return found | {"asperities": np.where(np.isnan(Y), softer, Y)}
+    Y = np.where(np.isnan(inputs["yield_strength"]), inputs["hardness"] / TABOR, inputs["yield_strength"])
+    return yields | {"asperities": np.where(np.isnan(Y), softer, Y)}
 
 
 def _of_materials(contact: xr.Dataset, again: Again, body: str, own: Mapping[str, Material]) -> np.ndarray:
@@ -119,8 +122,8 @@ def _of_materials(contact: xr.Dataset, again: Again, body: str, own: Mapping[str
     if body not in contact.coords or again.scene is None:
         return np.full(len(again.problem), np.nan)
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    known = {name: _strength(name, own) for name in np.unique(names)}
-    return np.array([known[name] for name in names])
+    yields = {name: _strength(name, own) for name in np.unique(names)}
+    return np.array([yields[name] for name in names])
 
 
 def _strength(name: str, own: Mapping[str, Material]) -> float:

@@ -27,7 +27,7 @@ def results(definition: Definition, parts: Parts) -> xr.Dataset:
     scene, results, coords = definition.scene, {}, {}
     spreads = spreads_of(definition, parts) if parts.by_input else {}
     for name, variable in (parts.variables | parts.coords).items():
-        if name in scene.given:
+        if name in scene.values:
             continue
         known = name in VOCABULARY and VOCABULARY[name].powers != (0, 0)
         found = _in_si(name, variable, scene.unit, scene.R) if known else variable
@@ -37,14 +37,14 @@ def results(definition: Definition, parts: Parts) -> xr.Dataset:
             spread.attrs = {"long_name": long_name} | _units(VOCABULARY[name].unit)
             results[f"{name}_spread"] = spread
         (coords if name in parts.coords else results)[name] = found
-    coords |= {name: _coordinate(name, value) for name, value in scene.given.items()}
+    coords |= {name: _coordinate(name, value) for name, value in scene.values.items()}
     for name, value in scene.spreads.items():
         coords[f"{name}_spread"] = _coordinate(name, value, f"standard deviation of {name}, as given")
     for body, (dim, texts) in scene.names.items():
         values = texts if dim else texts[0]
         about = {"comment": SAME_PIECE} if scene.same_piece and scene.spreads else {}
         coords[body] = xr.Variable(dim or (), values, {"long_name": f"material of the {body}"} | about)
-    for name, there in scene.given_in.items():
+    for name, there in scene.cases_of.items():
         if name in coords:
             coords[name] = coords[name].where(there.variable, "" if name == "layer" else np.nan)
     if scene.labels:

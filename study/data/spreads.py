@@ -3,7 +3,7 @@
 import numpy as np
 
 from ..inputs.definition import Definition
-from ..inputs.scene.changes import SCALES, of_spreads
+from ..inputs.scene.changes import SCALES, changes_by_spread
 from ..inputs.scene.pieces import matrix
 from ..inputs.scene.scene import over
 from ..inputs.vocabulary import VOCABULARY
@@ -16,7 +16,7 @@ def spreads_of(definition: Definition, parts: Parts) -> dict[str, np.ndarray]:
     g_i is the change of the result with an input of the scene by its spread, and C are the correlations of inputs.
     """
     scene, grid, names = definition.scene, definition.grid, definition.inputs
-    changes, dims = of_spreads(scene, grid.fitted), tuple(grid.sizes)
+    changes, dims = changes_by_spread(scene, grid.fitted), tuple(grid.sizes)
 
     def columns(keys: tuple[str, ...]) -> np.ndarray:
         """The changes of the solver's inputs or the scales `keys`, (..., keys, inputs of the scene)."""

@@ -1,11 +1,11 @@
-"""The key of a case and the digest of a study: they are made only of the values that can change a number.
+"""The key of a case and the digest of a study, made of the values that can change a number.
 
-A value counts where its case uses the parameter (`needed_by`, `used_by` in the solver's table) and where it is not the
-default. So keys and digests stay as they are when an unused value is edited, or a parameter with a default is added to
-the program. A case has the same key on another grid, in another order of the axes and in another run.
+A value counts if its case uses the parameter (`needed_by`, `used_by` in the solver's table) and if it is not the
+default. So keys and digests stay the same when a value that no case uses is edited, or when a parameter with a default
+is added to the program. A case has the same key on another grid, in another order of the axes and in another run.
 
 Whoever changes a default, or how keys are made, must change NUMERICS_VERSION, which is in the digest and beside every
-key: no case on disk is found by other keys.
+key. Otherwise a case on disk could be found by the key of another.
 """
 
 import hashlib
@@ -21,13 +21,13 @@ from solver.parameters import uses
 from .grid import Grid, along
 from .vocabulary import PARAMETERS, VOCABULARY
 
-#: What the answer is compared with: no case depends on it, but the flags in a results file do.
+#: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 
 
 def counts(grid: Grid, name: str) -> np.ndarray:
-    """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
-    value, default = along(grid, name), VOCABULARY[name].own.default
+    """Whether the value of a parameter counts: bool along the dimensions of the grid, some of them of length 1."""
+    value, default = along(grid, name), VOCABULARY[name].parameter.default
     changed = ~np.isnan(value) if default is None else value != default
     return changed & uses(name, partial(along, grid))
 
@@ -63,21 +63,23 @@ def digest_of(definition) -> str:
     return _digest_of_scene(digest, definition.scene) if definition.scene else digest
 
 
-def _digest_of_scene(of_numbers: str, scene) -> str:
+def _digest_of_scene(digest: str, scene) -> str:
     """sha256 of the digest of dimensionless numbers, and of the SI values from which they follow."""
-    content = [of_numbers, scene.labels, sorted(scene.names.items())]
-    correlations = {f"{one} and {other}": value for (one, other), value in scene.correlations.items()}
-    for table, end in ((scene.given, ""), (scene.spreads, "_spread"), (correlations, "")):
+    content = [digest, scene.labels, sorted(scene.names.items())]
+    correlations = {f"{first} and {second}": value for (first, second), value in scene.correlations.items()}
+    for table, end in ((scene.values, ""), (scene.spreads, "_spread"), (correlations, "")):
         for name, value in sorted(table.items()):
             content.append((name + end, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def _digest_of_values(grid: Grid, name: str) -> tuple:
-    """Shape of a parameter, digest of the places whose value counts for some case, digest of these values; () if none
-    does."""
+    """Shape of a parameter, digest of the places whose value counts in some case, and digest of these values.
+
+    () if no value counts.
+    """
     dims, array = grid.values.get(name, ((), None))
-    if not dims and (array is None or array == VOCABULARY[name].own.default):  # quick: most parameters end here
+    if not dims and (array is None or array == VOCABULARY[name].parameter.default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))

@@ -17,8 +17,7 @@ from .inputs.scene.scales import make_dimensionless
 from .inputs.scene.scene import Scene, over
 from .inputs.vocabulary import CONTROLS, NUMERICS, PARAMETERS, ROWS, SCENE, VOCABULARY
 from .rules.rule import has_units
-from .specimen import materials
-from .specimen.materials import Material
+from .specimen.materials import Material, strength_of
 from .terminal import shown
 
 
@@ -99,15 +98,15 @@ STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
 """Body -> the input that is its yield strength."""
 
 
-def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material]) -> dict[str, np.ndarray]:
+def strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Material]) -> dict[str, np.ndarray]:
     """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is unknown.
 
     Asperities have that of the softer of the two surfaces. A hardness is 2.84 yield strengths.
 
-    own : materials of the call by name, which the table need not have
+    materials : those of the call by name; the table of materials need not have them
     """
     unit = of_all_cases(again.scene.unit, again.dims, again.shape).astype(float) if again.scene else 1.0
-    named = {body: _of_materials(contact, again, body, own) / unit for body in STRENGTHS}
+    named = {body: _of_materials(contact, again, body, materials) / unit for body in STRENGTHS}
     inputs = again.problem.parameters
     yields = {body: np.where(np.isnan(inputs[name]), named[body], inputs[name]) for body, name in STRENGTHS.items()}
     bare = again.problem.base == "half_space"
@@ -117,18 +116,10 @@ def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material]) ->
     return yields | {"asperities": np.where(np.isnan(Y), softer, Y)}
 
 
-def _of_materials(contact: xr.Dataset, again: Again, body: str, own: Mapping[str, Material]) -> np.ndarray:
+def _of_materials(contact: xr.Dataset, again: Again, body: str, materials: Mapping[str, Material]) -> np.ndarray:
     """In Pa, (B,)."""
     if body not in contact.coords or again.scene is None:
         return np.full(len(again.problem), np.nan)
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    yields = {name: _strength(name, own) for name in np.unique(names)}
+    yields = {name: strength_of(materials.get(name, name)) for name in np.unique(names)}
     return np.array([yields[name] for name in names])
-
-
-def _strength(name: str, own: Mapping[str, Material]) -> float:
-    try:
-        material = own.get(name) or materials.get(name)
-    except LookupError:  # of a file of the user
-        return np.nan
-    return material.yield_strength or (material.hardness or np.nan) / TABOR

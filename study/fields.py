@@ -12,9 +12,11 @@ from solver.fields.contact import of_contacts as fields_of
 from solver.fields.invariants import invariants
 from solver.fields.sliding import in_plane
 from solver.yields.contact import of_contacts as extremes_of
+from solver.yields.extremes import EXTREMES
 
 from .again import Again, of_all_cases
 from .inputs.definition import StudyError
+from .inputs.vocabulary import VOCABULARY
 from .specimen.foreign import plain
 from .specimen.quantities import has_unit, quantity
 from .terminal import shown
@@ -34,18 +36,6 @@ _LONG_NAMES = {
     "s3": "smallest principal stress",
     "mises": "von Mises stress",
     "tresca": "Tresca stress, s1 - s3",
-}
-_EXTREMES = {
-    "mises1": "largest von Mises stress of the layer",
-    "mises2": "largest von Mises stress of the body",
-    "tresca1": "largest Tresca stress of the layer",
-    "tresca2": "largest Tresca stress of the body",
-    "s1_surface": "largest tension on the surface",
-    "s1_layer": "largest tension in the layer",
-    "sr_interface1": "largest radial tension in the layer at the interface",
-    "tau_interface": "largest shear stress at the interface",
-    "sz_interface_max": "largest axial tension at the interface",
-    "sz_interface_min": "largest axial compression at the interface",
 }
 
 
@@ -159,7 +149,8 @@ def extremes(contact: xr.Dataset, mu: float = 0.0, sigma_res: float | str = 0.0)
     residual = residual_stress(sigma_res, again) / unit
     values = extremes_of(again.problem, _solved(again, contact), mu, residual)
     variables = {}
-    for name, long_name in _EXTREMES.items():
+    for name in EXTREMES:
+        long_name = VOCABULARY[name].long_name
         value, r, z = values[name]
         place = {"long_name": f"{long_name}: its {'radius' if mu == 0 else 'x, behind the contact < 0,'} over a"}
         variables[name] = _labelled(again, value * unit, (), _about(again, long_name, "Pa"))

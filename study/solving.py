@@ -17,7 +17,7 @@ from .carried import with_coordinates
 from .data.dataset import parts
 from .data.si import dataset_of
 from .derivatives import sensitivities as derivatives_of
-from .in_words import FarOutside, doubts, far_outside
+from .in_words import FarOutside, doubts, falling, far_outside
 from .inputs.checks import unloading
 from .inputs.definition import POINTS, StudyError
 from .inputs.reading import from_call
@@ -213,9 +213,10 @@ def solve(
     found, left_out = with_coordinates(found, parameters)
     for text in left_out:
         warnings.warn(text, stacklevel=2)
-    beyond = doubts(found) if definition.scene and chunks is None else []
-    if beyond:
-        warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
+    if chunks is None:
+        beyond = doubts(found) if definition.scene else falling(found)
+        if beyond:
+            warnings.warn("\n".join(["this contact is beyond what the model describes:", *beyond]), stacklevel=2)
     return found
 
 

@@ -12,6 +12,7 @@ import reference  # noqa: E402
 from sphinx.util.fileutil import copy_asset  # noqa: E402
 
 import roughcoat  # noqa: E402
+from study.explorer import page as explorer  # noqa: E402
 
 project, author, version = "roughcoat", "the authors of roughcoat", roughcoat.__version__
 copyright = author
@@ -24,7 +25,7 @@ extensions = [
     "sphinx_gallery.gen_gallery",
 ]
 root_doc = "index"
-exclude_patterns = ["_build", "site", "gallery/*.rst"]
+exclude_patterns = ["_build", "site", "gallery/*.rst", "notebooks"]
 source_suffix = {".md": "markdown", ".rst": "restructuredtext"}
 suppress_warnings = ["config.cache"]  # the order of the gallery is a function, which Sphinx cannot keep
 pygments_style = "default"
@@ -66,10 +67,11 @@ sphinx_gallery_conf = {
 }
 
 
-def _mathjax(app, error) -> None:
+def _assets(app, error) -> None:
     if error is None:
         found = next(path for path in files("sphinx-mathjax-offline") if path.name == "tex-svg.js")
         copy_asset(str(found.locate()), str(Path(app.outdir) / "_static"))
+        (Path(app.outdir) / "_static/contact.html").write_text(explorer.page(), encoding="utf-8")
 
 
 def _plain(app, what, name, thing, options, lines) -> None:
@@ -84,8 +86,8 @@ def _links_out(app, docname, source) -> None:
 
 
 def setup(app) -> None:
-    """Write the pages of the reference before Sphinx reads, and copy MathJax when it has written."""
+    """Write the pages of the reference before Sphinx reads, and add MathJax and the explorer when it has written."""
     app.connect("builder-inited", lambda _: reference.write(HERE.parent / "reference"))
     app.connect("autodoc-process-docstring", _plain, priority=100)  # before numpydoc
     app.connect("source-read", _links_out)
-    app.connect("build-finished", _mathjax)
+    app.connect("build-finished", _assets)

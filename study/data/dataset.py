@@ -12,6 +12,7 @@ from ..inputs.definition import Definition
 from ..inputs.grid import along, unflatten
 from ..inputs.identity import law_versions
 from ..inputs.laws import COMMENT
+from ..inputs.scene.scene import bare_variable
 from ..inputs.vocabulary import (
     BY_INPUT,
     CONTROLS,
@@ -24,6 +25,7 @@ from ..inputs.vocabulary import (
     names,
 )
 from ..rules.rule import validity_attributes, validity_of, whole
+from ..specimen.materials import strength_of
 from .provenance import provenance
 
 
@@ -34,7 +36,9 @@ def failed_cases(status: np.ndarray) -> np.ndarray:
 
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
     """What `arrays_of` gives for `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
-    found = {name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *definition.results)}
+    found = {
+        name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *definition.results, *definition.stresses)
+    }
     found |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
     if definition.inputs:
         with_spreads = [(name, found[name]) for name in (*WITH_SPREADS, *definition.profiles)]
@@ -80,7 +84,20 @@ def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -
     found.variables["status"].attrs |= status_attributes()
     found.variables["model_used"].attrs |= model_attributes()
     radii = definition.scene.radii() if definition.scene else {}
-    found.variables["validity"] = validity_of(found.variables | found.coords | radii)
+    strengths = _strengths(definition) if definition.stresses and definition.scene else {}
+    found.variables["validity"] = validity_of(strengths | found.variables | found.coords | radii)
+    return found
+
+
+def _strengths(definition: Definition) -> dict[str, xr.Variable]:
+    """Yield strengths of the materials that are named, over the unit of moduli; NaN of those that have none."""
+    scene, found = definition.scene, {}
+    for body, name in (("layer", "Y1"), ("body", "Y2")):
+        if body in scene.names:
+            dim, texts = scene.names[body]
+            values = np.array([strength_of(text) for text in texts])
+            found[name] = xr.Variable(dim, values) if dim else xr.Variable((), values[0])
+            found[name] = found[name] / bare_variable(scene.unit)
     return found
 
 

@@ -3,6 +3,7 @@
 from .early import FarOutside, far_outside
 from .sentences import MODELS, NOT_VIOLATED, doubts
 from .text import MOST_CASES, SHOWN, Summary, summary
+from .unloading import falling
 
 __all__ = [
     "MODELS",
@@ -12,6 +13,7 @@ __all__ = [
     "FarOutside",
     "Summary",
     "doubts",
+    "falling",
     "far_outside",
     "summary",
 ]

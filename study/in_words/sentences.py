@@ -11,6 +11,7 @@ from ..rules import rule
 from .influence import influence
 from .pressures import largest_of_all
 from .strength import RUBBER, holds, which_yields
+from .unloading import falling
 
 _BASES = {
     "half_space": "a half-space",
@@ -33,7 +34,8 @@ def doubts(contact: xr.Dataset) -> list[str]:
     v = dict(contact.variables)  # arithmetic of DataArrays takes longer than solving a contact
     found = rule.sentences(v | (largest_of_all(contact) if v["p_max"].attrs.get("units") == "Pa" else {}))
     yields = rule.RULES["body_yields"].sentence
-    return [f"{text} {which_yields(contact)}".rstrip() if text.endswith(yields) else text for text in found]
+    found = [f"{text} {which_yields(contact)}".rstrip() if text.endswith(yields) else text for text in found]
+    return found + falling(contact)
 
 
 def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:

@@ -43,6 +43,7 @@ class Definition:
     results : names of the results, without profiles and flags
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
     inputs : names of those inputs of the solver that change with some spread; results have derivatives by them
+    stresses : names of the largest stresses and their places, if the study wants them
     """
 
     name: str
@@ -58,6 +59,7 @@ class Definition:
     scene: Any = None
     results: tuple[str, ...] = names("result")
     inputs: tuple[str, ...] = ()
+    stresses: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f'Definition("{self.name}", {self.cases})'
@@ -71,7 +73,8 @@ class Definition:
     @property
     def numbers(self) -> int:
         """How many numbers the blocks hold, roughly. The results hold as many, and as many spreads."""
-        return self.grid.size * (PER_CASE + len(self.x) * len(self.profiles)) * (1 + len(self.inputs))
+        per_case = PER_CASE + len(self.stresses) + len(self.x) * len(self.profiles)
+        return self.grid.size * per_case * (1 + len(self.inputs))
 
     def in_results(self, table: dict) -> dict:
         """The table, whose keys are dimensions of the grid, with the names that the results give to these."""
@@ -80,16 +83,18 @@ class Definition:
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:
-    """Title, points and names of the profiles, and type of the numbers: of the title and the section [output]."""
+    """What the title and the section [output] say: title, x, profiles, dtype and stresses of a Definition."""
     title = tables.get("title", "")
-    output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0]} | tables.get("output", {})
+    output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0], "stresses": False} | tables.get("output", {})
     x = profile_points(output["x"], errors)
     if not isinstance(title, str):
         errors.append(f"title = {shown(title)}: must be text")
     profiles, dtype = profile_names(output["profiles"], errors), output["dtype"]
     if dtype not in DTYPES:
         errors.append(f"[output] dtype = {shown(dtype)}: must be one of " + ", ".join(f'"{d}"' for d in DTYPES))
-    return title, x, profiles, dtype
+    if not isinstance(output["stresses"], bool):
+        errors.append(f"[output] stresses = {shown(output['stresses'])}: must be true or false")
+    return title, x, profiles, dtype, names("stress") if output["stresses"] is True else ()
 
 
 def refusal(where: str, errors: list[str]) -> StudyError:

@@ -23,6 +23,8 @@ from .vocabulary import PARAMETERS, VOCABULARY
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
+#: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
+RATIOS = ("nu1", "nu2")
 
 
 def counts(grid: Grid, name: str) -> np.ndarray:
@@ -58,9 +60,15 @@ def digest_of(definition) -> str:
     content["values"] = {name: digests for name, digests in content["values"].items() if digests}
     compared = [name for name in STRENGTHS if name in grid.values and name not in grid.sizes]
     content |= {"strengths": {name: digest_of_array(along(grid, name)) for name in compared}} if compared else {}
+    content |= {"stresses": _digest_of_ratios(grid)} if definition.stresses else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
     return _digest_of_scene(digest, definition.scene) if definition.scene else digest
+
+
+def _digest_of_ratios(grid: Grid) -> list[str]:
+    """Digests of the Poisson ratios, which always count for stresses."""
+    return [digest_of_array(along(grid, name)) for name in RATIOS]
 
 
 def _digest_of_scene(digest: str, scene) -> str:
@@ -94,17 +102,19 @@ def digest_of_array(array: np.ndarray) -> str:
     return hashlib.sha256(raw).hexdigest()
 
 
-def case_keys(grid: Grid) -> np.ndarray:
+def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
     """(B, 2) uint64: keys of 128 bits, two sums of a hash of (name, value) over the parameters whose value counts.
 
-    It is a sum so that a parameter is hashed along its own dimensions only. -0.0 counts as 0.0. A million keys take a
-    fraction of a second.
+    The hashes are summed so that a parameter is hashed along its own dimensions only. -0.0 counts as 0.0. With
+    `stresses` the keys differ, and Poisson ratios always count. A million keys take a fraction of a second.
     """
     lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
     for name in PARAMETERS:
         counted = counts(grid, name)
         if counted.any():
             lanes += np.where(counted, _hashed(name, along(grid, name)), np.uint64(0))
+    for name in RATIOS if stresses else ():
+        lanes += _hashed(f"{name} of stresses", along(grid, name))
     return np.ascontiguousarray(lanes.reshape(2, -1).T)
 
 

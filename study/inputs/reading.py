@@ -23,7 +23,12 @@ from .request import MOST_MESSAGES, Request
 from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
-KEYS = {"numerics": (*NUMERICS, "block"), "output": ("x", "profiles", "dtype", "spreads"), "model": None, "axes": None}
+KEYS = {
+    "numerics": (*NUMERICS, "block"),
+    "output": ("x", "profiles", "dtype", "spreads", "stresses"),
+    "model": None,
+    "axes": None,
+}
 """Section of a study file -> the keys that it may have; None: its keys are names of parameters."""
 SECTIONS = ("title", "kind", "model", "axes", "cases", "sample", "correlations", "numerics", "output")
 LARGEST_FILE = 32_000_000  # bytes: a million values of an axis are 20 MB
@@ -87,13 +92,17 @@ def complete(request: Request, tables: dict, name: str, text: str, where: str, m
     draft.put_dimensions()
     grid = draft.finish()
     inputs = () if errors or scene is None or not scene.spreads else inputs_of(scene, grid)
-    title, x, profiles, dtype = settings(tables, errors)
+    title, x, profiles, dtype, stresses = settings(tables, errors)
     block = tables.get("numerics", {}).get("block", 1 if errors else usual_block(grid))
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     results = results_of(grid.values["micro"][1] if "micro" in grid.values else ())
     definition = Definition(
-        name, title, text, grid, x, profiles, dtype, block, "", scene=scene, results=results, inputs=inputs
+        *(name, title, text, grid, x, profiles, dtype, block, ""),
+        scene=scene,
+        results=results,
+        inputs=inputs,
+        stresses=stresses,
     )
     if (numbers := definition.numbers) > most:
         limit = f"at most {most:.0e} (fewer points, or profiles = false)"

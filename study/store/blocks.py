@@ -134,7 +134,7 @@ def inventory(store: Store, retry: tuple = ()) -> Inventory:
         if usable(store.definition, block):
             places = [block.facts["inputs"].index(name) for name in store.definition.inputs]
             sources.append(Source(path, block.keys, block.arrays["status"], places))
-    keys = case_keys(store.definition.grid)
+    keys = case_keys(store.definition.grid, bool(store.definition.stresses))
     return Inventory(keys, sources, *_places(keys, sources, retry), blocks)
 
 
@@ -232,5 +232,12 @@ def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
         keys = read_block(store.record(digest)).keys
     except OSError:
         return None
-    kept = find(keys, case_keys(store.definition.grid), np.zeros(store.definition.grid.size)) >= 0
+    kept = (
+        find(
+            keys,
+            case_keys(store.definition.grid, bool(store.definition.stresses)),
+            np.zeros(store.definition.grid.size),
+        )
+        >= 0
+    )
     return int(np.count_nonzero(~kept)), len(keys)

@@ -27,6 +27,7 @@ class Parcel:
     parameters : name -> (n,), or (1,) for all cases
     x : (m,) points of the profiles; results, profiles : names of those that are wanted
     inputs : of the solver, by which derivatives are wanted
+    stresses : names of the largest stresses and their places that are wanted
     numerics : version of the solver's numerics that is wanted
     laws : micro laws that the worker may not have registered
     """
@@ -38,6 +39,7 @@ class Parcel:
     results: tuple[str, ...]
     profiles: tuple[str, ...]
     inputs: tuple[str, ...]
+    stresses: tuple[str, ...]
     numerics: str
     laws: tuple[Law, ...] = ()
 
@@ -55,7 +57,7 @@ def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     found = columns(definition.grid, index)
     found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
     own = tuple(own_laws(found["micro"]))
-    wanted = definition.x, definition.results, definition.profiles, definition.inputs
+    wanted = definition.x, definition.results, definition.profiles, definition.inputs, definition.stresses
     return Parcel(int(index[0]), int(index[-1]), found, *wanted, NUMERICS_VERSION, own)
 
 
@@ -85,6 +87,7 @@ def compute(wanted: Parcel) -> dict[str, np.ndarray]:
         problem = Problem.of(**wanted.parameters)
         solution = solve(problem, wanted.x)
         arrays = arrays_of(solution, wanted.results, wanted.profiles)
+        arrays |= stresses_of(problem, solution) if wanted.stresses else {}
         return arrays | (derivatives_of(problem, solution, wanted) if wanted.inputs else {})
 
 
@@ -95,6 +98,16 @@ def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str,
     found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
     found |= {name: getattr(solution, name) for name in profiles}
     return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}
+
+
+def stresses_of(problem: Problem, solution: Solution) -> dict[str, np.ndarray]:
+    """The largest stresses and their places: NAME, NAME_r, NAME_z -> (B,)."""
+    from solver.yields.contact import of_contacts  # most studies want none
+
+    found = of_contacts(problem, solution)
+    return {
+        f"{name}{end}": array for name, own in found.items() for end, array in zip(("", "_r", "_z"), own, strict=True)
+    }
 
 
 def derivatives_of(problem: Problem, solution: Solution, wanted: Parcel) -> dict[str, np.ndarray]:

@@ -7,6 +7,9 @@ from xarray.plot.utils import label_from_attrs
 import study
 from study.inputs.vocabulary import PARAMETERS, VOCABULARY, attributes, check, names
 
+# The largest stresses, each with its place.
+STRESSES = ("mises1", "mises2", "tresca1", "tresca2", "s1_surface", "s1_layer", "sr_interface1", "tau_interface")
+STRESSES += ("sz_interface_max", "sz_interface_min")
 # Dimension in powers of kg, m, s and the printed unit of every quantity that has one.
 FORCE, LENGTH, PRESSURE = (1, 1, -2), (0, 1, 0), (1, -1, -2)
 STIFFNESS, AREA, PER_AREA = (1, 0, -2), (0, 2, 0), (0, -2, 0)
@@ -33,6 +36,7 @@ DIMENSIONS = {
     "p_peak": (PRESSURE, "Pa"),
     "D_body": (LENGTH, "m"),
     "E_eff": (PRESSURE, "Pa"),
+    **dict.fromkeys(STRESSES, (PRESSURE, "Pa")),
 }
 UNITS = {
     "N": FORCE,
@@ -49,7 +53,7 @@ PURE = {
     "model_check", "nodes", "max_iterations", "Ar_An", "plastic_share", "lam0", "lam", "status", "error",
     "profile_error", "model_error", "model_used", "residual", "iterations", "nodes_used", "validity", "An_ratio",
     "spots", "x", "case", "label",
-}
+} | {f"{name}_{axis}" for name in STRESSES for axis in "rz"}
 # fmt: on
 
 

@@ -129,7 +129,8 @@ def fault(arguments: list[str]) -> tuple[int, str]:
         raise Hang
 
     before = signal.signal(signal.SIGVTALRM, hang)
-    signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE)  # of this process: others may be busy
+    # Of this process: others may be busy. Again and again: what is raised while an object is deleted is lost.
+    signal.setitimer(signal.ITIMER_VIRTUAL, PATIENCE, PATIENCE)
     try:
         code, text = said(arguments)
     except (Exception, SystemExit, Hang) as error:

@@ -8,10 +8,13 @@
 """
 
 import difflib
+import math
 import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib import resources
+
+from solver.laws.elastic_plastic import TABOR
 
 from ..quantities import multiple
 from .entries import STRENGTHS, Material, of_sections, plainly, read, written
@@ -50,6 +53,16 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     meant = [f'"{name}"' for name in known if name in {spelled[word].name for word in near}]
     hint = f"did you mean {' or '.join(meant[:6])}?" if meant else f"known: {', '.join(known)}"
     raise LookupError(f"{written(name)} is no material; {hint}")
+
+
+def strength_of(material: Material | str) -> float:
+    """The yield strength of a material or of its name, in Pa, else its hardness over 2.84; NaN where none is known."""
+    if isinstance(material, str):
+        try:
+            material = get(material)
+        except LookupError:  # of a file of the user
+            return math.nan
+    return material.yield_strength or (material.hardness or math.nan) / TABOR
 
 
 def names() -> tuple[str, ...]:

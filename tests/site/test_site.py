@@ -1,0 +1,73 @@
+"""The site of the documentation, where Sphinx is installed (`make docs`): no warning, no dead link, no request."""
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import unquote
+
+import pytest
+from conftest import ROOT
+
+import roughcoat
+import solver
+
+sphinx = pytest.importorskip("sphinx", reason="make docs installs Sphinx")
+pytest.importorskip("sphinx_gallery", reason="make docs installs it")
+SCHEME = re.compile(r"[a-z]+:|//")
+
+
+@pytest.fixture(scope="module")
+def site(tmp_path_factory) -> Path:
+    """The built site. Pictures of the gallery are those of its scripts, which have tests of their own: it runs none."""
+    folder = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "sphinx", "-q", "-W", "-n", "-c", "docs/site", "-D", "plot_gallery=0"]
+    command += ["-d", str(folder / "doctrees"), "docs", str(folder / "html")]
+    done = subprocess.run(
+        command, cwd=ROOT, capture_output=True, text=True, env=os.environ | {"PYTHONPATH": str(ROOT)}, timeout=300
+    )
+    assert done.returncode == 0, done.stderr
+    return folder / "html"
+
+
+def test_every_public_name_has_a_page(site):
+    names = [f"{package.__name__}.{name}" for package in (roughcoat, solver) for name in package.__all__]
+    text = (site / "reference/names.html").read_text(encoding="utf-8")
+    for name in names:
+        assert (site / f"reference/{name}.html").exists() and f'href="{name}.html"' in text, name
+    assert 'id="roughcoat.solve"' in (site / "reference/roughcoat.solve.html").read_text(encoding="utf-8")
+
+
+def test_no_link_is_dead(site):
+    pages = {path: path.read_text(encoding="utf-8") for path in site.rglob("*.html") if path.name != "contact.html"}
+    anchors = {path: set(re.findall(r'\b(?:id|name)="([^"]+)"', text)) for path, text in pages.items()}
+    dead = []
+    for path, text in pages.items():
+        for link in re.findall(r'<a\b[^>]*\bhref="([^"]+)"', text):
+            if SCHEME.match(link):
+                continue
+            file, _, anchor = unquote(link).partition("#")
+            target = (path.parent / file).resolve() if file else path
+            if not target.exists() or (anchor and target in anchors and anchor not in anchors[target]):
+                dead.append(f"{path.relative_to(site)}: {link}")
+    assert len(pages) > 60 and dead == []
+
+
+def test_nothing_is_loaded_from_elsewhere(site):
+    for path in site.rglob("*.html"):
+        text = path.read_text(encoding="utf-8")
+        loaded = re.findall(r'<(?:script|img|iframe|source)\b[^>]*\bsrc="([^"]+)"', text)
+        loaded += re.findall(r'<link\b[^>]*\brel="(?:stylesheet|preload|icon)"[^>]*\bhref="([^"]+)"', text)
+        assert [link for link in loaded if SCHEME.match(link) and not link.startswith("data:")] == [], path.name
+    assert (site / "_static/contact.html").stat().st_size > 100_000 and (site / "_static/tex-svg.js").exists()
+
+
+def test_pages_of_the_code_say_what_it_has(site):
+    statuses = (site / "reference/statuses.html").read_text(encoding="utf-8")
+    assert all(status.name.lower() in statuses for status in solver.Status)
+    validity = (site / "reference/validity.html").read_text(encoding="utf-8")
+    assert all(name in validity for name in ("layer_not_thin", "body_yields", "asperities_yield"))
+    commands = (site / "reference/command_line.html").read_text(encoding="utf-8")
+    assert all(f'id="{name}"' in commands for name in ("point", "explore", "scan", "materials", "docs", "table"))
+    assert "study_digest" in (site / "reference/file_format.html").read_text(encoding="utf-8")

@@ -11,7 +11,7 @@ from . import compared, formulas, yielding  # noqa: F401 - a figure of its own
 SHOWN_AT = (0.1, 0.5, 1.0, 2.0, 4.0)  # a/h whose errors the table tells
 SHOWN_N = (0.01, 0.1, 0.5, 2.0, 10.0, 100.0)
 THIN_TO = (2.0, 20.0)  # largest a/h over which the formulas of the stiffness are judged
-INTERFACES = ((True, 0.5, r"rigid base, bonded, $\nu = 1/2$"), (False, 0.3, "rigid base, frictionless"))
+INTERFACES = ((True, 0.5, r"(a) rigid base, bonded, $\nu = 1/2$"), (False, 0.3, "(b) rigid base, frictionless"))
 STYLES = {
     "Hertz": ("0.45", "-"),
     "Hayes": ("#e08214", "-"),
@@ -21,10 +21,10 @@ STYLES = {
     "Hermanowicz": ("#1b7837", "-"),
     "Johnson": ("#b2182b", (0, (1, 1.2))),
     "Gao": ("#8c510a", "-"),
-    "Hay": ("#1b7837", "-"),
-    "Perriot": ("#2166ac", "-"),
-    "Bec": ("#e08214", "-"),
-    "Doerner": ("0.45", (0, (4, 1.5))),
+    "Hay": ("#35978f", "-"),
+    "Perriot": ("#c51b7d", "-"),
+    "Bec": ("k", "-"),
+    "Doerner": ("#5e4fa2", (0, (4, 1.5))),
 }
 """First word of the name of a formula -> colour, dashes. If two begin alike, what follows the comma is in the key."""
 
@@ -39,8 +39,8 @@ def look(name: str) -> dict:
 
 @figure("literature", "literature", "literature_coatings", size=(TWO_COLUMNS, 3.7), panels=(1, 3))
 def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
-    """Error of published formulas for a smooth punch against the exact layer. Left and middle: of the load at one depth
-    on a rigid base, over a/h. Right: of the stiffness on a bonded coating, ν = 0.3, the largest over a/h from 0.01 to
+    """Error of published formulas for a smooth punch against the exact layer. (a), (b): of the load at one depth
+    on a rigid base, over a/h. (c): of the stiffness on a bonded coating, ν = 0.3, the largest over a/h from 0.01 to
     20, over n. Grey: within 1 % and 5 %."""
     parts = []
 
@@ -63,7 +63,7 @@ def errors(panels, rigid: xr.Dataset, coated: xr.Dataset) -> Columns:
             largest = np.abs(error).max(axis=1)
             axes.plot(n, largest, label=name, **look(name))
             keep(2, n, largest)
-    axes.set(xlabel="$n = E_1^*/E_2^*$", xlim=(0.01, 100), title=r"coating, bonded, $\nu = 0.3$")
+    axes.set(xlabel="$n = E_1^*/E_2^*$", xlim=(0.01, 100), title=r"(c) coating, bonded, $\nu = 0.3$")
     axes.figure.suptitle("smooth punch, against the exact layer", fontsize=7)
     for axes, words in zip(panels, ("error of the load", "error of the load", "largest error, stiffness"), strict=True):
         frame(axes, words)

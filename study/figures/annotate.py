@@ -25,7 +25,7 @@ def load_axis(axes, largest: float, P0: float) -> None:
     axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
     axes.axvline(P0 * 1e5, ymin=0.4, color="0.55", linestyle="-", linewidth=0.6, zorder=0)
     place = {"xycoords": ("data", "axes fraction"), "textcoords": "offset points", "ha": "right", "va": "top"}
-    axes.annotate("$P_0$, load of Figs 3, 7, 10 ", (P0 * 1e5, 0.98), (0, 0), fontsize=7, color="0.3", **place)
+    axes.annotate("$P_0$ ", (P0 * 1e5, 0.98), (0, 0), fontsize=7, color="0.3", **place)
 
 
 def shade_violations(axes, P: np.ndarray, validity: dict[str, xr.DataArray]) -> None:

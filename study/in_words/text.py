@@ -6,6 +6,7 @@ import xarray as xr
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
+from ..specimen.pictures import curve, with_picture
 from .inputs import is_rigid, used_inputs
 from .numbers import given_text, peak_text, result_text, ring_text, spread_of
 from .pressures import largest
@@ -24,10 +25,23 @@ RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pr
 
 
 class Summary(str):
-    """A text whose repr is the text itself, so that a notebook shows its lines."""
+    """A text whose repr is the text itself. A notebook shows its lines, and of one contact a small picture of p(r)."""
+
+    picture = ""
+
+    @classmethod
+    def of(cls, text: str, case: xr.Dataset) -> "Summary":
+        """The text on one contact, with its picture, if it has a profile."""
+        made = cls(text)
+        if "p" in case and "x" in case.coords:
+            made.picture = curve(case["x"].values, case["p"].values, "r/a", "nominal pressure p")
+        return made
 
     def __repr__(self) -> str:
         return str(self)
+
+    def _repr_html_(self) -> str:
+        return with_picture(str(self), self.picture)
 
 
 def summary(contact: xr.Dataset) -> Summary:
@@ -66,7 +80,7 @@ def summary(contact: xr.Dataset) -> Summary:
     dims = [str(dim) for dim in contact["status"].dims]
     contact = contact.reset_index([dim for dim in dims if hasattr(contact.indexes.get(dim), "levels")])
     if not dims:
-        return Summary(_summary_of_case(contact))
+        return Summary.of(_summary_of_case(contact), contact)
     cases = contact.stack({"one": dims}, create_index=False)
     texts = []
     for i in range(min(cases.sizes["one"], MOST_CASES)):

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from .heights.missing import treated
+from .pictures import of_heights
 
 #: Metres in a unit. The micro sign and the Greek letter are two characters; keyboards have one or the other.
 MICRO = dict.fromkeys(("um", "µm", "μm"), 1e-6)
@@ -54,6 +55,9 @@ class Scan:
     def sizes(self) -> tuple[float, ...]:
         """Lengths of the scan along the axes of z, from the first point to the last, m."""
         return tuple((n - 1) * step for n, step in zip(self.z.shape, self.steps, strict=True))
+
+    def _repr_html_(self) -> str:
+        return of_heights(self)
 
 
 def profile(

@@ -127,7 +127,7 @@ def h_protect(*, P: Any, Y2: Any = None, mu: float = 0.0, **parameters: Any) -> 
     >>> import study
     >>> found = study.h_protect(P=1e-5, Y2=0.005, n=2.0, bonding="bonded", micro="smooth")
     >>> round(found.h_protect.item(), 4)
-    0.0201
+    0.0238
     """
     mu = friction(mu)
     given = {"P": P} | ({} if Y2 is None else {"Y2": Y2})

@@ -5,6 +5,7 @@ import pytest
 import xarray as xr
 
 import study
+from solver.yields.extremes import EXTREMES
 from study.data import derived
 from study.data.units import factor
 from study.inputs.vocabulary import PARAMETERS, VOCABULARY
@@ -29,6 +30,7 @@ FACTORS = {
             "Y1",
             "Y2",
             "Y_punch",
+            *EXTREMES,
         ),
         2e11,
     ),  # Pa

@@ -16,7 +16,7 @@ from solver import Problem, solve
 from solver.kernels.closed_form import layered_kernel
 from study.figures.registry import entry
 from study.studies.literature import compared, formulas
-from study.studies.literature.figures import SHOWN_AT
+from study.studies.literature.figures import SHOWN_AT, STYLES
 
 A = 0.01
 NU = (0.0, 0.3, 0.45, 0.5)
@@ -175,3 +175,8 @@ def test_what_is_decided_is_drawn_from_the_results(results):
     rigid_base, coated = (opened(results / f"{name}.nc") for name in ("literature", "literature_coatings"))
     for row in entry("table", "literature_decided").rows(rigid_base, coated):
         assert row[4] == row[2] / row[3] - 1 or np.isnan(row[4])
+
+
+def test_one_colour_is_one_formula():
+    colours = [colour for colour, _ in STYLES.values()]
+    assert len(set(colours)) == len(colours) == 12

@@ -85,7 +85,7 @@ def test_curves_against_the_load_are_the_datasets(drawing, results, name, exact)
     assert axes.get_ylim() == (0, pytest.approx(1.08 * max(line.y.max() for line in drawn if line.label)))
     check_legend(axes, drawn, [f"{curve}: {CASES[curve]}" for curve in curves], exact)
     same(mark.x, P0)
-    assert texts(axes)["$P_0$, load of Figs 3, 7, 10 "] == (pytest.approx(P0), 0.98)
+    assert texts(axes)["$P_0$ "] == (pytest.approx(P0), 0.98)
     assert mark.y[-1] == 1 and mark.look.dashes == ("solid",), "unlike every dotted line"
 
 

@@ -196,7 +196,7 @@ def test_disk_stays_just_below_the_estimate(tmp_path, monkeypatch, before, dtype
 
 def test_what_is_there_is_said_of_a_new_large_study_without_looking_at_its_cases(tmp_path, monkeypatch, capsys):
     """3e8 cases, whose keys would be 5 GB."""
-    monkeypatch.setattr(blocks, "case_keys", lambda _: 1 / 0)
+    monkeypatch.setattr(blocks, "case_keys", lambda *_: 1 / 0)
     axes = "P = {start = 1, stop = 2, num = 30000}\nnu1 = {start = 0.1, stop = 0.4, num = 10000}\n"
     text = f'[model]\nmicro = "smooth"\nbase = "half_space"\n[axes]\n{axes}[output]\nprofiles = false\n'
     (tmp_path / "huge.toml").write_text(text)

@@ -11,6 +11,7 @@ from scipy.special import ndtri
 from solver.laws.heights import CUT
 from solver.parameters import ends
 
+from ..pictures import with_picture
 from ..quantities import readable
 
 #: The micro law by what is said of the heights of the summits.
@@ -99,6 +100,9 @@ class Roughness:
 
         wide = xr.DataArray(value, dims="cutoff", attrs={"units": unit} if unit else {})
         return wide.assign_coords(cutoff=("cutoff", self.cutoff, {"units": "m", "long_name": "cutoff of the low-pass"}))
+
+    def _repr_html_(self) -> str:
+        return with_picture(str(self))
 
     def __repr__(self) -> str:
         numbers = {"Nbar": self.Nbar, "Ra": self.Ra, "sigma": self.sigma, "cut": self.cut, "micro": LAWS["normal"]}

@@ -138,8 +138,7 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
 @quantity("r_ring")
 def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
-    """Radius, a point of the profile, at which the nominal pressure is largest, in R: 0 where that is the centre.
-    It needs the profile p."""
+    """Radius in R at which the nominal pressure is largest, a point of the profile. Needs the profile p."""
     p = _profile(dataset, "r_ring")
     return dataset["a"] * dataset["x"].where(p >= (1 - ROUNDING) * p.max("x", skipna=False)).min("x")
 
@@ -164,7 +163,7 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
         arguments = [without_unit(value, VOCABULARY[name].powers, unit, R) for name, value in numbers.items()]
         nu = xr.where(dataset["base"] == "half_space", dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
         arguments += [nu] * law.poisson
-        arguments = pressures / unit, E1, *arguments
+        arguments = [pressures / unit, E1, *arguments]
         at_spots = xr.apply_ufunc(_largest(law), *arguments, dask="parallelized", output_dtypes=[float])
         peaks = xr.where(dataset["micro"] == law.name, at_spots, peaks)
     return unit * peaks.max("x", skipna=False)

@@ -32,7 +32,8 @@ if TYPE_CHECKING:
     from .inputs.definition import StudyError
     from .solving import solve
     from .specimen import materials, roughness
-    from .yields.first import first_yield, h_protect
+    from .yields.first import first_yield
+    from .yields.protect import h_protect
 
     __version__: str
 
@@ -70,7 +71,7 @@ _HOME = {
     "sensitivities": "derivatives",
     "extremes": "fields",
     "first_yield": "yields.first",
-    "h_protect": "yields.first",
+    "h_protect": "yields.protect",
     "stresses": "fields",
     "load": "api",
     "Study": "api",

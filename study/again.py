@@ -98,28 +98,54 @@ STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
 """Body -> the input that is its yield strength."""
 
 
-def strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Material]) -> dict[str, np.ndarray]:
-    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is unknown.
+def strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Material], spread: bool = False) -> dict:
+    """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
 
     Asperities have that of the softer of the two surfaces. A hardness is 2.84 yield strengths.
 
     materials : those of the call by name; the table of materials need not have them
+    spread : give standard deviations instead, 0 for an input without one
     """
-    unit = of_all_cases(again.scene.unit, again.dims, again.shape).astype(float) if again.scene else 1.0
-    named = {body: _of_materials(contact, again, body, materials) / unit for body in STRENGTHS}
-    inputs = again.problem.parameters
-    yields = {body: np.where(np.isnan(inputs[name]), named[body], inputs[name]) for body, name in STRENGTHS.items()}
+    unit = _of_all(again, again.scene.unit) if again.scene else 1.0
+    named = {
+        body: [_of_materials(contact, again, body, materials, which) / unit for which in (False, True)]
+        for body in STRENGTHS
+    }
+    inputs = {name: [again.problem.parameters[name], _spread(contact, again, name) / unit] for name in _INPUTS}
+    yields = {body: _first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
     bare = again.problem.base == "half_space"
-    softer = np.where(bare, named["body"], named["layer"])
-    softer = np.where(again.problem.m > 0, np.minimum(softer, named["punch"]), softer)
-    Y = np.where(np.isnan(inputs["yield_strength"]), inputs["hardness"] / TABOR, inputs["yield_strength"])
-    return yields | {"asperities": np.where(np.isnan(Y), softer, Y)}
+    softer = [np.where(bare, *pair) for pair in zip(named["body"], named["layer"], strict=True)]
+    punch = (again.problem.m > 0) & ((named["punch"][0] < softer[0]) | np.isnan(named["punch"][0]))
+    softer = [np.where(punch, *pair) for pair in zip(named["punch"], softer, strict=True)]
+    hard = [values / TABOR for values in inputs["hardness"]]
+    yields |= {"asperities": _first(_first(inputs["yield_strength"], hard), softer)}
+    return {who: np.where(np.isnan(pair[0]), np.nan, pair[spread]) for who, pair in yields.items()}
 
 
-def _of_materials(contact: xr.Dataset, again: Again, body: str, materials: Mapping[str, Material]) -> np.ndarray:
+_INPUTS = (*STRENGTHS.values(), "hardness", "yield_strength")
+
+
+def _first(pair: list, fallback: list) -> list:
+    """The pair of value and spread, or the fallback where the value is NaN."""
+    return [np.where(np.isnan(pair[0]), other, part) for part, other in zip(pair, fallback, strict=True)]
+
+
+def _of_all(again: Again, value: Any) -> np.ndarray:
+    return of_all_cases(value, again.dims, again.shape).astype(float)
+
+
+def _spread(contact: xr.Dataset, again: Again, name: str) -> np.ndarray:
+    name = f"{name}_spread"
+    spreads = _of_all(again, _without_coordinates(contact[name]) if name in contact.coords else 0.0)
+    return np.nan_to_num(spreads)
+
+
+def _of_materials(
+    contact: xr.Dataset, again: Again, body: str, materials: Mapping[str, Material], spread: bool
+) -> np.ndarray:
     """In Pa, (B,)."""
     if body not in contact.coords or again.scene is None:
         return np.full(len(again.problem), np.nan)
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    yields = {name: strength_of(materials.get(name, name)) for name in np.unique(names)}
+    yields = {name: strength_of(materials.get(name, name), spread) for name in np.unique(names)}
     return np.array([yields[name] for name in names])

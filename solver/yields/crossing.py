@@ -12,6 +12,8 @@ _STEP, _SLOWEST, _LARGEST, _NEAR = 1.1, 0.2, 1.5, 0.7
 _MISSED = 0.15
 #: A place is found when the stress is the strength to _SAME, or given up after _MOST steps.
 _SAME, _MOST = 1e-7, 40
+#: By which part of the place a contact beside the crossing is away: slopes then have an error of about as much.
+_ASIDE = 1e-3
 #: Numbers of the contact that are kept.
 NUMBERS = ("P", "a", "D", "p0")
 
@@ -24,6 +26,7 @@ class Crossing(NamedTuple):
     numbers : P, a, D, p0 of the contact there, in the units of the problem
     r, z : the place in the contact, in a
     unsolved : bool, nothing was found, and some contacts on the way have no solution; or it is before `start`
+    by_strength : d ln/d ln strength of the numbers, where these are wanted
     """
 
     crossed: np.ndarray
@@ -32,14 +35,16 @@ class Crossing(NamedTuple):
     r: np.ndarray
     z: np.ndarray
     unsolved: np.ndarray
+    by_strength: dict
 
     @classmethod
     def none(cls, count):
-        at, r, z, *numbers = np.full((3 + len(NUMBERS), count), np.nan)
-        return cls(np.zeros(count, bool), at, dict(zip(NUMBERS, numbers, strict=True)), r, z, np.zeros(count, bool))
+        at, r, z = np.full((3, count), np.nan)
+        numbers, slopes = ({name: np.full(count, np.nan) for name in NUMBERS} for _ in range(2))
+        return cls(np.zeros(count, bool), at, numbers, r, z, np.zeros(count, bool), slopes)
 
 
-def first_crossing(stress: Callable, start: np.ndarray, last: np.ndarray) -> Crossing:
+def first_crossing(stress: Callable, start: np.ndarray, last: np.ndarray, slopes: bool = False) -> Crossing:
     """From `start` (B,) up to `last` (B,), NaN or start > last: nothing is looked for.
 
     stress : ``stress(index, at, coarse)``, of the cases `index` at the places `at` (b,): the stress over the strength,
@@ -51,7 +56,18 @@ def first_crossing(stress: Callable, start: np.ndarray, last: np.ndarray) -> Cro
     there = np.isfinite(places).all(axis=0)
     made.unsolved[index] = ~there & (failed | np.isfinite(places[1]))
     _searched(made, stress, index[there], places[:, there], values[:, there])
+    if slopes:
+        _sloped(made, stress, np.flatnonzero(made.crossed))
     return made
+
+
+def _sloped(made, stress, index):
+    """Put `by_strength` into `made`, by a contact a little beyond the crossing."""
+    if len(index):
+        value, _, _, solution = stress(index, made.at[index] * (1 + _ASIDE), False)
+        for number in NUMBERS:
+            change = np.log(getattr(solution, number) / made.numbers[number][index])
+            made.by_strength[number][index] = change / np.log(value)
 
 
 def _bracketed(stress, index, start, last):

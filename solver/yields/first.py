@@ -22,7 +22,7 @@ _NO_SPOT = 0.7
 NARROWEST, WIDEST = 1e-8, 0.2
 
 
-def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None):
+def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None, slopes=False):
     """:class:`~.crossing.Crossing` of the "layer", the "body", the "punch" or the "asperities"; `at` is a/R.
 
     problem : B cases, whatever controls them
@@ -30,6 +30,7 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None):
     mu : >= 0, friction
     residual : biaxial stress of the layer, in the unit of E2
     punch : (B,), Poisson ratios of the punches, where these are looked at
+    slopes : whether the derivatives by the strength are wanted
     """
     felt = body in ("layer", "asperities")
     residual = np.broadcast_to(residual, len(problem)) if felt else np.zeros(len(problem))
@@ -49,7 +50,8 @@ def first_yield(problem, body, strength, mu=0.0, residual=0.0, punch=None):
 
     left = strength - np.where(problem.base == "half_space", 0.0, np.abs(residual))
     start = _start(problem, body, left / problem.E2, mu)
-    made = first_crossing(stress, np.where(left > 0, np.maximum(start, NARROWEST), np.nan), np.full(len(left), WIDEST))
+    start = np.where(left > 0, np.maximum(start, NARROWEST), np.nan)
+    made = first_crossing(stress, start, np.full(len(left), WIDEST), slopes)
     rest = left <= 0  # the residual stress alone is as large as the strength
     made.crossed[rest], made.at[rest] = True, 0.0
     for number in NUMBERS:

@@ -1,4 +1,4 @@
-"""The load at which something first yields, and the thickness of a layer that protects the body."""
+"""The load at which something first yields."""
 
 import warnings
 from typing import Any
@@ -8,7 +8,6 @@ import xarray as xr
 
 from solver.yields.crossing import NUMBERS, Crossing
 from solver.yields.first import first_yield as crossing_of
-from solver.yields.protect import protection
 
 from ..again import Again, of_all_cases, strengths
 from ..fields import carried, friction, residual_stress, units_of
@@ -59,8 +58,8 @@ def first_yield(
         first yields, and r_Y1, z_Y1, the place in units of a (r is x, behind the contact < 0, if mu > 0). The same of
         the body with Y2, of the asperities with Ya, of an elastic punch, a half-space under the same pressure, with
         Y_punch. found_Y1 and so on: 0, it is the first crossing; 1, there is none up to a = 0.2 R; 2, the strength is
-        not known. Where it is not 0 the numbers are NaN, and P_Y1 has a `message`. `first_yield`: what yields first,
-        of those that are known
+        not known. Where it is not 0 the numbers are NaN, and P_Y1 has a `message`. P_Y1_spread and so on, of a strength
+        with a spread: what that alone makes. `first_yield`: what yields first, of those that are known
 
     Raises
     ------
@@ -76,95 +75,40 @@ def first_yield(
     mu = friction(mu)
     given = {"Y1": Y1, "Y2": Y2, "Y_punch": Y_punch, "hardness": hardness, "yield_strength": yield_strength}
     given = {name: value for name, value in given.items() if value is not None}
-    _refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
-    contact, again = _contacts("first_yield", parameters | given, "a", 1e-3)
+    refuse("first_yield", parameters, (*CONTROLS, "cases"), "it is what is looked for")
+    contact, again = contacts("first_yield", parameters | given, "a", 1e-3)
     stress, _ = units = units_of(again)
-    known, problem = strengths(contact, again, _own(parameters)), again.problem
+    own, problem = own_materials(parameters), again.problem
+    known, spreads = (strengths(contact, again, own, spread) for spread in (False, True))
     residual = residual_stress(sigma_res, again) / stress
     nu_punch = _of_cases(contact, again, "nu_punch", 0.3)
     variables, loads = {}, []
     for body, end in BODIES.items():
         strength = np.where(_there(problem, body), known[body], np.nan)
         if np.isfinite(strength).any():
-            crossing = crossing_of(problem, body, strength, mu, residual, nu_punch)
+            crossing = crossing_of(problem, body, strength, mu, residual, nu_punch, bool(np.any(spreads[body] > 0)))
         else:
             crossing = Crossing.none(len(problem))
         lacking = np.isnan(known[body]) | (body == "asperities") & ~np.isfinite(problem.Nbar)
         found = np.where(crossing.crossed, 0, np.where(lacking, 2, 1)).astype(np.int8)
         loads.append(np.where(crossing.crossed, crossing.numbers["P"], np.inf))
         variables |= _variables(again, units, body, end, crossing, found)
+        if np.any(spreads[body] > 0):
+            variables |= _spreads(again, units, body, end, crossing, spreads[body] / known[body])
     loads = np.array(loads)
     first = np.where(np.isfinite(loads).any(axis=0), 1 + loads.argmin(axis=0), 0).astype(np.int8)
     about = _flags("what yields first", ("not_known", *BODIES))
-    variables["first_yield"] = _labelled(again, first, about)
-    return _without_control(carried(contact, variables), "a")
+    variables["first_yield"] = labelled(again, first, about)
+    return without_control(carried(contact, variables), "a")
 
 
-def h_protect(*, P: Any, Y2: Any = None, mu: float = 0.0, **parameters: Any) -> xr.Dataset:
-    """The thickness above which a layer protects the body from yielding: docs/stresses.md.
-
-    Under a stiff layer the largest stress of the body first rises with the thickness, before it falls.
-
-    Parameters
-    ----------
-    P : load
-    Y2 : yield strength of the body, > 0; without it that of the material that is named
-    mu : >= 0; with mu > 0 the punch slides in full
-    parameters : those of `study.solve` without h, a and D
-
-    Returns
-    -------
-    xarray.Dataset : over the dimensions of the parameters: h_protect, above which the body yields for no larger
-        thickness, 0 if it yields for none; h_yields, the least thickness at which the body yields where a bare one
-        would not, NaN if there is none. Where a search has no answer the variable is NaN and has a `message`
-
-    Raises
-    ------
-    StudyError : input that cannot be used; a strength that is not known
-
-    Examples
-    --------
-    >>> import study
-    >>> found = study.h_protect(P=1e-5, Y2=0.005, n=2.0, bonding="bonded", micro="smooth")
-    >>> round(found.h_protect.item(), 4)
-    0.0238
-    """
-    mu = friction(mu)
-    given = {"P": P} | ({} if Y2 is None else {"Y2": Y2})
-    _refuse("h_protect", parameters, ("h",), "it is what is looked for")
-    _refuse("h_protect", parameters, ("a", "D", "cases"), "the load P is given")
-    if np.any(np.asarray(parameters.get("base", "layered")) == "half_space"):
-        raise StudyError(['h_protect: base = "half_space" has no layer that could protect it'])
-    contact, again = _contacts("h_protect", parameters | given, "h", 0.01)
-    known = strengths(contact, again, _own(parameters))["body"]
-    if np.isnan(known[again.problem.n > 0]).any():
-        raise StudyError(["h_protect needs Y2, the yield strength of the body: it is not given, or not known of it"])
-    stiff = again.problem.n == 0
-    found = protection(again.problem.but(n=np.where(stiff, 1.0, again.problem.n)), np.where(stiff, np.nan, known), mu)
-    _, size = units_of(again)
-    lacking = found.unsolved & np.isnan(found.protects)
-    words = {
-        "h_protect": ("thickness above which the body does not yield", found.protects, lacking),
-        "h_yields": ("least thickness at which the body yields and a bare one would not", found.yields, found.unsolved),
-    }
-    variables = {}
-    for name, (long_name, values, unsolved) in words.items():
-        about = _about(again, long_name, (0, 1))
-        if np.isnan(values).any():
-            count = int(np.isnan(values).sum())
-            reason = "contacts on the way have no solution" if unsolved.any() else "there is no such thickness"
-            about["message"] = f"{name} of {count} of {values.size} cases: {reason}"
-        variables[name] = _labelled(again, values * size, about)
-    return _without_control(carried(contact, variables), "h")
-
-
-def _refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
+def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
     wrong = [f"{who}: leave out {name}: {reason}" for name in names if parameters.get(name) is not None]
     if wrong:
         raise StudyError(wrong)
 
 
-def _contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Dataset, Again]:
+def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Dataset, Again]:
     """Contacts with these inputs, of which one is any value: how they are solved does not count."""
     physical = Request.in_python(parameters, [], False, {}).physical
     with warnings.catch_warnings():
@@ -177,7 +121,7 @@ def _contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.D
     return contact, Again.of(contact, who)
 
 
-def _own(parameters: dict) -> dict[str, Material]:
+def own_materials(parameters: dict) -> dict[str, Material]:
     """The materials that are given as such, by name."""
     given = [parameters.get(body) for body in ("punch", "layer", "body")]
     several = [one for value in given for one in (value if isinstance(value, (list, tuple)) else [value])]
@@ -203,13 +147,24 @@ def _variables(again: Again, units: tuple, body: str, end: str, crossing: Crossi
     stress, size = units
     for name in NUMBERS:
         i, j = _POWERS[name]
-        about = _about(again, f"{_LONG_NAMES[name]} {where}", (i, j))
-        made[f"{name}{end}"] = _labelled(again, crossing.numbers[name] * stress**i * size**j, about)
-    made[f"r{end}"] = _labelled(again, crossing.r, {"long_name": f"radius of the place {where}, over a"})
-    made[f"z{end}"] = _labelled(again, crossing.z, {"long_name": f"depth of the place {where}, over a"})
-    made[f"found{end}"] = _labelled(again, found, _flags(f"whether the load {where} was found", FOUND))
+        about = about_of(again, f"{_LONG_NAMES[name]} {where}", (i, j))
+        made[f"{name}{end}"] = labelled(again, crossing.numbers[name] * stress**i * size**j, about)
+    made[f"r{end}"] = labelled(again, crossing.r, {"long_name": f"radius of the place {where}, over a"})
+    made[f"z{end}"] = labelled(again, crossing.z, {"long_name": f"depth of the place {where}, over a"})
+    made[f"found{end}"] = labelled(again, found, _flags(f"whether the load {where} was found", FOUND))
     if found.any():
         made[f"P{end}"].attrs["message"] = _message(body, found, crossing.unsolved)
+    return made
+
+
+def _spreads(again: Again, units: tuple, body: str, end: str, crossing: Crossing, relative: np.ndarray) -> dict:
+    """P_Y1_spread and so on: what the spread of the strength alone makes."""
+    made, (stress, size) = {}, units
+    for name in NUMBERS:
+        i, j = _POWERS[name]
+        spread = np.abs(crossing.by_strength[name]) * crossing.numbers[name] * relative * stress**i * size**j
+        words = f"standard deviation of {name}{end}, from the spread of the strength of the {body} alone"
+        made[f"{name}{end}_spread"] = labelled(again, spread, about_of(again, words, (i, j)))
     return made
 
 
@@ -233,14 +188,14 @@ def _flags(long_name: str, words: tuple) -> dict[str, Any]:
     }
 
 
-def _about(again: Again, long_name: str, powers: tuple[int, int]) -> dict[str, str]:
+def about_of(again: Again, long_name: str, powers: tuple[int, int]) -> dict[str, str]:
     unit, scale = _UNITS[powers]
     return {"long_name": long_name} | ({"units": unit} if again.scene else {"scale": scale})
 
 
-def _labelled(again: Again, values: np.ndarray, about: dict) -> xr.Variable:
+def labelled(again: Again, values: np.ndarray, about: dict) -> xr.Variable:
     return xr.Variable(again.dims, values.reshape(again.shape), about)
 
 
-def _without_control(dataset: xr.Dataset, name: str) -> xr.Dataset:
+def without_control(dataset: xr.Dataset, name: str) -> xr.Dataset:
     return dataset.drop_vars([name, f"{name}_spread"], errors="ignore")

@@ -134,6 +134,20 @@ def test_strengths_come_from_the_materials():
     assert weak.P_Y_punch.item() == pytest.approx(found.P_Y_punch.item(), rel=1e-6)
 
 
+def test_the_spread_of_a_strength_counts():
+    """Of a half-space P is as the third power of the strength, a as the first; a material brings its spread."""
+    scene = {"R": "5 mm", "E2": "210 GPa", "nu2": 0.3, "base": "half_space", "micro": "smooth"}
+    found = study.first_yield(Y2="500 ± 50 MPa", **scene)
+    for name, power in (("P", 3), ("a", 1), ("D", 2), ("p0", 1)):
+        share = found[f"{name}_Y2_spread"].item() / found[f"{name}_Y2"].item()
+        assert share == pytest.approx(0.1 * power, rel=2e-3), name
+    assert found.P_Y2_spread.attrs["units"] == "N" and "P_Y2_spread" not in study.first_yield(Y2="500 MPa", **scene)
+    steel = study.materials.get("steel 316L")
+    named = study.first_yield(R="5 mm", body=steel.name, base="half_space", micro="smooth")
+    share = steel.yield_strength_spread / steel.yield_strength
+    assert named.P_Y2_spread.item() / named.P_Y2.item() == pytest.approx(3 * share, rel=2e-3)
+
+
 def test_a_grid_has_its_dimensions():
     found = study.first_yield(Y1=0.01, h=[0.01, 0.02], n=[0.5, 2.0], bonding="bonded", micro="smooth")
     assert dict(found.P_Y1.sizes) == {"h": 2, "n": 2} and "a" not in found.coords
@@ -205,3 +219,16 @@ def test_the_core_does_not_look_where_no_strength_is_known():
     assert first_yield(problem, "layer", np.array([0.02, np.nan])).crossed.tolist() == [True, False]
     found = protection(problem, np.array([0.005, np.nan]))
     assert np.isfinite(found.protects).tolist() == [True, False]
+
+
+def test_asperities_are_as_weak_as_the_weaker_and_unknown_if_one_is():
+    rough = {"R": "5 mm", "base": "half_space", "Nbar": "0.1 1/um^2", "Ra": "20 um"}
+    weak, hard = study.materials.get("steel 316L"), study.materials.get("steel 52100")
+    assert weak.yield_strength < hard.hardness / 2.84
+    loads = [
+        study.first_yield(punch=punch.name, body=body.name, yield_strength=given, **rough)
+        for punch, body, given in ((weak, hard, None), (weak, hard, f"{weak.yield_strength} Pa"))
+    ]
+    assert loads[0].P_Ya.item() == pytest.approx(loads[1].P_Ya.item(), rel=1e-9)
+    unknown = next(name for name in study.materials.names() if np.isnan(study.materials.strength_of(name)))
+    assert study.first_yield(punch=unknown, body=hard.name, **rough).found_Ya.item() == 2

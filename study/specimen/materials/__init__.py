@@ -55,13 +55,20 @@ def get(name: str, among: Mapping[str, Material] | None = None) -> Material:
     raise LookupError(f"{written(name)} is no material; {hint}")
 
 
-def strength_of(material: Material | str) -> float:
-    """The yield strength of a material or of its name, in Pa, else its hardness over 2.84; NaN where none is known."""
+def strength_of(material: Material | str, spread: bool = False) -> float:
+    """The yield strength of a material or of its name, in Pa, else its hardness over 2.84; NaN where none is known.
+
+    spread : the standard deviation of that instead
+    """
     if isinstance(material, str):
         try:
             material = get(material)
         except LookupError:  # of a file of the user
             return math.nan
+    if spread and material.yield_strength:
+        return material.yield_strength_spread
+    if spread and material.hardness:
+        return material.hardness_spread / TABOR
     return material.yield_strength or (material.hardness or math.nan) / TABOR
 
 

@@ -1,4 +1,4 @@
-"""Contacts of a dataset, solved again from the inputs that it has; and their strengths."""
+"""The contacts of a dataset as a problem that can be solved again, and the strengths of their bodies."""
 
 from collections.abc import Mapping
 from typing import Any, NamedTuple
@@ -37,7 +37,10 @@ class Again(NamedTuple):
 
     @classmethod
     def of(cls, contact: xr.Dataset, who: str) -> "Again":
-        """Raises StudyError, which names the function `who`, where a dataset is no result or has lost an input."""
+        """The problem of a dataset. Raises StudyError if it is no result, or has lost an input.
+
+        who : the name of the public function, for messages
+        """
         inputs = _checked(contact, who)
         dims, shape = contact["status"].dims, contact["status"].shape
         scene = _scene(inputs) if "R" in inputs else None
@@ -57,18 +60,18 @@ def _checked(contact: xr.Dataset, who: str) -> dict[str, Any]:
         raise StudyError([f"{who} takes a dataset of study.solve or of a results file, with its status"])
     recall(contact.attrs.get("micro_laws", ""))
     settings = {name: contact.attrs[name] for name in NUMERICS if name in contact.attrs}
-    there = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
-    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in there]
-    wrong += ["must have one of P, a and D as a coordinate"] * (len({*there} & {*CONTROLS}) != 1)
+    coordinates = [name for name in (*CONTROLS, *SCENE, *PARAMETERS) if name in contact.coords]
+    wrong = [f"has no coordinate {name}" for name in ("base", "micro") if name not in coordinates]
+    wrong += ["must have one of P, a and D as a coordinate"] * (len({*coordinates} & {*CONTROLS}) != 1)
     if wrong:
         raise StudyError([f"{who}: the dataset {wrong[0]}: its cases cannot be solved again"])
-    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in there if ROWS[name].unit != "1"}
-    if units == {True, False} or has_units(contact) != ("R" in there and "E2" in there):
+    units = {ROWS[name].unit == contact[name].attrs.get("units") for name in coordinates if ROWS[name].unit != "1"}
+    if units == {True, False} or has_units(contact) != ("R" in coordinates and "E2" in coordinates):
         raise StudyError([f"{who} needs all in SI units, as study.solve gives them, or all without units"])
     unknown = {*np.unique(contact["micro"].values.astype(str)).tolist()} - {*LAWS}
     if unknown:
         raise StudyError([f"micro = {shown(min(unknown))}: no law of this name is registered here"])
-    return settings | {name: _without_coordinates(contact[name]) for name in there}
+    return settings | {name: _without_coordinates(contact[name]) for name in coordinates}
 
 
 def _without_coordinates(array: xr.DataArray) -> Any:
@@ -81,7 +84,7 @@ def _scene(inputs: dict[str, Any]) -> Scene:
     follows = {ratio for modulus, ratio in (("E1", "n"), ("E_punch", "m")) if modulus in inputs}
     in_si = [name for name in inputs if name in SCENE or name in RATIOS or VOCABULARY[name].powers != (0, 0)]
     others = {name: value for name, value in inputs.items() if name not in {*in_si, *follows}}
-    scene = Scene(given={name: inputs[name] for name in in_si}, parameters=others)
+    scene = Scene(values={name: inputs[name] for name in in_si}, parameters=others)
     make_dimensionless(scene)
     return scene
 
@@ -95,35 +98,36 @@ STRENGTHS = {"layer": "Y1", "body": "Y2", "punch": "Y_punch"}
 """Body -> the input that is its yield strength."""
 
 
-def strengths(contact: xr.Dataset, again: Again, own: Mapping[str, Material], spread: bool = False) -> dict:
+def strengths(contact: xr.Dataset, again: Again, materials: Mapping[str, Material], spread: bool = False) -> dict:
     """Yield strength of the layer, body, punch and asperities, (B,) each in the unit of E2; NaN where it is not known.
 
-    That of asperities is of the softer of what meets there. A hardness is 2.84 yield strengths.
+    Asperities have that of the softer of the two surfaces. A hardness is 2.84 yield strengths.
 
-    own : materials of the call by name, which the table need not have
-    spread : their standard deviations instead, 0 where none is given
+    materials : those of the call by name; the table of materials need not have them
+    spread : give standard deviations instead, 0 for an input without one
     """
     unit = _of_all(again, again.scene.unit) if again.scene else 1.0
     named = {
-        body: [_of_materials(contact, again, body, own, which) / unit for which in (False, True)] for body in STRENGTHS
+        body: [_of_materials(contact, again, body, materials, which) / unit for which in (False, True)]
+        for body in STRENGTHS
     }
-    given = {name: [again.problem.parameters[name], _spread(contact, again, name) / unit] for name in _GIVEN}
-    found = {body: _first(given[name], named[body]) for body, name in STRENGTHS.items()}
+    inputs = {name: [again.problem.parameters[name], _spread(contact, again, name) / unit] for name in _INPUTS}
+    yields = {body: _first(inputs[name], named[body]) for body, name in STRENGTHS.items()}
     bare = again.problem.base == "half_space"
     softer = [np.where(bare, *pair) for pair in zip(named["body"], named["layer"], strict=True)]
     punch = (again.problem.m > 0) & ((named["punch"][0] < softer[0]) | np.isnan(named["punch"][0]))
     softer = [np.where(punch, *pair) for pair in zip(named["punch"], softer, strict=True)]
-    hard = [values / TABOR for values in given["hardness"]]
-    found |= {"asperities": _first(_first(given["yield_strength"], hard), softer)}
-    return {who: np.where(np.isnan(pair[0]), np.nan, pair[spread]) for who, pair in found.items()}
+    hard = [values / TABOR for values in inputs["hardness"]]
+    yields |= {"asperities": _first(_first(inputs["yield_strength"], hard), softer)}
+    return {who: np.where(np.isnan(pair[0]), np.nan, pair[spread]) for who, pair in yields.items()}
 
 
-_GIVEN = (*STRENGTHS.values(), "hardness", "yield_strength")
+_INPUTS = (*STRENGTHS.values(), "hardness", "yield_strength")
 
 
-def _first(one: list, other: list) -> list:
-    """Value and spread of the one where it is known, else those of the other."""
-    return [np.where(np.isnan(one[0]), *pair[::-1]) for pair in zip(one, other, strict=True)]
+def _first(pair: list, fallback: list) -> list:
+    """The pair of value and spread, or the fallback where the value is NaN."""
+    return [np.where(np.isnan(pair[0]), other, part) for part, other in zip(pair, fallback, strict=True)]
 
 
 def _of_all(again: Again, value: Any) -> np.ndarray:
@@ -132,16 +136,16 @@ def _of_all(again: Again, value: Any) -> np.ndarray:
 
 def _spread(contact: xr.Dataset, again: Again, name: str) -> np.ndarray:
     name = f"{name}_spread"
-    found = _of_all(again, _without_coordinates(contact[name]) if name in contact.coords else 0.0)
-    return np.nan_to_num(found)
+    spreads = _of_all(again, _without_coordinates(contact[name]) if name in contact.coords else 0.0)
+    return np.nan_to_num(spreads)
 
 
 def _of_materials(
-    contact: xr.Dataset, again: Again, body: str, own: Mapping[str, Material], spread: bool
+    contact: xr.Dataset, again: Again, body: str, materials: Mapping[str, Material], spread: bool
 ) -> np.ndarray:
     """In Pa, (B,)."""
     if body not in contact.coords or again.scene is None:
         return np.full(len(again.problem), np.nan)
     names = of_all_cases(_without_coordinates(contact[body]), again.dims, again.shape).astype(str)
-    known = {name: strength_of(own.get(name, name), spread) for name in np.unique(names)}
-    return np.array([known[name] for name in names])
+    yields = {name: strength_of(materials.get(name, name), spread) for name in np.unique(names)}
+    return np.array([yields[name] for name in names])

@@ -19,7 +19,7 @@ from .inputs.vocabulary import BODIES, PARAMETERS, VOCABULARY
 
 #: Results that have sensitivities.
 QUANTITIES = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD")
-#: By which part of its spread an input is moved for a formula, whose change is then linear to 1e-6.
+#: Inputs are moved by this part of their spread. The change of a formula is then linear to 1e-6.
 _STEP = 1e-3
 _COMMENT = "d ln result/d ln input; by nu1, nu2 and nu_punch d ln result/d ratio"
 
@@ -58,13 +58,16 @@ def sensitivities(contact: xr.Dataset) -> xr.Dataset:
         values = np.stack(list(logs[name].values()), axis=-1)
         about = {"long_name": f"sensitivity of {name}", "comment": _COMMENT}
         variables[f"{name}_sensitivity"] = xr.Variable((*dims, "input"), values.reshape(*shape, -1), about)
-    left_out = [name for name, own in contact.variables.items() if name in contact.data_vars or {*own.dims} - {*dims}]
+    results = {*contact.data_vars}
+    left_out = [name for name, array in contact.variables.items() if name in results or {*array.dims} - {*dims}]
     return contact.drop_vars(left_out).assign(variables).assign_coords(input=list(logs["a"]))
 
 
 def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
-    """Result -> input -> (B,), as `sensitivities`, with A0 besides; and input -> d p/d ln input (B, m) at the radii x,
-    in the unit of p. NaN of cases that have not converged."""
+    """Result, A0 too -> input -> sensitivity (B,); and input -> d p/d ln input (B, m) at the radii x, in the unit of p.
+
+    NaN in cases that have not converged.
+    """
     problem, numbers, scene, dims, shape = again
     used = [name for name in SOLVER_PARAMETERS if name in numbers and _counts(problem, name)]
     solution = solve(problem, x)
@@ -73,21 +76,22 @@ def _by_inputs(contact: xr.Dataset, again: Again, x: Any) -> tuple[dict, dict]:
     p = dict(zip(solved.inputs, np.moveaxis(solved.p, 1, 0), strict=True))
     if scene:
         of_si = _in_si(scene, dims, shape)
-        logs = {name: _by_si(own, of_si, VOCABULARY[name].powers) for name, own in logs.items()}
+        logs = {name: _by_si(by_input, of_si, VOCABULARY[name].powers) for name, by_input in logs.items()}
         p = _by_si(p, of_si, VOCABULARY["p"].powers, solution.p)
         p = {name: values * of_all_cases(scene.unit, dims, shape)[:, None] for name, values in p.items()}
-    # of the control they are known, to the last bit
+    # those of the control are exact
     control, good = problem.control, (solution.status == 0) & (contact["status"].values.ravel() == 0)
     logs[control] = {name: 0 * values + (name == control) for name, values in logs["a"].items()}
-    logs = {name: {key: np.where(good, values, np.nan) for key, values in own.items()} for name, own in logs.items()}
+    for by_input in logs.values():
+        by_input.update({name: np.where(good, values, np.nan) for name, values in by_input.items()})
     return logs, p
 
 
 def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) -> float:
-    """The standard deviation of what a formula makes of one contact whose inputs have independent spreads.
+    """The standard deviation of a formula of one contact whose inputs have independent spreads.
 
-    It is given the contact moved along its derivatives: results and profile p, and the inputs. NaN where spreads hang
-    together, or the case cannot be solved again.
+    The formula is called with the contact moved along its derivatives: results, profile p and inputs. NaN if spreads
+    are correlated, or if the case cannot be solved again.
     """
     if correlated(case):
         return np.nan
@@ -98,15 +102,16 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
     logs, p = _by_inputs(case, again, case["x"].values)
     changes_of, sum_of_squares = _in_si(again.scene, (), ()), 0.0
     for name, part in relative_spreads(case, logs["a"]).items():
-        by = {key: own[name] * case[key].values for key, own in logs.items() if key in case} | {"p": p[name][0]}
-        for key, own in {"length": "R", "n": "n", "m": "m"}.items():
-            by |= {own: changes_of[name].get(key, 0.0) * case[own].values} if own in case else {}
+        by = {key: slopes[name] * case[key].values for key, slopes in logs.items() if key in case} | {"p": p[name][0]}
+        for key, coordinate in {"length": "R", "n": "n", "m": "m"}.items():
+            if coordinate in case:
+                by[coordinate] = changes_of[name].get(key, 0.0) * case[coordinate].values
         by[name] = 1.0 if name in RATIOS else case[name].values
         ends = []
         for step in (_STEP * part, -_STEP * part):
             moved = {
-                key: case[key].copy(data=np.reshape(case[key].values + step * own, case[key].shape))
-                for key, own in by.items()
+                key: case[key].copy(data=np.reshape(case[key].values + step * slope, case[key].shape))
+                for key, slope in by.items()
             }
             ends.append(float(formula(case.assign(moved))))
         sum_of_squares += ((ends[0] - ends[1]) / (2 * _STEP)) ** 2
@@ -114,42 +119,43 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
 
 
 def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
-    """Those of the inputs of one contact that have a spread -> it over the value; of a Poisson ratio the spread."""
+    """Input of one contact with a spread -> spread over value; of a Poisson ratio the spread."""
     spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case}
     return {name: spread if name in RATIOS else spread / float(case[name]) for name, spread in spreads.items()}
 
 
 def correlated(contact: xr.Dataset) -> bool:
-    """Whether the spreads of some inputs hang together, so that none has a share of its own."""
+    """Whether the spreads of some inputs are correlated. Then no input has a share of its own."""
     bodies = [contact[body] for body in BODIES if body in contact]
     return "correlations" in contact.attrs or any("comment" in body.attrs for body in bodies)
 
 
 def _counts(problem: Problem, name: str) -> bool:
     """Whether an input is a number on which the answer of some case depends, and no setting."""
-    own = SOLVER_PARAMETERS[name]
+    parameter = SOLVER_PARAMETERS[name]
     setting = VOCABULARY[name].role == "numerics" if name in VOCABULARY else False
-    counts = own.interval and not own.whole and not setting
+    counts = parameter.interval and not parameter.whole and not setting
     return bool(counts and np.any(uses(name, lambda key: getattr(problem, key))))
 
 
 def _in_si(scene: Scene, dims: tuple, shape: tuple[int, ...]) -> dict[str, dict[str, np.ndarray]]:
-    """Input -> what changes with its logarithm, or with a Poisson ratio itself: the logarithms of the solver's inputs
-    and of the scales, (B,) each, and Poisson ratios themselves."""
-    given = scene.given
-    names = [name for name in given if np.any(np.isfinite(given[name])) and not (name == "R" and "R1" in given)]
-    own = [name for name in PARAMETERS if name in scene.parameters and name not in given and name not in ("n", "m")]
-    own += ["n"] * ("E1" not in given) + ["m"] * ("E_punch" not in given)
+    """Input -> {input of the solver, or scale: d ln(it)/d ln input, (B,)}. Poisson ratios have no logarithm."""
+    values = scene.values
+    names = [name for name in values if np.any(np.isfinite(values[name])) and not (name == "R" and "R1" in values)]
+    pure_numbers = [name for name in PARAMETERS if name in scene.parameters and name not in {*values, "n", "m"}]
+    pure_numbers += ["n"] * ("E1" not in values) + ["m"] * ("E_punch" not in values)
     ones = np.ones(int(np.prod(shape)))
     flat = {}
     for name in names:
         flat[name] = {key: of_all_cases(change, dims, shape) for key, change in changes(scene, name).items()}
-    return flat | {name: {name: ones} for name in own}
+    return flat | {name: {name: ones} for name in pure_numbers}
 
 
 def _by_si(logs: dict, inputs: dict, powers: tuple[int, int], value: Any = 1.0) -> dict[str, np.ndarray]:
-    """The derivatives by inputs in SI units, from those by the solver's inputs, of a result in E2*^i R^j. `value`: of
-    the result, if the derivatives are not of its logarithm."""
+    """The derivatives of a result in E2*^i R^j by inputs in SI units, from those by the solver's inputs.
+
+    value : of the result, where the derivatives are not of its logarithm
+    """
     scales = dict(zip(SCALES, powers[::-1], strict=True))
     still = 0 * next(iter(logs.values()))
 

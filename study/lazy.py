@@ -19,7 +19,7 @@ from .data.si import dataset_of
 from .inputs.definition import Definition, StudyError
 from .inputs.grid import cut_out
 from .terminal import shown
-from .work.cases import compute, own_laws, parcel
+from .work.cases import compute, laws_of_users, parcel
 from .work.engine import blocks_of_grid
 
 
@@ -57,7 +57,7 @@ def lazily(definition: Definition, chunks: dict, command: str) -> xr.Dataset:
     dims = definition.in_results({dim: dim for dim in definition.grid.sizes})
     lengths = _lengths(chunks, definition.in_results(definition.grid.sizes))
     ends = {dim: np.cumsum([0, *along]) for dim, along in zip(dims.values(), lengths, strict=True)}
-    each = Chunks(definition, ends, tuple(own_laws(definition.grid.values["micro"][1])))
+    each = Chunks(definition, ends, tuple(laws_of_users(definition.grid.values["micro"][1])))
     shape = tuple(map(len, lengths))
     numbers = dask.array.from_array(np.arange(prod(shape)).reshape(shape), chunks=1)
     # the grid is an item of dask of its own, which goes to a worker once and not with every chunk

@@ -228,7 +228,7 @@ def signature() -> inspect.Signature:
     """
     kept, named = inspect.signature(solve).parameters.values(), []
     for name, hint in Parameters.__annotations__.items():
-        default = VOCABULARY[name].own.default if name in VOCABULARY else None
+        default = VOCABULARY[name].parameter.default if name in VOCABULARY else None
         hint = getattr(hint, "__forward_arg__", hint)
         named.append(inspect.Parameter(name, inspect.Parameter.KEYWORD_ONLY, default=default, annotation=hint))
     return inspect.Signature([*named, *kept], return_annotation="xr.Dataset")

@@ -127,9 +127,13 @@ def parameters() -> str:
         rows = []
         for name, entry in VOCABULARY.items():
             if entry.role == role:
-                own = entry.own
-                bounds = allowed(own) if own.interval or own.choices else ""
-                default = "" if own.default in (None, "") or own.default != own.default else f"`{own.default}`"
+                parameter = entry.parameter
+                bounds = allowed(parameter) if parameter.interval or parameter.choices else ""
+                default = (
+                    ""
+                    if parameter.default in (None, "") or parameter.default != parameter.default
+                    else f"`{parameter.default}`"
+                )
                 rows.append([f"`{name}`", entry.symbol, entry.long_name, entry.unit, entry.scale, bounds, default])
                 rows[-1].append(entry.equation)
         parts.append(f"## {role}\n\n" + table(heads, rows))

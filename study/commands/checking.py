@@ -20,8 +20,8 @@ def check(_, file: str) -> int:
 def assumed_lines(definition: Definition) -> list[str]:
     """A line about what a study with units does not give, though it counts; otherwise none."""
     names = definition.scene.assumed if definition.scene else ()
-    texts = [f"{name} = {VOCABULARY[name if name in VOCABULARY else 'nu1'].own.default}" for name in names]
-    texts += ["a rigid punch"] * bool(definition.scene and "E_punch" not in definition.scene.given)
+    texts = [f"{name} = {VOCABULARY[name if name in VOCABULARY else 'nu1'].parameter.default}" for name in names]
+    texts += ["a rigid punch"] * bool(definition.scene and "E_punch" not in definition.scene.values)
     return ["    assumed, as not given: " + ", ".join(texts)] * bool(texts)
 
 
@@ -35,7 +35,7 @@ def doubtful_lines(definition: Definition) -> list[str]:
     from ..rules.rule import sentences
 
     scene, v = definition.scene, {}
-    for name, value in (scene.given | {f"{name}_spread": spread for name, spread in scene.spreads.items()}).items():
+    for name, value in (scene.values | {f"{name}_spread": spread for name, spread in scene.spreads.items()}).items():
         v[name] = bare_variable(value, {"units": ROWS[name].unit} if name in ROWS else {})
     return [
         f"{definition.name}: beware: {text}"

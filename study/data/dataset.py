@@ -35,22 +35,22 @@ def failed_cases(status: np.ndarray) -> np.ndarray:
 
 
 def not_run(definition: Definition, size: int) -> dict[str, np.ndarray]:
-    """What `arrays_of` gives for `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
-    found = {
-        name: np.full(size, np.nan, definition.dtype) for name in (*CONTROLS, *definition.results, *definition.stresses)
-    }
-    found |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
+    """Arrays of `size` cases that were never computed: NaN, status NOT_RUN, counts 0."""
+    numbers = (*CONTROLS, *definition.results, *definition.stresses)
+    arrays = {name: np.full(size, np.nan, definition.dtype) for name in numbers}
+    arrays |= {name: np.full((size, len(definition.x)), np.nan, definition.dtype) for name in definition.profiles}
     if definition.inputs:
-        with_spreads = [(name, found[name]) for name in (*WITH_SPREADS, *definition.profiles)]
+        with_spreads = [(name, arrays[name]) for name in (*WITH_SPREADS, *definition.profiles)]
         shape = size, len(definition.inputs)
-        found |= {f"{n}{BY_INPUT}": np.full((*shape, *own.shape[1:]), np.nan, own.dtype) for n, own in with_spreads}
-    found |= {name: np.zeros(size, dtype) for name, dtype in INTEGERS.items()}
-    found["status"][:] = NOT_RUN
-    return found
+        for name, array in with_spreads:
+            arrays[f"{name}{BY_INPUT}"] = np.full((*shape, *array.shape[1:]), np.nan, array.dtype)
+    arrays |= {name: np.zeros(size, dtype) for name, dtype in INTEGERS.items()}
+    arrays["status"][:] = NOT_RUN
+    return arrays
 
 
 class Parts(NamedTuple):
-    """What a dataset is made of. The dataset is made once, last: that takes as long as solving a contact.
+    """What a dataset is made of. The dataset itself is made last and once, since that takes as long as a contact.
 
     by_input : result -> its derivatives by the inputs of the definition, (*grid.shape, k) and (*grid.shape, k, m)
     """
@@ -61,55 +61,59 @@ class Parts(NamedTuple):
     by_input: dict[str, np.ndarray] = {}
 
     def dataset(self) -> xr.Dataset:
-        """The dataset of these parts, settings last: `study.solve` has them as attributes, and `xr.concat` compares no
-        coordinate behind one that only the first dataset has."""
-        last = {name: own for name, own in self.coords.items() if name in NUMERICS}
-        coords = {name: own for name, own in self.coords.items() if name not in NUMERICS} | last
+        """The dataset of these parts, with the numerical settings as the last coordinates.
+
+        `study.solve` has these as attributes. `xr.concat` stops comparing coordinates at the first that the second
+        dataset lacks.
+        """
+        last = {name: variable for name, variable in self.coords.items() if name in NUMERICS}
+        coords = {name: variable for name, variable in self.coords.items() if name not in NUMERICS} | last
         return without_fill_values(xr.Dataset(self.variables, coords, self.attributes))
 
     def settings_apart(self) -> "Parts":
         """The parts with numerical settings that all cases share as attributes, not as coordinates.
 
-        It is done before the dataset is made, since dropping variables of a dataset copies all others.
+        Dropping variables of a dataset would copy all others.
         """
         shared = [name for name in NUMERICS if name in self.coords and not self.coords[name].ndim]
-        coords = {name: own for name, own in self.coords.items() if name not in shared}
+        coords = {name: variable for name, variable in self.coords.items() if name not in shared}
         attributes = {name: self.coords[name].values.item() for name in shared}
         return self._replace(coords=coords, attributes=self.attributes | attributes)
 
 
 def parts(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
     """The parts of the dataset of a grid, from flat arrays (B, ...): dimensions in the order of the study, then `x`."""
-    found = labelled(definition, arrays, command)
-    found.variables["status"].attrs |= status_attributes()
-    found.variables["model_used"].attrs |= model_attributes()
+    made = labelled(definition, arrays, command)
+    variables = made.variables
+    variables["status"].attrs |= status_attributes()
+    variables["model_used"].attrs |= model_attributes()
     radii = definition.scene.radii() if definition.scene else {}
     strengths = _strengths(definition) if definition.stresses and definition.scene else {}
-    found.variables["validity"] = validity_of(strengths | found.variables | found.coords | radii)
-    return found
+    variables["validity"] = validity_of(strengths | variables | made.coords | radii)
+    return made
 
 
 def _strengths(definition: Definition) -> dict[str, xr.Variable]:
     """Yield strengths of the materials that are named, over the unit of moduli; NaN of those that have none."""
-    scene, found = definition.scene, {}
+    scene, strengths = definition.scene, {}
     for body, name in (("layer", "Y1"), ("body", "Y2")):
         if body in scene.names:
             dim, texts = scene.names[body]
             values = np.array([strength_of(text) for text in texts])
-            found[name] = xr.Variable(dim, values) if dim else xr.Variable((), values[0])
-            found[name] = found[name] / bare_variable(scene.unit)
-    return found
+            strengths[name] = xr.Variable(dim, values) if dim else xr.Variable((), values[0])
+            strengths[name] = strengths[name] / bare_variable(scene.unit)
+    return strengths
 
 
 def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str) -> Parts:
-    """`parts` of any of the arrays, even none, without `validity` and the names of flags."""
+    """As `parts`, of some of the arrays or none, without `validity` and the names of flags."""
     grid = definition.grid
     rigid = bool((along(grid, "n") == 0).any())  # if one layer is on a rigid base, all are
     values = grid.values | grid.labels
-    known = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
+    attributes_of = {name: attributes(name, rigid) for name in (*PARAMETERS, *names("coordinate")) if name in values}
     for name in ("B", "beta") if grid.fitted else ():
-        known[name]["comment"] = COMMENT
-    coordinates = {name: xr.Variable(dims, array, known.get(name, {})) for name, (dims, array) in values.items()}
+        attributes_of[name]["comment"] = COMMENT
+    coordinates = {name: xr.Variable(*pair, attributes_of.get(name, {})) for name, pair in values.items()}
     coordinates["x"] = xr.Variable(("x",), definition.x, attributes("x"))
     dims = tuple(grid.sizes)
     variables = {
@@ -124,7 +128,7 @@ def labelled(definition: Definition, arrays: dict[str, np.ndarray], command: str
 
 
 def without_fill_values(dataset: xr.Dataset) -> xr.Dataset:
-    """The same dataset, changed so that a user's `to_netcdf` writes no _FillValue of coordinates: CF forbids it."""
+    """The dataset itself, which from now on is written without _FillValue of coordinates: CF forbids it."""
     for name in dataset.coords:
         dataset.variables[name].encoding["_FillValue"] = None
     return dataset
@@ -155,9 +159,9 @@ def model_attributes() -> dict:
 def decode(flags: xr.DataArray) -> xr.DataArray:
     """The names of `status`, `model_used` or `validity`.
 
-    Several assumptions that a case violates are separated by blanks; where none is, the text is empty. A number without
-    a name stays a number. Where `where`, `reindex` or `concat` of xarray have left no case, NaN, status and
-    validity are "not_run", and the model is "none".
+    Several assumptions that a case violates are separated by blanks; the text is empty if it violates none. A number
+    without a name stays a number. `where`, `reindex` and `concat` of xarray leave NaN where there is no case: there
+    status and validity are "not_run", and the model is "none".
 
     Parameters
     ----------
@@ -179,13 +183,13 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     >>> study.decode(found.model_used).values.tolist()
     ['smooth_half_space', 'smooth_half_space']
     """
-    known = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
+    flags_of = {"status": status_attributes, "model_used": model_attributes, "validity": validity_attributes}
     attributes = flags.attrs
     if "flag_meanings" not in attributes:  # arithmetic of xarray loses attributes
         name = getattr(flags, "name", f"a {type(flags).__name__}")
-        if name not in known:
-            raise ValueError(f"{name or 'the array'} is none of {', '.join(known)}")
-        attributes = known[name]()
+        if name not in flags_of:
+            raise ValueError(f"{name or 'the array'} is none of {', '.join(flags_of)}")
+        attributes = flags_of[name]()
     words, values = attributes["flag_meanings"].split(), whole(flags.values, attributes)
     if "flag_masks" in attributes:
         masks = np.atleast_1d(attributes["flag_masks"]).tolist()
@@ -194,7 +198,7 @@ def decode(flags: xr.DataArray) -> xr.DataArray:
     else:
         names = dict(zip(np.atleast_1d(attributes["flag_values"]).tolist(), words, strict=True))
     texts = [names.get(value, str(value)) for value in values.ravel().tolist()]
-    named = np.array(texts, dtype=str).reshape(flags.shape)
-    if "flag_masks" in attributes and flags.dtype.kind == "f":  # the mask 0 would say that the case is a good one
-        named = np.where(np.isfinite(flags.values), named, status_words()[NOT_RUN])
-    return xr.DataArray(named, flags.coords, flags.dims, flags.name)
+    meanings = np.array(texts, dtype=str).reshape(flags.shape)
+    if "flag_masks" in attributes and flags.dtype.kind == "f":  # else NaN would be read as the mask 0: a good case
+        meanings = np.where(np.isfinite(flags.values), meanings, status_words()[NOT_RUN])
+    return xr.DataArray(meanings, flags.coords, flags.dims, flags.name)

@@ -32,12 +32,12 @@ from ..rules.rule import ASSUMPTIONS, validity  # noqa: F401 - names of study.de
 from .units import physical_attributes, reduced_modulus
 
 ROUNDING = 1e-12
-"""Pressures of a profile that differ by less, relative, are equal: those of a smooth contact differ by rounding."""
+"""Pressures of a profile whose relative difference is smaller are equal: it is rounding."""
 LEAST_POINTS, LOAD_MISSED = 5, 5e-3
 """Fewest points of a profile for `D_body`, and the largest relative error of the load from it. The error of D_body is
 then less than that times D (tests/data/test_depth.py)."""
 QUANTITIES: dict[str, Callable[[xr.Dataset], xr.DataArray]] = {}
-"""Name -> function of a dataset, of each formula with the decorator `quantity`. They can be drawn like results."""
+"""Name -> function of a dataset: the formulas with the decorator `quantity`, which can be drawn like results."""
 SECTIONS_OF_QUANTITIES = """
 
 Parameters
@@ -75,10 +75,10 @@ def quantity(name: str) -> Callable:
     def register(formula: Callable) -> Callable:
         @wraps(formula)
         def computed(dataset: xr.Dataset) -> xr.DataArray:
-            for own, variable in dataset.variables.items():
+            for key, variable in dataset.variables.items():
                 unit = variable.attrs.get("units", "1")
-                if own in VOCABULARY and unit not in ("1", VOCABULARY[own].unit):  # of study.readable
-                    raise ValueError(f"{own} is in {unit}: {name} follows from results in SI units, or without units")
+                if key in VOCABULARY and unit not in ("1", VOCABULARY[key].unit):  # of study.readable
+                    raise ValueError(f"{key} is in {unit}: {name} follows from results in SI units, or without units")
             return named(formula(dataset), name, rule.has_units(dataset))
 
         computed.__doc__ = cleandoc(formula.__doc__ or "") + SECTIONS_OF_QUANTITIES
@@ -138,8 +138,7 @@ def largest_nominal_pressure(dataset: xr.Dataset) -> xr.DataArray:
 
 @quantity("r_ring")
 def ring_radius(dataset: xr.Dataset) -> xr.DataArray:
-    """Radius, a point of the profile, at which the nominal pressure is largest, in R: 0 where that is the centre.
-    It needs the profile p."""
+    """Radius in R at which the nominal pressure is largest, a point of the profile. Needs the profile p."""
     p = _profile(dataset, "r_ring")
     return dataset["a"] * dataset["x"].where(p >= (1 - ROUNDING) * p.max("x", skipna=False)).min("x")
 
@@ -155,28 +154,30 @@ def peak_pressure(dataset: xr.Dataset) -> xr.DataArray:
     pressures = _profile(dataset, "p_peak")
     unit, R = _scales(dataset, "p_peak")
     E1 = _surface_modulus(dataset) / (1 + dataset.get("m", 0.0))  # of layer and punch in series
-    found = xr.full_like(pressures, np.nan)
+    peaks = xr.full_like(pressures, np.nan)
     stated = {name_in(line): line for line in dataset.attrs.get("micro_laws", "").splitlines()}
     for law in [law for name, law in LAWS.items() if (dataset["micro"] == name).any()]:
         if stated.get(law.name, identity(law.name)) != identity(law.name):
             continue
-        given = [without_unit(dataset.get(name, np.nan), VOCABULARY[name].powers, unit, R) for name in law.parameters]
+        numbers = {name: dataset.get(name, np.nan) for name in law.parameters}
+        arguments = [without_unit(value, VOCABULARY[name].powers, unit, R) for name, value in numbers.items()]
         nu = xr.where(dataset["base"] == "half_space", dataset.get("nu2", np.nan), dataset.get("nu1", np.nan))
-        given += [nu] * law.poisson
-        spots = xr.apply_ufunc(_largest(law), pressures / unit, E1, *given, dask="parallelized", output_dtypes=[float])
-        found = xr.where(dataset["micro"] == law.name, spots, found)
-    return unit * found.max("x", skipna=False)
+        arguments += [nu] * law.poisson
+        arguments = [pressures / unit, E1, *arguments]
+        at_spots = xr.apply_ufunc(_largest(law), *arguments, dask="parallelized", output_dtypes=[float])
+        peaks = xr.where(dataset["micro"] == law.name, at_spots, peaks)
+    return unit * peaks.max("x", skipna=False)
 
 
 @quantity("D_body")
 def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     """Depth by which the coated body alone is pressed in, in R: D less what the punch yields.
 
-    D is the approach of distant points of both bodies. In the centre the punch, a half-space of E3* = E1*/m, yields
-    (2/E3*) ∫ p dr and of the asperities' A[p(0)] the part m/(1 + m); the coated body yields the rest. A rigid punch
-    yields nothing. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN where that spline
-    misses the load by more than LOAD_MISSED: the profile has too few points. It needs the profile p at 5 points or
-    more, and what `peak_pressure` needs.
+    D is the approach of distant points of both bodies. The punch, a half-space of E3* = E1*/m, gives way in the centre
+    by (2/E3*) ∫ p dr, and by the part m/(1 + m) of the asperities' A[p(0)]. The coated body gives way by the rest. A
+    rigid punch does not give way. The integral is that of a cubic spline through the profile p, in arcsin(r/a). NaN
+    where that spline misses the load by more than LOAD_MISSED: the profile has too few points. Needs the profile p at
+    5 points or more, and what `peak_pressure` needs.
     """
     m = dataset.get("m", xr.DataArray(0.0))
     if (m == 0).all():
@@ -188,14 +189,14 @@ def depth_of_the_body(dataset: xr.Dataset) -> xr.DataArray:
     along, over_area = (xr.DataArray(weights, dims="x") for weights in _weights(dataset["x"].values))
     integral, load = (p * along).sum("x", skipna=False), 2 * np.pi * dataset["a"] ** 2 * (p * over_area).sum("x")
     share = m / (1 + m) * dataset["A0"].where(_rough_model(dataset["model_used"]), 0.0)
-    found = dataset["D"] - 2 * m / (_surface_modulus(dataset) * unit) * dataset["a"] * integral - share
-    return found.where((m == 0) | (abs(load / dataset["P"] - 1) <= LOAD_MISSED))
+    depth = dataset["D"] - 2 * m / (_surface_modulus(dataset) * unit) * dataset["a"] * integral - share
+    return depth.where((m == 0) | (abs(load / dataset["P"] - 1) <= LOAD_MISSED))
 
 
 def _weights(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Weights at the points x = r/a of the integrals of p dx and of p x dx, from 0 to 1.
 
-    In the angle arcsin(x) the pressure is smooth from the centre, where its slope is 0, to the edge: a cubic spline.
+    They are those of a cubic spline in arcsin(x), in which p is smooth up to the edge. Its slope is 0 in the centre.
     """
     from scipy.interpolate import CubicSpline  # here: it takes a while
 
@@ -203,8 +204,8 @@ def _weights(x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     spline = CubicSpline(angle, np.eye(len(x)), bc_type=((1, np.zeros(len(x))), "not-a-knot"))
     nodes, weights = np.polynomial.legendre.leggauss(8)  # exact to rounding for a cubic times a sine of less than π/2
     half, middle = np.diff(angle)[:, None] / 2, (angle[1:] + angle[:-1])[:, None] / 2
-    at, weight = (middle + half * nodes).ravel(), (half * weights * np.cos(middle + half * nodes)).ravel()
-    return weight @ spline(at), (weight * np.sin(at)) @ spline(at)
+    angles, factors = (middle + half * nodes).ravel(), (half * weights * np.cos(middle + half * nodes)).ravel()
+    return factors @ spline(angles), (factors * np.sin(angles)) @ spline(angles)
 
 
 def _profile(dataset: xr.Dataset, name: str) -> xr.DataArray:
@@ -219,7 +220,7 @@ def _surface_modulus(dataset: xr.Dataset):
 
 
 def _rough_model(used: xr.DataArray) -> xr.DataArray:
-    """Where the model that was used has asperities, so that D has their A[p(0)]."""
+    """Whether the model that was used has asperities. Then D has their A[p(0)]."""
     return used.isin([int(model) for model in Model if not model.name.startswith(("SMOOTH", "NONE"))])
 
 
@@ -236,8 +237,8 @@ def _scales(dataset: xr.Dataset, name: str) -> tuple:
 
 
 def _largest(law):
-    """p_max of nominal pressures, of the modulus that the asperities feel, and of the arguments of the law."""
-    return lambda p, E, *given: law.at(p, E, **dict(zip(law.arguments, given, strict=True))).p_max
+    """A function of nominal pressures, the modulus of the asperities and the arguments of the law: the law's p_max."""
+    return lambda p, E, *arguments: law.at(p, E, **dict(zip(law.arguments, arguments, strict=True))).p_max
 
 
 @quantity("E_eff")

@@ -14,8 +14,8 @@ from ..specimen.quantities import has_unit
 class _AsPandasIndex(type):
     """The class of UnitIndex, which counts as equal to PandasIndex.
 
-    xarray aligns two arrays only if their indexes have equal classes. Without this, results could not be reindexed, nor
-    subtracted from measured values that are known at some of their loads.
+    xarray aligns two arrays only if their indexes have equal classes. Results must be aligned where they are reindexed,
+    or subtracted from values that were measured at some of their loads.
     """
 
     def __eq__(cls, other: Any) -> bool:
@@ -32,22 +32,22 @@ class UnitIndex(PandasIndex, metaclass=_AsPandasIndex):
         """As that of other indexes of xarray. Raises ValueError for a text without a unit, or of something else."""
         name, label = next(iter(labels.items()))
 
-        def number(one: Any) -> Any:
-            text = isinstance(one, str) or has_unit(one)
-            return si(name, one).value if text and name in ROWS else one
+        def number(value: Any) -> Any:
+            text = isinstance(value, str) or has_unit(value)
+            return si(name, value).value if text and name in ROWS else value
 
         if isinstance(label, slice):
             label = slice(number(label.start), number(label.stop), label.step)
         elif getattr(label, "dtype", None) is not None and label.dtype.kind in "OTU":  # an array of texts
-            numbers = np.reshape([number(one) for one in np.asarray(label).ravel().tolist()], label.shape)
+            numbers = np.reshape([number(value) for value in np.asarray(label).ravel().tolist()], label.shape)
             label = label.copy(data=numbers) if isinstance(label, (xr.DataArray, xr.Variable)) else numbers
         else:
-            label = [number(one) for one in label] if isinstance(label, (list, tuple)) else number(label)
+            label = [number(value) for value in label] if isinstance(label, (list, tuple)) else number(label)
         return super().sel({name: label}, method=method, tolerance=number(tolerance))
 
     def reindex_like(self, other, method=None, tolerance=None) -> dict:
         """As that of other indexes of xarray. Raises ValueError for texts: they would be the new coordinate."""
-        texts = [one for one in other.index if isinstance(one, str)] if other.index.dtype.kind in "OTU" else ()
+        texts = [label for label in other.index if isinstance(label, str)] if other.index.dtype.kind in "OTU" else ()
         if texts:
             raise ValueError(f'{other.dim}: give numbers in the SI unit here; texts such as "{texts[0]}" are for sel')
         return super().reindex_like(other, method=method, tolerance=tolerance)

@@ -21,7 +21,7 @@ REFERENCE = "Goryacheva & Yakovenko, Lubricants 2024, 12(3), 68, doi:10.3390/lub
 
 
 OF_THE_RUN = ("history", "command", "created", "source", "git_commit", "versions", "cpu", "blas")
-"""Attributes that say who computed the numbers, when and where, and nothing of what they are."""
+"""Attributes about the run that computed the numbers: who, when and where."""
 
 
 def provenance(definition: Definition, command: str) -> dict:
@@ -62,7 +62,7 @@ def command_line() -> str:
     ours = program.name == "__main__.py" and program.parent.name in ("roughcoat", "study")
     first = f"python -m {program.parent.name}" if ours else program.name
     text = f"{first} {shlex.join(sys.argv[1:])}".strip()
-    # a path may have bytes that are not UTF-8, an attribute may not
+    # a path may have bytes that are not UTF-8, which no attribute can hold
     return text.encode("utf-8", "backslashreplace").decode()
 
 
@@ -84,14 +84,14 @@ def cpu() -> str:
         lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
         lines = []
-    found = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
-    return f"{found[0]} ({os.cpu_count()} logical)" if found else platform.processor() or platform.machine()
+    models = [line.split(":", 1)[1].strip() for line in lines if line.startswith("model name")]
+    return f"{models[0]} ({os.cpu_count()} logical)" if models else platform.processor() or platform.machine()
 
 
 def blas() -> str:
     """Name and version of the BLAS library that numpy was built with."""
-    found = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
-    return f"{found.get('name', 'unknown')} {found.get('version', '')}".strip()
+    library = np.show_config(mode="dicts").get("Build Dependencies", {}).get("blas", {})
+    return f"{library.get('name', 'unknown')} {library.get('version', '')}".strip()
 
 
 def package_version(package: str) -> str:

@@ -39,7 +39,7 @@ def reduced_modulus(E: Any, nu: Any) -> Any:
 
 
 def factor(name: str, R: float, E2_star: float) -> float:
-    """What a dimensionless number is multiplied by to be in SI units.
+    """The factor from a dimensionless number to SI units.
 
     Parameters
     ----------
@@ -66,40 +66,40 @@ def factor(name: str, R: float, E2_star: float) -> float:
     return with_unit(1.0, VOCABULARY[name].powers, E2_star, R)
 
 
-def _si(name: str, given: Any, unit: str) -> Any:
-    """What was given, with texts such as "5 mm", and quantities of pint, as numbers in the SI `unit`.
+def _si(name: str, value: Any, unit: str) -> Any:
+    """The value, or list of values, as numbers in the SI `unit`. Texts such as "5 mm" and pint are converted.
 
-    Raises ValueError for a text without a unit, or of something else, and for a spread: the results would not have it.
+    Raises ValueError for a text without a unit, or of something else, and for a spread, which the result would lose.
     """
-    is_numbers = type(given) is np.ndarray and given.dtype.kind in "iuf"
-    given = given if is_numbers else plain(given)
-    if isinstance(given, xr.DataArray):
-        size = quantity(name, f"1 {given.attrs['units']}", unit).value if "units" in given.attrs else 1.0
-        return given.drop_attrs(deep=False) * size
-    if isinstance(given, (list, tuple)):
-        return [_si(name, one, unit) for one in given]
-    if not (isinstance(given, str) or has_unit(given)):
-        return given
-    found = quantity(name, given, unit)
-    if found.spread:
-        raise ValueError(f'{name} = "{given}": must have no spread here; study.solve takes spreads, with R and E2')
-    return found.value
+    is_numbers = type(value) is np.ndarray and value.dtype.kind in "iuf"
+    value = value if is_numbers else plain(value)
+    if isinstance(value, xr.DataArray):
+        size = quantity(name, f"1 {value.attrs['units']}", unit).value if "units" in value.attrs else 1.0
+        return value.drop_attrs(deep=False) * size
+    if isinstance(value, (list, tuple)):
+        return [_si(name, entry, unit) for entry in value]
+    if not (isinstance(value, str) or has_unit(value)):
+        return value
+    number = quantity(name, value, unit)
+    if number.spread:
+        raise ValueError(f'{name} = "{value}": must have no spread here; study.solve takes spreads, with R and E2')
+    return number.value
 
 
 def _scales(R: Any, E2_star: Any) -> dict[str, float]:
-    """R in m and E2_star in Pa, each from one number, text or quantity of pint."""
-    found = {}
-    for name, given, unit in (("R", R, "m"), ("E2_star", E2_star, "Pa")):
-        value = _si(name, given, unit)
-        one_number = np.ndim(value) == 0 and np.asarray(value).dtype.kind in "iuf"
-        found[name] = float(value) if one_number else quantity(name, given, unit).value
-    return found
+    """R in m and E2_star in Pa, each from a number, a text or a quantity of pint."""
+    scales = {}
+    for name, value, unit in (("R", R, "m"), ("E2_star", E2_star, "Pa")):
+        number = _si(name, value, unit)
+        is_number = np.ndim(number) == 0 and np.asarray(number).dtype.kind in "iuf"
+        scales[name] = float(number) if is_number else quantity(name, value, unit).value
+    return scales
 
 
-def physical_attributes(name: str, given: dict) -> dict:
+def physical_attributes(name: str, attributes: dict) -> dict:
     """The attributes of a dimensionless variable when its numbers are in SI units."""
     entry = VOCABULARY[name]
-    kept = {key: text for key, text in given.items() if key != "scale"}
+    kept = {key: text for key, text in attributes.items() if key != "scale"}
     return kept | {"long_name": entry.long_name, "units": entry.unit}
 
 
@@ -146,8 +146,8 @@ def to_physical(dataset: xr.Dataset, *, R: Any, E2_star: Any) -> xr.Dataset:
 def readable(dataset: xr.Dataset) -> xr.Dataset:
     """A dataset in SI units with each variable in the multiple that suits its largest number, for plots and tables.
 
-    Coordinates have it too: a thickness of 2e-6 m is found by sel(h=2.0), in the µm of its attribute `units`. A spread
-    has the multiple of its quantity.
+    Coordinates too: a thickness of 2e-6 m is selected by sel(h=2.0), in the µm of its attribute `units`. A spread has
+    the multiple of its quantity.
 
     Parameters
     ----------
@@ -172,7 +172,7 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
         raise ValueError("readable takes the dataset, not an array of it: study.readable(contact).a")
     if PHYSICAL_SCALE not in dataset.attrs:
         raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
-    found = {}
+    changed = {}
     for name, variable in dataset.variables.items():
         owner = dataset.variables.get(str(name).removesuffix("_spread"), variable)
         unit = variable.attrs.get("units", "1")
@@ -180,9 +180,9 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
             continue
         finite = np.abs(owner.values[np.isfinite(owner.values)])
         word, size = multiple(finite.max() if finite.size else np.inf, unit)
-        found[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
+        changed[name] = xr.Variable(variable.dims, variable.data / size, variable.attrs | {"units": word})
     scale = "readable multiples of SI units, by the attribute units"
-    return dataset.assign(found).assign_attrs({PHYSICAL_SCALE: scale})
+    return dataset.assign(changed).assign_attrs({PHYSICAL_SCALE: scale})
 
 
 def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
@@ -208,16 +208,16 @@ def from_physical(*, R: Any, E2_star: Any, **parameters: Any) -> dict:
     >>> from_physical(R="10 mm", E2_star="230 GPa", h="20 um", bonding="bonded")
     {'h': 0.002, 'bonding': 'bonded'}
     """
-    found, scales = {}, _scales(R, E2_star)
-    for name, given in parameters.items():
+    converted, scales = {}, _scales(R, E2_star)
+    for name, value in parameters.items():
         if name not in PARAMETERS:
             raise ValueError(no_parameter(name, PARAMETERS))
         if VOCABULARY[name].powers == (0, 0):
-            found[name] = given
+            converted[name] = value
         else:
-            value = _si(name, given, VOCABULARY[name].unit)
-            if np.asarray(value).dtype.kind not in "iuf":
-                quantity(name, given, VOCABULARY[name].unit)  # raises: it is no number, nor several
-            array: Any = value if isinstance(value, xr.DataArray) or np.isscalar(value) else np.asarray(value)
-            found[name] = array / factor(name, **scales)
-    return found
+            number = _si(name, value, VOCABULARY[name].unit)
+            if np.asarray(number).dtype.kind not in "iuf":
+                quantity(name, value, VOCABULARY[name].unit)  # raises: it is no number, nor several
+            array: Any = number if isinstance(number, xr.DataArray) or np.isscalar(number) else np.asarray(number)
+            converted[name] = array / factor(name, **scales)
+    return converted

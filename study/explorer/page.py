@@ -52,7 +52,7 @@ def contents() -> dict:
         "version": package_version("roughcoat"),
         "meshes": {n: mesh(n) for n in NODES},
         "materials": [{key: getattr(entry, key) for key in numbers} for entry in entries],
-        "bounds": {name: ends(VOCABULARY[name].own.interval)[:2] for name in bounded},
+        "bounds": {name: ends(VOCABULARY[name].parameter.interval)[:2] for name in bounded},
         "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
         "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
         "merging": _MERGING,

@@ -7,21 +7,21 @@ import numpy as np
 
 from ..specimen.foreign import plain
 from ..terminal import counted, shown
-from .given import MOST_MESSAGES
 from .grid import Grid
+from .request import MOST_MESSAGES
 from .vocabulary import finite, names
 
-POINTS = 33  # of a profile, when a study does not say it
+POINTS = 33  # of a profile, unless the study says it
 LARGE = 500_000_000  # numbers in one results file, 4 GB: a larger grid may be a mistake, so `run` wants --yes
 MOST_VALUES = 5_000_000_000  # 40 GB: no larger grid is allowed, it can be cut into several studies
 DTYPES = ("float64", "float32")
-PER_CASE = 16  # about how many numbers a case has besides the profiles
+PER_CASE = 16  # numbers of a case besides the profiles, roughly
 
 
 class StudyError(ValueError):
     """Input that cannot be used; `messages` has every reason, one line each.
 
-    code : exit code of a command; 1 where the input is right, and what it leads to is wrong
+    code : exit code of a command; 2 for a wrong input, 1 for a right one that leads to something wrong
     """
 
     def __init__(self, messages, code: int = 2):
@@ -39,11 +39,11 @@ class Definition:
     dtype : "float64" or "float32", of the stored numbers
     block : number of cases computed and stored at a time
     digest : sha256 of all that determines the numbers
-    laws : "NAME VERSION" of each micro law that is not of this package, as it was when the digest was made
+    laws : "NAME VERSION" of each micro law that is not of this package; the version is in the digest
     results : names of the results, without profiles and flags
     scene : of a study with units, a `study.inputs.scene.scene.Scene`; its grid is dimensionless, its results are in SI
-    inputs : of the solver, by which results have derivatives: those that change with the spread of some input
-    stresses : names of the largest stresses and their places, where these are wanted
+    inputs : names of those inputs of the solver that change with some spread; results have derivatives by them
+    stresses : names of the largest stresses and their places, if the study wants them
     """
 
     name: str
@@ -72,19 +72,18 @@ class Definition:
 
     @property
     def numbers(self) -> int:
-        """How many numbers the blocks hold, roughly; the results hold as many, and as many spreads."""
-        return (
-            self.grid.size * (PER_CASE + len(self.stresses) + len(self.x) * len(self.profiles)) * (1 + len(self.inputs))
-        )
+        """How many numbers the blocks hold, roughly. The results hold as many, and as many spreads."""
+        per_case = PER_CASE + len(self.stresses) + len(self.x) * len(self.profiles)
+        return self.grid.size * per_case * (1 + len(self.inputs))
 
-    def in_results(self, of_dims: dict) -> dict:
-        """A dictionary of the dimensions of the grid, with the names that the results give these."""
+    def in_results(self, table: dict) -> dict:
+        """The table, whose keys are dimensions of the grid, with the names that the results give to these."""
         names = self.scene.dims if self.scene else {}
-        return {names.get(dim, dim): value for dim, value in of_dims.items()}
+        return {names.get(dim, dim): value for dim, value in table.items()}
 
 
 def settings(tables: dict, errors: list[str]) -> tuple:
-    """Title, points and names of the profiles, type of the numbers, names of stresses: title and section [output]."""
+    """What the title and the section [output] say: title, x, profiles, dtype and stresses of a Definition."""
     title = tables.get("title", "")
     output = {"x": POINTS, "profiles": True, "dtype": DTYPES[0], "stresses": False} | tables.get("output", {})
     x = profile_points(output["x"], errors)
@@ -107,14 +106,14 @@ def refusal(where: str, errors: list[str]) -> StudyError:
 
 def profile_names(profiles, errors: list[str]) -> tuple[str, ...]:
     """Names of the profiles to store, from true, false or their list; in the order of the vocabulary."""
-    known, profiles = names("profile"), plain(profiles)
+    choices, profiles = names("profile"), plain(profiles)
     if isinstance(profiles, bool):
-        return known if profiles else ()
-    if not isinstance(profiles, (list, tuple)) or not set(map(str, profiles)) <= set(known):
-        listed = ", ".join(f'"{name}"' for name in known)
+        return choices if profiles else ()
+    if not isinstance(profiles, (list, tuple)) or not set(map(str, profiles)) <= set(choices):
+        listed = ", ".join(f'"{name}"' for name in choices)
         errors.append(f"profiles = {shown(profiles)}: must be true or false, or a list of {listed}")
         return ()
-    return tuple(name for name in known if name in profiles)
+    return tuple(name for name in choices if name in profiles)
 
 
 def profile_points(x, errors: list[str]) -> np.ndarray:
@@ -126,7 +125,7 @@ def profile_points(x, errors: list[str]) -> np.ndarray:
     if not isinstance(points, (list, tuple, range)) or not all(map(finite, points)):
         errors.append(f"x = {shown(x)}: must be a whole number in [2, 10000] or a list of numbers from 0 to 1")
         return np.array([])
-    found = np.array(points, dtype=float)
-    if len(found) < 2 or found[0] != 0 or found[-1] != 1 or (np.diff(found) <= 0).any():
+    radii = np.array(points, dtype=float)
+    if len(radii) < 2 or radii[0] != 0 or radii[-1] != 1 or (np.diff(radii) <= 0).any():
         errors.append(f"x = {shown(points)}: a list must increase from 0 to 1, both included")
-    return found
+    return radii

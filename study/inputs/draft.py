@@ -1,4 +1,4 @@
-"""A draft of a grid: it reads the numbers without units of what is given, and collects all mistakes."""
+"""A draft of a grid: it reads the inputs without units and collects all mistakes."""
 
 from dataclasses import dataclass, field, replace
 
@@ -8,16 +8,16 @@ from .checks import (
     dimensions_that_differ,
     equal_cases,
     heights_that_yield,
-    missing_parameters,
+    missing_everywhere,
+    missing_in_cases,
     mixed_units,
-    not_given,
     one_control,
     picard_for_nothing,
     slips_of_laws,
 )
-from .given import Given, Input
 from .grid import Grid, as_array, equal_values
 from .laws import fitted, law_names, wants_a_fit
+from .request import Input, Request
 from .sample import sampled, values_of_axis
 from .vocabulary import PARAMETERS, VOCABULARY
 
@@ -28,35 +28,35 @@ MOST_DIMENSIONS = 31  # a netCDF variable has at most 32, and profiles have x as
 class Draft:
     """Collects the numbers of parameters; `finish` makes the Grid of them.
 
-    given : what they are read from; its `errors` are those of the draft
+    request : the inputs; its `errors` are those of the draft
     sizes, values, labels : as those of the Grid
     """
 
-    given: Given
+    request: Request
     sizes: dict[str, int] = field(default_factory=dict)
     values: dict = field(default_factory=dict)
     labels: dict = field(default_factory=dict)
     errors: list[str] = field(init=False)
 
     def __post_init__(self):
-        self.errors = self.given.errors
+        self.errors = self.request.errors
 
     def expand(self) -> None:
         """Make ranges and [sample] lists of values."""
-        given = self.given
-        if given.sample is not None:
-            names = [name for name, entry in given.inputs.items() if entry.section == "[sample]"]
-            columns = sampled(given.sample, names, given.physical, self.checked, given.errors)
+        request = self.request
+        if request.sample is not None:
+            names = [name for name, entry in request.inputs.items() if entry.section == "[sample]"]
+            columns = sampled(request.sample, names, request.physical, self.checked, request.errors)
             for name in names:
-                given.inputs[name].values = columns.get(name)
-        for name, entry in given.inputs.items():
+                request.inputs[name].values = columns.get(name)
+        for name, entry in request.inputs.items():
             if entry.dims == (name,) and entry.array is None:
-                entry.values = values_of_axis(name, entry.values, given.physical, given.errors)
+                entry.values = values_of_axis(name, entry.values, request.physical, request.errors)
 
     def read(self, entry: Input) -> None:
-        """The numbers or words of an input without a unit. What a case does not say has its default, or NaN."""
+        """Read the numbers or words of an input without a unit. A gap in [[cases]] becomes the default, or NaN."""
         name, gaps = entry.name, entry.section == "[[cases]]"
-        default = VOCABULARY[name].own.default
+        default = VOCABULARY[name].parameter.default
         raw = entry.values if entry.array is None else entry.array.values.ravel().tolist()
         raw = [default if gaps and value is None else value for value in raw]
         array = self.checked(name, raw, gaps=gaps, distinct=entry.dims == (name,))
@@ -74,7 +74,7 @@ class Draft:
             except ValueError as error:
                 self.errors.append(f"{name}: {error}")
                 return np.empty(len(raw))
-        array = as_array(VOCABULARY[name].own, raw, name, self.errors, gaps)
+        array = as_array(VOCABULARY[name].parameter, raw, name, self.errors, gaps)
         if distinct and len(self.errors) == before:
             self.errors += equal_values(name, array.tolist())
         return array
@@ -84,19 +84,20 @@ class Draft:
 
         labels : axes that are not among the values, as they are in SI
         """
-        given, values = self.given, self.values
-        self.errors += one_control(given.sections)
-        self.errors += dimensions_that_differ(given, labels | {n: array for n, (dims, array) in values.items() if dims})
-        _, laws = values.get("micro", ((), ""))  # "" if what was given has been refused
-        for name in [name for name in PARAMETERS if name not in given.sections]:
-            parameter = VOCABULARY[name].own  # of a law that no case has it stays away
+        request, values = self.request, self.values
+        self.errors += one_control(request.sections)
+        arrays = {name: array for name, (dims, array) in values.items() if dims}
+        self.errors += dimensions_that_differ(request, labels | arrays)
+        _, laws = values.get("micro", ((), ""))  # "": micro has been refused
+        for name in [name for name in PARAMETERS if name not in request.sections]:
+            parameter = VOCABULARY[name].parameter  # those of a law that no case has stay away
             selector, owners, *_ = parameter.needed_by
             if parameter.default is not None and (selector != "micro" or np.isin(laws, owners).any()):
                 values[name] = (), np.array(parameter.default)
-        names = {*given.sections, *["n"] * given.physical}  # n follows from moduli
-        self.errors += not_given(names, lambda name: values.get(name, ((), ()))[1], self.errors)
+        names = {*request.sections, *["n"] * request.physical}  # n follows from moduli
+        self.errors += missing_everywhere(names, lambda name: values.get(name, ((), ()))[1], self.errors)
         if not self.errors:
-            rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in given.rows]
+            rows = [repr(sorted(((k, v) for k, v in row.items() if k != "label"), key=str)) for row in request.rows]
             self.errors += equal_cases(rows)
 
     def put(self, name: str, dims: tuple[str, ...], array: np.ndarray) -> None:
@@ -104,25 +105,25 @@ class Draft:
         self.values[name] = dims, self.checked(name, array.ravel().tolist()).reshape(array.shape)
 
     def put_dimensions(self) -> None:
-        """Note the lengths of dimensions, and coordinates of those that are no inputs."""
-        given = self.given
+        """Note the lengths of dimensions, and the coordinates of dimensions that are no inputs."""
+        request = self.request
         for dims, array in self.values.values():
             for dim, size in zip(dims, array.shape, strict=True):
                 self.sizes.setdefault(dim, size)
-        for entry in given.inputs.values():
+        for entry in request.inputs.values():
             for dim in entry.dims if entry.array is not None else ():
                 stacked = hasattr(entry.array.indexes.get(dim), "levels")  # see `carried`
-                if dim not in given.inputs and dim in entry.array.coords and not stacked:
+                if dim not in request.inputs and dim in entry.array.coords and not stacked:
                     self.labels.setdefault(dim, ((dim,), entry.array.coords[dim].values))
-        if "case" in self.sizes and (given.rows or given.sample is not None or given.physical):
+        if "case" in self.sizes and (request.rows or request.sample is not None or request.physical):
             self.labels.setdefault("case", (("case",), np.arange(self.sizes["case"], dtype=np.int32)))
-        if given.labels and not given.physical:
-            self.labels["label"] = ("case",), np.array(given.labels, dtype=str)
+        if request.labels and not request.physical:
+            self.labels["label"] = ("case",), np.array(request.labels, dtype=str)
         if len(self.sizes) > MOST_DIMENSIONS:
             self.errors.append(f"{len(self.sizes)} dimensions: at most {MOST_DIMENSIONS} are allowed")
 
     def finish(self) -> Grid:
-        """The grid, with B and beta where they are to be fitted, after a check of what concerns several parameters."""
+        """The grid, after the checks of several parameters together. Fits B and beta where they are left out."""
         grid = self._grid()
         if not self.errors and wants_a_fit(grid):
             laws, errors = fitted(grid)
@@ -130,8 +131,8 @@ class Draft:
             self.errors += errors
             grid = replace(self._grid(), fitted=True)
         if not self.errors:
-            self.errors += missing_parameters(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
-            self.errors += [] if self.given.physical else mixed_units(grid)
+            self.errors += missing_in_cases(grid) + picard_for_nothing(grid) + heights_that_yield(grid)
+            self.errors += [] if self.request.physical else mixed_units(grid)
         self.errors += [] if self.errors else slips_of_laws(grid)
         return grid
 

@@ -1,4 +1,4 @@
-"""The grid of cases: parameters along named dimensions, their flat columns (B,), and the way back."""
+"""The grid of cases: parameters along named dimensions, and their flat columns (B,)."""
 
 import math
 from collections.abc import Callable, Iterator
@@ -14,9 +14,9 @@ LONGEST_AXIS = 1_000_000
 #: Cases in a block: ordinary ones, those that take some milliseconds each, those that may take ten seconds each.
 #: A block is some seconds of work. A run that is killed loses the blocks in work.
 USUAL, SLOW, SLOWEST = 8000, 1000, 100
-#: On the exact layer a case with an n above, or an rtol below, may need a mesh of its own.
+#: On the exact layer a case with a larger n, or a smaller rtol, may need a mesh that no other case can use.
 _STIFF, _FINE = 1e3, 1e-9
-_MANY_NODES = 96  # with more than these, all that the solver begins with, a case takes some milliseconds
+_MANY_NODES = 96  # the most that the solver begins with by itself; with more a case takes some milliseconds
 SHOWN = 3  # wrong values of one parameter that get a message each; the others are counted
 
 
@@ -25,8 +25,8 @@ class Grid:
     """Labelled cases, the product of the dimensions.
 
     sizes : dimension -> number of points, in order
-    values : parameter -> (its dimensions, array over them); NaN: not given for this case, which does not need it
-    labels : the same for coordinates that are no parameters (`case`, `label`, coordinates of a given DataArray)
+    values : parameter -> (its dimensions, array over them); NaN in a case that does not need it
+    labels : the same for coordinates that are no parameters (`case`, `label`, those of DataArrays)
     fitted : whether B and beta are fitted to Nbar and Ra
     """
 
@@ -48,9 +48,10 @@ class Grid:
 def along(grid: Grid, name: str) -> np.ndarray:
     """Values of a parameter as an array with all dimensions of the grid, in its order.
 
-    A dimension on which the parameter does not depend has the length 1. What is not given has its default, or NaN.
+    A dimension on which the parameter does not depend has the length 1. A parameter that the grid lacks has its
+    default, or NaN.
     """
-    default = VOCABULARY[name].own.default
+    default = VOCABULARY[name].parameter.default
     dims, array = grid.values.get(name, ((), np.array(np.nan if default is None else default)))
     if len(dims) > 1:
         array = array.transpose(sorted(range(len(dims)), key=lambda i: list(grid.sizes).index(dims[i])))
@@ -77,7 +78,7 @@ def cut_out(grid: Grid, window: dict[str, slice]) -> Grid:
 
 
 def windows(grid: Grid, most: int, chunk: int) -> Iterator[dict[str, slice]]:
-    """Windows, one behind the other in the flat order of the cases, that together are the grid.
+    """Windows that together are the grid, in the flat order of the cases.
 
     A window has whole chunks, and at most `most` cases unless a single chunk has more.
 
@@ -107,7 +108,7 @@ def box(shape: tuple[int, ...], most: int) -> list[int]:
 
 
 def usual_block(grid: Grid) -> int:
-    """Number of cases in a block when the study does not say it, by the slowest kind of case of the grid."""
+    """Number of cases in a block, unless the study says it. The slowest kind of case in the grid decides."""
     n, rtol, nodes = (along(grid, name) for name in ("n", "rtol", "nodes"))
     layered = np.isin(along(grid, "base"), ("layered", "auto")).any()
     approximated = (along(grid, "scheme") == "picard").any()
@@ -121,27 +122,29 @@ def unflatten(grid: Grid, flat: np.ndarray) -> np.ndarray:
     return flat.reshape(grid.shape + flat.shape[1:])
 
 
-def as_array(own: Parameter, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
+def as_array(parameter: Parameter, raw: list, key: str, errors: list[str], gaps: bool = False) -> np.ndarray:
     """Check the values of one parameter and make them an array of float, int or text.
 
     raw : list of values, or a list with one value
     key : how messages call the parameter; entry i of several is called key[i]
     errors : messages are appended here
-    gaps : None stands for "not given" and becomes NaN
+    gaps : None is allowed and becomes NaN
     """
-    if not own.whole and own.interval and set(map(type, raw)) == {float} and are_within(own, raw).all():
-        return np.array(raw)  # for a million numbers this takes less than `check` of each
-    found = []
+    floats = not parameter.whole and parameter.interval and set(map(type, raw)) == {float}
+    if floats and are_within(parameter, raw).all():  # of a million numbers, quicker than `check` of each
+        return np.array(raw)
+    messages = []
     for i, value in enumerate(raw):
-        text = "" if value is None and gaps else check(own, value)
+        text = "" if value is None and gaps else check(parameter, value)
         if text:
-            found.append(f"{key}{f'[{i}]' if len(raw) > 1 else ''} = {shown(value)}: {text}")
-    errors += found[:SHOWN] + ([f"{key}: and {len(found) - SHOWN} more such values"] if len(found) > SHOWN else [])
-    if found:
+            messages.append(f"{key}{f'[{i}]' if len(raw) > 1 else ''} = {shown(value)}: {text}")
+    errors += messages[:SHOWN]
+    errors += [f"{key}: and {len(messages) - SHOWN} more such values"] * (len(messages) > SHOWN)
+    if messages:
         return np.empty(len(raw))
-    if own.choices:
+    if parameter.choices:
         return np.array(raw, dtype=str)
-    if own.whole:
+    if parameter.whole:
         return np.array([int(value) for value in raw], dtype=np.int64)
     return np.array([math.nan if value is None else float(value) for value in raw])
 
@@ -176,7 +179,7 @@ def _range_values(raw: dict, key: str, errors: list[str]) -> list:
 
 
 def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) -> None:
-    """Messages for the spacing and the ends of a range, and for what it has that is not one of `names`."""
+    """Messages for the spacing and the ends of a range, and for keys that are not among `names`."""
     for name in raw:
         if name not in names:
             errors.append(f'{key}: "{name}" is not allowed; a range is {{{", ".join(names)}}}')
@@ -194,7 +197,7 @@ def check_range(raw: dict, key: str, errors: list[str], names: tuple[str, ...]) 
 
 
 def twins(values: list) -> list[tuple[int, int]]:
-    """[(i, j)], the first two places that hold the same value, or []: a coordinate must differ to be selected from."""
+    """[(i, j)], the first two places that hold the same value, or []: of an axis, neither could be selected."""
     first = {}
     for j, value in enumerate(values):
         i = first.setdefault(value, j)
@@ -204,26 +207,26 @@ def twins(values: list) -> list[tuple[int, int]]:
 
 
 def equal_values(name: str, values: list, written: Callable = shown) -> list[str]:
-    """A message for two values of an axis that are the same, if there are some; `written` makes a value a text."""
+    """A message if two values of an axis are the same; `written` makes a value a text."""
     return [
         f"{name}[{i}] and {name}[{j}] are both {written(values[i])}: values of an axis must differ"
         for i, j in twins(values)
     ]
 
 
-def same_labels(one: np.ndarray, other: np.ndarray) -> bool:
+def same_labels(labels: np.ndarray, other: np.ndarray) -> bool:
     """Whether two coordinates have the same values in the same order. Missing ones, such as NaN, are the same."""
-    if one.shape != other.shape:
+    if labels.shape != other.shape:
         return False
-    kinds = {one.dtype.kind, other.dtype.kind}
+    kinds = {labels.dtype.kind, other.dtype.kind}
     if "O" not in kinds:
-        return np.array_equal(one, other, equal_nan=kinds <= {*"fcmM"})
-    return all(map(_same, one.tolist(), other.tolist()))
+        return np.array_equal(labels, other, equal_nan=kinds <= {*"fcmM"})
+    return all(map(_same, labels.tolist(), other.tolist()))
 
 
-def _same(one: object, other: object) -> bool:
+def _same(label: object, other: object) -> bool:
     try:
-        return one is other or bool(one == other) or bool(one != one and other != other)
+        return label is other or bool(label == other) or bool(label != label and other != other)
     except (TypeError, ValueError):  # of pandas.NA, which is neither equal nor unequal
         return False
 

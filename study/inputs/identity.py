@@ -1,11 +1,11 @@
-"""The key of a case and the digest of a study: they are made only of the values that can change a number.
+"""The key of a case and the digest of a study, made of the values that can change a number.
 
-A value counts where its case uses the parameter (`needed_by`, `used_by` in the solver's table) and where it is not the
-default. So keys and digests stay as they are when an unused value is edited, or a parameter with a default is added to
-the program. A case has the same key on another grid, in another order of the axes and in another run.
+A value counts if its case uses the parameter (`needed_by`, `used_by` in the solver's table) and if it is not the
+default. So keys and digests stay the same when a value that no case uses is edited, or when a parameter with a default
+is added to the program. A case has the same key on another grid, in another order of the axes and in another run.
 
 Whoever changes a default, or how keys are made, must change NUMERICS_VERSION, which is in the digest and beside every
-key: no case on disk is found by other keys.
+key. Otherwise a case on disk could be found by the key of another.
 """
 
 import hashlib
@@ -21,17 +21,15 @@ from solver.parameters import uses
 from .grid import Grid, along
 from .vocabulary import PARAMETERS, VOCABULARY
 
-#: What the answer is compared with: no case depends on it, but the flags in a results file do.
+#: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
-
-
-#: They count for stresses where they do not for the contact, as of a body on which the layer slides.
+#: Stresses depend on these even where the contact does not, as on nu2 of a body on which the layer slides.
 RATIOS = ("nu1", "nu2")
 
 
 def counts(grid: Grid, name: str) -> np.ndarray:
-    """Where the value of a parameter counts: bool along the dimensions of the grid, of length 1 where all are alike."""
-    value, default = along(grid, name), VOCABULARY[name].own.default
+    """Whether the value of a parameter counts: bool along the dimensions of the grid, some of them of length 1."""
+    value, default = along(grid, name), VOCABULARY[name].parameter.default
     changed = ~np.isnan(value) if default is None else value != default
     return changed & uses(name, partial(along, grid))
 
@@ -69,25 +67,27 @@ def digest_of(definition) -> str:
 
 
 def _digest_of_ratios(grid: Grid) -> list[str]:
-    """Of the Poisson ratios, which always count for stresses."""
+    """Digests of the Poisson ratios, which always count for stresses."""
     return [digest_of_array(along(grid, name)) for name in RATIOS]
 
 
-def _digest_of_scene(of_numbers: str, scene) -> str:
+def _digest_of_scene(digest: str, scene) -> str:
     """sha256 of the digest of dimensionless numbers, and of the SI values from which they follow."""
-    content = [of_numbers, scene.labels, sorted(scene.names.items())]
-    correlations = {f"{one} and {other}": value for (one, other), value in scene.correlations.items()}
-    for table, end in ((scene.given, ""), (scene.spreads, "_spread"), (correlations, "")):
+    content = [digest, scene.labels, sorted(scene.names.items())]
+    correlations = {f"{first} and {second}": value for (first, second), value in scene.correlations.items()}
+    for table, end in ((scene.values, ""), (scene.spreads, "_spread"), (correlations, "")):
         for name, value in sorted(table.items()):
             content.append((name + end, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 
 def _digest_of_values(grid: Grid, name: str) -> tuple:
-    """Shape of a parameter, digest of the places whose value counts for some case, digest of these values; () if none
-    does."""
+    """Shape of a parameter, digest of the places whose value counts in some case, and digest of these values.
+
+    () if no value counts.
+    """
     dims, array = grid.values.get(name, ((), None))
-    if not dims and (array is None or array == VOCABULARY[name].own.default):  # quick: most parameters end here
+    if not dims and (array is None or array == VOCABULARY[name].parameter.default):  # quick: most parameters end here
         return ()
     values = along(grid, name)
     several = tuple(np.flatnonzero(np.array(values.shape) == 1))
@@ -105,9 +105,8 @@ def digest_of_array(array: np.ndarray) -> str:
 def case_keys(grid: Grid, stresses: bool = False) -> np.ndarray:
     """(B, 2) uint64: keys of 128 bits, two sums of a hash of (name, value) over the parameters whose value counts.
 
-    With stresses the keys are others, and the Poisson ratios always count.
-    It is a sum so that a parameter is hashed along its own dimensions only. -0.0 counts as 0.0. A million keys take a
-    fraction of a second.
+    The hashes are summed so that a parameter is hashed along its own dimensions only. -0.0 counts as 0.0. With
+    `stresses` the keys differ, and Poisson ratios always count. A million keys take a fraction of a second.
     """
     lanes = np.zeros((2, *grid.shape), dtype=np.uint64)
     for name in PARAMETERS:

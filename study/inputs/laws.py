@@ -1,4 +1,4 @@
-"""Micro laws: those that users register, with parameters in the vocabulary, and power laws that are fitted."""
+"""Micro laws in studies: laws that users register, and power laws that are fitted."""
 
 from contextlib import suppress
 from functools import cache
@@ -18,11 +18,11 @@ from .vocabulary import BODIES, PARAMETERS, SCENE, VOCABULARY, Entry, names
 MOST_FITS = 1000
 """Most different values of Nbar Ra² in a study. A law is fitted to each, in 2 ms."""
 DIGITS = 10
-"""Significant digits of B and beta that are kept: the last ones of a fit depend on the processor, and results are found
-on disk by the values of their parameters."""
+"""Significant digits of B and beta that are kept. Results are found on disk by the values of their parameters, and the
+last digits of a fit depend on the processor."""
 COMMENT = "fitted to Nbar and Ra by least squares over pressures from 1e-4 to 0.025 E1*, as in Section 4.1 of the paper"
 
-# A law must not call a parameter like a result, or like what `study.solve` is told beside parameters.
+# A law must not call a parameter like a result, or like another argument of `study.solve`.
 laws.RESERVED.update({*VOCABULARY, "cases", "profiles", "title", "workers"} - set(SOLVER_PARAMETERS))
 laws.RESERVED.update(f"{name}_spread" for name in VOCABULARY)
 laws.RESERVED.update(SCENE, BODIES)
@@ -54,9 +54,9 @@ def law_names(values: list) -> list:
 
 
 def recall(versions: str) -> None:
-    """Register laws of results, a line "NAME VERSION" for each, that are not known but installed.
+    """Register the laws of results, if they are installed; `versions` has a line "NAME VERSION" for each.
 
-    A table of one's own is not read: whoever sends a results file must not choose which files are opened.
+    A table of the user's is not read: whoever sends a results file must not choose which files are opened.
     """
     for line in versions.splitlines():
         if (name := laws.name_in(line)) not in laws.LAWS and not name.startswith(PREFIX):
@@ -65,7 +65,7 @@ def recall(versions: str) -> None:
 
 
 def is_parameter(name: str) -> bool:
-    """Whether a name is that of a parameter. If it is not known, the laws of installed packages are loaded first."""
+    """Whether this is the name of a parameter. The laws of installed packages are loaded before the answer is no."""
     if name not in PARAMETERS:
         with suppress(ValueError):  # a law that cannot be loaded is an error when `micro` names it
             laws.load([name], ())
@@ -74,7 +74,7 @@ def is_parameter(name: str) -> bool:
 
 
 def results_of(micro: np.ndarray) -> tuple[str, ...]:
-    """Names of the results of these laws. The share of what has yielded is there if some have spots that yield."""
+    """Names of the results of these laws; plastic_share only if the spots of some law yield."""
     yields = np.isin(micro, [name for name, law in laws.LAWS.items() if law.yielded]).any()
     return tuple(name for name in names("result") if yields or name != "plastic_share")
 
@@ -85,8 +85,10 @@ def smooth_laws() -> list[str]:
 
 
 def wants_a_fit(grid: Grid) -> bool:
-    """Whether some case has the power law, none has B and beta, and Nbar and Ra are known where they are needed. Of B
-    and beta a grid has both or none: that one is missing has been said before."""
+    """Whether some case has the power law, none has B and beta, and all with the power law have Nbar and Ra.
+
+    A grid with only one of B and beta has been refused before.
+    """
     power = along(grid, "micro") == "power_law"
     if not power.any() or "B" in grid.values:
         return False
@@ -94,7 +96,7 @@ def wants_a_fit(grid: Grid) -> bool:
 
 
 def fitted(grid: Grid) -> tuple[dict, list[str]]:
-    """Values of B and beta over the dimensions of Nbar and Ra, as in `Grid.values`; and what is wrong with them."""
+    """Values of B and beta over the dimensions of Nbar and Ra, as in `Grid.values`, and messages."""
     products = along(grid, "Nbar") * along(grid, "Ra") ** 2
     different = np.unique(products[np.isfinite(products)]).tolist()
     if len(different) > MOST_FITS:
@@ -103,7 +105,7 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
     dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
     fitted_laws, values, errors = {product: fit_power_law(product) for product in different}, {}, []
     for name in ("B", "beta"):
-        parameter = VOCABULARY[name].own
+        parameter = VOCABULARY[name].parameter
         fits = {product: getattr(law, name) for product, law in fitted_laws.items()}
         rounded = {product: float(f"{fit:.{DIGITS}g}") for product, fit in fits.items()}
         array = np.array([rounded.get(product, np.nan) for product in products.ravel().tolist()])
@@ -113,16 +115,19 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
     return values, errors
 
 
-#: By which part of itself Nbar Ra^2 is moved: fits are good to some 1e-12 (their root is sought to 1e-15), so that the
-#: slopes have an error of some 1e-9, as that of the curvature is.
+#: Nbar Ra^2 is moved by this part of itself. Fits are good to some 1e-12 (their root is sought to 1e-15), so that
+#: rounding changes a slope by some 1e-9. The curvature does as much.
 _STEP = 1e-3
 
 
 def slopes_of_fit(products: Any) -> dict[str, Any]:
-    """Of B and beta that are fitted to Nbar Ra^2, a number or a DataArray: d ln B/d ln(Nbar Ra^2), and so of beta."""
+    """B and beta -> d ln B/d ln(Nbar Ra^2), d ln beta/d ln(Nbar Ra^2) of the fits to `products`, Nbar Ra^2.
+
+    products : a number or a DataArray, as the slopes are
+    """
     values = np.array([_slopes_of_fit(v) if v > 0 else (0.0, 0.0) for v in np.ravel(products).tolist()]).T
     zero = 0.0 * products
-    return {name: zero + own.reshape(np.shape(products)) for name, own in zip(("B", "beta"), values, strict=True)}
+    return {name: zero + slopes.reshape(np.shape(products)) for name, slopes in zip(("B", "beta"), values, strict=True)}
 
 
 @cache

@@ -1,6 +1,6 @@
 """Where studies lie: in `studies` of the working folder, and in the book that comes with roughcoat.
 
-Both have the same form: study files, and folders of them, its chapters. Beside study files may be a file `figures.py`.
+Both hold study files and chapters, which are folders of study files. A file `figures.py` may stand beside these.
 """
 
 import os
@@ -50,7 +50,7 @@ def files_in(root: Path) -> list[Path]:
 
 
 def root_of(folder: Path) -> Path:
-    """The folder of studies of which a folder is a chapter; itself, if it is none."""
+    """The folder of studies of which this folder is a chapter; the folder itself, if it is no chapter."""
     parent = folder.parent
     return parent if parent.name == STUDIES.name and "." not in folder.name else folder
 
@@ -61,7 +61,7 @@ def known_studies() -> list[str]:
 
 
 def study_file(path, beside: Path | None = None) -> Path:
-    """The study file at a path, or of the study of a name, in `studies` or in the book.
+    """The study file at a path, or with a name, in `studies` or in the book.
 
     beside : a folder where a name is looked for first, then in the studies of which it is a chapter
 
@@ -94,7 +94,7 @@ def _in(root: Path, name: str) -> Path | None:
 
 
 def _not_found(text: str, place: Path) -> Exception:
-    """The error of a study file that is not there. It tells which are meant perhaps."""
+    """The error for a study file that is not there, with those that are perhaps meant."""
     from .definition import StudyError
     from .vocabulary import suggest
 
@@ -102,7 +102,7 @@ def _not_found(text: str, place: Path) -> Exception:
     files = (*sorted(place.parent.glob("*.toml")), *files_in(STUDIES))
     paths = list(dict.fromkeys(path.as_posix() for path in files))
     same = [path for path in paths if Path(path).name == place.name]
-    # whoever writes "mine" means the file beside, and no study of a name that is like it
+    # "mine" means the file mine.toml in the working folder, not a study with a similar name
     meant = same or paths if by_path else [beside.as_posix()] if beside.is_file() else known_studies()
     looked = "" if by_path else f" (looked for {place.as_posix()} and {(STUDIES / f'{text}.toml').as_posix()})"
     return StudyError([f"{text}: not found{looked}{suggest(text, meant) if meant else ''}"])

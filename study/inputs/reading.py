@@ -1,8 +1,8 @@
-"""From study files, or the parameters of a call, to a checked, frozen Definition with the digest of what determines its
-numbers.
+"""From a study file, or the parameters of a call, to a checked, frozen Definition.
 
-With or without units: `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`. Inputs may have spreads
-("200 ± 10 GPa", materials by name). Then results have derivatives by what the solver gets, and `NAME_spread` of these.
+Numbers have units, `R = "5 mm"`, `h = ["2 um", "20 um"]`, `P = { start = "1 mN", ... }`, or none. Inputs may have
+spreads ("200 ± 10 GPa", materials by name). Then results have derivatives by the inputs of the solver, and from these
+follows `NAME_spread`.
 """
 
 import errno
@@ -16,10 +16,10 @@ from typing import Any
 from ..terminal import on_one_line, shown
 from .definition import LARGE, MOST_VALUES, Definition, StudyError, refusal, settings
 from .draft import Draft
-from .given import MOST_MESSAGES, Given
 from .grid import usual_block
 from .identity import digest_of, law_versions
 from .laws import results_of
+from .request import MOST_MESSAGES, Request
 from .vocabulary import NUMERICS, absent, suggest
 
 TOO_MANY_DIGITS = "a whole number has more than 4300 digits"
@@ -38,7 +38,7 @@ _PART = r"""(?:[A-Za-z0-9_-]++|"[^"\n]*+"|'[^'\n]*+')"""
 LONG_KEY = re.compile(rf"(?<![A-Za-z0-9_-]){_PART}(?:[ \t]*+\.[ \t]*+{_PART}){{{MOST_PARTS}}}")
 TABLE = re.compile(r"^[ \t]*+\[\[|\{", re.MULTILINE)
 
-#: A value that begins with a word, or with a number and a word or ±; the e of "1e-6" is none.
+#: A value that begins with a word or ±, or with a number and then a word or ±. The e of "1e-6" is no word.
 _NO_QUOTES = re.compile(r"=[\s\[{]*+(?:[-+.\d][-+.\deE_]*+\s*+)?(?:[^\W\d_]|±)")
 
 
@@ -56,7 +56,7 @@ def from_tables(tables: dict, name: str, text: str, where: str) -> Definition:
     unknown = islice((key for key in tables if key not in SECTIONS), MOST_MESSAGES)
     errors = [_no_section(key, tables[key]) for key in unknown]
     tables = tables | {section: _table(tables, section, keys, errors) for section, keys in KEYS.items()}
-    return complete(Given.in_file(tables, errors), tables, name, text, where)
+    return complete(Request.in_file(tables, errors), tables, name, text, where)
 
 
 def from_call(
@@ -64,28 +64,28 @@ def from_call(
 ) -> Definition:
     """Definition of a call of `study.solve`; tables : title and output, as those of a study file."""
     correlations = {} if correlations is None else correlations
-    return complete(Given.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", "solve", LARGE)
+    return complete(Request.in_python(parameters, rows, same_piece, correlations), tables, "solve", "", "solve", LARGE)
 
 
-def complete(given: Given, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
-    """The definition of what is given, with its digest. Raises StudyError with every message.
+def complete(request: Request, tables: dict, name: str, text: str, where: str, most: float = MOST_VALUES) -> Definition:
+    """The definition that a request describes, with its digest. Raises StudyError with every message.
 
-    tables : title, [output], the block of [numerics], and the order of [axes] are read here
+    tables : title, [output], the block of [numerics] and the order of [axes] are read from these
     most : how many numbers the results may hold
     """
-    draft, errors, scene = Draft(given), given.errors, None
+    draft, errors, scene = Draft(request), request.errors, None
     draft.expand()
     spreads = tables.get("output", {}).get("spreads", True)
     if not isinstance(spreads, bool):
         errors.append(f"[output] spreads = {shown(spreads)}: must be true or false")
-    if given.physical:
-        # they import xarray, for which pure numbers need not wait
+    if request.physical:
+        # imported here, since they load xarray, which pure numbers do not need
         from .scene.changes import inputs_of
         from .scene.reading import read as read_scene
 
-        scene = read_scene(given, draft, spreads is True, list(tables.get("axes", ())))
+        scene = read_scene(request, draft, spreads is True, list(tables.get("axes", ())))
     else:
-        for entry in given.inputs.values():
+        for entry in request.inputs.values():
             if not entry.is_wrong:
                 draft.read(entry)
         draft.check({})
@@ -97,20 +97,19 @@ def complete(given: Given, tables: dict, name: str, text: str, where: str, most:
     if type(block) is not int or not 1 <= block <= 1_000_000:
         errors.append(f"[numerics] block = {shown(block)}: must be a whole number in [1, 1000000]")
     results = results_of(grid.values["micro"][1] if "micro" in grid.values else ())
-    made = Definition(
+    definition = Definition(
         *(name, title, text, grid, x, profiles, dtype, block, ""),
         scene=scene,
         results=results,
         inputs=inputs,
         stresses=stresses,
     )
-    if made.numbers > most:
-        errors.append(
-            f"{grid.size} cases make {made.numbers:.1e} numbers: at most {most:.0e} (fewer points, or profiles = false)"
-        )
+    if (numbers := definition.numbers) > most:
+        limit = f"at most {most:.0e} (fewer points, or profiles = false)"
+        errors.append(f"{grid.size} cases make {numbers:.1e} numbers: {limit}")
     if errors:
         raise refusal(where, errors)
-    return replace(made, digest=digest_of(made), laws=tuple(law_versions(grid)))
+    return replace(definition, digest=digest_of(definition), laws=tuple(law_versions(grid)))
 
 
 def parsed(path) -> tuple[dict, str, str, str]:
@@ -148,19 +147,19 @@ def _no_section(key: str, value: Any) -> str:
     return f"{shown(key)} is not a section{near}{'; parameters stand below [model] or [axes]' * below}"
 
 
-def _table(tables: dict, section: str, known: tuple[str, ...] | None, errors: list[str]) -> dict:
-    """A section of the file, {} when absent; messages for keys that are not `known` (None: the caller checks them)."""
-    found = tables.get(section, {})
-    if not isinstance(found, dict):
-        errors.append(f"{section} = {shown(found)}: must be a table [{section}]")
+def _table(tables: dict, section: str, keys: tuple[str, ...] | None, errors: list[str]) -> dict:
+    """A section of the file, {} when absent; messages for keys other than `keys` (None: any)."""
+    table = tables.get(section, {})
+    if not isinstance(table, dict):
+        errors.append(f"{section} = {shown(table)}: must be a table [{section}]")
         return {}
-    unknown = [key for key in found if known and key not in known]
-    errors += [f"[{section}] {shown(key)} is not known{suggest(key, known)}" for key in unknown[:MOST_MESSAGES]]
-    return found
+    unknown = [key for key in table if keys and key not in keys]
+    errors += [f"[{section}] {shown(key)} is not known{suggest(key, keys)}" for key in unknown[:MOST_MESSAGES]]
+    return table
 
 
 def text_in(path: Path) -> str:
-    """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and for keys of too many parts."""
+    """The text of a study file. Raises OSError, or ValueError for wrong UTF-8 and keys of too many parts."""
     if path.exists() and not path.is_file() and not path.is_dir():  # opening a folder has a message of its own
         raise OSError(errno.EINVAL, "is no regular file")
     with open(path, "rb") as file:
@@ -183,18 +182,18 @@ def _check_keys(text: str) -> None:
         raise ValueError(f"a key has more than {MOST_PARTS} parts (at line {text.count(chr(10), 0, long.start()) + 1})")
 
 
-def same_tables(one: str, other: str) -> bool:
+def same_tables(text: str, other: str) -> bool:
     """Whether the texts of two study files say the same, but for the title, comments and the order of lines."""
     try:
-        _check_keys(one)
+        _check_keys(text)
         _check_keys(other)
-        return one == other or tomllib.loads(one) | {"title": ""} == tomllib.loads(other) | {"title": ""}
+        return text == other or tomllib.loads(text) | {"title": ""} == tomllib.loads(other) | {"title": ""}
     except (ValueError, RecursionError):
         return False
 
 
 def hint(text: str, reason: str) -> str:
-    """The end of a message about a line of TOML that has a usual mistake; "" for another."""
+    """The end of a message about wrong TOML, if the line has one of the usual mistakes; else ""."""
     if "overwrite" in reason:
         return "; a name is given twice in one section"
     place = re.search(r"at line (\d+)", reason)

@@ -1,4 +1,4 @@
-"""Values that a study file says by a rule: ranges, and random cases, which are the same on every machine."""
+"""Values that follow from a rule in the study file: ranges, and random cases, the same on every machine."""
 
 import re
 from collections.abc import Callable
@@ -16,7 +16,7 @@ from .vocabulary import BODIES, ROWS, VOCABULARY, Parameter, check, si_unit
 KEYS = ("start", "stop", "spacing", "over")  # of a range
 LIMITS = {"size": (1, LONGEST_AXIS), "seed": (0, 2**32 - 1)}
 ANY_NUMBER = Parameter(interval="(-inf, inf)")
-"""Bounds of a range of SI numbers in [sample]: what is drawn is checked later, as all numbers with units are."""
+"""Bounds of a range of SI numbers in [sample]. The numbers that are drawn are checked later, as all with units are."""
 
 
 def values_of_axis(name: str, raw: Any, physical: bool, errors: list[str]) -> list | None:
@@ -28,19 +28,22 @@ def values_of_axis(name: str, raw: Any, physical: bool, errors: list[str]) -> li
     return (list(map(Quantity, values)) if in_si else values) or None
 
 
-def sampled(table: Any, names: list[str], physical: bool, checked: Callable, errors: list[str]) -> dict[str, list]:
-    """What [sample] draws for the parameters `names`: entries of lists as they stand there, and numbers of ranges, in
-    SI where the study has units. {} if there is a mistake; checked : name, values -> messages are appended."""
+def sampled(table: Any, names: list[str], physical: bool, check_values: Callable, errors: list[str]) -> dict[str, list]:
+    """What [sample] draws for the parameters `names`: entries of lists, numbers of ranges; {} if there is a mistake.
+
+    physical : whether the study has units; the numbers of ranges are in SI then
+    check_values : a function of a name and its values that appends messages
+    """
     before, parameters, read = len(errors), {}, dict(table) if isinstance(table, dict) else {}
     for name in names:
         raw = table[name]
-        parameters[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].own
+        parameters[name] = Parameter(choices=("a material",)) if name in BODIES else ROWS[name].parameter
         if physical and _is_number(name):
             parameters[name] = parameters[name] if ROWS[name].unit == "1" and name in VOCABULARY else ANY_NUMBER
             if isinstance(raw, dict):
                 read[name] = _in_si(raw, f"[sample] {name}", _unit_of_range(name, raw), errors)
         if isinstance(raw, list):  # all of it, since some of its values may not be drawn
-            _check_list(name, raw, physical, checked, errors)
+            _check_list(name, raw, physical, check_values, errors)
     refused = {*read} - {*names, *LIMITS}
     if len(errors) > before or (refused and not names):
         return {}
@@ -50,13 +53,13 @@ def sampled(table: Any, names: list[str], physical: bool, checked: Callable, err
 
 
 def _is_number(name: str) -> bool:
-    return name not in BODIES and not ROWS[name].own.choices
+    return name not in BODIES and not ROWS[name].parameter.choices
 
 
-def _check_list(name: str, raw: list, physical: bool, checked: Callable, errors: list[str]) -> None:
+def _check_list(name: str, raw: list, physical: bool, check_values: Callable, errors: list[str]) -> None:
     """Messages for the values of a list of [sample]."""
     if not (physical and _is_number(name)) and name not in BODIES:
-        checked(name, raw)
+        check_values(name, raw)
         return
     for i, value in enumerate(raw):
         try:

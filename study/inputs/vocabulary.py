@@ -1,4 +1,4 @@
-"""What every parameter and result is called, measured in, allowed to be and printed as: the rows of vocabulary.toml."""
+"""The vocabulary: name, unit, bounds, symbol and words of every parameter and result, from vocabulary.toml."""
 
 import difflib
 import math
@@ -23,7 +23,7 @@ __all__ = ["SCENE", "VOCABULARY", "names"]
 INTEGERS = {"status": "int8", "model_used": "int8", "iterations": "int32", "nodes_used": "int16"}
 """Results that are whole numbers -> the type in which they are stored."""
 WITH_SPREADS = ("a", "P", "D", "p0", "p_max", "Ar_An", "dP_dD", "A0", "lam0")
-"""Results that have spreads, besides the profiles; the others say how well the case is solved."""
+"""Results that have spreads, as profiles do; the others say how well the case is solved."""
 BY_INPUT = "_by_input"
 """NAME_by_input: derivatives of the result NAME by logarithms of the solver's inputs, by Poisson ratios themselves."""
 NOT_RUN = 127
@@ -51,7 +51,7 @@ class Entry:
     interval: str = ""
 
     @property
-    def own(self) -> Parameter:
+    def parameter(self) -> Parameter:
         """The row of a parameter in the solver's table: bounds, choices, default, which cases need it."""
         row = CONTROL.get(self.name) or SOLVER_PARAMETERS.get(self.name) or Parameter()
         return row._replace(interval=self.interval) if self.interval else row
@@ -78,14 +78,14 @@ def over_scale(symbol: str, powers: tuple[int, int], scales: tuple[str, str] = (
 
     powers : (i, j); scales : how E2* and R are written; gap : what is written between two factors
     """
-    over: list[str] = []
+    numerator: list[str] = []
     times: list[str] = []
     for word, power in zip(scales, powers, strict=True):
         if power:
-            (over if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
-    text = gap.join([f"({symbol})" if "/" in symbol and over else symbol, *times])
-    below = gap.join(over)
-    return text + (f"/({below})" if len(over) > 1 else f"/{below}" if over else "")
+            (numerator if power > 0 else times).append(word + f"^{abs(power)}" * (abs(power) > 1))
+    text = gap.join([f"({symbol})" if "/" in symbol and numerator else symbol, *times])
+    denominator = gap.join(numerator)
+    return text + (f"/({denominator})" if len(numerator) > 1 else f"/{denominator}" if numerator else "")
 
 
 LISTED = 40  # most names that a message lists
@@ -100,10 +100,10 @@ def entries(tables: dict) -> dict[str, Entry]:
 
 _TABLES = tomllib.loads((files(__package__) / "vocabulary.toml").read_text(encoding="utf-8"))
 SCENE = entries({"scene": _TABLES.pop("scene")})
-"""Inputs of a study with units that are no parameters of the solver, which only has what follows from them."""
+"""Inputs of a study with units that the solver does not know. Its parameters follow from them."""
 VOCABULARY = entries(_TABLES)
 ROWS = ChainMap(VOCABULARY, SCENE)
-"""Both, and with them the parameters of registered laws."""
+"""Rows of SCENE and VOCABULARY, among them the parameters of registered laws."""
 #: Body -> names of its modulus and Poisson ratio, and of the ratio of moduli that follows from them.
 BODIES = {"punch": ("E_punch", "nu_punch", "m"), "layer": ("E1", "nu1", "n"), "body": ("E2", "nu2", "")}
 
@@ -138,13 +138,16 @@ PARAMETERS = list(names("control", "material", "roughness", "numerics"))
 
 
 def cases_with(name: str, values) -> np.ndarray:
-    """bool: the cases that have a parameter; `values(other)` gives the texts of another one, on which that depends."""
-    return among(VOCABULARY[name].own.needed_by, values)
+    """bool: the cases that have a parameter.
+
+    values : a function: name of a parameter such as base -> its values
+    """
+    return among(VOCABULARY[name].parameter.needed_by, values)
 
 
 def matters(name: str, values) -> bool:
     """Whether the answer of some case may depend on a parameter; `values` as in `cases_with`."""
-    parameter = VOCABULARY[name].own
+    parameter = VOCABULARY[name].parameter
     return all(
         any(np.any(among(pair, values)) for pair in zip(condition[::2], condition[1::2], strict=True))
         for condition in (parameter.needed_by, parameter.used_by)
@@ -200,23 +203,24 @@ def finite(value) -> bool:
 
 
 def no_parameter(name: str, words, place: str = "") -> str:
-    """The message about a name that is no parameter: what is called so here, what the model lacks, or a name like it.
+    """The message about a name that is no parameter. It tells what the model has instead, or a similar name.
 
-    place : what stands before the name, such as "[model] "; words : those to propose
+    words : names that may be proposed; place : what stands before the name, such as "[model] "
     """
     words, hint = list(words), absent(name)
     if hint == _RESULT:
         search = "solve for several P, which become an axis, and interpolate in it, or find P by scipy.optimize.brentq"
         hint += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
-    like = [other for other in words if other[0].lower() == str(name)[:1].lower()]  # a letter more or less: Er is no R
+    like = [other for other in words if other[0].lower() == str(name)[:1].lower()]  # Er, say, is no R
     near = suggest(name, like, words)
     return f"{place}{shown(str(name))} is not a parameter{f'; {hint}' if hint else near}"
 
 
 def absent(name: str) -> str:
-    """What not_there.toml says of a name that is no parameter, "" if nothing; results are in it too.
+    """What not_there.toml says of a name that is no parameter, a result too; "" if it says nothing.
 
-    The whole name is looked for, then its parts, of which the first in that file counts: "friction_coeff", "E_film".
+    The whole name is looked up, then its parts, as of "friction_coeff" and "E_film". Of several parts the one that
+    comes first in the file counts.
     """
     name = str(name)[:LONGEST]
     if name in PARAMETERS or name in SCENE:
@@ -230,7 +234,7 @@ def absent(name: str) -> str:
 
 
 def _as_word(name: str) -> str:
-    """A name of three letters or more in small letters, without blanks and underscores; a shorter one as it is."""
+    """A name in small letters, without blanks, "_" and "-"; a name of one or two letters as it is."""
     return re.sub(r"[\s_-]", "", name).lower() if len(name) > 2 else name
 
 
@@ -238,7 +242,7 @@ _ABSENT = {_as_word(word): entry["says"] for entry in _NOT_THERE.values() for wo
 
 
 def suggest(word: str, words, listed=None) -> str:
-    """The end of a message: '; did you mean "Nbar"?' when one of the words is near, else these, or `listed`."""
+    """The end of a message: '; did you mean "Nbar"?' if a word is similar, else a list of the words, or of `listed`."""
     lower = {name.lower(): name for name in words}
     near = difflib.get_close_matches(str(word).lower()[:LONGEST], lower, n=1, cutoff=0.6)
     if near:

@@ -29,8 +29,11 @@ log = logging.getLogger(__name__)
 
 @dataclass(frozen=True, eq=False)
 class Source:
-    """The file of a block. keys : (N, 2), of its cases; status : (N,) int8; inputs : places of the study's inputs among
-    those by which the block has derivatives."""
+    """The file of a block.
+
+    keys : (N, 2), of its cases; status : (N,) int8
+    inputs : the inputs of the study's derivatives, by their places among those of the block
+    """
 
     path: Path
     keys: np.ndarray
@@ -38,7 +41,7 @@ class Source:
     inputs: list[int]
 
     def read(self, rows: np.ndarray) -> dict[str, np.ndarray]:
-        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged when they are no longer there."""
+        """Columns of the cases at `rows` (n,): name -> (n, ...). Raises Damaged if the file has other cases now."""
         block = read_block(self.path)
         if not np.array_equal(block.keys, self.keys):
             raise Damaged(f"{self.path}: has become a block of other cases; the same command finds out of which")
@@ -63,7 +66,10 @@ class Store:
         return self.results / f"{self.definition.name}.nc"
 
     def record(self, digest: str) -> Path:
-        """A block without columns, of the cases in the results file of a study of this digest."""
+        """Path of the record of a results file: a block without columns, with the keys of the cases in the file.
+
+        digest : of the study whose results the file has
+        """
         return self.folder / f"{digest}.cases"
 
     @property
@@ -102,20 +108,19 @@ def count_statuses(status: np.ndarray) -> dict[int, int]:
 
 
 def facts(x: np.ndarray, inputs: tuple[str, ...] = ()) -> dict:
-    """What stored numbers depend on besides the parameters: version of the numerics, points x of the profiles, inputs
-    of the derivatives."""
+    """What stored numbers depend on besides parameters: numerics version, points of profiles, inputs of derivatives."""
     about = {"numerics_version": NUMERICS_VERSION, "x": x.tolist()}
     return about | ({"inputs": list(inputs)} if inputs else {})
 
 
 def usable(definition: Definition, block: Block) -> bool:
-    """Whether a block holds all that the study wants, with no fewer digits."""
+    """Whether a block holds all that the study wants: columns with enough digits, profile points, derivatives."""
     columns, wanted = not_run(definition, 0), facts(definition.x, definition.inputs)
-    here = {name: array.dtype.itemsize for name, array in block.arrays.items()}
-    enough = all(here.get(name, 0) >= own.dtype.itemsize for name, own in columns.items())
-    same_points = block.facts.get("x") == wanted["x"] or not definition.profiles
-    enough = enough and {*definition.inputs} <= {*block.facts.get("inputs", ())}
-    return enough and same_points and block.facts.get("numerics_version") == wanted["numerics_version"]
+    sizes = {name: array.dtype.itemsize for name, array in block.arrays.items()}
+    digits = all(sizes.get(name, 0) >= array.dtype.itemsize for name, array in columns.items())
+    points = block.facts.get("x") == wanted["x"] or not definition.profiles
+    derivatives = {*definition.inputs} <= {*block.facts.get("inputs", ())}
+    return digits and points and derivatives and block.facts.get("numerics_version") == wanted["numerics_version"]
 
 
 def inventory(store: Store, retry: tuple = ()) -> Inventory:
@@ -141,26 +146,26 @@ def inventory(store: Store, retry: tuple = ()) -> Inventory:
 def _places(keys: np.ndarray, sources: list[Source], retry: tuple[int, ...]) -> tuple[np.ndarray, ...]:
     """Source, row and status of each case, (B,) each. Of several places the one of lowest status is taken."""
     parts = [(np.empty((0, 2), np.uint64), np.empty(0, np.int32), np.empty(0, np.int32), np.empty(0, np.int8))]
-    for number, found in enumerate(sources):
-        row = np.flatnonzero(~np.isin(found.status, (NOT_RUN, *retry))).astype(np.int32)
-        parts.append((found.keys[row], np.full(len(row), number, np.int32), row, found.status[row]))
-    known, source, row, status = (np.concatenate(column) for column in zip(*parts, strict=True))
-    where = find(keys, known, status)
-    of_missing = ((source, -1), (row, -1), (status, NOT_RUN))
-    # `where` is -1 for a missing case: it takes the last number, which is appended here
-    return tuple(np.append(array, array.dtype.type(none))[where] for array, none in of_missing)
+    for number, source in enumerate(sources):
+        row = np.flatnonzero(~np.isin(source.status, (NOT_RUN, *retry))).astype(np.int32)
+        parts.append((source.keys[row], np.full(len(row), number, np.int32), row, source.status[row]))
+    stored, source_numbers, row, status = (np.concatenate(column) for column in zip(*parts, strict=True))
+    place = find(keys, stored, status)
+    columns = ((source_numbers, -1), (row, -1), (status, NOT_RUN))
+    # the place -1 of a missing case is the last, where the value for it is appended
+    return tuple(np.append(array, array.dtype.type(fill))[place] for array, fill in columns)
 
 
-def add(store: Store, known: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
+def add(store: Store, stock: Inventory, index: np.ndarray, arrays: dict[str, np.ndarray]) -> None:
     """Write a block of the cases at `index` (n,), in the types that the study keeps, and put it into the inventory."""
-    kept = {name: array.dtype for name, array in not_run(store.definition, 0).items()}
-    arrays = {name: array.astype(kept[name], copy=False) for name, array in arrays.items()}
-    path = put(store, Block(facts(store.definition.x, store.definition.inputs), known.keys[index], arrays))
-    known.source[index], known.row[index] = len(known.sources), np.arange(len(index))
-    known.status[index] = arrays["status"]
+    types = {name: array.dtype for name, array in not_run(store.definition, 0).items()}
+    arrays = {name: array.astype(types[name], copy=False) for name, array in arrays.items()}
+    path = put(store, Block(facts(store.definition.x, store.definition.inputs), stock.keys[index], arrays))
+    stock.source[index], stock.row[index] = len(stock.sources), np.arange(len(index))
+    stock.status[index] = arrays["status"]
     places = list(range(len(store.definition.inputs)))
-    known.sources.append(Source(path, known.keys[index], arrays["status"], places))
-    known.blocks[path] = len(index)
+    stock.sources.append(Source(path, stock.keys[index], arrays["status"], places))
+    stock.blocks[path] = len(index)
 
 
 def put(store: Store, block: Block) -> Path:
@@ -179,27 +184,27 @@ def put(store: Store, block: Block) -> Path:
 def _is_another(path: Path, block: Block) -> bool:
     """Whether the path holds a block of other cases, or something that is no file."""
     try:
-        there = read_block(path)
+        other = read_block(path)
     except (FileNotFoundError, Damaged):
         return False
     except Unusable:  # a folder, a pipe or a device
         return True
-    return not np.array_equal(there.keys, block.keys) or there.facts != block.facts
+    return not np.array_equal(other.keys, block.keys) or other.facts != block.facts
 
 
-def gather(store: Store, known: Inventory, start: int, stop: int) -> dict[str, np.ndarray]:
-    """Columns of the cases start <= i < stop, name -> (stop - start, ...); missing ones as `not_run` has them.
+def gather(store: Store, stock: Inventory, start: int, stop: int) -> dict[str, np.ndarray]:
+    """Columns of the cases start <= i < stop, name -> (stop - start, ...). Missing cases are as in `not_run`.
 
     Raises Damaged when a source has changed since the inventory was made.
     """
-    found = not_run(store.definition, stop - start)
-    source = known.source[start:stop]
+    columns = not_run(store.definition, stop - start)
+    source = stock.source[start:stop]
     for number in np.unique(source[source >= 0]):
-        here = np.flatnonzero(source == number)
-        arrays = known.sources[number].read(known.row[start + here])
-        for name, array in found.items():
-            array[here] = arrays[name]
-    return found
+        places = np.flatnonzero(source == number)
+        arrays = stock.sources[number].read(stock.row[start + places])
+        for name, array in columns.items():
+            array[places] = arrays[name]
+    return columns
 
 
 def remove_litter(store: Store) -> None:
@@ -209,10 +214,10 @@ def remove_litter(store: Store) -> None:
         path.unlink(missing_ok=True)
 
 
-def note_export(store: Store, known: Inventory) -> None:
-    """Write which cases the results file will have, as they are given, before it is replaced."""
+def note_export(store: Store, stock: Inventory) -> None:
+    """Write the record of the results file that is about to be written."""
     write_block(
-        store.record(store.definition.digest), Block(facts(store.definition.x, store.definition.inputs), known.keys, {})
+        store.record(store.definition.digest), Block(facts(store.definition.x, store.definition.inputs), stock.keys, {})
     )
 
 
@@ -224,7 +229,7 @@ def forget_other_exports(store: Store) -> None:
 
 
 def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
-    """(how many cases of the results of a study of this digest are not in the study as it is, how many it has).
+    """Of the results of a study of this digest: how many cases the study as it is lacks, and how many cases there are.
 
     None if no record says which cases these are.
     """
@@ -232,12 +237,7 @@ def lost_cases(store: Store, digest: str) -> tuple[int, int] | None:
         keys = read_block(store.record(digest)).keys
     except OSError:
         return None
-    kept = (
-        find(
-            keys,
-            case_keys(store.definition.grid, bool(store.definition.stresses)),
-            np.zeros(store.definition.grid.size),
-        )
-        >= 0
-    )
-    return int(np.count_nonzero(~kept)), len(keys)
+    definition = store.definition
+    wanted = case_keys(definition.grid, bool(definition.stresses))
+    rows = find(keys, wanted, np.zeros(definition.grid.size))
+    return int(np.count_nonzero(rows < 0)), len(keys)

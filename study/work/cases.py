@@ -1,4 +1,4 @@
-"""Cases are packed into parcels, which hold all that a worker needs to solve them, on any machine.
+"""Parcels of cases, with all that a worker on any machine needs to solve them.
 
 This module imports neither xarray nor netCDF4: without them a worker process starts in half the time and takes 44 MB
 less.
@@ -29,7 +29,7 @@ class Parcel:
     inputs : of the solver, by which derivatives are wanted
     stresses : names of the largest stresses and their places that are wanted
     numerics : version of the solver's numerics that is wanted
-    laws : micro laws that the worker may not have registered
+    laws : micro laws of users, which the worker may not have registered
     """
 
     first: int
@@ -46,7 +46,7 @@ class Parcel:
 
 @dataclass(frozen=True)
 class Failure:
-    """A block that raised: the message and where."""
+    """Why a block has no results: the message of the exception, and its traceback."""
 
     message: str
     trace: str
@@ -54,22 +54,24 @@ class Failure:
 
 def parcel(definition: Definition, index: np.ndarray) -> Parcel:
     """The parcel of the cases numbered `index` (n,), n > 0."""
-    found = columns(definition.grid, index)
-    found = {name: array if definition.grid.values[name][0] else array[:1] for name, array in found.items()}
-    own = tuple(own_laws(found["micro"]))
+    parameters = columns(definition.grid, index)
+    parameters = {name: array if definition.grid.values[name][0] else array[:1] for name, array in parameters.items()}
     wanted = definition.x, definition.results, definition.profiles, definition.inputs, definition.stresses
-    return Parcel(int(index[0]), int(index[-1]), found, *wanted, NUMERICS_VERSION, own)
+    of_users = tuple(laws_of_users(parameters["micro"]))
+    return Parcel(int(index[0]), int(index[-1]), parameters, *wanted, NUMERICS_VERSION, of_users)
 
 
-def own_laws(micro: np.ndarray) -> list[Law]:
+def laws_of_users(micro: np.ndarray) -> list[Law]:
     """The laws among the words of `micro` that are not of this package."""
     return [law for law in map(laws.LAWS.get, set(micro.ravel().tolist())) if law not in laws.BUILT_IN]
 
 
 def can_travel(definition: Definition) -> bool:
-    """Whether another process can have the micro laws of a study: functions with a name, in a module that it can
-    import, which the program itself is not."""
-    for law in own_laws(definition.grid.values["micro"][1]):
+    """Whether another process can have the micro laws of a study.
+
+    Their functions must have names, in a module that it can import. The program itself is no such module.
+    """
+    for law in laws_of_users(definition.grid.values["micro"][1]):
         if any(getattr(part, "__module__", "") == "__main__" for part in vars(law).values() if callable(part)):
             return False
         try:
@@ -79,61 +81,60 @@ def can_travel(definition: Definition) -> bool:
     return True
 
 
-def compute(wanted: Parcel) -> dict[str, np.ndarray]:
+def compute(task: Parcel) -> dict[str, np.ndarray]:
     """Solve a parcel: name -> (n, ...). Touches no file and no shared state: may run in any thread, on any machine."""
-    for law in wanted.laws:
+    for law in task.laws:
         laws.register(law)
     with going_on():  # the functions of a law of one's own
-        problem = Problem.of(**wanted.parameters)
-        solution = solve(problem, wanted.x)
-        arrays = arrays_of(solution, wanted.results, wanted.profiles)
-        arrays |= stresses_of(problem, solution) if wanted.stresses else {}
-        return arrays | (derivatives_of(problem, solution, wanted) if wanted.inputs else {})
+        problem = Problem.of(**task.parameters)
+        solution = solve(problem, task.x)
+        arrays = arrays_of(solution, task.results, task.profiles)
+        arrays |= stresses_of(problem, solution) if task.stresses else {}
+        return arrays | (derivatives_of(problem, solution, task) if task.inputs else {})
 
 
 def arrays_of(solution: Solution, results: tuple[str, ...], profiles: tuple[str, ...]) -> dict[str, np.ndarray]:
-    """What is stored of a solution: name in the vocabulary -> (B,), and (B, m) of the wanted profiles."""
+    """What is stored of a solution: name in the vocabulary -> (B,); of profiles (B, m)."""
     special = {"lam0": solution.lam[:, 0], "nodes_used": solution.nodes}
-    kept = (*CONTROLS, *results, *INTEGERS)
-    found = {name: special[name] if name in special else getattr(solution, name) for name in kept}
-    found |= {name: getattr(solution, name) for name in profiles}
-    return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in found.items()}
+    names = (*CONTROLS, *results, *INTEGERS)
+    arrays = {name: special[name] if name in special else getattr(solution, name) for name in names}
+    arrays |= {name: getattr(solution, name) for name in profiles}
+    return {name: np.asarray(array, dtype=INTEGERS.get(name, np.float64)) for name, array in arrays.items()}
 
 
 def stresses_of(problem: Problem, solution: Solution) -> dict[str, np.ndarray]:
     """The largest stresses and their places: NAME, NAME_r, NAME_z -> (B,)."""
     from solver.yields.contact import of_contacts  # most studies want none
 
-    found = of_contacts(problem, solution)
-    return {
-        f"{name}{end}": array for name, own in found.items() for end, array in zip(("", "_r", "_z"), own, strict=True)
-    }
+    stresses = of_contacts(problem, solution)
+    ends = ("", "_r", "_z")
+    return {f"{name}{end}": part for name, parts in stresses.items() for end, part in zip(ends, parts, strict=True)}
 
 
-def derivatives_of(problem: Problem, solution: Solution, wanted: Parcel) -> dict[str, np.ndarray]:
+def derivatives_of(problem: Problem, solution: Solution, task: Parcel) -> dict[str, np.ndarray]:
     """NAME_by_input -> (B, k), and (B, k, m) of profiles, in the units of the solution."""
-    solved = sensitivities(problem, solution, wanted.x if wanted.profiles else wanted.x[:1], wanted.inputs)
-    found = {name: by * getattr(solution, name)[:, None] for name, by in solved.logs.items()}
-    found |= {"lam0": solved.lam[..., 0]} | {name: getattr(solved, name) for name in wanted.profiles}
-    return {f"{name}{BY_INPUT}": array for name, array in found.items()}
+    solved = sensitivities(problem, solution, task.x if task.profiles else task.x[:1], task.inputs)
+    derivatives = {name: by * getattr(solution, name)[:, None] for name, by in solved.logs.items()}
+    derivatives |= {"lam0": solved.lam[..., 0]} | {name: getattr(solved, name) for name in task.profiles}
+    return {f"{name}{BY_INPUT}": array for name, array in derivatives.items()}
 
 
-def guarded(wanted: Parcel) -> dict[str, np.ndarray] | Failure:
+def guarded(task: Parcel) -> dict[str, np.ndarray] | Failure:
     """`compute`; an exception is returned as a Failure."""
     try:
-        if wanted.numerics != NUMERICS_VERSION:
-            raise RuntimeError(f"the worker has version {NUMERICS_VERSION} of the numerics, not {wanted.numerics}")
-        return compute(wanted)
+        if task.numerics != NUMERICS_VERSION:
+            raise RuntimeError(f"the worker has version {NUMERICS_VERSION} of the numerics, not {task.numerics}")
+        return compute(task)
     except Exception as error:
-        message = f"cases {wanted.first} to {wanted.last}: {type(error).__name__}: {error}"
+        message = f"cases {task.first} to {task.last}: {type(error).__name__}: {error}"
         return Failure(message, traceback.format_exc())
 
 
 def blocks_of(missing: np.ndarray, size: int, part: tuple[int, int] = (1, 1)) -> list[np.ndarray]:
     """The missing cases cut into blocks of at most `size`: the numbers of the cases of each.
 
-    part : (i, n), only the i-th of n parts. Which cases belong to a part does not depend on what is missing, so that
-        parts that start at different times share no case
+    part : (i, n), only the i-th of n parts. The numbers of the cases decide to which part they belong, not what is
+        missing, so that parts that start at different times share no case
     """
     mine = missing[missing // size % part[1] == part[0] - 1]
     return [mine[start : start + size] for start in range(0, len(mine), size)]

@@ -9,9 +9,9 @@ from .scheduler import connected
 
 log = logging.getLogger(__name__)
 CONNECT = 10  # seconds in which something must listen at the address of a scheduler
-ANSWER = 60  # seconds that a scheduler which listens has to answer: it may be busy
-AHEAD = 4  # blocks submitted for each thread, which goes on with them while the process of the run writes
-AGAIN = 5  # seconds after which a run that waits looks which workers are there: it is one short message
+ANSWER = 60  # seconds in which a scheduler that listens must answer; it may be busy
+AHEAD = 4  # blocks submitted for each thread, so that it has work while the process of the run writes
+AGAIN = 5  # seconds between looks at which workers are there, while a run waits; a look is one short message
 
 
 class Lost(ConnectionError):
@@ -52,9 +52,8 @@ class Cluster:
     under_way : key of dask -> its future, number and call of the block, addresses of the workers that may have it
         (none: any)
 
-    If a block fails, the workers that have not been asked yet are asked for their numerics. One that has others gets no
-    more blocks, and those that it has refused go to the other workers. If no worker has these numerics, blocks fail as
-    the worker says.
+    If a block fails, the workers are asked for their version of the numerics, each once. A worker with another version
+    is left out, and blocks that it has refused go to the others. If no worker has this version, the blocks have failed.
     """
 
     def __init__(self, client):
@@ -71,7 +70,7 @@ class Cluster:
         future.add_done_callback(self._ended.put)
 
     def room(self, workers: int | None) -> int:
-        """How many blocks there should be at a time for at most `workers` threads of those that are there."""
+        """How many blocks should be under way, for at most `workers` of the threads that are there."""
         threads = sum((self._fitting() or self._there()).values())
         return AHEAD * max(1, min(threads, workers or threads))
 
@@ -89,7 +88,7 @@ class Cluster:
             try:
                 result = future.result()
             except Exception as error:
-                if future.status != "error":  # not the call has raised it
+                if future.status != "error":  # it was not raised by the call
                     raise Lost from None
                 result = Failure(f"{type(error).__name__}: {error}", "")
             if isinstance(result, Failure) and (others := self._others(workers)):
@@ -109,16 +108,16 @@ class Cluster:
         return {address: threads for address, threads in self._there().items() if address not in self._left_out}
 
     def _place_anew(self) -> None:
-        """Give blocks that wait for workers which have gone to those that are there."""
-        there = self._fitting()
+        """Blocks may wait for workers that have gone. Give these to the workers that are there."""
+        threads = self._fitting()
         for key, (future, number, call, workers) in [*self.under_way.items()]:
-            if there and workers and not there.keys() & {*workers}:
+            if threads and workers and not threads.keys() & {*workers}:
                 del self.under_way[key]
                 future.cancel()
-                self.submit(number, call, there)
+                self.submit(number, call, threads)
 
     def _others(self, workers: tuple[str, ...]) -> tuple[str, ...]:
-        """Who may compute a block that has failed, if a worker that is left out may have refused it."""
+        """The workers for another try of a failed block. None if no worker that is left out may have refused it."""
         self._ask()
         refusing = self._left_out & {*workers} if workers else self._left_out
         return tuple(self._fitting()) if refusing else ()
@@ -126,7 +125,7 @@ class Cluster:
     def _ask(self) -> None:
         """Ask the workers that have not been asked yet, and leave out those of other numerics."""
 
-        def version() -> str:  # sent as code, as it has no name by which it could be found there
+        def version() -> str:  # it is sent as code, since a worker could not find it by name
             import roughcoat  # noqa: F401, so that `study` is ours
             from study.work import cases
 
@@ -137,9 +136,9 @@ class Cluster:
             answers = self.client.run(version, workers=new, on_error="ignore") if new else {}
         except OSError:
             raise Lost from None
-        for address, there in answers.items():
+        for address, version_there in answers.items():
             self._asked.add(address)
-            if there != NUMERICS_VERSION:
-                has = f"has version {there} of the numerics, not {NUMERICS_VERSION}"
+            if version_there != NUMERICS_VERSION:
+                has = f"has version {version_there} of the numerics, not {NUMERICS_VERSION}"
                 log.warning("the worker %s %s: it is left out", address, has)
                 self._left_out.add(address)

@@ -1,4 +1,4 @@
-"""What a run would cost: time, measured on a sample of the cases, and memory and disk, from their number."""
+"""What a run would cost: time from a sample of the cases, memory and disk from their number."""
 
 import time
 from dataclasses import dataclass
@@ -18,7 +18,7 @@ SAMPLE = 256  # cases whose time is measured
 PROCESS = 250_000_000  # bytes of this process, Python and the packages
 WORKER = 110_000_000  # bytes of a worker process, which has fewer packages
 PER_CASE = 100  # bytes for the key of a case, and to find it
-WORKING = 5  # while a block is solved, its arrays (B, m) take so many times the memory of its result
+WORKING = 5  # memory of the arrays (B, m) of a block that is being solved, over that of its result
 # Each worker takes SOLVING bytes more, and has MATRICES matrices (B, n, n) at a time. Measured: peaks of runs on 17 to
 # 256 nodes, and of 300 cases of the study extremes_layered, which fill every table (0.86 GB in one process).
 SOLVING, MATRICES = 80_000_000, 3
@@ -36,7 +36,7 @@ class Estimate:
     cases : of the study; present : those on disk; seconds : for the others
     memory : bytes at most; size : bytes of the results
     disk : bytes at most of the results and of the blocks that are added
-    refused : the error with which `run` would end, because of the results file that is there
+    refused : the error with which `run` would end because of the results file
     """
 
     cases: int
@@ -75,10 +75,10 @@ def estimate(definition: Definition, workers: int | None = None, present: int = 
 def seconds_per_case(definition: Definition) -> float:
     """Time of a case on one worker. The first call prepares tables that all cases share, and is not counted."""
     places = np.linspace(0, definition.grid.size - 1, min(SAMPLE, definition.grid.size)).astype(int)
-    wanted = parcel(definition, places)
-    compute(wanted)
+    sample = parcel(definition, places)
+    compute(sample)
     start = time.perf_counter()
-    compute(wanted)
+    compute(sample)
     return (time.perf_counter() - start) / len(places)
 
 

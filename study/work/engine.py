@@ -21,7 +21,7 @@ from queue import SimpleQueue
 from typing import TextIO
 
 import numpy as np
-from dask.system import cpu_count as available_workers  # no more than the limit of a container is worth
+from dask.system import cpu_count as available_workers  # it knows the limit of a container
 
 from ..data.dataset import failed_cases
 from ..inputs.definition import Definition
@@ -34,7 +34,7 @@ from .processes import Processes
 from .progress import Progress
 
 log = logging.getLogger(__name__)
-#: About how many cases a block of a call has. In blocks of 8000 or more, 60,000 layered cases take at most 5 % more
+#: Cases in a block of a call, about. In blocks of 8000 or more, 60,000 layered cases take at most 5 % more
 #: processor time than in a single batch; in blocks of 4000 they take 15 % more.
 BLOCK = 10_000
 SLOW_BLOCK = 2000  # the same where a case may take some milliseconds
@@ -90,8 +90,8 @@ def computed(
     workers : most processors to be used, or threads of a cluster; 1: the calling thread alone; None: all, or one, see
         `_processors_allowed`
     scheduler : the address of the scheduler of a dask cluster, whose workers compute in place of this machine
-    storing : the calling thread stores each block, so that if there are MANY, processes compute all of them from the
-        beginning, and none waits to be stored until it has solved one itself
+    storing : whether the calling thread stores the blocks. If there are MANY, it solves none itself, as those that are
+        ready would wait meanwhile: processes solve all of them
 
     When the iterator is closed, what waits is not computed, and processes end. Raises StudyError when no scheduler
     answers, `cluster.Lost` when it is gone.
@@ -118,8 +118,10 @@ def computed(
 def _shared(
     definition: Definition, blocks: list[np.ndarray], most: int, here: bool
 ) -> Iterator[tuple[int, dict | Failure]]:
-    """`computed` in at most `most` processes and, if `here`, in this thread: then processes are started only if much
-    work is left."""
+    """`computed` in at most `most` processes and, if `here`, in this thread too.
+
+    With `here` processes are started only if much work is left.
+    """
     waiting, ended, room = deque(enumerate(blocks)), SimpleQueue(), threading.Semaphore(AHEAD * most)
 
     def feeder(call: Callable) -> None:
@@ -137,7 +139,7 @@ def _shared(
     try:
         for _ in blocks:
             block = _next(waiting) if here and ended.empty() else None
-            if block is None:  # results of processes are there, or all blocks that are left are in work there
+            if block is None:  # a result of a process is there, or processes solve the last blocks
                 result = ended.get()
                 room.release()
             else:
@@ -153,7 +155,7 @@ def _shared(
 
 
 def _next(waiting: deque) -> tuple[int, np.ndarray] | None:
-    """The next block, None when there is none left. Other threads take blocks too, so one cannot look first."""
+    """The next block, None if there is none. Other threads take blocks too, so it would not help to look first."""
     try:
         return waiting.popleft()
     except IndexError:
@@ -165,8 +167,9 @@ def solved(
 ) -> dict[str, np.ndarray]:
     """The columns of all cases of a grid: name -> (B, ...).
 
-    workers : see `computed`; stream : where a call of more than two seconds says how far it is; begun : when it began,
-        by time.monotonic, if that was before: reading what was given may take a second of the two
+    workers : see `computed`
+    stream : where a call of more than two seconds says how far it is
+    begun : when the call began, by time.monotonic; reading the inputs may have taken a second of the two
     """
     size, blocks = definition.grid.size, blocks_of_grid(definition)
     name = f"solving {counted(size, 'contact')}"
@@ -201,10 +204,10 @@ def processes_for(workers: int, blocks: int, here: bool) -> int:
 def _processors_allowed(definition: Definition, workers: int | None) -> int:
     """How many processors may be used.
 
-    It is 1 where Python cannot start another Python, and for a micro law that it cannot have. If the user does
-    not say `workers`, it is 1 in threads and processes of programs that divide work themselves, such as dask.
+    It is 1 if Python cannot start another Python, or if that cannot have the micro law. Without `workers` it is also 1
+    in threads and processes of programs that divide work themselves, such as dask.
     """
-    # a program that has Python inside would start itself anew
+    # sys.executable of a program that embeds Python is that program
     python = "python" in Path(sys.executable or "").name.lower() and not getattr(sys, "frozen", False)
     if not python or not can_travel(definition):
         return 1

@@ -51,11 +51,11 @@ class Order:
     retry : compute cases of these statuses again
     fail_fast : stop at the first block that raises or has a failed case; a case without a solution has not failed
     force : replace the results file even if cases in it are lost
-    renew : replace it even so if the same study file made it, by another version of the numerics
+    renew : replace it too if the same study file made it with another version of the numerics
     yes : go on however large the study is
-    command : for the history of the results
+    command : of the user, for the history of the results
     stream : where progress is written
-    progress : without a stream, whether it is shown as that of a call is, see `screen.screen_of`
+    progress : where it is written without a `stream`, see `screen.screen_of`
     """
 
     definition: Definition
@@ -84,7 +84,7 @@ class Order:
         if not (isinstance(self.retry, (tuple, list)) and whole(*self.retry)):
             wrong.append(f"retry = {shown(self.retry)}: must be a tuple of values of status")
         name, laws = self.definition.name, ", ".join(self.definition.laws)
-        if ", ".join(law_versions(self.definition.grid)) != laws:  # its numbers would be those of another digest
+        if ", ".join(law_versions(self.definition.grid)) != laws:  # the digest of the study is of the law as it was
             wrong.append(f"{name}: {laws} was registered anew after the study was loaded: load it again")
         if wrong:
             raise StudyError(wrong)
@@ -100,9 +100,9 @@ class Order:
         return self.part[1] > 1
 
     def done(self, condition: Condition) -> bool:
-        """Whether an examined results file is that of this study, with its title, and holds no case to be tried again.
+        """Whether an examined results file is that of this study, has its title, and holds no case to be tried again.
 
-        One with another title is written anew, if it was written from the blocks that are there.
+        A file with another title counts as that of this study if its blocks are not there to write it anew.
         """
         edited = condition.title != (self.definition.title or self.definition.name)
         if not belongs(self.definition, condition) or (edited and self.store.record(condition.digest).exists()):
@@ -131,12 +131,12 @@ def belongs(definition: Definition, condition: Condition) -> bool:
 
 
 def of_what(condition: Condition) -> str:
-    """What the results in a sound file belong to, if not to the study as it is now: "another definition"."""
+    """To what the results in an undamaged file belong that are not those of this study: "another definition"."""
     return "another definition" if condition.numerics == NUMERICS_VERSION else "another version of the numerics"
 
 
 def check_replaceable(order: Order, condition: Condition) -> None:
-    """Raise StudyError when a results file has cases that are not in the study, which would replace it.
+    """Raise StudyError if replacing the results file would lose cases that are not in this study.
 
     A file that roughcoat has not written is never replaced.
     """

@@ -18,8 +18,8 @@ from queue import Empty, SimpleQueue
 
 from .cases import Failure
 
-#: How often a block is tried. Once is too few, as a process may be killed because others take the memory. A block
-#: that is too large itself must not be tried for ever.
+#: How often a block is tried. A process may be killed because others take the memory, so once is too few. A block may
+#: be too large itself, so it must not be tried for ever.
 ATTEMPTS = 3
 KILLED = f"the process that computed it was killed, {ATTEMPTS} times, perhaps for want of memory"
 #: Seconds after which a process without a task ends, and frees its memory. It is started again for the next task.
@@ -28,8 +28,7 @@ SERVE = "from study.work.processes import serve; serve()"
 
 
 def python_command(statement: str) -> tuple[list[str], dict[str, str]]:
-    """Command and environment of a Python process that executes a statement, and can import this package, whatever
-    folder the program was started in.
+    """Command and environment of a Python process that executes a statement and can import this package.
 
     It looks for modules in the working folder last, because a user may have a solver.py there.
     """
@@ -39,7 +38,7 @@ def python_command(statement: str) -> tuple[list[str], dict[str, str]]:
 
 
 class Processes:
-    """A process for each thread that calls, started at its first call, and again when it has ended or was killed."""
+    """A process for each thread that calls. It is started at its first call, and again after its end."""
 
     def __init__(self):
         self._mine = threading.local()
@@ -48,7 +47,7 @@ class Processes:
         self._ended = False
 
     def call(self, function: Callable, *arguments) -> object:
-        """function(*arguments), computed in the process of this thread; Failure when that was killed ATTEMPTS times."""
+        """function(*arguments), computed in the process of this thread; Failure if that was killed ATTEMPTS times."""
         task = pickle.dumps((function, arguments))
         for _ in range(ATTEMPTS):
             try:
@@ -56,13 +55,8 @@ class Processes:
                 pickle.dump(task, process.stdin)
                 process.stdin.flush()
                 return pickle.load(process.stdout)
-            except (
-                EOFError,
-                OSError,
-                ValueError,
-                pickle.UnpicklingError,
-            ):  # it has ended, or `end` has closed its pipe
-                self._mine.process = None
+            except (EOFError, OSError, ValueError, pickle.UnpicklingError):
+                self._mine.process = None  # it has ended, or `end` has closed its pipe
         return Failure(KILLED, "")
 
     def end(self) -> None:

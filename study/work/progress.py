@@ -10,21 +10,23 @@ from typing import TextIO
 
 EVERY = 10.0  # seconds between plain lines
 BLINK = 0.1  # seconds between rewritten lines
-SILENT = 2.0  # seconds that may pass without a word: after some three people wonder whether the program has stopped
-AGAIN = 0.5  # seconds after which the line is looked at again: the seconds in it go up one by one
+SILENT = 2.0  # seconds without a word; after some three people wonder whether the program has stopped
+AGAIN = 0.5  # seconds between looks at the line, whose seconds go up one by one
 SPEAKER = "roughcoat progress"  # the name of the thread
 ERASE = "\r\x1b[K"  # to the beginning of the line of a terminal, and erase it
 
 
 @dataclass
 class Progress:
-    """Counts cases and writes how far a run is. As a context manager it also says every second that the run goes on,
-    from SILENT seconds on, and ends the line.
+    """Counts cases and writes how far a run is.
 
-    done : cases on disk when the run began, and those computed since; computed : the latter alone, for the rate
+    As a context manager it also says every second, after SILENT seconds, that the run goes on, and ends the line.
+
+    done : cases on disk when the run began, and those computed since; computed : only these, for the rate
     failed : cases that have failed; a case without a solution has not
-    passing : of a call: nothing is said if it ends within SILENT seconds, and nothing stays on a terminal
-    As long as nothing is computed it says the seconds: "fig04: 8 s". A call of one block never says anything else.
+    passing : whether it is of a call: that writes nothing in the first SILENT seconds, and leaves nothing on a terminal
+
+    While nothing is computed it writes the seconds: "fig04: 8 s". A call of one block never writes anything else.
     """
 
     name: str
@@ -45,7 +47,7 @@ class Progress:
 
     def __enter__(self) -> "Progress":
         if self.stream is not None:
-            # in the context of the caller, by which a notebook knows the cell that the line belongs to
+            # with the context of the caller a notebook knows in which cell the line belongs
             run = contextvars.copy_context().run
             self._thread = threading.Thread(target=run, args=(self._go_on,), name=SPEAKER, daemon=True)
             try:
@@ -67,7 +69,7 @@ class Progress:
             wait = AGAIN
 
     def tell(self) -> None:
-        """Say how far it is, if that was said long ago."""
+        """Write how far the run is, unless that was written lately."""
         if self.done < self.total:
             self._write(self._line)
 
@@ -82,7 +84,7 @@ class Progress:
             self._write(self._line)
 
     def close(self) -> None:
-        """End the rewritten line, or erase that of a call. Nothing is written after it, by the thread either."""
+        """End the rewritten line, or erase that of a call. After this nothing is written, not even by the thread."""
         end = ERASE if self.passing else "\n"
         with self._writing:
             self._write(lambda terminal: end if terminal and self._shown else "")
@@ -90,19 +92,21 @@ class Progress:
         self._ended.set()
 
     def _write(self, text: Callable[[bool], str]) -> None:
-        """Write text(whether it is for a terminal that can erase a line), if there is a stream. When that fails, go on
-        without it: a run must not end because of it."""
+        """Write text(whether the stream is a terminal that can erase a line), if there is a stream.
+
+        A stream that fails is not used any more, and the run goes on.
+        """
         with self._writing:
             try:
-                if self.stream is not None and (shown := text(erases(self.stream))):
-                    self.stream.write(shown)
+                if self.stream is not None and (line := text(erases(self.stream))):
+                    self.stream.write(line)
                     self.stream.flush()
                     self._shown = True
             except (OSError, ValueError):  # its reader has left, its disk is full, or it has been closed
                 self.stream = None
 
     def _line(self, terminal: bool) -> str:
-        """How far the run is; "" as long as the last line is young."""
+        """How far the run is; "" if the last line was written just now."""
         now = time.monotonic()
         if now - self.written < (BLINK if terminal else EVERY) and self.done < self.total:
             return ""

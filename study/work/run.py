@@ -41,7 +41,7 @@ def run(definition: Definition, results="results", **options) -> Report:
     check_size(order)
     check_writable(order.store.path)
     with held(order.store.lock, shared=order.shared, waiting=lambda: say_waiting(order)):
-        if stamp(order.store.path) != condition.seen:  # the run for which this one has waited has written it
+        if stamp(order.store.path) != condition.seen:  # by the run for which this one has waited
             condition = look(order.store)
             if order.done(condition):
                 return order.report()
@@ -66,7 +66,7 @@ def _compute(order: Order, condition: Condition) -> Report:
 
 
 def _export_if_last(order: Order, report: Report) -> Report:
-    """If no other run holds the lock, this one is the last of several: it writes the results."""
+    """Write the results if no other run holds the lock. Then this run is the last of several."""
     with held(order.store.lock, wait=False) as alone:
         if not alone:
             return report

@@ -1,4 +1,4 @@
-"""A client of the scheduler of a dask cluster, and checks of its address and of whether it answers."""
+"""A client of the scheduler of a dask cluster. Its address is checked first, and whether it answers."""
 
 import logging
 import re
@@ -10,7 +10,7 @@ GREETING = 1_000_000  # most bytes of the first message of a scheduler; it has s
 
 
 def address_error(text: str) -> str:
-    """What is wrong with the form of an address, "" if nothing is."""
+    """What is wrong with the form of an address; "" if nothing."""
     parts = ADDRESS.fullmatch(text)
     if parts and (parts[3] is None or 1 <= int(parts[3]) <= 65535):
         return ""
@@ -22,7 +22,7 @@ def connected(address: str, listens: float, answers: float):
 
     Raises StudyError when nothing listens there in `listens` seconds, or no scheduler answers in `answers`.
     """
-    from ..inputs.definition import StudyError  # here: it imports numpy, and a message about an address need not wait
+    from ..inputs.definition import StudyError  # here: it loads numpy, which `address_error` must not
 
     reason = address_error(address)
     if reason:
@@ -40,7 +40,7 @@ def connected(address: str, listens: float, answers: float):
                 raise OSError("TLS needs certificates, which dask's configuration must name: see docs/cluster.md")
         seconds = answers if _is_there(address, listens, answers) else listens
         return Client(address, timeout=seconds, set_as_default=False)
-    except Exception as error:  # what the client raises for an answer that it does not understand is not known
+    except Exception as error:  # any: an answer that the client does not understand raises whatever it does
         said = str(error) or type(error).__name__
         raise StudyError([f"--scheduler {address}: no scheduler answers there ({said})"]) from None
 

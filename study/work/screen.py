@@ -22,9 +22,9 @@ class Cell(io.TextIOBase):
         return True
 
     def write(self, text: str) -> int:
-        """Show the line, or nothing in its place. Raises OSError if the notebook has gone."""
+        """Show the line in place of the last one. Raises OSError if the notebook has gone."""
         line = text.removeprefix(ERASE).rstrip("\n")
-        data = {"text/plain": line} if line else {"text/plain": "", "text/html": ""}  # of HTML no empty line is left
+        data = {"text/plain": line} if line else {"text/plain": "", "text/html": ""}  # empty HTML leaves no empty line
         try:
             if self._handle:
                 self._handle.update(data, raw=True)
@@ -38,8 +38,8 @@ class Cell(io.TextIOBase):
 def screen_of(progress: bool | None) -> TextIO | None:
     """Where a call of `study.solve` writes its progress; None: nowhere.
 
-    progress : False: nowhere; True: in the notebook, else on stderr, whatever that is; None: in a notebook or on a
-        terminal, but not in threads and processes of a program that divides its work itself
+    progress : False: nowhere; True: in the notebook, else on stderr, even if that is no terminal; None: in a notebook
+        or on a terminal, but not in threads and processes of a program that divides its work itself
 
     Raises StudyError if it is none of these.
     """

@@ -13,7 +13,7 @@ from ..again import Again, of_all_cases, strengths
 from ..fields import carried, friction, residual_stress, units_of
 from ..in_words import FarOutside
 from ..inputs.definition import StudyError
-from ..inputs.given import Given
+from ..inputs.request import Request
 from ..inputs.vocabulary import CONTROLS
 from ..solving import solve
 from ..specimen.materials import Material
@@ -110,7 +110,7 @@ def refuse(who: str, parameters: dict, names: tuple, reason: str) -> None:
 
 def contacts(who: str, parameters: dict, name: str, value: float) -> tuple[xr.Dataset, Again]:
     """Contacts with these inputs, of which one is any value: how they are solved does not count."""
-    physical = Given.in_python(parameters, [], False, {}).physical
+    physical = Request.in_python(parameters, [], False, {}).physical
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         warnings.simplefilter("default", FarOutside)

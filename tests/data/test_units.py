@@ -104,7 +104,7 @@ def test_axes_are_converted_and_stay_selectable():
 
 
 def test_there_and_back():
-    parameters = {name: 0.25 for name in PARAMETERS if not VOCABULARY[name].own.choices}
+    parameters = {name: 0.25 for name in PARAMETERS if not VOCABULARY[name].parameter.choices}
     physical = {name: value * factor(name, **SCALE) for name, value in parameters.items()}
     assert study.from_physical(**SCALE, **physical) == pytest.approx(parameters, rel=1e-14)  # a few roundings
 

@@ -166,5 +166,5 @@ def test_defaults_of_the_vocabulary_are_allowed_values():
 
     for name in PARAMETERS:
         entry = VOCABULARY[name]
-        assert entry.own.default is None or not check(entry.own, entry.own.default)
-        assert entry.own.interval or entry.own.choices
+        assert entry.parameter.default is None or not check(entry.parameter, entry.parameter.default)
+        assert entry.parameter.interval or entry.parameter.choices

@@ -200,7 +200,7 @@ def test_every_parameter_has_limits_or_choices():
 
 @pytest.mark.parametrize("name", LIMITS)
 def test_limits(name):
-    own, (low, below, *ends) = VOCABULARY[name].own, LIMITS[name]
+    own, (low, below, *ends) = VOCABULARY[name].parameter, LIMITS[name]
     high, above = ends or (1e300, INF)
     assert [check(own, value) for value in (low, high)] == ["", ""]
     assert all(check(own, value) for value in (below, above, float("nan"), True, "1", None))
@@ -208,7 +208,7 @@ def test_limits(name):
 
 @pytest.mark.parametrize("name", CHOICES)
 def test_choices(name):
-    own = VOCABULARY[name].own
+    own = VOCABULARY[name].parameter
     assert set(own.choices) == CHOICES[name]
     assert all(check(own, value) == "" for value in CHOICES[name])
     assert all(check(own, value) for value in ("glued", "", 1, None))
@@ -216,5 +216,5 @@ def test_choices(name):
 
 def test_zero_leaves_nodes_and_iterations_to_the_solver():
     for name in ("nodes", "max_iterations"):
-        assert check(VOCABULARY[name].own, 0) == "" and check(VOCABULARY[name].own, 16.0) == ""
-        assert check(VOCABULARY[name].own, 16.5) == "must be a whole number"
+        assert check(VOCABULARY[name].parameter, 0) == "" and check(VOCABULARY[name].parameter, 16.0) == ""
+        assert check(VOCABULARY[name].parameter, 16.5) == "must be a whole number"

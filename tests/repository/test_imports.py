@@ -178,7 +178,7 @@ def test_only_blocks_and_dataset_and_tables_know_the_solver():
     assert users["vocabulary"] == {"solver.parameters"}
     own = {"solver.parameters", "solver.laws", "solver.laws.own_table", "solver.laws.fit"}
     assert users["laws"] == own, "those that others have registered, tables in files, fits"
-    assert not any(users[name] for name in ("grid", "given", "draft", "run", "api", "units", "progress"))
+    assert not any(users[name] for name in ("grid", "request", "draft", "run", "api", "units", "progress"))
 
 
 def alone(script: str) -> None:

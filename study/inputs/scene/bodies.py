@@ -13,7 +13,7 @@ from ..vocabulary import BODIES, VOCABULARY, finite
 from .names import RIGID_TEXTS
 
 _MAY_BE_RIGID = ("punch", "body")
-#: What people give as `punch` that is no material; names of materials near these would mislead.
+#: Shapes that people give as `punch`, which is a material. A proposal of materials with like names would mislead.
 _SHAPES = ("sphere", "ball", "paraboloid", "cone", "berkovich", "vickers", "flat", "cylinder", "pyramid")
 
 
@@ -44,9 +44,9 @@ def with_materials(inputs: dict, errors: list[str]) -> tuple[dict, dict]:
 
 
 def of_names(body: str, names: Any) -> list[tuple]:
-    """Names, E and ν of the materials that are given for a body. Raises LookupError for what is none.
+    """Names, E and ν of the materials of a body. Raises LookupError for what is no material.
 
-    names : a list; those of earlier results are in a DataArray
+    names : a list; a DataArray if they come from results
     """
     try:
         if getattr(names, "dims", ()) not in ((), (body,)):
@@ -60,22 +60,22 @@ def of_names(body: str, names: Any) -> list[tuple]:
 
 
 def layered(values: dict) -> bool:
-    """Whether some case may have a layer; values : as those of a Grid. Of a word that is no base it is said later."""
-    _, base = values.get("base", ((), VOCABULARY["base"].own.default))
-    return bool(np.isin(base, [*{*VOCABULARY["base"].own.choices} - {"half_space"}]).any())
+    """Whether some case may have a layer; values : as those of a Grid. A word that is no base is refused elsewhere."""
+    _, base = values.get("base", ((), VOCABULARY["base"].parameter.default))
+    return bool(np.isin(base, [*{*VOCABULARY["base"].parameter.choices} - {"half_space"}]).any())
 
 
-def assumed(names: set[str], values: dict, given: dict) -> tuple[str, ...]:
-    """What is not given and has its default, though it counts: Poisson ratios of elastic bodies, interface of a layer.
+def assumed(names: set[str], values: dict, si_values: dict) -> tuple[str, ...]:
+    """Names of what has its default though it matters: Poisson ratios of elastic bodies, the interface of a layer.
 
-    names : of what is given; values : as those of a Grid; given : the inputs in SI units
+    names : of the inputs that the user gives; values : as those of a Grid; si_values : the inputs in SI units
     """
-    ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(given.get(E, np.inf)).all()]
+    ratios = [nu for E, nu, _ in BODIES.values() if not np.isinf(si_values.get(E, np.inf)).all()]
     return tuple(name for name in [*ratios, *layered(values) * ["bonding"]] if name not in names)
 
 
 def _checked(name: Any) -> str | materials.Material:
-    """The same name or material; "inf" of the number. Raises LookupError for anything else."""
+    """The name or material itself; "inf" for the number. Raises LookupError for anything else."""
     if isinstance(name, float) and name == np.inf:
         return "inf"
     if isinstance(name, tuple):

@@ -1,4 +1,4 @@
-"""Messages for inputs with units that are beyond the bounds of the solver, as they were given: "P = -10 N: ..."."""
+"""Messages for inputs with units that are outside the bounds of the solver. They quote the input: "P = -10 N: ..."."""
 
 from typing import Any
 
@@ -10,7 +10,7 @@ from solver.parameters import ends
 
 from ...specimen.quantities import multiple, quantity, readable, unit_in
 from ...terminal import on_one_line
-from ..given import Input
+from ..request import Input
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY, allowed
 from .scales import with_unit
 from .scene import Scene
@@ -22,22 +22,22 @@ Place = dict[str, int]
 def beyond_bounds(scene: Scene, inputs: dict[str, Input]) -> list[str]:
     """A message for each input with a unit, and each ratio of moduli, that is outside its interval.
 
-    inputs : as they were given, E and ν in place of materials
+    inputs : E and ν in place of materials
     """
-    with_units = [name for name in scene.given if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
+    with_units = [name for name in scene.values if name not in SCENE and VOCABULARY[name].powers != (0, 0)]
     messages = [_message(scene, inputs[name], place) for name in with_units for place in _first_outside(scene, name)]
     for modulus, _, ratio in BODIES.values():
-        for place in _first_outside(scene, ratio) if ratio and modulus in scene.given else ():
+        for place in _first_outside(scene, ratio) if ratio and modulus in scene.values else ():
             entry, value = VOCABULARY[ratio], _at(scene.parameters[ratio], place)
-            understood = f"{modulus} = {readable(_at(scene.given[modulus], place), 'Pa')}"
-            messages.append(f"{understood}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.own)}")
+            modulus_text = f"{modulus} = {readable(_at(scene.values[modulus], place), 'Pa')}"
+            messages.append(f"{modulus_text}: {entry.long_name}: {ratio} = {value:.4g}: {allowed(entry.parameter)}")
     return messages
 
 
 def _first_outside(scene: Scene, name: str) -> list[Place]:
     """The place of the first dimensionless value of a parameter that is outside its interval; [] if all are inside."""
     values = scene.parameters[name]
-    inside = within(VOCABULARY[name].own, np.asarray(values))
+    inside = within(VOCABULARY[name].parameter, np.asarray(values))
     outside = [] if inside.all() else np.argwhere(~inside)[:1].tolist()  # argwhere takes as long as all else here
     return [dict(zip(getattr(values, "dims", ()), index, strict=True)) for index in outside]
 
@@ -49,31 +49,33 @@ def _at(value: Any, place: Place) -> Any:
     return value.isel({dim: place.get(dim, 0) for dim in value.dims}).item()
 
 
-def _message(scene: Scene, given: Input, place: Place) -> str:
+def _message(scene: Scene, entry: Input, place: Place) -> str:
     """The message for the value of an input at a place."""
-    name = given.name
-    value, entry = scene.given[name], VOCABULARY[name]
+    name = entry.name
+    value, row = scene.values[name], VOCABULARY[name]
+    parameter = row.parameter
     index = [place[dim] for dim in getattr(value, "dims", ())]
-    called = f"{name}{index}" if index else name
-    text, word, size = _written(given, index, _at(value, place), ROWS[name].unit)
+    label = f"{name}{index}" if index else name
+    text, word, size = _written(entry, index, _at(value, place), ROWS[name].unit)
     R, unit = _at(scene.R, place), _at(scene.unit, place)
     # the bounds in the unit of the value
-    low, high = (f"{with_unit(end, entry.powers, unit, R) / size:.4g}" for end in ends(entry.own.interval)[:2])
-    interval = f"{entry.own.interval[0]}{low}, {high}{entry.own.interval[-1]}"
-    modulus = "E1*" if np.isinf(_at(scene.given["E2"], place)) else "E2*"
-    scale = entry.scale.replace("E2*", modulus)
+    low, high = (f"{with_unit(end, row.powers, unit, R) / size:.4g}" for end in ends(parameter.interval)[:2])
+    interval = f"{parameter.interval[0]}{low}, {high}{parameter.interval[-1]}"
+    modulus = "E1*" if np.isinf(_at(scene.values["E2"], place)) else "E2*"
+    scale = row.scale.replace("E2*", modulus)
     units = ((modulus, readable(unit, "Pa")), ("R", readable(R, "m")))
     here = " and ".join(f"{symbol} = {text}" for symbol, text in units if symbol in scale)
-    bounds = f"{allowed(entry.own._replace(interval=interval))} {word}, which is {entry.own.interval} {scale}, {here}"
-    return f"{called} = {on_one_line(str(text))}: {bounds}"
+    bounds = f"{allowed(parameter._replace(interval=interval))} {word}, which is {parameter.interval} {scale}, {here}"
+    return f"{label} = {on_one_line(str(text))}: {bounds}"
 
 
-def _written(given: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
-    """A value as it was given, the word for its unit there, and the size of that in the SI `unit`.
+def _written(entry: Input, index: list[int], value: float, unit: str) -> tuple[Any, str, float]:
+    """The text of a value, the word for its unit, and the size of that unit in the SI `unit`.
 
-    A value of a range, or with a unit that is no single word, has the multiple of the SI unit that suits it.
+    A value of a range has no text, and some units are no single word. Then the word is a multiple of the SI unit that
+    suits the value.
     """
-    text = given.at(index)
-    word = (given.unit if given.array is not None else unit_in(text)) or multiple(abs(value), unit)[0]
+    text = entry.at(index)
+    word = (entry.unit if entry.array is not None else unit_in(text)) or multiple(abs(value), unit)[0]
     size = quantity("", f"1 {word}", unit).value
     return f"{value / size:g} {word}" if text is None else text, word, size

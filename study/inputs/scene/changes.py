@@ -17,39 +17,41 @@ from .scene import Scene
 RATIOS = tuple(ratio for _, ratio, _ in BODIES.values())
 SCALES = ("length", "modulus")
 """The radius and the modulus that are 1 for the solver; they stand beside the solver's inputs."""
-#: By which part of itself an input is moved, and a Poisson ratio by how much: what follows are closed forms, so that
-#: the error is the square of this. Poisson ratios stay twice this below 0.5.
+#: Inputs are moved by this part of themselves, Poisson ratios by this itself. What follows from them are closed forms,
+#: so that the slopes err by about the square of this. Poisson ratios stay twice this below 0.5.
 _STEP = 1e-4
 
 
 def changes(scene: Scene, name: str, fitted: bool = False) -> dict[str, Any]:
-    """Input of the solver, or scale -> the derivative of its logarithm by that of the input `name` of the scene. Of
-    Poisson ratios, on either side, it is by or of the ratio itself. Numbers or DataArrays.
+    """Input of the solver, or scale -> d ln(it)/d ln(the input `name` of the scene), a number or a DataArray.
+
+    A Poisson ratio, on either side, stands without the logarithm.
 
     fitted : whether B and beta follow from Nbar and Ra
     """
-    value, ends, step = scene.given[name], [], _STEP
+    value, ends, step = scene.values[name], [], _STEP
     if name in RATIOS:
         value = np.minimum(value, 0.5 - 2 * _STEP)
-    elif name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by more
+    elif name in ("R1", "R2"):  # R = 1/(1/R1 + 1/R2) of a close cup changes by a larger part
         step = _STEP * np.minimum(abs(value / scene.R), 1.0)
     for sign in (1, -1):
         new = value + sign * step * (1.0 if name in RATIOS else value)
-        moved = replace(scene, given=scene.given | {name: new}, parameters=dict(scene.parameters))
+        moved = replace(scene, values=scene.values | {name: new}, parameters=dict(scene.parameters))
         make_dimensionless(moved)
         numbers = {key: moved.parameters[key] for key in ("n", "m") if key in moved.parameters}
-        numbers |= {key: moved.parameters[key] for key in moved.given if key not in SCENE}
+        numbers |= {key: moved.parameters[key] for key in moved.values if key not in SCENE}
         ends.append(numbers | dict(zip(SCALES, (moved.R, moved.unit), strict=True)))
-    found = {key: _slope(key, up, ends[1][key], step) for key, up in ends[0].items()}
-    if fitted and ("Nbar" in found or "Ra" in found):
-        of_product = found.get("Nbar", 0.0) + 2 * found.get("Ra", 0.0)
+    slopes = {key: _slope(key, up, ends[1][key], step) for key, up in ends[0].items()}
+    if fitted and ("Nbar" in slopes or "Ra" in slopes):
+        product_slope = slopes.get("Nbar", 0.0) + 2 * slopes.get("Ra", 0.0)
         fits = slopes_of_fit(scene.parameters["Nbar"] * scene.parameters["Ra"] ** 2)
-        found |= {key: of_product * slope for key, slope in fits.items()}
-    return found
+        slopes |= {key: product_slope * slope for key, slope in fits.items()}
+    return slopes
 
 
 def _slope(key: str, up: Any, down: Any, step: Any) -> Any:
-    if np.array_equal(np.asarray(up), np.asarray(down), equal_nan=True):  # most of them: labelled arrays are slow
+    # most are equal, and arithmetic of DataArrays is slow
+    if np.array_equal(np.asarray(up), np.asarray(down), equal_nan=True):
         return 0.0
     with np.errstate(divide="ignore", invalid="ignore"):
         slope = (up - down if is_ratio(key) else np.log(np.divide(up, down))) / (2 * step)
@@ -57,18 +59,19 @@ def _slope(key: str, up: Any, down: Any, step: Any) -> Any:
     return slope.fillna(0.0) if hasattr(slope, "fillna") else np.nan_to_num(slope)
 
 
-def of_spreads(scene: Scene, fitted: bool) -> dict[str, dict[str, Any]]:
-    """Input with a spread -> what of the solver's inputs and scales changes with it, as `changes`, by its spread."""
-    found = {}
+def changes_by_spread(scene: Scene, fitted: bool) -> dict[str, dict[str, Any]]:
+    """Input with a spread -> {input of the solver, or scale: by how much it changes with one spread}, as `changes`."""
+    table = {}
     for name, spread in scene.spreads.items():
-        value = scene.given[name]
-        part = spread if name in RATIOS else spread / (value + (value == 0))  # what is 0 has no spread
-        found[name] = {key: part * change for key, change in changes(scene, name, fitted).items() if np.any(change)}
-    return found
+        value = scene.values[name]
+        relative = spread if name in RATIOS else spread / (value + (value == 0))  # what is 0 has no spread
+        table[name] = {key: relative * slope for key, slope in changes(scene, name, fitted).items() if np.any(slope)}
+    return table
 
 
 def inputs_of(scene: Scene, grid: Grid) -> tuple[str, ...]:
-    """The inputs of the solver that change with some spread, and count in some case; the control if only units do."""
-    moved = {key for own in of_spreads(scene, grid.fitted).values() for key, part in own.items() if np.any(part)}
-    found = tuple(name for name in PARAMETERS if name in moved and counts(grid, name).any())
-    return found or tuple(name for name in CONTROLS if name in grid.values)
+    """The inputs of the solver that change with some spread, and count in some case; the control if none do."""
+    tables = changes_by_spread(scene, grid.fitted).values()
+    moved = {key for table in tables for key, change in table.items() if np.any(change)}
+    inputs = tuple(name for name in PARAMETERS if name in moved and counts(grid, name).any())
+    return inputs or tuple(name for name in CONTROLS if name in grid.values)

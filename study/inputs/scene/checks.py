@@ -1,4 +1,4 @@
-"""What can be wrong with a physical scene as a whole, though each of its inputs is right."""
+"""Mistakes in a physical scene as a whole, though each of its inputs is right."""
 
 from typing import Any
 
@@ -8,7 +8,7 @@ import xarray as xr
 from solver.laws.own_table import PREFIX
 
 from ..checks import equal_cases
-from ..given import Given
+from ..request import Request
 from ..vocabulary import BODIES
 from .bodies import layered
 from .scene import Scene
@@ -16,12 +16,12 @@ from .scene import Scene
 _RADIUS = 'R is missing: the radius of the punch, or R1 and R2 of two bodies (a cup: R2 = "-20 mm")'
 
 
-def missing(given: Given, values: dict) -> list[str]:
-    """Messages for what a physical scene cannot do without, and for what cannot be given together.
+def missing(request: Request, values: dict) -> list[str]:
+    """Messages for inputs that a physical scene needs and has not, and for inputs that exclude each other.
 
     values : of the inputs without units, as those of a Grid
     """
-    names, messages = {*given.sections}, []
+    names, messages = {*request.sections}, []
     pair = [name for name in ("R1", "R2") if name in names]
     messages += [_RADIUS] if "R" not in names and not pair else []
     if len(pair) == 1:
@@ -43,22 +43,22 @@ def missing(given: Given, values: dict) -> list[str]:
 
 def same_cases(scene: Scene) -> list[str]:
     """A message for two of [[cases]] that are the same, in whatever units they are given."""
-    arrays = [v for table in (scene.given, scene.spreads, scene.parameters) for v in table.values()]
+    arrays = [v for table in (scene.values, scene.spreads, scene.parameters) for v in table.values()]
     columns = [v.values.tolist() for v in arrays if isinstance(v, xr.DataArray) and v.dims == ("case",)]
     columns += [texts for dim, texts in scene.names.values() if dim == "case"]
     return equal_cases(list(zip(*columns, strict=True)))
 
 
 def impossible(scene: Scene) -> list[str]:
-    """Messages for bodies that cannot touch as they are given."""
-    given, messages = scene.given, []
-    if "R1" in given and not np.all(1 / given["R1"] + 1 / given["R2"] > 0):
-        R1, R2 = (f"{name} = {_shown(given[name])} m" for name in ("R1", "R2"))
+    """Messages for bodies that cannot touch."""
+    values, messages = scene.values, []
+    if "R1" in values and not np.all(1 / values["R1"] + 1 / values["R2"] > 0):
+        R1, R2 = (f"{name} = {_shown(values[name])} m" for name in ("R1", "R2"))
         messages.append(f"{R1}, {R2}: 1/R1 + 1/R2 must be > 0: a cup (the negative radius) must be wider than its ball")
-    rigid = np.isinf(given["E2"])
+    rigid = np.isinf(values["E2"])
     if not np.any(rigid):
         wrong = 'n = 0 is a rigid base: give E2 = "rigid" and E1, the modulus of the layer'
-        return messages + [wrong] * bool(np.any(scene.parameters.get("n", given.get("n", 1.0)) == 0))
+        return messages + [wrong] * bool(np.any(scene.parameters.get("n", values.get("n", 1.0)) == 0))
     if np.any(rigid & (scene.parameters.get("base", "layered") == "half_space")):
         swap = "a rigid body and an elastic ball are the same contact as a rigid ball on a body of the ball's modulus"
         messages.append(f'E2 is rigid and base = "half_space": no layer is there to yield; {swap}')
@@ -68,7 +68,7 @@ def impossible(scene: Scene) -> list[str]:
 
 
 def moving_tables(scene: Scene) -> list[str]:
-    """A message where a table of one's own, whose lengths are in R, would change with the spread of a radius."""
+    """A message if a table of the user's, whose lengths are in R, would change with the spread of a radius."""
     micro = np.ravel(np.array(scene.parameters.get("micro", ""), dtype=object)).tolist()
     table = next((word for word in micro if str(word).startswith(PREFIX)), "")
     moved = sorted({"R", "R1", "R2"} & {*scene.spreads})

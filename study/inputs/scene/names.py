@@ -8,23 +8,23 @@ from ..vocabulary import ROWS
 
 #: The texts that say that a body is rigid, and so its modulus infinite; or flat, and so its radius.
 RIGID_TEXTS, _FLAT_TEXTS = ("rigid", "inf", "infinite"), ("flat", "inf", "infinite")
-#: What may be infinite, and the texts that say so.
+#: Input that may be infinite -> the texts that say so.
 INFINITE = {"E2": RIGID_TEXTS, "E_punch": RIGID_TEXTS, "R1": _FLAT_TEXTS, "R2": _FLAT_TEXTS}
 
 
 def dim_of(name: str) -> str:
     """The dimension along which several values of a parameter lie while the cases are solved.
 
-    A parameter with a unit has a dimension "h in SI". The name alone is that of the dimensionless parameter h/R, which
-    depends on the dimension of R as well.
+    For a parameter with a unit that is "h in SI". The name alone belongs to the dimensionless h/R, which may change
+    along the dimension of R too.
     """
     return name if ROWS[name].unit == "1" else f"{name} in SI"
 
 
-def si(name: str, value: Any, called: str = "") -> Quantity:
-    """The SI value of a parameter or result given as text, quantity of pint or number, or as Quantity.
+def si(name: str, value: Any, label: str = "") -> Quantity:
+    """The SI value of a parameter or result: a text, a number, a quantity of pint or a Quantity.
 
-    called : its name in messages
+    label : its name in messages
 
     Raises ValueError as `quantity` does.
     """
@@ -32,4 +32,4 @@ def si(name: str, value: Any, called: str = "") -> Quantity:
         return value
     if name in INFINITE and (value.lower() in INFINITE[name] if isinstance(value, str) else value == math.inf):
         return Quantity(math.inf)
-    return quantity(called or name, value, ROWS[name].unit)
+    return quantity(label or name, value, ROWS[name].unit)

@@ -1,4 +1,4 @@
-"""How the spreads of inputs hang together: bodies of one material that are one piece, and correlations as given."""
+"""Correlations of the spreads of inputs: of bodies that are one piece of material, and by the user."""
 
 from itertools import combinations
 from typing import Any
@@ -16,14 +16,14 @@ _ROUNDING = 1e-9
 FORM = 'must be a number from -1 to 1 for each pair of inputs, such as {("E1", "E2"): 0.5}'
 
 
-def alike(names: dict, one: str, other: str) -> Any:
+def alike(names: dict, body: str, other_body: str) -> Any:
     """Where two bodies are of one material: a bool, or a DataArray over the dimensions of their names.
 
     names : as those of a Scene
     """
-    if one not in names or other not in names:
+    if body not in names or other_body not in names:
         return False
-    first, second = (_labelled(*names[body]) for body in (one, other))
+    first, second = (_labelled(*names[name]) for name in (body, other_body))
     same = (first == second) & (first != _RIGID)
     return same if same.any() and not same.all() else bool(same.all())
 
@@ -34,35 +34,36 @@ def none_alike(names: dict) -> bool:
 
 
 def of_one_piece(scene: Scene) -> dict[tuple[str, str], Any]:
-    """The correlations of bodies that are one piece: their moduli are off together, and so are their Poisson ratios."""
-    found = {}
-    for one, other in combinations(BODIES, 2):
-        same = alike(scene.names, one, other)
-        for pair in zip(BODIES[one][:2], BODIES[other][:2], strict=True):
+    """The correlations of bodies that are one piece: their moduli are too high or too low together, and so
+    are their Poisson ratios."""
+    correlations = {}
+    for body, other_body in combinations(BODIES, 2):
+        same = alike(scene.names, body, other_body)
+        for pair in zip(BODIES[body][:2], BODIES[other_body][:2], strict=True):
             if {*pair} <= {*scene.spreads} and np.any(same):
-                found[pair] = 1.0 * same
-    return found
+                correlations[pair] = 1.0 * same
+    return correlations
 
 
-def correlate(scene: Scene, given: Any, errors: list[str]) -> None:
-    """Give the scene its correlations, from those that are `given`; messages for what cannot be."""
-    scene.correlations = found = of_one_piece(scene) if scene.same_piece else {}
-    if not isinstance(given, dict) or not all(isinstance(pair, tuple) and len(pair) == 2 for pair in given):
-        errors.append(f"correlations = {shown(given)}: {FORM}")
+def correlate(scene: Scene, pairs: Any, errors: list[str]) -> None:
+    """Give the scene its correlations. Mistakes in the `pairs` that the user gives become messages."""
+    scene.correlations = correlations = of_one_piece(scene) if scene.same_piece else {}
+    if not isinstance(pairs, dict) or not all(isinstance(pair, tuple) and len(pair) == 2 for pair in pairs):
+        errors.append(f"correlations = {shown(pairs)}: {FORM}")
         return
-    for pair, value in given.items():
+    for pair, value in pairs.items():
         without = [name for name in pair if name not in scene.spreads]
         called = f"correlations: {' and '.join(map(str, pair))}"
         if without:
             errors.append(f"{called}: {without[0]} has no spread; {', '.join(scene.spreads) or 'no input'} has one")
-        elif pair[0] == pair[1] or pair in found or pair[::-1] in found:
+        elif pair[0] == pair[1] or pair in correlations or pair[::-1] in correlations:
             errors.append(f"{called}: " + ("are one input" if pair[0] == pair[1] else "have a correlation already"))
         elif not finite(value) or not -1 <= value <= 1:
             errors.append(f"{called} = {shown(value)}: must be a number from -1 to 1")
         else:
-            found[pair] = float(value)
-    dims = tuple({dim for value in found.values() for dim in getattr(value, "dims", ())})
-    if given and not errors and np.linalg.eigvalsh(matrix(scene, dims)).min() < -_ROUNDING:
+            correlations[pair] = float(value)
+    dims = tuple({dim for value in correlations.values() for dim in getattr(value, "dims", ())})
+    if pairs and not errors and np.linalg.eigvalsh(matrix(scene, dims)).min() < -_ROUNDING:
         errors.append("correlations: no inputs have all of these: their matrix has a negative eigenvalue")
 
 
@@ -71,11 +72,11 @@ def matrix(scene: Scene, dims: tuple[str, ...]) -> np.ndarray:
     names = list(scene.spreads)
     parts = [over(value, dims) for value in scene.correlations.values()]
     shape = np.broadcast_shapes((1,) * len(dims), *(part.shape for part in parts))
-    found = np.broadcast_to(np.eye(len(names)), (*shape, len(names), len(names))).copy()
-    for (one, other), part in zip(scene.correlations, parts, strict=True):
-        i, j = names.index(one), names.index(other)
-        found[..., i, j] = found[..., j, i] = part
-    return found
+    array = np.broadcast_to(np.eye(len(names)), (*shape, len(names), len(names))).copy()
+    for (first, second), part in zip(scene.correlations, parts, strict=True):
+        i, j = names.index(first), names.index(second)
+        array[..., i, j] = array[..., j, i] = part
+    return array
 
 
 def _labelled(dim: str, texts: list[str]) -> xr.DataArray:

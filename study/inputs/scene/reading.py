@@ -13,8 +13,8 @@ import xarray as xr
 from ...specimen.quantities import READABLE, quantity
 from ...terminal import on_one_line
 from ..draft import Draft
-from ..given import NEEDS_NAMES, Given, Input
 from ..grid import equal_values
+from ..request import NEEDS_NAMES, Input, Request
 from ..vocabulary import BODIES, ROWS, SCENE, VOCABULARY
 from .bodies import assumed, with_materials
 from .bounds import beyond_bounds
@@ -25,41 +25,42 @@ from .scales import make_dimensionless
 from .scene import Scene
 
 _POSITIVE, _POISSON = (0.0, np.inf, "must be > 0"), (-1.0, 0.5, "must be in (-1, 0.5]")
-#: Bounds of inputs from which others are derived: must be above, must be at most, words for a message.
+#: Bounds of inputs from which others are derived: (must be above, must be at most, words for a message).
 _LIMITS = dict.fromkeys(("R", "E1", "E2", "E_punch"), _POSITIVE) | dict.fromkeys(("nu1", "nu2", "nu_punch"), _POISSON)
 _E1, _NU1 = ("E1", "E1_spread", "n"), ("nu1", "nu1_spread")
 #: What a case without a layer may leave out -> the coordinates that then have no value there, "" or NaN.
 _OF_LAYER = {"layer": ("layer", *_E1, *_NU1), "E1": _E1, "n": _E1, "h": ("h", "h_spread"), "nu1": _NU1, "bonding": ()}
 
 
-def read(given: Given, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
-    """The physical scene that inputs describe. What the solver gets goes to the draft, and all that is wrong: no unit,
-    a unit of something else, a missing R or modulus.
+def read(request: Request, draft: Draft, spreads: bool, axes: list[str]) -> Scene:
+    """The physical scene that inputs describe. The dimensionless parameters go to the draft.
+
+    Mistakes become messages of the draft: no unit, a unit of something else, a missing R or modulus.
 
     spreads : whether the results shall have spreads
     axes : dimensions in the order that they shall have, behind `case`
     """
-    scene, errors = Scene(same_piece=given.same_piece, labels=given.labels), given.errors
+    scene, errors = Scene(same_piece=request.same_piece, labels=request.labels), request.errors
     before = len(errors)
-    inputs, scene.names = with_materials(_filled(given, scene), errors)
-    # a list of heights in µm is no axis h/R, which depends on the dimensions of R as well
-    own = {name: dim_of(name) for name, entry in inputs.items() if entry.dims == (name,)}
-    inputs = {n: replace(entry, dims=tuple(own.get(dim, dim) for dim in entry.dims)) for n, entry in inputs.items()}
+    inputs, scene.names = with_materials(_filled(request, scene), errors)
+    # a list of h in µm is an axis "h in SI": h/R changes along the dimensions of R too
+    in_si = {name: dim_of(name) for name, entry in inputs.items() if entry.dims == (name,)}
+    inputs = {n: replace(entry, dims=tuple(in_si.get(dim, dim) for dim in entry.dims)) for n, entry in inputs.items()}
     for entry in inputs.values():
         if not entry.is_wrong:
             _read(scene, draft, entry)
-    errors += [f"same_piece: {NEEDS_NAMES}"] * (given.same_piece and not errors and none_alike(scene.names))
-    errors += missing(given, draft.values)
-    hint = f" ({given.sign} makes this a study with units)"
+    errors += [f"same_piece: {NEEDS_NAMES}"] * (request.same_piece and not errors and none_alike(scene.names))
+    errors += missing(request, draft.values)
+    hint = f" ({request.sign} makes this a study with units)"
     errors[before:] = [f"{message}{hint * ('has no unit' in message)}" for message in errors[before:]]
     labels = {name: np.array(texts) for name, (dim, texts) in scene.names.items() if dim == name}
-    draft.check(labels | {name: np.asarray(value) for name, value in scene.given.items() if dim_of(name) == name})
-    errors += [] if errors else impossible(scene) + (same_cases(scene) if given.rows else [])
+    draft.check(labels | {name: np.asarray(value) for name, value in scene.values.items() if dim_of(name) == name})
+    errors += [] if errors else impossible(scene) + (same_cases(scene) if request.rows else [])
     if errors:
         return scene
-    names = {*given.sections, *inputs}
-    scene.assumed = assumed(names, draft.values, scene.given)
-    correlate(scene, given.correlations, errors)
+    names = {*request.sections, *inputs}
+    scene.assumed = assumed(names, draft.values, scene.values)
+    correlate(scene, request.correlations, errors)
     if not spreads:
         scene.spreads = scene.correlations = {}
     make_dimensionless(scene)
@@ -86,36 +87,39 @@ def _read(scene: Scene, draft: Draft, entry: Input) -> None:
 
 
 def _material(entry: Input) -> str:
-    """The end of a message about a modulus that is given as a word; "" for all else."""
+    """The end of a message about a word in place of a modulus; "" for all else."""
     body = next((body for body, (modulus, _, _) in BODIES.items() if modulus == entry.name), "")
     word = entry.array is None and not entry.dims and isinstance(entry.values[0], str) and entry.values[0][:1].isalpha()
     return f"; a material is given as {body}, in place of {entry.name}" if body and word else ""
 
 
-def _filled(given: Given, scene: Scene) -> dict[str, Input]:
-    """The inputs with those of [[cases]] for every case. What a case without a layer leaves out is taken from another
-    case: no answer depends on it, and results do not show it."""
-    base = given.inputs.get("base")
-    found, default = dict(given.inputs), VOCABULARY["base"].own.default
+def _filled(request: Request, scene: Scene) -> dict[str, Input]:
+    """The inputs, with a value in each of [[cases]].
+
+    A case without a layer may leave out what belongs to the layer. It gets the value of another case: no answer depends
+    on it, and results do not show it.
+    """
+    base = request.inputs.get("base")
+    inputs, default = dict(request.inputs), VOCABULARY["base"].parameter.default
     bases = [] if base is None or base.is_wrong or base.array is not None else base.values
-    bases = [default if one is None else one for one in bases]
-    if len(bases) != len(given.rows):
-        bases = bases * len(given.rows) if len(bases) == 1 else [default] * len(given.rows)
-    for name, entry in found.items():
+    bases = [default if value is None else value for value in bases]
+    if len(bases) != len(request.rows):
+        bases = bases * len(request.rows) if len(bases) == 1 else [default] * len(request.rows)
+    for name, entry in inputs.items():
         if entry.section != "[[cases]]":
             continue
-        there = np.array([one is not None for one in entry.values])
+        present = np.array([value is not None for value in entry.values])
         if name == "base":
-            found[name] = replace(entry, values=bases)
-        elif (there | (name in _OF_LAYER and np.array([one == "half_space" for one in bases]))).all():
-            first = entry.values[int(np.argmax(there))]
-            found[name] = replace(entry, values=[first if one is None else one for one in entry.values])
-            if not there.all():
-                scene.given_in |= dict.fromkeys(_OF_LAYER[name], xr.DataArray(there, dims="case"))
+            inputs[name] = replace(entry, values=bases)
+        elif (present | (name in _OF_LAYER and np.array([value == "half_space" for value in bases]))).all():
+            first = entry.values[int(np.argmax(present))]
+            inputs[name] = replace(entry, values=[first if value is None else value for value in entry.values])
+            if not present.all():
+                scene.cases_of |= dict.fromkeys(_OF_LAYER[name], xr.DataArray(present, dims="case"))
         else:
-            given.errors.append(f"{name} must be given in every case, or once for all")
-            found[name] = replace(entry, values=None)
-    return found
+            request.errors.append(f"{name} must be given in every case, or once for all")
+            inputs[name] = replace(entry, values=None)
+    return inputs
 
 
 def _add(scene: Scene, entry: Input) -> None:
@@ -124,16 +128,17 @@ def _add(scene: Scene, entry: Input) -> None:
     if entry.array is not None:
         value, spread = _of_array(entry, unit), 0.0
     elif entry.dims:
-        found = [si(name, one, f"{name}[{i}]") for i, one in enumerate(entry.values)]
-        value = xr.DataArray([one.value for one in found], dims=entry.dims)
-        spread = xr.DataArray([one.spread for one in found], dims=entry.dims)
+        quantities = [si(name, text, f"{name}[{i}]") for i, text in enumerate(entry.values)]
+        value = xr.DataArray([number.value for number in quantities], dims=entry.dims)
+        spread = xr.DataArray([number.spread for number in quantities], dims=entry.dims)
     else:
-        found = si(name, entry.values[0])
-        value, spread = found.value, found.spread
+        single = si(name, entry.values[0])
+        value, spread = single.value, single.spread
     if entry.dims == (dim_of(name),):
         scene.dims[dim_of(name)] = name
-        for message in equal_values(name, value.values.tolist(), lambda one: f"{one:g} {unit}".removesuffix(" 1")):
-            raise ValueError(message)
+        twins = equal_values(name, value.values.tolist(), lambda number: f"{number:g} {unit}".removesuffix(" 1"))
+        if twins:
+            raise ValueError(twins[0])
     low, high, limits = _LIMITS.get(name, (-np.inf, np.inf, "must be a number"))
     if name in ("R1", "R2"):
         _refuse(entry, value, value == 0, "must not be 0")
@@ -143,7 +148,7 @@ def _add(scene: Scene, entry: Input) -> None:
         at_limit = (spread > 0) & (value == limit)
         _refuse(entry, value, at_limit, f"with its spread it {limits}; at the limit itself give no spread")
         scene.spreads[name] = spread
-    scene.given[name] = value
+    scene.values[name] = value
 
 
 def _refuse(entry: Input, value: Any, where: Any, reason: str) -> None:

@@ -1,7 +1,7 @@
 """From SI numbers to dimensionless ones.
 
-The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1; on a rigid base, where E2* is infinite, in E1* = 1. All is
-done number by number, so that a case has the same dimensionless numbers, and key, in any grid.
+The solver works in units R = 1 and E2* = E2/(1 - nu2²) = 1; on a rigid base, where E2* is infinite, in E1* = 1. Each
+case is computed by itself, so that it has the same dimensionless numbers, and the same key, in any grid.
 """
 
 from typing import Any
@@ -12,33 +12,33 @@ import xarray as xr
 from ..vocabulary import SCENE, VOCABULARY
 from .scene import Scene
 
-#: Poisson ratio of a punch of which none is given: as of the other bodies.
-_POISSON = VOCABULARY["nu1"].own.default
+#: Default of the Poisson ratio of a punch, that of the other bodies.
+_POISSON = VOCABULARY["nu1"].parameter.default
 
 
 def make_dimensionless(scene: Scene) -> None:
     """Add to a scene what follows from its SI values: effective radius, unit of moduli, parameters of the solver."""
-    given = scene.given
-    if "R1" in given:
-        given["R"] = 1 / (1 / given["R1"] + 1 / given["R2"])
-    scene.R, scene.unit, layer, body = given["R"], *moduli(given, scene.parameters)
-    if "E1" in given:
+    values = scene.values
+    if "R1" in values:
+        values["R"] = 1 / (1 / values["R1"] + 1 / values["R2"])
+    scene.R, scene.unit, layer, body = values["R"], *moduli(values, scene.parameters)
+    if "E1" in values:
         scene.parameters["n"] = layer / body
-    if "E_punch" in given:
-        given.setdefault("nu_punch", _POISSON)  # results say which it was
+    if "E_punch" in values:
+        values.setdefault("nu_punch", _POISSON)  # results say which it was
         base = scene.parameters.get("base", "layered")
         surface = _where(base == "half_space", body, layer)
-        scene.parameters["m"] = surface / _reduced(given, "E_punch", "nu_punch")
-    for name, value in given.items():
+        scene.parameters["m"] = surface / _reduced(values, "E_punch", "nu_punch")
+    for name, value in values.items():
         if name not in SCENE:
             scene.parameters[name] = without_unit(value, VOCABULARY[name].powers, scene.unit, scene.R)
 
 
-def moduli(given: dict, parameters: dict) -> tuple:
+def moduli(values: dict, parameters: dict) -> tuple:
     """The unit of moduli, E1* and E2*, in Pa. Without E1 and n, on a half-space, E1* is E2*."""
-    body = _reduced(given, "E2", "nu2")
-    n = given["n"] if "n" in given else parameters.get("n", 1.0)
-    layer = _reduced(given, "E1", "nu1") if "E1" in given else n * body
+    body = _reduced(values, "E2", "nu2")
+    n = values["n"] if "n" in values else parameters.get("n", 1.0)
+    layer = _reduced(values, "E1", "nu1") if "E1" in values else n * body
     return _where(np.isinf(body), layer, body), layer, body
 
 
@@ -47,8 +47,8 @@ def _where(condition: Any, yes: Any, no: Any) -> Any:
     return xr.where(condition, yes, no) if np.ndim(condition) else yes if condition else no
 
 
-def _reduced(given: dict, name: str, nu: str) -> Any:
-    return reduced(given[name], given.get(nu, _POISSON))
+def _reduced(values: dict, name: str, nu: str) -> Any:
+    return reduced(values[name], values.get(nu, _POISSON))
 
 
 def reduced(E: Any, nu: Any) -> Any:

@@ -11,25 +11,25 @@ import xarray as xr
 class Scene:
     """A physical scene.
 
-    given : input -> its SI values, a float or a DataArray
+    values : input -> its SI values, a float or a DataArray
     spreads : input -> standard deviations, likewise; only of inputs that have some
     parameters : dimensionless, for the solver
     R, unit : radius (m) and modulus (Pa) that are 1 for the solver; the modulus is E2*, or E1* on a rigid base
     dims : dimension while the cases are solved -> name of it in the results
     labels : of the dimension `case`
     names : punch, layer, body -> (dimension or "", names of materials along it)
-    given_in : coordinate -> the cases that have it, a DataArray; without a layer a case may have none
-    assumed : interface and Poisson ratios that count and are not given, so that they have their defaults
+    cases_of : coordinate -> the cases that have it, a DataArray of bool; a case without a layer may lack it
+    assumed : Poisson ratios and the interface, where they matter and have their defaults since nobody gave them
     same_piece : whether bodies of one material are one piece of it
     correlations : pair of inputs with spreads -> their correlation, a number or a DataArray; 0 of all other pairs
     """
 
-    given: dict = field(default_factory=dict)
+    values: dict = field(default_factory=dict)
     spreads: dict = field(default_factory=dict)
     dims: dict = field(default_factory=dict)
     labels: list = field(default_factory=list)
     names: dict = field(default_factory=dict)
-    given_in: dict = field(default_factory=dict)
+    cases_of: dict = field(default_factory=dict)
     assumed: tuple = ()
     same_piece: bool = False
     correlations: dict = field(default_factory=dict)
@@ -39,27 +39,25 @@ class Scene:
 
     def sizes(self, axes: list[str]) -> dict[str, int]:
         """Dimension while the cases are solved -> its length; first `case`, then the axes in their order."""
-        dim_of, found = {name: dim for dim, name in self.dims.items()}, {}
-        arrays = [v for v in (*self.given.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
-        known = {dim: size for array in arrays for dim, size in array.sizes.items()}
-        for dim in ("case", *(dim_of.get(axis, axis) for axis in axes)):
-            if dim in known:
-                found[dim] = known[dim]
-        return found
+        dim_of = {name: dim for dim, name in self.dims.items()}
+        arrays = [v for v in (*self.values.values(), *self.parameters.values()) if isinstance(v, xr.DataArray)]
+        sizes = {dim: size for array in arrays for dim, size in array.sizes.items()}
+        order = ("case", *(dim_of.get(axis, axis) for axis in axes))
+        return {dim: sizes[dim] for dim in order if dim in sizes}
 
     def radii(self) -> dict[str, xr.Variable]:
-        """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} where R was given."""
-        return {name: bare_variable(self.given[name] / self.R) for name in ("R1", "R2") if name in self.given}
+        """R1 and R2 of two bodies in R, over the dimensions while the cases are solved; {} for a single R."""
+        return {name: bare_variable(self.values[name] / self.R) for name in ("R1", "R2") if name in self.values}
 
     def within(self, window: dict[str, slice]) -> "Scene":
-        """The scene of the cases in a window: a slice for each dimension that there is while the cases are solved."""
+        """The scene of the cases in a window, a slice for each dimension while the cases are solved."""
 
         def cut(value: Any) -> Any:
             if not isinstance(value, xr.DataArray):
                 return value
             return value.isel({dim: part for dim, part in window.items() if dim in value.dims})
 
-        tables = ("given", "spreads", "given_in", "parameters", "correlations")
+        tables = ("values", "spreads", "cases_of", "parameters", "correlations")
         changed = {table: {name: cut(v) for name, v in getattr(self, table).items()} for table in tables}
         labels = self.labels[window["case"]] if self.labels else []
         names = {body: (dim, texts[window[dim]] if dim else texts) for body, (dim, texts) in self.names.items()}

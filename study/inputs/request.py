@@ -1,4 +1,4 @@
-"""What is given, in a call of Python or in a study file: one form for both, before any number is read."""
+"""What a call of Python or a study file asks for, in one form for both. No number is read here."""
 
 from contextlib import suppress
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ from .sample import LIMITS
 from .vocabulary import BODIES, NUMERICS, PARAMETERS, SCENE, no_parameter
 
 MOST_MESSAGES = 30  # that are shown for a study at a time
-#: Attributes `units` of pure numbers; pint writes the last.
+#: Attributes `units` of pure numbers. pint writes "dimensionless".
 PURE = ("1", "", "dimensionless")
 #: The end of a message about `same_piece`.
 NEEDS_NAMES = (
@@ -23,13 +23,13 @@ NEEDS_NAMES = (
 
 @dataclass
 class Input:
-    """A parameter as it was given: numbers, texts, quantities of pint, or names of materials.
+    """A parameter as it stands in the call or file: numbers, texts, quantities of pint, or names of materials.
 
     section : of the study file, "" in Python
     dims : its dimensions, () of a single value
-    values : list of its values, None where a case does not say it; a range is a dict until it is read. Of values with
-        a mistake it is None
-    array : the DataArray that was given, if it was one; its `values` are read when they are needed
+    values : list of its values, None for a case that lacks it. A range is a dict until it is read. None if there is a
+        mistake in it
+    array : the DataArray, if it is one; then `values` is None
     """
 
     name: str
@@ -50,7 +50,7 @@ class Input:
 
     @property
     def is_wrong(self) -> bool:
-        """Whether there is a message about all of it, and no value."""
+        """Whether it was refused and has no values."""
         return self.array is None and self.values is None
 
     @property
@@ -64,7 +64,7 @@ class Input:
         return not pure and any(type(value) is Quantity or has_unit(value) for value in values)
 
     def at(self, place: list[int]) -> Any:
-        """What was given at a place, one number for each dimension; None for a number that follows from other words."""
+        """What stands at a place, one index for each dimension; None for a number from a range or a material."""
         if self.array is not None:
             return f"{self.array.values[tuple(place)]:g}" + f" {self.unit}" * (self.unit != "1")
         value = self.values[place[0] if place else 0]
@@ -72,17 +72,18 @@ class Input:
 
 
 @dataclass
-class Given:
+class Request:
     """All inputs of a call or of a study file.
 
     errors : messages, without the name of the file
     inputs : name -> input; cases come before axes, as `case` is the first dimension
-    sections : name -> the section of the file where it is given, "" in Python
+    sections : name -> the section of the file where it stands, "" in Python
     rows : of [[cases]]; sample : the section of this name
     labels : of the cases
     same_piece : whether bodies of one material are one piece of it
     correlations : pair of inputs -> correlation of their spreads
-    sign : what makes it a study with units, in words: an input with a unit, or one that no other study has; "" if none
+    sign : the input, in words, that makes this a study with units; "" if none does. It has a unit, or exists only in
+        such studies
     """
 
     errors: list[str] = field(default_factory=list)
@@ -104,52 +105,52 @@ class Given:
         return bool(self.sign)
 
     @classmethod
-    def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> "Given":
+    def in_python(cls, parameters: dict, rows: list[dict], same_piece: Any, correlations: Any) -> "Request":
         """Parameters of a call: DataArrays, 1-D sequences or single values, and rows of cases."""
-        given = cls(correlations=correlations)
+        request = cls(correlations=correlations)
         with suppress(ValueError):  # laws as objects have parameters; what is wrong with one is told when micro is read
             micro = [table.get("micro") for table in (parameters, *rows)]
             law_names([law for laws in micro for law in (laws if isinstance(laws, list) else [laws])])
-        given._same_piece(same_piece, "")
+        request._same_piece(same_piece, "")
         if rows:
-            given._cases(rows)
+            request._cases(rows)
         for name, value in parameters.items():
             value = plain(value)
             if hasattr(value, "dims") and hasattr(value, "shape"):  # a Dataset has no shape
-                given._add(Input(name, "", tuple(map(str, value.dims)), array=value))
+                request._add(Input(name, "", tuple(map(str, value.dims)), array=value))
             elif isinstance(value, (list, range)) or (isinstance(value, tuple) and name != "layer"):
-                given._add(Input(name, "", (name,), list(value[: LONGEST_AXIS + 1])))  # a range may be endless
+                request._add(Input(name, "", (name,), list(value[: LONGEST_AXIS + 1])))  # a range may be endless
             else:
-                given._add(Input(name, "", (), [value]))
-        return given._decided()
+                request._add(Input(name, "", (), [value]))
+        return request._decided()
 
     @classmethod
-    def in_file(cls, tables: dict, errors: list[str]) -> "Given":
+    def in_file(cls, tables: dict, errors: list[str]) -> "Request":
         """The sections of a study file; [model], [axes] and [numerics] are tables."""
-        given = cls(errors)
+        request = cls(errors)
         pairs = tables.get("correlations", {})
         if isinstance(pairs, dict) and all(isinstance(row, dict) for row in pairs.values()):
-            pairs = {(one, other): value for one, row in pairs.items() for other, value in row.items()}
-        given.correlations = pairs
+            pairs = {(first, second): value for first, row in pairs.items() for second, value in row.items()}
+        request.correlations = pairs
         for name, value in tables["numerics"].items():
             if name in NUMERICS:
-                given._add(Input(name, "[numerics]", (), [value]))
+                request._add(Input(name, "[numerics]", (), [value]))
         for name, value in tables["model"].items():
             if name == "same_piece":
-                given._same_piece(value, "[model] ")
+                request._same_piece(value, "[model] ")
             else:
-                given._add(Input(name, "[model]", (), [value]))
+                request._add(Input(name, "[model]", (), [value]))
         if "cases" in tables:
-            given._cases(tables["cases"])
+            request._cases(tables["cases"])
         if "sample" in tables:
-            given.sample = table = tables["sample"]
+            request.sample = table = tables["sample"]
             for name in (name for name in table if name not in LIMITS) if isinstance(table, dict) else ():
-                given._add(Input(name, "[sample]", ("case",), table[name]))
-            if given.rows:
+                request._add(Input(name, "[sample]", ("case",), table[name]))
+            if request.rows:
                 errors.append("[sample] and [[cases]] both make the dimension case: only one of them is allowed")
         for name, value in tables["axes"].items():
-            given._add(Input(name, "[axes]", (name,), value))
-        return given._decided()
+            request._add(Input(name, "[axes]", (name,), value))
+        return request._decided()
 
     def _same_piece(self, value: Any, place: str) -> None:
         value = plain(value)
@@ -177,7 +178,7 @@ class Given:
             self.errors += equal_values(name, [label or i for i, label in enumerate(self.labels)])
 
     def _add(self, entry: Input) -> None:
-        """Note an input, unless it is given already or stands in a wrong section."""
+        """Note an input, unless it stands there already or is in a wrong section."""
         name, section = entry.name, entry.section
         if name == "same_piece":
             self.errors.append("same_piece is for all cases alike: true or false, no axis and not in cases")
@@ -197,8 +198,8 @@ class Given:
                 entry.values = None
             self.sections[name], self.inputs[name] = section, entry
 
-    def _decided(self) -> "Given":
-        """The same, with units or without, and its cases first."""
+    def _decided(self) -> "Request":
+        """The request itself, with its `sign`, and its cases before its axes."""
         signs = [entry for name, entry in self.inputs.items() if name in SCENE or name in BODIES or entry.has_unit]
         for entry in sorted(signs, key=lambda entry: bool(entry.dims))[:1]:  # a single value rather than several
             values = [value for value in entry.values if value is not None] if isinstance(entry.values, list) else []

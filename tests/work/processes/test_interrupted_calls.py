@@ -48,8 +48,10 @@ def test_an_interrupt_while_the_line_begins_or_ends_leaves_no_line(monkeypatch, 
     assert lines(stderr.getvalue()) and stderr.getvalue().endswith(ERASE) and nobody_speaks()
 
 
+# Who runs the tests in the background may have Ctrl-C ignored, which processes inherit.
 SLOW_POINT = """
-import sys, time
+import signal, sys, time
+signal.signal(signal.SIGINT, signal.default_int_handler)
 from study.work import cases, progress
 progress.SILENT = 0.05
 real = cases.compute

@@ -11,6 +11,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .figures import record
+from .figures.annotate import name_panels
 from .figures.formats import as_latex, as_text, csv_text, write
 from .figures.labels import stated, wrapped
 from .figures.registry import FIGURES, TABLES, Columns, Drawing, code_of, entry, names, open_studies
@@ -21,6 +22,11 @@ __all__ = ["FIGURES", "TABLES", "captions", "compose", "draw", "tabulate"]
 Folder = str | os.PathLike
 ENDINGS = {"figure": ("csv", "pdf", "png"), "table": ("txt", "csv", "tex"), "drawing": ("svg", "pdf", "png")}
 CAPTIONS = "captions"  # name among the figures of the file that holds all captions
+NOT_THIN = (
+    '"Layer not thin" above a figure: the largest of the errors of a, D, p(0), pmax and Ar/An of the thin-layer model is '
+    "above 10 %. That of the quantity shown may be smaller; the figures on the exact layer show it."
+)
+LETTERED = 8  # most panels that get letters; more stand in rows and columns with headings
 LETTERS = 21  # letters on an inch of the line above a figure that states its parameters
 
 
@@ -97,11 +103,14 @@ def compose(name: str, results: Folder = "results") -> tuple[Figure, Columns, st
     digests = [dataset.attrs["study_digest"][:16] for dataset in datasets]
     with style():
         figure = Figure(figsize=recipe.size, layout="constrained")
-        columns = recipe.draw(figure.subplots(*recipe.panels), *datasets)
+        panels = figure.subplots(*recipe.panels)
+        columns = recipe.draw(panels, *datasets)
         shapes = [np.shape(column) for column in columns.values()] if isinstance(columns, dict) else [()]
         if any(len(shape) != 1 or shape != shapes[0] for shape in shapes):
             wrong = "the function must return its numbers: heading -> column, all of one length"
             raise StudyError([f"{name}: {wrong}"], code=1)
+        if 1 < np.size(panels) <= LETTERED:
+            name_panels(np.ravel(panels))
         if not figure.get_suptitle():
             figure.suptitle(wrapped(stated(datasets), LETTERS * recipe.size[0]), fontsize=7)
     return figure, columns, f"{stem(name)}, studies {' '.join(digests)}".removesuffix(", studies ")
@@ -159,6 +168,7 @@ def captions(results: Folder = "results") -> str:
     str : in Markdown
     """
     lines = ["# Captions", "", "Lengths are in R, pressures in E2*, loads in E2* R² unless an axis says otherwise.", ""]
+    lines += [NOT_THIN, ""]
     recipes = {name: entry("figure", name) for name in sorted(names("figure"))}
     for name, recipe in sorted(recipes.items(), key=lambda item: not isinstance(item[1], Drawing)):  # drawings first
         if all((Path(results) / f"{study}.nc").exists() for study in recipe.studies):

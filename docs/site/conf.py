@@ -66,7 +66,7 @@ def _pictures(block, block_vars, conf):
             known.add(id(figure))
             made.append(next(block_vars["image_path_iterator"]))
             figure.savefig(made[-1])
-    return figure_rst(made, conf["src_dir"]) + matplotlib_scraper(block, block_vars, conf)
+    return figure_rst(made, conf["src_dir"]) + matplotlib_scraper(block, block_vars, conf, bbox_inches="tight")
 
 
 sphinx_gallery_conf = {

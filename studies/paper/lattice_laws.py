@@ -49,8 +49,8 @@ def laws(panels) -> Columns:
 
 @figure("fig10_lattice", "spot_density_lattice", "spot_density", size=(TWO_COLUMNS, 3.0), panels=(1, 2))
 def densities(panels, lattice: xr.Dataset, paper: xr.Dataset) -> Columns:
-    """Left: nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted: with
-    the power law of Table 1 on the same layer. Right: how far that (dotted) and the disc cell (dashed) are from the
+    """(a) Nominal pressure for three densities of asperities on a square lattice, on the exact layer; dotted: with
+    the power law of Table 1 on the same layer. (b) How far that (dotted) and the disc cell (dashed) are from the
     lattice, over its p(0). a0: radius of the paper's contact 1."""
     axes, beside = panels
     shown, differences = [], {}

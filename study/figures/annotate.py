@@ -20,6 +20,16 @@ def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", 
     axes.annotate(text, (at, height), (0, gap), path_effects=[withStroke(linewidth=2, foreground="white")], **look)
 
 
+def name_panels(panels) -> None:
+    """Write (a), (b), ... at the upper left corners of panels unless a title, or that of the legend, begins with such a letter."""
+    for letter, axes in zip("abcdefghijkl", panels, strict=False):
+        legend = axes.get_legend()
+        headings = [axes.get_title("left"), axes.get_title(), legend.get_title().get_text() if legend else ""]
+        if not any(heading.startswith("(") for heading in headings):
+            place = {"xycoords": "axes fraction", "textcoords": "offset points", "ha": "right", "va": "bottom"}
+            axes.annotate(f"({letter})", (0, 1), (-4, 4), fontsize=9, **place)
+
+
 def load_axis(axes, largest: float, P0: float) -> None:
     """An abscissa of loads in 1e-5 E2* R², from 0 to `largest`, with a mark at P0, the load of the main case."""
     axes.set(xlabel=r"$P\ /\ (10^{-5} E_2^* R^2)$", xlim=(0, largest * 1e5))
@@ -71,7 +81,7 @@ def violations(validity: dict[str, xr.DataArray]) -> dict[str, dict[str, np.ndar
 def note(axes, noted: list[tuple]) -> None:
     """Write above the axes a line for each assumption. noted : assumption, the curves that break it, and words that say
     where, if not everywhere."""
-    lines = [f"{', '.join(curves)}: {RULES[meaning].text}{RULES[meaning].of_which}{loads}"
+    lines = [f"{', '.join(curves)}: {RULES[meaning].text}{loads}"
              for meaning, curves, loads in noted]  # fmt: skip
     axes.set_title("\n".join(lines), fontsize=7, loc="left", color="0.2")
 

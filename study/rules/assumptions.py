@@ -54,12 +54,7 @@ def by_pitch(v, where: np.ndarray) -> str:
     return f"{worst}, at which the {cases} missed {about} at worst{harder}."
 
 
-@rule(
-    1,
-    f"layer not thin, some error > {100 * NOT_THIN:g} %",
-    "0.87",
-    of_which=r" of $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$",
-)
+@rule(1, "layer not thin", "0.87")
 def layer_not_thin(v, times):
     """The layer is not thin: the thin-layer equation errs by more than {NOT_THIN:.0%} here. Take base = "layered"."""
     return v["thin"] & (v["model_error"] > times * NOT_THIN)

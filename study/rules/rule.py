@@ -24,7 +24,6 @@ class Rule(NamedTuple):
     mask: int  # in `validity`; 0: none
     text: str  # in a figure, in mathtext
     grey: str  # of its band there
-    of_which: str  # what a note above the axes adds to the text, for a legend has no room
     size: Callable | None  # the variables, where it is violated -> a sentence on how large the error is
     sentence: str  # what is said where it is violated: the docstring, in which {NAME} is a constant of the module
 
@@ -35,7 +34,7 @@ ASSUMPTIONS: dict[int, str] = {}
 """Mask -> name of its rule."""
 
 
-def rule(mask=0, text="", grey="0.85", *, of_which="", size=None) -> Callable:
+def rule(mask=0, text="", grey="0.85", *, size=None) -> Callable:
     """Decorator of a condition: puts a `Rule` into the table. Raises ValueError for a mask or name that is taken."""
 
     def register(condition: Callable) -> Callable:
@@ -43,7 +42,7 @@ def rule(mask=0, text="", grey="0.85", *, of_which="", size=None) -> Callable:
         if name in RULES or mask in ASSUMPTIONS or mask < 0 or mask & (mask - 1):
             raise ValueError(f"{name}, {mask}: a rule needs a name, and a power of 2 or 0, that no other rule has")
         sentence = words.format(**condition.__globals__) if mask else ""
-        RULES[name] = Rule(condition, mask, text or name.replace("_", " "), grey, of_which, size, sentence)
+        RULES[name] = Rule(condition, mask, text or name.replace("_", " "), grey, size, sentence)
         ASSUMPTIONS.update({mask: name} if mask else {})
         return condition
 

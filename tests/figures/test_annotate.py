@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 import xarray as xr
-from drawn import NOTED, WORDS, bands, legend
+from drawn import WORDS, bands, legend
 from matplotlib.figure import Figure
 
 from study.data.derived import ASSUMPTIONS
 from study.figures.annotate import bands as intervals
-from study.figures.annotate import name_curve, note_violations, shade_violations
+from study.figures.annotate import name_curve, name_panels, note_violations, shade_violations
 from study.rules.rule import RULES
 
 
@@ -28,12 +28,12 @@ def test_shading_names_the_assumption_and_its_curves():
     bands_so_far = len(axes.patches)
     nowhere, one, two = (first.copy(data=[mask] * 4) for mask in (0, 1, 3))
     shade_violations(axes, P, {"3": one, "4": nowhere, "5": two})
-    assert axes.get_title("left") == f"3, 5: {NOTED[1]}\n5: {NOTED[2]}"
+    assert axes.get_title("left") == f"3, 5: {WORDS[1]}\n5: {WORDS[2]}"
     shade_violations(axes, P, {"6": first.copy(data=[1, 1, 1, 0])})
-    assert axes.get_title("left") == f"6: {NOTED[1]}, $P < 0.35$", "in 1e-5 E2* R²"
+    assert axes.get_title("left") == f"6: {WORDS[1]}, $P < 0.35$", "in 1e-5 E2* R²"
     gaps = xr.DataArray([2, 2, 0, 2, 2, 2], dims="P", attrs=attributes)
     shade_violations(axes, 1e-5 * np.arange(1, 7), {"7": gaps})
-    assert axes.get_title("left") == f"7: {NOTED[2]}, $P < 2.5$, $3.5 < P < 6$"
+    assert axes.get_title("left") == f"7: {WORDS[2]}, $P < 2.5$, $3.5 < P < 6$"
     assert len(axes.get_legend_handles_labels()[1]) == 2
     assert len(axes.patches) == bands_so_far
 
@@ -43,7 +43,7 @@ def test_a_note_says_which_curves_break_what():
     attributes = {"flag_masks": np.array(list(ASSUMPTIONS)), "flag_meanings": " ".join(ASSUMPTIONS.values())}
     flags = {name: xr.DataArray(value, attrs=attributes) for name, value in {"1": 1, "2": 0, "3": 18}.items()}
     note_violations(axes, flags)
-    assert axes.get_title("left") == f"1: {NOTED[1]}\n3: {NOTED[2]}\n3: {NOTED[16]}"
+    assert axes.get_title("left") == f"1: {WORDS[1]}\n3: {WORDS[2]}\n3: {WORDS[16]}"
     note_violations(axes, {"2": flags["2"]})
     assert axes.get_title("left") == ""
 
@@ -98,4 +98,13 @@ def test_a_file_of_an_earlier_version_has_fewer_masks():
     )
     for curves in ({"old": old, "new": new}, {"new": new, "old": old}):
         note_violations(axes, curves)
-        assert axes.get_title("left") == f"{', '.join(curves)}: {NOTED[2]}\nnew: {NOTED[masks[-1]]}"
+        assert axes.get_title("left") == f"{', '.join(curves)}: {WORDS[2]}\nnew: {WORDS[masks[-1]]}"
+
+
+def test_panels_have_letters_unless_their_titles_have():
+    panels = Figure().subplots(1, 4)
+    panels[1].set_title("(b) titled")
+    panels[2].plot([0, 1], label="curve")
+    panels[2].legend(title="(c) Ra = 1")
+    name_panels(panels)
+    assert [[text.get_text() for text in axes.texts] for axes in panels] == [["(a)"], [], [], ["(d)"]]

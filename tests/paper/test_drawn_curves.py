@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from conftest import opened
-from drawn import NOTED, WORDS, bands, frame, legend, lines, texts
+from drawn import WORDS, bands, frame, legend, lines, texts
 
 from solver import fit_power_law
 from solver.laws.disc_cell import displacement
@@ -157,7 +157,7 @@ def test_pressures_are_the_profiles_of_the_datasets(drawing, results, name, exac
 def noted(broken: dict[int, list[str]], loads=None) -> str:
     """The note above the axes: a line for each assumption that curves break nearly everywhere, and where that is."""
     return "\n".join(
-        f"{', '.join(curves)}: {NOTED[mask]}{(loads or {}).get(mask, '')}" for mask, curves in broken.items()
+        f"{', '.join(curves)}: {WORDS[mask]}{(loads or {}).get(mask, '')}" for mask, curves in broken.items()
     )
 
 

@@ -29,7 +29,7 @@ class Line:
 
 
 WORDS = {  # of the legend, by the masks of `validity`
-    1: "layer not thin, some error > 10 %",
+    1: "layer not thin",
     2: "fewer than 100 spots",
     4: r"spots not small, $b > 0.1\,h$",
     8: r"layer not soft, $n \geq 1$",
@@ -41,7 +41,6 @@ WORDS = {  # of the legend, by the masks of `validity`
     512: "a body would yield",
     1024: "asperities would yield",
 }
-NOTED = WORDS | {1: WORDS[1] + r" of $a$, $D$, $p(0)$, $p_{\max}$ or $A_r/A_n$"}  # above the axes
 
 
 def look(line) -> Look:

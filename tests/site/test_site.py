@@ -2,6 +2,7 @@
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -16,6 +17,10 @@ import solver
 sphinx = pytest.importorskip("sphinx", reason="make docs installs Sphinx")
 pytest.importorskip("sphinx_gallery", reason="make docs installs it")
 SCHEME = re.compile(r"[a-z]+:|//")
+CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
+FORMULAS = "async () => { if (window.MathJax?.startup) await MathJax.startup.promise; return [" + ", ".join(
+    f"document.querySelectorAll('{what}').length" for what in ("mjx-container", "[data-mml-node=merror], mjx-merror")
+) + "]; }"
 
 
 @pytest.fixture(scope="module")
@@ -71,3 +76,25 @@ def test_pages_of_the_code_say_what_it_has(site):
     commands = (site / "reference/command_line.html").read_text(encoding="utf-8")
     assert all(f'id="{name}"' in commands for name in ("point", "explore", "scan", "materials", "docs", "table"))
     assert "study_digest" in (site / "reference/file_format.html").read_text(encoding="utf-8")
+
+
+@pytest.mark.skipif(CHROMIUM is None, reason="chromium is not installed (make explorer-test)")
+def test_a_browser_without_a_network_shows_every_page_and_formula(site):
+    """It asks for files of the site alone, raises nothing, and sets each formula without an error."""
+    sync_api = pytest.importorskip("playwright.sync_api", reason="playwright is not installed (make explorer-test)")
+    asked, trouble, formulas = [], [], 0
+    with sync_api.sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=CHROMIUM, args=["--no-sandbox"])
+        tab = browser.new_page()
+        tab.context.set_offline(True)
+        tab.on("request", lambda request: asked.append(request.url))
+        tab.on("requestfailed", lambda request: trouble.append(f"{request.url}: {request.failure}"))
+        tab.on("pageerror", lambda error: trouble.append(f"{tab.url}: {error}"))
+        for path in sorted(set(site.rglob("*.html")) - {site / "_static/webpack-macros.html"}):  # a template of the theme
+            tab.goto(path.as_uri())
+            shown, wrong = tab.evaluate(FORMULAS)
+            formulas += shown
+            trouble += [f"{path.name}: {wrong} formulas"] if wrong else []
+        browser.close()
+    elsewhere = [url for url in asked if not url.startswith((site.as_uri(), "data:", "blob:"))]
+    assert elsewhere == [] and trouble == [] and formulas > 300

@@ -120,5 +120,5 @@ def _above(contact: xr.Dataset, mu: float, sigma_res: float | str) -> list[str]:
     ratios = [value_text(name, contact[name], contact[name].item()) for name in bodies]
     texts = dict.fromkeys([*stated([contact]), *ratios, *sliding])  # the pressure may not depend on them
     violated = [name for name, where in broken(contact["validity"]).items() if where.any()]
-    names = [RULES[name].text + RULES[name].of_which if name in RULES else name for name in violated]
+    names = [RULES[name].text if name in RULES else name for name in violated]
     return [wrapped([*texts], _LETTERS), *([f"not valid: {', '.join(names)}"] if names else [])]

@@ -23,8 +23,8 @@ Folder = str | os.PathLike
 ENDINGS = {"figure": ("csv", "pdf", "png"), "table": ("txt", "csv", "tex"), "drawing": ("svg", "pdf", "png")}
 CAPTIONS = "captions"  # name among the figures of the file that holds all captions
 NOT_THIN = (
-    '"Layer not thin" above a figure: the largest of the errors of a, D, p(0), pmax and Ar/An of the thin-layer model is '
-    "above 10 %. That of the quantity shown may be smaller; the figures on the exact layer show it."
+    '"Layer not thin" above a figure: the largest of the errors of a, D, p(0), pmax and Ar/An of the thin-layer model '
+    "is above 10 %. That of the quantity shown may be smaller; the figures on the exact layer show it."
 )
 LETTERED = 8  # most panels that get letters; more stand in rows and columns with headings
 LETTERS = 21  # letters on an inch of the line above a figure that states its parameters

@@ -14,7 +14,7 @@ h, P = np.geomspace(1e-3, 0.3, 120), np.geomspace(1e-8, 1e-2, 120)
 contacts = rc.solve(h=h, P=P, n=0.2, bonding="bonded", Nbar=250000, Ra=0.004, base="thin_layer", x=2, profiles=False)
 
 # %%
-# Each mask has a name, and a line around the contacts that violate it. Where the picture is white the thin layer serves.
+# Each mask has a name, and a line around the contacts that violate it. Where it is white the thin layer serves.
 names = dict(zip(contacts.validity.flag_masks.tolist(), contacts.validity.flag_meanings.split(), strict=True))
 flags = contacts.validity.values.T
 broken = [mask for mask in names if (flags & mask).any()]

@@ -21,7 +21,7 @@ def name_curve(axes, lines: list, text: str, at: float, *, side: str = "above", 
 
 
 def name_panels(panels) -> None:
-    """Write (a), (b), ... at the upper left corners of panels unless a title, or that of the legend, begins with such a letter."""
+    """Write (a), (b), ... at the upper left corners of panels, unless a title or the legend's begins with a letter."""
     for letter, axes in zip("abcdefghijkl", panels, strict=False):
         legend = axes.get_legend()
         headings = [axes.get_title("left"), axes.get_title(), legend.get_title().get_text() if legend else ""]

@@ -18,9 +18,14 @@ sphinx = pytest.importorskip("sphinx", reason="make docs installs Sphinx")
 pytest.importorskip("sphinx_gallery", reason="make docs installs it")
 SCHEME = re.compile(r"[a-z]+:|//")
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-FORMULAS = "async () => { if (window.MathJax?.startup) await MathJax.startup.promise; return [" + ", ".join(
-    f"document.querySelectorAll('{what}').length" for what in ("mjx-container", "[data-mml-node=merror], mjx-merror")
-) + "]; }"
+FORMULAS = (
+    "async () => { if (window.MathJax?.startup) await MathJax.startup.promise; return ["
+    + ", ".join(
+        f"document.querySelectorAll('{what}').length"
+        for what in ("mjx-container", "[data-mml-node=merror], mjx-merror")
+    )
+    + "]; }"
+)
 
 
 @pytest.fixture(scope="module")
@@ -90,7 +95,8 @@ def test_a_browser_without_a_network_shows_every_page_and_formula(site):
         tab.on("request", lambda request: asked.append(request.url))
         tab.on("requestfailed", lambda request: trouble.append(f"{request.url}: {request.failure}"))
         tab.on("pageerror", lambda error: trouble.append(f"{tab.url}: {error}"))
-        for path in sorted(set(site.rglob("*.html")) - {site / "_static/webpack-macros.html"}):  # a template of the theme
+        template = site / "_static/webpack-macros.html"  # of the theme, no page
+        for path in sorted(set(site.rglob("*.html")) - {template}):
             tab.goto(path.as_uri())
             shown, wrong = tab.evaluate(FORMULAS)
             formulas += shown

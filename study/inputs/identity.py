@@ -19,7 +19,7 @@ from solver.laws import identity as law_identity
 from solver.parameters import uses
 
 from .grid import Grid, along
-from .vocabulary import PARAMETERS, VOCABULARY
+from .vocabulary import CONTROLS, PARAMETERS, VOCABULARY
 
 #: Strengths, with which answers are compared: no case depends on them, but the flags in a results file do.
 STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
@@ -27,11 +27,16 @@ STRENGTHS = ("Y1", "Y2", "Y_punch", "hardness", "yield_strength")
 RATIOS = ("nu1", "nu2")
 
 
+def acts(grid: Grid, name: str) -> np.ndarray:
+    """Whether the answer depends on a parameter: bool along the dimensions of the grid, some of them of length 1."""
+    return uses(name, partial(along, grid))
+
+
 def counts(grid: Grid, name: str) -> np.ndarray:
-    """Whether the value of a parameter counts: bool along the dimensions of the grid, some of them of length 1."""
+    """Whether the value of a parameter counts in a key: it acts, and is not the default. Shape as of `acts`."""
     value, default = along(grid, name), VOCABULARY[name].parameter.default
     changed = ~np.isnan(value) if default is None else value != default
-    return changed & uses(name, partial(along, grid))
+    return changed & acts(grid, name)
 
 
 def law_versions(grid: Grid) -> list[str]:
@@ -63,7 +68,11 @@ def digest_of(definition) -> str:
     content |= {"stresses": _digest_of_ratios(grid)} if definition.stresses else {}
     content |= {"laws": law_versions(grid)} if law_versions(grid) else {}
     digest = hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
-    return _digest_of_scene(digest, definition.scene) if definition.scene else digest
+    if definition.scene is None:
+        return digest
+    # until they were derived by too, a spread of an input that has its default value was left out of every ±
+    at_default = [name for name in definition.inputs if name not in CONTROLS and not counts(grid, name).any()]
+    return _digest_of_scene(digest, definition.scene, at_default)
 
 
 def _digest_of_ratios(grid: Grid) -> list[str]:
@@ -71,13 +80,14 @@ def _digest_of_ratios(grid: Grid) -> list[str]:
     return [digest_of_array(along(grid, name)) for name in RATIOS]
 
 
-def _digest_of_scene(digest: str, scene) -> str:
+def _digest_of_scene(digest: str, scene, at_default: list[str]) -> str:
     """sha256 of the digest of dimensionless numbers, and of the SI values from which they follow."""
     content = [digest, scene.labels, sorted(scene.names.items())]
     correlations = {f"{first} and {second}": value for (first, second), value in scene.correlations.items()}
     for table, end in ((scene.values, ""), (scene.spreads, "_spread"), (correlations, "")):
         for name, value in sorted(table.items()):
             content.append((name + end, getattr(value, "dims", ()), digest_of_array(np.asarray(value))))
+    content += [at_default] if at_default else []
     return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()
 
 

@@ -9,6 +9,7 @@ import pytest
 from spread_contacts import AT, CONTACTS
 
 import study
+from study.inputs import identity
 
 TABLE = Path(__file__).parents[1] / "references/moved_spreads.csv"
 
@@ -111,3 +112,22 @@ def test_only_the_unit_is_off():
         [found.P_spread / found.P, found.p0_spread / found.p0], 0.01, rtol=1e-8
     )  # the step², 1e-4²
     assert found.D_spread == 0 and (found.p_spread[:2] > 0).all()
+
+
+def test_a_spread_of_an_input_that_has_its_default_value(tmp_path, monkeypatch):
+    """nu1 = 0.3 ± 0.01 counts as 0.31 ± 0.01 does; a file of a version that left it out is made anew."""
+    film = {"R": "5 mm", "E2": "210 GPa", "E1": "1 GPa", "h": "100 um", "P": "1 N", "micro": "smooth"}
+    film |= {"bonding": "bonded"}
+    at, beside = (float(quiet(**film, nu1=f"{nu} ± 0.01").D_spread) for nu in (0.3, 0.3001))
+    assert at == pytest.approx(beside, rel=2e-3)
+    moved = [float(quiet(**film, nu1=nu).D) for nu in (0.299, 0.301)]
+    assert at == pytest.approx(10 * abs(moved[1] - moved[0]) / 2, rel=1e-4)
+    text = "[model]\nnu1 = '0.3 ± 0.01'\n" + "".join(f"{name} = {value!r}\n" for name, value in film.items())
+    (tmp_path / "film.toml").write_text(text)
+    with monkeypatch.context() as before:
+        before.setattr("study.inputs.scene.changes.acts", identity.counts)
+        study.load(tmp_path / "film.toml", tmp_path).run(workers=1, progress=False)
+    loaded = study.load(tmp_path / "film.toml", tmp_path)
+    assert loaded.status()["state"] == "outdated" and loaded.run(workers=1, progress=False).computed == 1
+    with loaded.open() as again:
+        assert float(again.D_spread) == pytest.approx(at, rel=1e-9)

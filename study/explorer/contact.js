@@ -1,7 +1,7 @@
 "use strict";
 /* One contact: from texts with units to the parameters of the solver, and from its numbers to texts. The names are those
    of `roughcoat point`. DATA, which page.py writes, has meshes, materials, limits and sentences of the Python program. */
-const Contact = ((Core, DATA) => {
+const Contact = ((Core, Stress, DATA) => {
   Core.load(DATA.meshes);
   const MATERIALS = Object.fromEntries(DATA.materials.map((own) => [own.name, own]));
 
@@ -153,7 +153,7 @@ const Contact = ((Core, DATA) => {
     Object.assign(problems, beyondBounds(case_));
     if (Object.keys(problems).length) return { texts, problems, status: "invalid" };
     const solved = Core.solve(case_.p, quick);
-    const contact = { texts, inputs, case_, problems, status: solved.status, ev: solved.ev };
+    const contact = { texts, inputs, case_, problems, status: solved.status, ev: solved.ev, a: solved.a };
     if (solved.status !== "converged") return contact;
     contact.Q = Object.fromEntries(Object.entries(case_.units).map(([name, unit]) => [name, solved.Q[name] * unit]));
     contact.Q[inputs.control] = inputs.v[inputs.control].value;
@@ -215,6 +215,46 @@ const Contact = ((Core, DATA) => {
     }
     const p = best.p * case_.unit;
     return p > DATA.limits.RING * Q.p0 ? { p, r: best.x * Q.a, p_peak: real * case_.unit } : null;
+  }
+
+  /* ---- stresses on the axis ---- */
+
+  /** Their field, and the largest von Mises stress in each body that is not rigid: {field, bodies: [{body, z, mises,
+      strength (NaN: not known), share}], edge, below: sr of the layer at the interface}, in SI but z in a. {film: true}
+      where the layer is too thin for the page. */
+  function stresses({ ev, case_, texts, inputs }) {
+    const field = Stress.field(ev), strengthOf = (body) => MATERIALS[texts[body]]?.Y ?? NaN;
+    if (!field) return { film: true };
+    const peaks = Stress.peaks(ev, field, inputs.v.nu_punch.value);
+    const bodies = ["punch", "layer", "body"].filter((body) => peaks[body]).map((body) => {
+      const mises = peaks[body].value * case_.unit, strength = strengthOf(body);
+      return { body, z: peaks[body].z, mises, strength, share: mises / strength };
+    });
+    const below = field.layer && field.layer(case_.p.h / ev.a).sr * case_.unit;
+    return { field, bodies, edge: field.edge * case_.unit, below };
+  }
+
+  /** The load in SI at which the largest von Mises stress of a body on the axis is its strength, to 1e-3, by false position
+      in logarithms between loads where it is less and more; Infinity where it is less up to a = 0.2 R, NaN where the
+      page cannot tell. */
+  function yieldLoad({ case_, inputs, Q }, { body, mises, strength }) {
+    const excess = (control, value) => {
+      const solved = Core.solve({ ...case_.p, control, value }, true), field = solved.status === "converged" && Stress.field(solved.ev);
+      const peak = field && Stress.peaks(solved.ev, field, inputs.v.nu_punch.value)[body];
+      return peak ? { P: Math.log(solved.Q.P), by: Math.log(peak.value * case_.unit / strength) } : null;
+    };
+    let low = { P: Math.log(Q.P / case_.units.P), by: Math.log(mises / strength) }, high = low;
+    for (let count = 0; low && low.by > 0 && count < 60; count++) [high, low] = [low, excess("P", Math.exp(low.P - 3 * low.by - 0.1))];
+    if (high.by < 0) high = excess("a", DATA.limits.STEEP);
+    if (!low || !high) return NaN;
+    if (high.by < 0) return Infinity;
+    for (let count = 0; count < 40; count++) {
+      const next = excess("P", Math.exp(low.P + (high.P - low.P) * low.by / (low.by - high.by)));
+      if (!next || Math.abs(next.by) < 1e-3) return next ? Math.exp(next.P) * case_.units.P : NaN;
+      const before = next.by < 0 ? high : low; // the end that stays counts half, or it would stay for ever
+      [low, high] = next.by < 0 ? [next, { ...before, by: before.by / 2 }] : [{ ...before, by: before.by / 2 }, next];
+    }
+    return NaN;
   }
 
   /* ---- validity ---- */
@@ -291,7 +331,7 @@ const Contact = ((Core, DATA) => {
     if (rough) found.push(`The asperities really touch on a share ${show("Ar_An")} of that circle; in the central spot the pressure is ${show("p_max")}.`);
     if (contact.ring) found.push(`The layer bends like a plate: the largest nominal pressure, ${readable(contact.ring.p, "Pa", contact.digits)}, is in a ring at r = ${readable(contact.ring.r, "m", contact.digits)}.`);
     found.push(`Its stiffness dP/dD is ${show("dP_dD")}.`);
-    found.push("Not checked on this page: adhesion, and whether the bodies stay elastic. The command below says which of them is nearest to its limit, and at which load.");
+    found.push("Not checked on this page: adhesion, friction, and stresses beside the axis. The command below says what is nearest to its limit, and at which load.");
     return found;
   }
 
@@ -331,7 +371,7 @@ const Contact = ((Core, DATA) => {
     return known.length ? { bonding: "bonded", micro: "smooth", ...Object.fromEntries(known) } : { ...START };
   }
 
-  return { solve, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, RESULTS,
+  return { solve, stresses, yieldLoad, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, RESULTS,
     CONTROLS, BODIES, MATERIALS, UNITS };
-})(typeof module === "undefined" ? Core : require("./core.js"), typeof module === "undefined" ? DATA : globalThis.DATA);
+})(...(typeof module === "undefined" ? [Core, Stress, DATA] : [require("./core.js"), require("./stress.js"), globalThis.DATA]));
 if (typeof module !== "undefined") module.exports = Contact;

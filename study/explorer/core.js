@@ -5,7 +5,7 @@
 const Core = (() => {
   const COARSE = 16, FINE = 22, meshes = {}, rules = {}, tables = new Map();
 
-  /* ---- numbers: quadrature, J0, linear equations ---- */
+  /* ---- numbers: quadrature, J0 and J1, linear equations ---- */
 
   /** Gauss-Legendre rule with n points on [0, 1]. */
   function gauss(n) {
@@ -26,32 +26,38 @@ const Core = (() => {
     return (rules[n] = { t, w });
   }
 
-  /* a_k = (1 3 ... (2k - 1))²/(k! 8^k) of Hankel's expansion of J0 for large x. */
-  const HANKEL = new Float64Array(24).fill(1);
-  for (let k = 1; k < 24; k++) HANKEL[k] = HANKEL[k - 1] * (2 * k - 1) ** 2 / (8 * k);
+  /* a_k of Hankel's expansion of J_m for large x, without its signs of m = 0: (4 m² - 1)(4 m² - 9).../(k! 8^k). */
+  const HANKEL = [0, 1].map((m) => {
+    const a = new Float64Array(24).fill(1);
+    for (let k = 1; k < 24; k++) a[k] = a[k - 1] * ((2 * k - 1) ** 2 - 4 * m * m) / (8 * k);
+    return a;
+  });
 
   const SQUARES = Float64Array.from({ length: 60 }, (_, k) => 1 / (k * k || 1));
+  const PRODUCTS = Float64Array.from({ length: 60 }, (_, k) => 1 / (k * (k + 1) || 1));
 
-  /** J0(x), x >= 0, to 1e-11: below 12 by its series, whose largest term is 4e3 there, beyond by Hankel's expansion. */
-  function j0(x) {
+  /** J_m(x), x >= 0, m = 0 or 1, to 1e-11: below 12 by its series, whose largest term is 4e3 there, beyond by Hankel's
+      expansion. */
+  function bessel(m, x) {
     if (x < 12) {
-      const z = -x * x / 4;
-      let term = 1, sum = 1;
-      for (let k = 1; term > 1e-13 || term < -1e-13; k++) sum += (term *= z * SQUARES[k]);
+      const z = -x * x / 4, less = m ? PRODUCTS : SQUARES;
+      let term = m ? x / 2 : 1, sum = term;
+      for (let k = 1; term > 1e-13 || term < -1e-13; k++) sum += (term *= z * less[k]);
       return sum;
     }
-    const less = 1 / x;
+    const less = 1 / x, a = HANKEL[m];
     let P = 0, Q = 0, power = 1, sign = 1;
     for (let k = 0; k < 24; k += 2, sign = -sign) {
-      const term = HANKEL[k] * power, next = HANKEL[k + 1] * (power *= less);
+      const term = a[k] * power, next = a[k + 1] * (power *= less);
       P += sign * term;
       Q -= sign * next;
-      if (term < 1e-12) break;
+      if (Math.abs(term) < 1e-12) break;
       power *= less;
     }
-    const angle = x - Math.PI / 4;
+    const angle = x - (2 * m + 1) * Math.PI / 4;
     return Math.sqrt(2 / (Math.PI * x)) * (P * Math.cos(angle) - Q * Math.sin(angle));
   }
+  const j0 = (x) => bessel(0, x), j1 = (x) => bessel(1, x);
 
   /** Lagrange polynomials of `nodes` at one point; solver/numerics/quadrature.py. */
   function lagrange(nodes, weights, point, out) {
@@ -493,6 +499,9 @@ const Core = (() => {
     return dot(lagrange(nodes, ev.mesh.endWeights, s, new Float64Array(nodes.length)).subarray(1), ev.y);
   }
 
+  /** Nominal pressure over p* at s. */
+  const pressure = (ev, s) => (s > 0 ? curve(ev.c, between(ev, s)).q : 0);
+
   /** Nominal pressure p, λ and the largest real pressure at x = r/a. */
   function profile(ev, x) {
     const s = Math.sqrt((1 - x) * (1 + x)), y = between(ev, s), c = ev.c;
@@ -606,6 +615,6 @@ const Core = (() => {
     }
   }
 
-  return { load, solve, sensitivity, profile, displacements, kernel, model, j0 };
+  return { load, solve, sensitivity, profile, pressure, displacements, kernel, model, gauss, j0, j1 };
 })();
 if (typeof module !== "undefined") module.exports = Core;

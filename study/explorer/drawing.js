@@ -89,6 +89,50 @@ const Drawing = ((Core, Contact) => {
     return out + text(left + long + 8, low + 14, `${Number(bar.toPrecision(3))} ${word}${d.narrow ? " (dashed: unloaded)" : ", in both directions; dashed: before loading"}`, { soft: true });
   }
 
+  /** Stresses over the depth on the axis: von Mises' (thick), radial and axial; the strengths of layer and body dashed. */
+  function stresses(contact, own, width) {
+    const { ev, case_, Q } = contact, layered = Boolean(own.field.layer), h = layered ? case_.p.h / ev.a : 0;
+    const left = width < 520 ? 44 : 64, right = 16, top = 40, high = 240, inner = width - left - right, end = Math.max(1.5, Math.min(3, 2.5 * h));
+    const bodies = [[own.field.layer, 0, Math.min(h, end), "layer"], [own.field.body, h, end, "body"]].filter(([field, low, to]) => field && to > low);
+    const drawn = bodies.map(([field, low, to, body]) => {
+      const zs = Array.from({ length: 41 }, (_, i) => low + (to - low) * (i / 40) ** 1.5);
+      return { body, low, to, rows: zs.map((z) => ({ z, ...field(z) })) };
+    });
+    const all = drawn.flatMap(({ rows }) => rows.flatMap((row) => [row.mises, row.sr, row.sz])).map((value) => value * case_.unit);
+    const [least, most] = [Math.min(0, ...all), Math.max(...all)], span = 1.05 * (most - least), [word, size] = Contact.UNITS.Pa.write.find((row) => Math.max(most, -least) >= row[1]) || ["Pa", 1];
+    const xOf = (value) => left + (value - least + 0.02 * span) / span * inner, yOf = (z) => top + z / end * high;
+    let out = "";
+    if (layered) out += `<rect x="${left}" y="${top}" width="${inner}" height="${yOf(Math.min(h, end)) - top}" fill="var(--layer)" opacity="0.25"/>`;
+    const step = ticks(span / size, width < 520 ? 4 : 7)[1] || 1;
+    for (let tick = Math.ceil(least / size / step) * step; tick * size <= most * 1.02; tick += step) {
+      const x = xOf(tick * size);
+      out += `<path d="M${x} ${top}V${top + high}" stroke="var(--line)"/>${text(x, top - 6, Number(tick.toPrecision(6)), { anchor: "middle", soft: true })}`;
+    }
+    for (const tick of ticks(end * Q.a / Contact.UNITS.m.write.find((row) => end * Q.a >= row[1])[1])) {
+      const [, long] = Contact.UNITS.m.write.find((row) => end * Q.a >= row[1]), y = yOf(tick * long / Q.a);
+      out += `<path d="M${left - 4} ${y}h4" stroke="var(--soft)"/>${text(left - 7, y + 4, Number(tick.toPrecision(6)), { anchor: "end", soft: true })}`;
+    }
+    out += text(2, 14, `depth in ${Contact.UNITS.m.write.find((row) => end * Q.a >= row[1])[0]}, stress in ${word}`, { soft: true });
+    const limit = ["", width < 520 ? "strength" : "yield strength", 'stroke="var(--beyond)" stroke-width="1.5" stroke-dasharray="2 3"'];
+    const looks = [["mises", "von Mises", 'stroke="var(--pressure)" stroke-width="2.5"'], ["sr", "radial", 'stroke="var(--area)" stroke-width="1.5"'], ["sz", "axial", 'stroke="var(--soft)" stroke-width="1.5" stroke-dasharray="5 4"']];
+    for (const { rows } of drawn) {
+      for (const [name, , look] of looks) out += `<path d="${path(rows.map((row) => [xOf(row[name] * case_.unit), yOf(row.z)]))}" fill="none" ${look}/>`;
+    }
+    for (const { body, low, to } of drawn) {
+      const strength = own.bodies.find((row) => row.body === body)?.strength;
+      if (strength <= most) out += `<path d="M${xOf(strength)} ${yOf(low)}V${yOf(to)}" ${limit[2]}/>`;
+    }
+    out += `<path d="M${left} ${top}V${top + high}M${xOf(0)} ${top}V${top + high}" stroke="var(--soft)"/>`;
+    let place = left;
+    for (const [, name, look] of own.bodies.some(({ body, strength }) => body !== "punch" && strength <= most) ? [...looks, limit] : looks) {
+      out += `<path d="M${place} ${top + high + 16}h22" ${look}/>${text(place + 27, top + high + 20, name, { soft: true })}`;
+      place += 38 + 6.5 * name.length;
+    }
+    if (layered && yOf(Math.min(h, end)) - top > 14) out += text(left + 6, top + 14, "layer", { soft: true });
+    const row = own.bodies.reduce((one, other) => (other.mises > one.mises ? other : one));
+    return svg(width, top + high + 26, `Stresses on the axis over the depth; the largest von Mises stress, ${Contact.readable(row.mises, "Pa")}, is in the ${row.body === "punch" ? "ball" : row.body}.`, out);
+  }
+
   function describe(contact) {
     const show = (name) => Contact.shown(contact, name).whole;
     return `Pressure over the radius: ${show("p0")} in the centre, 0 at a = ${show("a")}. Below it the section through ball, layer and body, to scale.`;
@@ -117,5 +161,5 @@ const Drawing = ((Core, Contact) => {
     return svg(width, rows.length * line + 4, label, out);
   }
 
-  return { section, tornado, ticks };
+  return { section, stresses, tornado, ticks };
 })(Core, Contact);

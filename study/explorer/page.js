@@ -150,12 +150,13 @@
     $("tornado").innerHTML = Drawing.tornado(found, $("tornado-of").value, $("tornado-by").value, width);
     $("time").textContent = `Solved and drawn in ${(performance.now() - begin).toFixed(0)} ms.`;
     $("map").ariaBusy = "true"; // until it is whole
-    later = setTimeout(() => map(found), 150);
+    $("stresses").ariaBusy = "true";
+    later = setTimeout(() => { stresses(found, width); later = setTimeout(() => map(found), 0); }, 150);
   }
 
   function trouble(found) {
     const command = "The command below solves it.";
-    if (found.status === "film") return `The layer is thinner than 1/256 of the contact radius (about ${Contact.readable(found.ev.a * found.case_.R, "m")}). This page does not solve that. ${command}`;
+    if (found.status === "film") return `The layer is thinner than 1/256 of the contact radius (about ${Contact.readable(found.a * found.case_.R, "m")}). This page does not solve that. ${command}`;
     if (found.status === "lift_off") return "The ball lifts off inside the contact, or the pressure is tensile there: there is no full disc of contact, and the model has no solution.";
     if (found.status === "open") return `This page finds no solution here. ${command.replace("solves it", "may solve it, or says what is wrong")}`;
     return "Some input is missing or wrong; see the form.";
@@ -205,6 +206,34 @@
   function lights(found) {
     const words = { good: "holds", near: "nearly", beyond: "fails" };
     $("lights").innerHTML = found.lights.map((row) => `<li data-name="${row.name}" data-state="${row.state}"><span class="state ${row.state}">${words[row.state]}</span><span>${row.title}</span><span class="size">${row.size}</span></li>`).join("");
+  }
+
+  /** Stresses on the axis, and at which load each body begins to yield there. */
+  function stresses(found, width) {
+    const own = Contact.stresses(found), named = { punch: "ball", layer: "layer", body: "body" }, rough = found.case_.p.rough;
+    $("stresses").innerHTML = own.film ? "" : Drawing.stresses(found, own, width);
+    if (own.film) {
+      $("strengths").innerHTML = "";
+      $("stress-note").textContent = "The layer is thinner than 1/64 of the contact radius: this page leaves its stresses to the command below.";
+    } else {
+      const rows = own.bodies.map((row) => {
+        const known = Number.isFinite(row.strength), load = known ? Contact.yieldLoad(found, row) : NaN;
+        const state = row.share > 1 ? "beyond" : row.share > 0.5 ? "near" : "good";
+        const share = row.share < 1 ? Contact.percent(row.share) : `${Number(row.share.toPrecision(2))} times`;
+        const cells = [Contact.readable(row.mises, "Pa"), known ? `<span class="${state}">${share}</span>` : "–",
+          load === Infinity ? "not up to a = 0.2 R" : Number.isFinite(load) ? Contact.readable(load, "N") : "–",
+          known ? Contact.readable(row.strength, "Pa") : "not known", Contact.readable(row.z * found.Q.a, "m")];
+        return `<tr data-body-of="${row.body}"><th scope="row">${named[row.body]}</th>${cells.map((cell) => `<td>${cell}</td>`).join("")}</tr>`;
+      });
+      const heads = ["", "largest von Mises stress", "of the yield strength", "yields from P =", "yield strength", "depth"];
+      $("strengths").innerHTML = `<thead><tr>${heads.map((word) => `<th scope="col">${word}</th>`).join("")}</tr></thead><tbody>${rows.join("")}</tbody>`;
+      const show = (value) => `${Contact.readable(Math.abs(value), "Pa")} ${value < 0 ? "of pressure" : "of tension"}`;
+      const surface = `At the edge of the contact the surface bears ${show(own.edge)} along r`;
+      const under = own.below === null ? "" : `, the layer at its underside on the axis ${show(own.below)}`;
+      const tips = rough ? " Under single asperities stresses are higher: what meets there yields first." : "";
+      $("stress-note").textContent = `${surface}${under}.${own.below === null ? "" : " A thin layer may bear more beside the axis, near the edge."}${tips} The command below looks everywhere.`;
+    }
+    $("stresses").ariaBusy = "false";
   }
 
   function map(found) {

@@ -19,7 +19,7 @@ from ..specimen import materials
 MARK = b"<!-- a page of roughcoat explore -->"
 #: Nodes of the two meshes that the page solves on; their difference is its error (tests/explorer/test_core.py).
 NODES = (16, 22)
-_SCRIPTS = ("core.js", "contact.js", "drawing.js", "map.js", "page.js")
+_SCRIPTS = ("core.js", "stress.js", "contact.js", "drawing.js", "map.js", "page.js")
 #: Limits of assumptions and doubts, which the page looks at as the program does.
 _LIMITS = {
     assumptions: ("STEEP", "COMPRESSED", "STRETCHED", "FEW_SPOTS", "MERGING", "STEEP_SPOT", "SPOT_OVER_LAYER")
@@ -51,12 +51,18 @@ def contents() -> dict:
     return {
         "version": package_version("roughcoat"),
         "meshes": {n: mesh(n) for n in NODES},
-        "materials": [{key: getattr(entry, key) for key in numbers} for entry in entries],
+        "materials": [{key: getattr(entry, key) for key in numbers} | {"Y": strength(entry)} for entry in entries],
         "bounds": {name: ends(VOCABULARY[name].parameter.interval)[:2] for name in bounded},
         "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
         "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
         "merging": _MERGING,
     }
+
+
+def strength(material: materials.Material) -> float | None:
+    """The yield strength in Pa, or None."""
+    Y = materials.strength_of(material)
+    return None if np.isnan(Y) else Y
 
 
 def mesh(n: int) -> str:

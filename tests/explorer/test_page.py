@@ -184,6 +184,24 @@ def test_a_new_user_is_answered_told_and_led(page):
     assert page.evaluate(bare) == 0, "each input has a label for screen readers"
 
 
+def test_stresses_and_loads_of_first_yield_are_shown(page):
+    page.evaluate(
+        SHOWN, "R=5 mm&punch=steel 52100&layer=DLC a-C:H&h=20 um&body=steel carbon&P=100 N".replace(" ", "%20")
+    )
+    page.wait_for_selector("#stresses[aria-busy=false]")
+    rows = {row.split("\t")[0]: row.split("\t")[1:] for row in page.inner_text("#strengths tbody").splitlines()}
+    assert rows["body"][1] == "5.3 times" and rows["body"][3] == "250 MPa"
+    assert rows["layer"][2] == "not up to a = 0.2 R"
+    film = "R=5 mm&punch=steel 52100&layer=DLC a-C:H&body=steel carbon&P=5 N".replace(" ", "%20")
+    page.evaluate(SHOWN, f"{film}&h=400%20nm")
+    page.wait_for_selector("#stresses[aria-busy=false]", state="attached")
+    assert "thinner than 1/64" in page.inner_text("#stress-note") and page.inner_text("#strengths") == ""
+    assert (
+        "thinner than 1/256 of the contact radius (about 54.9 µm)"
+        in page.evaluate(SHOWN, f"{film}&h=100%20nm")["trouble"]
+    )
+
+
 def test_a_phone_has_no_sideways_scrolling(page):
     page.set_viewport_size({"width": 390, "height": 800})
     assert page.evaluate("document.documentElement.scrollWidth") == 390

@@ -3,8 +3,8 @@
 const Drawing = ((Core, Contact) => {
   const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
   const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
-  const text = (x, y, words, { anchor = "start", soft = false, fill = "" } = {}) =>
-    `<text x="${x}" y="${y}" text-anchor="${anchor}"${soft ? ' class="soft"' : ""}${fill ? ` style="fill:${fill}"` : ""}>${escaped(words)}</text>`;
+  const text = (x, y, words, { anchor = "start", soft = false, clear = false, fill = "" } = {}) =>
+    `<text x="${x}" y="${y}" text-anchor="${anchor}"${soft ? ` class="soft${clear ? " clear" : ""}"` : ""}${fill ? ` style="fill:${fill}"` : ""}>${escaped(words)}</text>`;
   const svg = (width, height, label, inside) => `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${escaped(label)}">${inside}</svg>`;
 
   /** Round numbers from 0 to about `top`. */
@@ -80,7 +80,7 @@ const Drawing = ((Core, Contact) => {
     const thick = bottom - d.zero, show = (E) => Contact.readable(E, "Pa", 3);
     if (layered) {
       const name = `layer, h = ${Contact.readable(case_.p.h * case_.R, "m", 3)}`;
-      out += thick > 16 ? text(left + 8, Math.min(d.zero + thick / 2 + 12, low - 6), name) : text(left + 8, d.zero - 8, name);
+      out += thick > 16 ? text(left + 8, Math.min(d.zero + thick / 2 + (thick > 44 ? 12 : 4), low - 6), name) : text(left + 8, d.zero - 8, name);
     }
     if (low - bottom > 24) out += text(left + 8, Math.min(low - 8, bottom + (thick > 16 ? 18 : 22)), d.texts.body === "rigid" ? "rigid body" : `body, E = ${show(contact.inputs.v.E2.value)}`);
     const [word, size] = Contact.UNITS.m.write.find((row) => Q.a >= row[1]) || ["nm", 1e-9], power = 10 ** Math.floor(Math.log10(Q.a / size));
@@ -124,13 +124,13 @@ const Drawing = ((Core, Contact) => {
     const strong = drawn.map((row) => ({ ...row, strength: own.parts.find(({ part }) => part === row.body)?.strength })).filter((row) => row.strength <= most);
     for (const { low, to, strength } of strong) out += `<path d="M${xOf(strength)} ${yOf(low)}V${yOf(to)}" ${limit[2]}/>`;
     out += `<path d="M${left} ${top}V${top + high}M${xOf(0)} ${top}V${top + high}" stroke="var(--soft)"/>`;
-    let place = left;
+    let place = narrow ? 4 : left;
     for (const [, name, look] of strong.length ? [...looks, limit] : looks) {
       out += `<path d="M${place} ${top + high + 16}h22" ${look}/>${text(place + 27, top + high + 20, name, { soft: true })}`;
-      place += 38 + 6.5 * name.length;
+      place += (narrow ? 34 : 38) + 6.5 * name.length;
     }
-    if (layered) out += text(left + inner - 6, top + 15, stretched ? "layer, its depth stretched" : "layer", { anchor: "end", soft: true });
-    if (own.field.body && inLayer < end) out += text(left + inner - 6, top + high - 6, "body", { anchor: "end", soft: true });
+    if (layered) out += text(left + inner - 6, top + 15, stretched ? (narrow ? "layer, stretched" : "layer, its depth stretched") : "layer", { anchor: "end", soft: true, clear: true });
+    if (own.field.body && inLayer < end) out += text(left + inner - 6, top + high - 6, "body", { anchor: "end", soft: true, clear: true });
     const row = own.parts.reduce((one, other) => (other.mises > one.mises ? other : one));
     return svg(width, top + high + 26, `Stresses on the axis over the depth; the largest von Mises stress, ${Contact.readable(row.mises, "Pa")}, is in the ${{ punch: "ball", asperities: "central asperity" }[row.part] || row.part}.`, out);
   }

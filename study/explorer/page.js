@@ -217,13 +217,13 @@
     $("lights").innerHTML = found.lights.map((row) => `<li data-name="${row.name}" data-state="${row.state}"><span class="state ${row.state}">${words[row.state]}</span><span>${row.title}</span><span class="size">${row.size}</span></li>`).join("");
   }
 
-  const PARTS = { punch: "ball", layer: "layer", body: "body", asperities: "central asperity" };
+  const PARTS = { punch: "ball", layer: "layer", body: "body", asperities: "asperity" };
 
   /** Stresses on the axis, and what of its strength each part bears; then the loads of first yield, and the map. */
   function stresses(found, width) {
     const own = Strength.stresses(found), { parts } = own, digits = Math.min(3, found.digits);
     $("stresses").innerHTML = Drawing.stresses(found, own, width);
-    const share = (row) => (row.share < 1 ? Contact.percent(row.share) : `${Number(row.share.toPrecision(2))} times`);
+    const share = (row) => (row.share < 1 ? Contact.percent(row.share) : `${row.share < 100 ? row.share.toPrecision(2) : Math.round(row.share)} times`);
     const state = (row) => (row.share > 1 ? "beyond" : row.share > 0.5 ? "near" : "good"), known = parts.filter((row) => Number.isFinite(row.strength));
     const rows = [
       ["largest von Mises stress", (row) => Contact.readable(row.mises, "Pa", digits)],
@@ -236,7 +236,7 @@
     $("strengths").innerHTML = `<thead><tr>${heads}</tr></thead><tbody>${rows.join("")}</tbody>`;
     const nearest = known.reduce((one, other) => (one?.share > other.share ? one : other), null);
     $("verdict").textContent = nearest === null ? "No strength is known of these bodies: choose “own E and ν” to give one."
-      : `On the axis the ${PARTS[nearest.part]} is nearest to its limit: it bears ${share(nearest)}${nearest.share < 1 ? " of" : ""} its yield strength.${nearest.share > 1 ? " The results are those of bodies that stay elastic." : ""}`;
+      : `On the axis the ${nearest.part === "asperities" ? "central asperity" : PARTS[nearest.part]} is nearest to its limit: it bears ${share(nearest)}${nearest.share < 1 ? " of" : ""} its yield strength.${nearest.share > 1 ? " The results are those of bodies that stay elastic." : ""}`;
     $("verdict").className = nearest ? state(nearest) : "";
     const show = (value) => `${Contact.readable(Math.abs(value), "Pa")} ${value < 0 ? "of pressure" : "of tension"}`;
     const edge = Number.isNaN(own.edge) ? "" : `At the edge of the contact the surface bears ${show(own.edge)} along r. `;
@@ -254,12 +254,14 @@
 
   /** Write the loads of first yield; a generator. */
   function* loads(found, parts) {
+    const ends = new Set();
     for (const row of parts) {
       const { P, a, above, below } = yield* Strength.load(found, row), { p } = found.case_, cell = document.querySelector(`[data-load="${row.part}"]`);
       const text = Contact.readable(P, "N"), first = row.part === "asperities" && p.Nbar * Math.PI * a * a < 1;
-      cell.textContent = above === "end" ? "no P up to a = 0.2 R" : above ? (Number.isNaN(P) ? "not on this page" : `none up to ${text}`) : first ? "the first touch" : below ? `below ${text}` : text;
-      if (above === "film" || above === "open") cell.title = above === "film" ? "Beyond, the layer is too thin for this page." : "Beyond, this page finds no solution.";
+      cell.textContent = above ? (Number.isNaN(P) ? "not on this page" : `above ${text}`) : first ? "first touch" : below ? `below ${text}` : text;
+      if (above) ends.add({ end: "a = 0.2 R", film: "where the layer is too thin for this page", open: "where this page finds no solution" }[above]);
     }
+    if (ends.size) $("stress-note").textContent += ` “Above”: looked for up to ${[...ends].join(", or ")}.`;
   }
 
   function map(found) {

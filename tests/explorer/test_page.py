@@ -85,7 +85,7 @@ def contacts(many: int) -> list[dict[str, str]]:
 
 
 def of_python(command: str) -> dict:
-    """What the copied command answers with --json."""
+    """What the copied command answers with --json, in this process."""
     words = shlex.split(command)
     assert words[:2] == ["roughcoat", "point"]
     with contextlib.redirect_stdout(io.StringIO()) as printed:
@@ -103,8 +103,10 @@ def misses(shown: str, value: float, spread: float) -> list[float]:
     return [abs(float(text) * SIZES[unit] - wanted) / last for text, wanted in pairs]
 
 
-def test_each_digit_is_that_of_the_command(page):
-    """Within 0.5 of the last digit by rounding, and what the page's own error adds near the middle of two digits."""
+def test_each_digit_is_that_of_the_command(page, monkeypatch):
+    """Within 0.5 of the last digit by rounding, and what the page's own error adds near the middle of two digits. The ± of
+    what the page does not show takes five sixths of the time of the command, and is left out."""
+    monkeypatch.setattr("study.commands.point._spreads_of_derived", lambda contact: {})
     solved, away, times, other = 0, [], [], 0
     for case in contacts(230):
         hash_ = "&".join(f"{name}={quote(text)}" for name, text in case.items())
@@ -189,13 +191,21 @@ def test_stresses_and_loads_of_first_yield_are_shown(page):
         SHOWN, "R=5 mm&punch=steel 52100&layer=DLC a-C:H&h=20 um&body=steel carbon&P=100 N".replace(" ", "%20")
     )
     page.wait_for_selector("#stresses[aria-busy=false]")
-    rows = {row.split("\t")[0]: row.split("\t")[1:] for row in page.inner_text("#strengths tbody").splitlines()}
-    assert rows["body"][1] == "5.3 times" and rows["body"][3] == "250 MPa"
-    assert rows["layer"][2] == "not up to a = 0.2 R"
+    page.wait_for_function("document.querySelector('[data-load=body]').textContent.includes('mN')")
+    table = page.inner_text("#strengths").splitlines()
+    rows = {row.split("\t")[0]: dict(zip(table[0].split("\t")[1:], row.split("\t")[1:], strict=True)) for row in table[1:]}
+    assert rows["share of it"]["body"] == "5.3 times" and rows["yield strength"]["body"] == "250 MPa"
+    assert rows["yields from P ="]["layer"].startswith("above ")
+    assert "looked for up to a = 0.2 R" in page.inner_text("#stress-note")
+    assert "the body is nearest to its limit: it bears 5.3 times its yield strength" in page.inner_text("#verdict")
+    page.select_option("#in-body", "own E and ν")
+    page.fill("#in-Y2", "2.5 GPa")
+    page.wait_for_function("document.querySelector('#verdict').textContent.includes('53 %')")
+    assert "Y2=2.5%20GPa" in page.evaluate("location.hash")
     film = "R=5 mm&punch=steel 52100&layer=DLC a-C:H&body=steel carbon&P=5 N".replace(" ", "%20")
     page.evaluate(SHOWN, f"{film}&h=400%20nm")
     page.wait_for_selector("#stresses[aria-busy=false]", state="attached")
-    assert "thinner than 1/64" in page.inner_text("#stress-note") and page.inner_text("#strengths") == ""
+    assert "At the edge" not in page.inner_text("#stress-note"), "the edge of layers thinner than a/64 takes too long"
     assert (
         "thinner than 1/256 of the contact radius (about 54.9 µm)"
         in page.evaluate(SHOWN, f"{film}&h=100%20nm")["trouble"]

@@ -2,7 +2,8 @@
 /* The form, and what is shown of the contact that it describes. */
 (() => {
   const $ = (id) => document.getElementById(id);
-  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, drawn = "";
+  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, addressed = 0, drawn = "";
+  let width = 0; // of drawings; 0: to be asked, which makes the browser lay the page out
   /** What was typed before a material or no layer took its place. */
   const kept = { E_punch: "210 GPa", nu_punch: "0.3", E1: "200 GPa", nu1: "0.25", h: "2 um", E2: "210 GPa", nu2: "0.3",
     layer: "DLC a-C:H", Nbar: "4 1/um^2", Ra: "2 um" };
@@ -26,10 +27,10 @@
     for (const id of ["tornado-of", "tornado-by", "map-of", "map-x", "map-y", "map-wide"]) $(id).addEventListener("change", redraw);
     $("restart").addEventListener("click", () => change(Contact.fromHash("")));
     $("copy").addEventListener("click", () => toClipboard($("copied").textContent));
-    $("copy-link").addEventListener("click", () => toClipboard(location.href));
+    $("copy-link").addEventListener("click", () => toClipboard(location.href.replace(/#.*|$/, Contact.toHash(texts))));
     $("version").textContent = DATA.version;
     addEventListener("hashchange", () => { if (location.hash !== Contact.toHash(texts)) change(Contact.fromHash(location.hash)); });
-    addEventListener("resize", redraw);
+    addEventListener("resize", () => { width = 0; redraw(); });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", ContactMap.paint);
     change(texts);
   }
@@ -141,7 +142,8 @@
     for (const box of document.querySelectorAll("#results > section")) box.hidden = !solved && !["answer-title", "copy-title"].includes(box.getAttribute("aria-labelledby"));
     $("trouble").innerHTML = solved ? "" : `<p>${trouble(found)}</p>`;
     $("words").hidden = $("numbers").hidden = !solved;
-    if (Object.keys(found.problems).length === 0) history.replaceState(null, "", Contact.toHash(texts));
+    clearTimeout(addressed); // it takes some milliseconds: not while a slider moves
+    if (Object.keys(found.problems).length === 0) addressed = setTimeout(() => history.replaceState(null, "", Contact.toHash(texts)), 100);
     clearTimeout(later);
     $("brief").textContent = solved ? ["a", "D", "p0"].map((name) => `${Contact.RESULTS[name].symbol} ${Contact.shown({ ...found, spread: {} }, name).whole}`).join(" · ") : "no solution";
     if (!solved) return;
@@ -153,14 +155,14 @@
       $("words").lastChild.append(`${sentence} `);
     });
     table(found);
-    const width = Math.max(320, Math.min(960, $("section").clientWidth));
+    width ||= Math.max(320, Math.min(960, $("section").clientWidth));
     $("section").innerHTML = Drawing.section(found, width);
     lights(found);
     $("tornado").innerHTML = Drawing.tornado(found, $("tornado-of").value, $("tornado-by").value, width);
     $("time").textContent = `Solved and drawn in ${(performance.now() - begin).toFixed(0)} ms.`;
     $("map").ariaBusy = "true"; // until it is whole
     $("stresses").ariaBusy = "true";
-    later = setTimeout(() => stresses(found, width), 150);
+    later = setTimeout(() => stresses(found), 150);
   }
 
   function trouble(found) {
@@ -220,7 +222,7 @@
   const PARTS = { punch: "ball", layer: "layer", body: "body", asperities: "asperity" };
 
   /** Stresses on the axis, and what of its strength each part bears; then the loads of first yield, and the map. */
-  function stresses(found, width) {
+  function stresses(found) {
     const own = Strength.stresses(found), { parts } = own, digits = Math.min(3, found.digits);
     $("stresses").innerHTML = Drawing.stresses(found, own, width);
     const share = (row) => (row.share < 1 ? Contact.percent(row.share) : `${row.share < 100 ? row.share.toPrecision(2) : Math.round(row.share)} times`);

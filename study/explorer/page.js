@@ -231,7 +231,7 @@
       ["largest von Mises stress", (row) => Contact.readable(row.mises, "Pa", digits)],
       ["its depth below the surface", (row) => Contact.readable(row.z * found.Q.a, "m", 2)],
       ["yield strength", (row) => (known.includes(row) ? Contact.readable(row.strength, "Pa") : "not known")],
-      ["share of it", (row) => (known.includes(row) ? `<span class="${state(row)}">${share(row)}</span>` : "–")],
+      ["share of that", (row) => (known.includes(row) ? `<span class="${state(row)}">${share(row)}</span>` : "–")],
       ["yields from P =", (row) => (known.includes(row) ? `<span data-load="${row.part}">…</span>` : "–")],
     ].map(([name, cell]) => `<tr><th scope="row">${name}</th>${parts.map((row) => `<td>${cell(row)}</td>`).join("")}</tr>`);
     const heads = ["", ...parts.map((row) => PARTS[row.part])].map((word) => `<th scope="col">${word}</th>`).join("");

@@ -2,7 +2,7 @@
 /* The form, and what is shown of the contact that it describes. */
 (() => {
   const $ = (id) => document.getElementById(id);
-  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, addressed = 0, drawn = "";
+  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, addressed = 0, seen = location.hash, drawn = "";
   let width = 0; // of drawings; 0: to be asked, which makes the browser lay the page out
   /** What was typed before a material or no layer took its place. */
   const kept = { E_punch: "210 GPa", nu_punch: "0.3", E1: "200 GPa", nu1: "0.25", h: "2 um", E2: "210 GPa", nu2: "0.3",
@@ -29,7 +29,10 @@
     $("copy").addEventListener("click", () => toClipboard($("copied").textContent));
     $("copy-link").addEventListener("click", () => toClipboard(location.href.replace(/#.*|$/, Contact.toHash(texts))));
     $("version").textContent = DATA.version;
-    addEventListener("hashchange", () => { if (location.hash !== Contact.toHash(texts)) change(Contact.fromHash(location.hash)); });
+    addEventListener("hashchange", () => {
+      seen = location.hash;
+      if (seen !== Contact.toHash(texts)) change(Contact.fromHash(seen));
+    });
     addEventListener("resize", () => { width = 0; redraw(); });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", ContactMap.paint);
     change(texts);
@@ -143,7 +146,7 @@
     $("trouble").innerHTML = solved ? "" : `<p>${trouble(found)}</p>`;
     $("words").hidden = $("numbers").hidden = !solved;
     clearTimeout(addressed); // it takes some milliseconds: not while a slider moves
-    if (Object.keys(found.problems).length === 0) addressed = setTimeout(() => history.replaceState(null, "", Contact.toHash(texts)), 100);
+    if (Object.keys(found.problems).length === 0) addressed = setTimeout(address, 100);
     clearTimeout(later);
     $("brief").textContent = solved ? ["a", "D", "p0"].map((name) => `${Contact.RESULTS[name].symbol} ${Contact.shown({ ...found, spread: {} }, name).whole}`).join(" · ") : "no solution";
     if (!solved) return;
@@ -163,6 +166,12 @@
     $("map").ariaBusy = "true"; // until it is whole
     $("stresses").ariaBusy = "true";
     later = setTimeout(() => stresses(found), 150);
+  }
+
+  /** Put the contact into the address, unless somebody has just put another there. */
+  function address() {
+    if (location.hash === seen) history.replaceState(null, "", Contact.toHash(texts));
+    seen = location.hash;
   }
 
   function trouble(found) {

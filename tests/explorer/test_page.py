@@ -1,4 +1,4 @@
-"""The page in chromium: the digits that it shows are those of `roughcoat point --json`, and its copies are that contact."""
+"""The page in chromium: digits that it shows are those of `roughcoat point --json`, and its copies are that contact."""
 
 import contextlib
 import io

@@ -116,7 +116,7 @@ def test_fields_on_the_axis_and_at_the_edge():
 @pytest.mark.filterwarnings("ignore:.*beyond what the model describes")
 def test_the_largest_on_the_axis():
     """It is never above that of `study.extremes`, and is it where that is on the axis."""
-    cases, there = contacts(60)[20:40], 0
+    cases, there = contacts(32)[20:], 0
     for case, shown in zip(cases, by_node(FIELDS, [contents()["meshes"], cases]), strict=True):
         contact = of_program(case)
         if int(contact.status) != 0:
@@ -128,7 +128,7 @@ def test_the_largest_on_the_axis():
                 on_axis = extremes[f"{name}_r"].item() == 0
                 there += on_axis
                 assert not on_axis or peak["value"] == pytest.approx(extremes[name].item(), rel=1e-3), case
-    assert there > 8
+    assert there > 4
 
 
 BALL = {"R": "5 mm", "punch": "steel 52100", "layer": "DLC a-C:H", "h": "30 um", "bonding": "bonded"}

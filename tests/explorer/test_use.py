@@ -49,6 +49,26 @@ def test_a_map_of_the_contact_before_changes_nothing(explorer):
     assert "P=20%20N" in hash_ and "h=2%20um" in hash_
 
 
+def test_an_address_put_in_meanwhile_is_kept(explorer):
+    """The page writes its own a moment after each change."""
+    explorer.click("#restart")
+    command = explorer.evaluate("""async () => {
+      const input = document.querySelector("#in-P"), frame = () => new Promise(requestAnimationFrame);
+      const later = window.setTimeout, held = []; // what would be done after the moment
+      window.setTimeout = (done, time) => (time === 100 ? held.push(done) : later(done, time));
+      input.value = "20 N";
+      input.dispatchEvent(new Event("input"));
+      await frame(); await frame();
+      window.setTimeout = later;
+      location.hash = "R=1%20mm&punch=rigid&base=half_space&body=PTFE&D=3%20um";
+      if (held.length !== 1) return "the page has another moment";
+      held[0](); // before the page is told of the address
+      await new Promise((done) => later(done, 400));
+      return document.querySelector("#copied").textContent;
+    }""")
+    assert "body=PTFE" in command and "PTFE" in explorer.evaluate("location.hash")
+
+
 def test_redraws_while_a_slider_moves(explorer):
     """The time is printed: wanted below 16 ms on an idle machine."""
     explorer.click("#restart")

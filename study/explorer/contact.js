@@ -39,6 +39,8 @@ const Contact = ((Core, DATA) => {
     Y1: { unit: "Pa", label: "yield strength of the layer Y1", short: "yield strength Y1", body: "layer" },
     Y2: { unit: "Pa", label: "yield strength of the body Y2", short: "yield strength Y2", body: "body" },
   };
+  /** Inputs that are words, and those which the page has. */
+  const CHOICES = { base: ["layered", "half_space"], bonding: ["bonded", "frictionless"], micro: ["smooth", "disc_cell"] };
   const RESULTS = {
     P: { unit: "N", label: "load", symbol: "P" },
     a: { unit: "m", label: "radius of the nominal contact area", symbol: "a" },
@@ -103,10 +105,13 @@ const Contact = ((Core, DATA) => {
       } else if (own) problems[body] = `${body}: "${own}" is no material of the table`;
       else { take(modulus); take(ratio); }
     }
+    for (const [name, words] of Object.entries(CHOICES)) {
+      if (texts[name] !== undefined && !words.includes(texts[name])) problems[name] = `${name} = "${texts[name]}": this page has ${words.join(" and ")}`;
+    }
     for (const [name, { body }] of Object.entries(STRENGTHS)) {
       if (texts[body] || !String(texts[name] ?? "").trim() || (body === "layer" && texts.base === "half_space")) continue;
       try { strengths[name] = parse(name, texts[name]).value; } catch (error) { problems[name] = error.message; }
-      if (!(strengths[name] > 0)) problems[name] ??= `${name}: must be above 0`;
+      if (!(strengths[name] > 0)) problems[name] ??= `${name} = "${texts[name]}": must be above 0`;
     }
     v.nu_punch ??= { value: 0.3, spread: 0 };
     v.nu2 ??= { value: 0.3, spread: 0 };
@@ -118,7 +123,7 @@ const Contact = ((Core, DATA) => {
     for (const [name, number] of Object.entries(v)) {
       const isRatio = name.startsWith("nu");
       if (isRatio ? !(number.value > -1 && number.value <= 0.5) : !(number.value > 0)) {
-        problems[name] = `${name}: must be ${isRatio ? "above -1 and at most 0.5" : "above 0"}`;
+        problems[name] = `${name} = "${texts[name] ?? number.value}": must be ${isRatio ? "above -1 and at most 0.5" : "above 0"}`;
       }
     }
     if (texts.body === "rigid" && !layered) problems.body = "body: a rigid body without a layer does not yield";
@@ -329,9 +334,11 @@ const Contact = ((Core, DATA) => {
 
   const shell = (text) => (/^[\w.,:/+-]+$/.test(text) ? text : `"${text.replace(/(["$`\\])/g, "\\$1")}"`);
   const quoted = (name, text) => (isWord(name, text) ? JSON.stringify(text) : text);
+  const called = (texts) => `import roughcoat as rc\n\ncontact = rc.solve(\n${used(texts).map(([name, text]) => `    ${name}=${quoted(name, text)},`).join("\n")}\n)\n`;
   const COPIES = {
     command: (texts) => `roughcoat point ${used(texts).map(([name, text]) => `${name}=${shell(text)}`).join(" ")}`,
-    python: (texts) => `import roughcoat as rc\n\ncontact = rc.solve(\n${used(texts).map(([name, text]) => `    ${name}=${quoted(name, text)},`).join("\n")}\n)\nprint(rc.summary(contact))\n`,
+    python: (texts) => `${called(texts)}print(rc.summary(contact))\n`,
+    stresses: (texts) => `${called(texts)}print(rc.extremes(contact, mu=0.1))  # the largest stresses anywhere, sliding with a friction of 0.1\nrc.plot_stresses(contact).savefig("stresses.png")\n`,
     toml: (texts) => `title = "A contact of the explorer"\n\n[model]\n${used(texts).map(([name, text]) => `${name} = ${quoted(name, text)}`).join("\n")}\n`,
   };
 
@@ -344,7 +351,7 @@ const Contact = ((Core, DATA) => {
     return known.length ? { bonding: "bonded", micro: "smooth", ...Object.fromEntries(known) } : { ...START };
   }
 
-  return { solve, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, STRENGTHS, RESULTS,
+  return { solve, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, STRENGTHS, CHOICES, RESULTS,
     CONTROLS, BODIES, MATERIALS, UNITS };
 })(typeof module === "undefined" ? Core : require("./core.js"), typeof module === "undefined" ? DATA : globalThis.DATA);
 if (typeof module !== "undefined") module.exports = Contact;

@@ -20,7 +20,7 @@
       if (value === "disc_cell") for (const name of ["Nbar", "Ra"]) texts[name] ??= kept[name];
     });
     choice("control", [["P", "load P"], ["a", "radius a"], ["D", "depth D"]], () => Contact.CONTROLS.find((name) => texts[name] !== undefined), control);
-    choice("copy", [["command", "command line"], ["python", "Python"], ["toml", "study file (TOML)"]], () => copy, (value) => { copy = value; });
+    choice("copy", [["command", "command line"], ["python", "Python"], ["toml", "study file (TOML)"], ["stresses", "stresses with friction"]], () => copy, (value) => { copy = value; });
     for (const id of ["tornado-of", "map-of"]) for (const [name, own] of Object.entries(Contact.RESULTS)) $(id).add(new Option(`${own.label} ${own.symbol}`, name));
     $("tornado-of").value = "p0";
     $("map-of").value = "p0";
@@ -143,7 +143,7 @@
     $("copied").textContent = Contact.COPIES[copy](texts);
     const solved = found.status === "converged";
     for (const box of document.querySelectorAll("#results > section")) box.hidden = !solved && !["answer-title", "copy-title"].includes(box.getAttribute("aria-labelledby"));
-    $("trouble").innerHTML = solved ? "" : `<p>${trouble(found)}</p>`;
+    $("trouble").replaceChildren(...(solved ? [] : [Object.assign(document.createElement("p"), { textContent: trouble(found) })]));
     $("words").hidden = $("numbers").hidden = !solved;
     clearTimeout(addressed); // it takes some milliseconds: not while a slider moves
     if (Object.keys(found.problems).length === 0) addressed = setTimeout(address, 100);
@@ -179,7 +179,8 @@
     if (found.status === "film") return `The layer is thinner than 1/256 of the contact radius (about ${Contact.readable(found.a * found.case_.R, "m")}). This page does not solve that. ${command}`;
     if (found.status === "lift_off") return "The ball lifts off inside the contact, or the pressure is tensile there: there is no full disc of contact, and the model has no solution.";
     if (found.status === "open") return `This page finds no solution here. ${command.replace("solves it", "may solve it, or says what is wrong")}`;
-    return "Some input is missing or wrong; see the form.";
+    const elsewhere = Object.keys(Contact.CHOICES).map((name) => found.problems[name]).filter(Boolean); // of the address
+    return elsewhere.length ? `${elsewhere.join("; ")}. The command below may solve it.` : "Some input is missing or wrong; see the form.";
   }
 
   function complaints(problems) {
@@ -253,7 +254,7 @@
     const edge = Number.isNaN(own.edge) ? "" : `At the edge of the contact the surface bears ${show(own.edge)} along r. `;
     const under = own.below === null ? "" : `On the axis the underside of the layer bears ${show(own.below)} along r. `;
     const aside = own.below === null ? "" : "A layer may bear more beside the axis, near the edge. ";
-    $("stress-note").textContent = `${edge}${under}On the axis Tresca's stress is von Mises'. ${aside}The command below looks everywhere, and study.stresses takes friction.`;
+    $("stress-note").textContent = `${edge}${under}On the axis Tresca's stress is von Mises'. ${aside}Stresses beside the axis and under friction: “stresses with friction” at the foot of this page.`;
     $("stresses").ariaBusy = "false";
     const search = loads(found, known);
     (function some() { // the page answers between the contacts that are solved

@@ -130,3 +130,16 @@ def test_copies_are_the_same_contact(explorer, form, tmp_path):
             spread = float(contact[f"{name}_spread"]) if f"{name}_spread" in contact else 0.0
             assert max(misses(digits, float(contact[name]), spread)) < 0.8, (hash_, name, digits)
     explorer.check("input[value=command]", force=True)
+
+
+@pytest.mark.filterwarnings("ignore:.*beyond what the model describes")
+def test_the_copy_for_stresses_runs(explorer, tmp_path, monkeypatch):
+    """Of a bare body; the largest stresses, and a picture of them."""
+    monkeypatch.chdir(tmp_path)
+    explorer.check("input[value=stresses]", force=True)
+    text = explorer.evaluate(SHOWN, quote("R=1 mm&punch=rigid&base=half_space&body=PTFE&P=1 N", safe="=&"))["command"]
+    names = {}
+    with contextlib.redirect_stdout(io.StringIO()) as printed:
+        exec(text, names)
+    assert "mises2" in printed.getvalue() and (tmp_path / "stresses.png").stat().st_size > 10_000
+    explorer.check("input[value=command]", force=True)

@@ -69,6 +69,18 @@ def test_an_address_put_in_meanwhile_is_kept(explorer):
     assert "body=PTFE" in command and "PTFE" in explorer.evaluate("location.hash")
 
 
+def test_an_address_that_the_page_cannot_solve_is_told(explorer):
+    """Nothing is taken for something else: lattices of asperities are left to the command."""
+    hash_ = "R=1%20mm&punch=rigid&base=half_space&body=PTFE&D=3%20um&micro=hex_lattice&Nbar=1%201/um^2&Ra=9%20um"
+    shown = explorer.evaluate(SHOWN, hash_)
+    assert 'micro = "hex_lattice": this page has smooth and disc_cell' in shown["trouble"]
+    assert "micro=hex_lattice" in shown["command"]
+    shown = explorer.evaluate(
+        SHOWN, "R=5%20mm&punch=rigid&body=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E&P=1%20N&h=1%20um"
+    )
+    assert "is no material of the table" in explorer.inner_text("#wrong-body")
+
+
 def test_redraws_while_a_slider_moves(explorer):
     """The time is printed: wanted below 16 ms on an idle machine."""
     explorer.click("#restart")

@@ -251,8 +251,9 @@
       : `On the axis the ${nearest.part === "asperities" ? "central asperity" : PARTS[nearest.part]} is nearest to its limit: it bears ${share(nearest)}${nearest.share < 1 ? " of" : ""} its yield strength.${nearest.share > 1 ? " The results are those of bodies that stay elastic." : ""}`;
     $("verdict").className = nearest ? state(nearest) : "";
     const show = (value) => `${Contact.readable(Math.abs(value), "Pa")} ${value < 0 ? "of pressure" : "of tension"}`;
-    const edge = Number.isNaN(own.edge) ? "" : `At the edge of the contact the surface bears ${show(own.edge)} along r. `;
-    const under = own.below === null ? "" : `On the axis the underside of the layer bears ${show(own.below)} along r. `;
+    const torn = (value) => (value > 0 && own.cracks ? `, ${Contact.percent(value / own.cracks)} of the layer's fracture strength` : "");
+    const edge = Number.isNaN(own.edge) ? "" : `At the edge of the contact the surface bears ${show(own.edge)} along r${torn(own.edge)}. `;
+    const under = own.below === null ? "" : `On the axis the underside of the layer bears ${show(own.below)} along r${torn(own.below)}. `;
     const aside = own.below === null ? "" : "A layer may bear more beside the axis, near the edge. ";
     $("stress-note").textContent = `${edge}${under}On the axis Tresca's stress is von Mises'. ${aside}Stresses beside the axis and under friction: “stresses with friction” at the foot of this page.`;
     $("stresses").ariaBusy = "false";

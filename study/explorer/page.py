@@ -51,7 +51,7 @@ def contents() -> dict:
     return {
         "version": package_version("roughcoat"),
         "meshes": {n: mesh(n) for n in NODES},
-        "materials": [{key: getattr(entry, key) for key in numbers} | {"Y": strength(entry)} for entry in entries],
+        "materials": [{key: getattr(entry, key) for key in numbers} | strengths(entry) for entry in entries],
         "bounds": {name: ends(VOCABULARY[name].parameter.interval)[:2] for name in bounded},
         "limits": {name: getattr(module, name) for module, names in _LIMITS.items() for name in names},
         "seen": [(pitch, *errors) for pitch, errors in assumptions.SEEN.items()],
@@ -59,10 +59,10 @@ def contents() -> dict:
     }
 
 
-def strength(material: materials.Material) -> float | None:
-    """The yield strength in Pa, or None."""
+def strengths(material: materials.Material) -> dict[str, float | None]:
+    """Strengths in Pa, or None: Y against yielding, cracks of a layer under tension."""
     Y = materials.strength_of(material)
-    return None if np.isnan(Y) else Y
+    return {"Y": None if np.isnan(Y) else Y, "cracks": material.fracture_strength or None}
 
 
 def mesh(n: int) -> str:

@@ -23,7 +23,7 @@ const Strength = ((Core, Stress, Contact, DATA) => {
   }
 
   /** What the contact bears: {field, parts: [{part, z, mises, strength (NaN: not known), share}], edge, below: sr of the
-      layer at the interface}, in SI but z in a. */
+      layer at the interface, cracks: its fracture strength}, in SI but z in a. */
   function stresses(contact) {
     const { ev, case_ } = contact, field = Stress.field(ev), limits = strengths(contact);
     const there = { punch: case_.p.m > 0, layer: field.layer, body: field.body, asperities: case_.p.rough };
@@ -31,7 +31,9 @@ const Strength = ((Core, Stress, Contact, DATA) => {
       const { z, value } = peak(contact, ev, field, part), mises = value * case_.unit, strength = limits[part];
       return { part, z, mises, strength, share: mises / strength };
     });
-    return { field, parts, edge: field.edge() * case_.unit, below: field.layer && field.layer(field.h).sr * case_.unit };
+    const edge = field.edge() * case_.unit, below = field.layer && field.layer(field.h).sr * case_.unit;
+    const cracks = (field.layer && Contact.MATERIALS[contact.texts.layer]?.cracks) || NaN; // fracture strength of the layer
+    return { field, parts, edge, below, cracks };
   }
 
   /** The load in SI from which a part of the contact yields on the axis: a generator, which pauses after each contact that it

@@ -132,6 +132,15 @@ def test_stresses_and_loads_of_first_yield_are_shown(explorer):
     )
 
 
+def test_the_tension_of_a_coating_is_compared_with_its_fracture_strength(explorer):
+    """1.344 GPa at the underside of ta-C on PEEK, and -306 MPa at the edge, by `study.stresses`."""
+    explorer.evaluate(SHOWN, "R=5%20mm&punch=steel%2052100&layer=DLC%20ta-C&h=20%20um&body=PEEK&P=10%20N")
+    explorer.wait_for_selector("#stresses[aria-busy=false]")
+    note = explorer.inner_text("#stress-note")
+    assert "the edge of the contact the surface bears 306 MPa of pressure along r. " in note
+    assert "underside of the layer bears 1.34 GPa of tension along r, 18 % of the layer's fracture strength." in note
+
+
 def test_a_phone_has_no_sideways_scrolling(explorer):
     explorer.set_viewport_size({"width": 390, "height": 800})
     assert explorer.evaluate("document.documentElement.scrollWidth") == 390

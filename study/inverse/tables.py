@@ -1,0 +1,123 @@
+"""A table of y(x; unknown inputs) that is read a million times: Chebyshev polynomials on tiles, made where they are needed.
+
+What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`Model`). Tiles lie on a fixed
+lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has _LATTICE
+points, between which a cubic is drawn; along the others it has Chebyshev points.
+"""
+
+import numpy as np
+
+from solver.sensitivity import is_ratio
+
+from .model import HERTZ, Model
+
+WIDE = np.log(16.0)  # of a tile, of a logarithm; of a Poisson ratio:
+_WIDE_RATIO = 0.25
+_LATTICE = 64
+STEP = WIDE / _LATTICE
+#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 1e-7 of
+#: solutions, with three 1e-5 (tests/inverse/test_tables.py).
+_POINTS = {1: 16, 2: 14, 3: 8, 4: 6}
+_MARGIN = 2.5 * STEP  # beyond the ends of a tile: the cubic takes points on both sides
+_MOVE = 1e-4  # of inputs by which derivatives are wanted
+
+
+def width(name: str) -> float:
+    """Of a tile along the coordinate of an input."""
+    return _WIDE_RATIO if is_ratio(name) else WIDE
+
+
+class Table:
+    """Tiles of a model, made on demand. Not for several threads."""
+
+    def __init__(self, model: Model):
+        self.model, self.tiles = model, {}
+        axes = 1 + len(model.axes)
+        self.points = _POINTS[min(axes, 4)]
+        t = np.cos(np.pi * (np.arange(self.points) + 0.5) / self.points)  # Chebyshev points of the first kind
+        self.t = t
+        self.weights = (-1.0) ** np.arange(self.points) * np.sin(np.pi * (np.arange(self.points) + 0.5) / self.points)
+        lattice = (np.arange(_LATTICE) / _LATTICE * WIDE - WIDE / 2) / (WIDE / 2 + _MARGIN)
+        self.along_u = self.lagrange(lattice)[0]
+
+    def lagrange(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lagrange polynomials of the Chebyshev points at s (B,), and their derivatives: (B, points) each."""
+        away = s[:, None] - self.t
+        away = np.where(np.abs(away) < 1e-13, 1e-13, away)
+        part = self.weights / away
+        total = part.sum(axis=1, keepdims=True)
+        values = part / total
+        slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
+        return values, slopes
+
+    def make(self, places: list[tuple[int, ...]]) -> None:
+        """Solve what the tiles need that are not there yet, all in one batch. A tile holds g, (1 + moved, _LATTICE, points
+        of the other coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no solution."""
+        model, names = self.model, self.model.axes
+        places = [place for place in dict.fromkeys(places) if place not in self.tiles]
+        if not places:
+            return
+        middle = (np.array(places) + 0.5) * [WIDE, *map(width, names)]
+        half = [WIDE / 2 + _MARGIN, *(width(name) / 2 for name in names)]
+        parts = np.stack([grid.ravel() for grid in np.meshgrid(*([self.t] * len(half)), indexing="ij")], axis=-1)
+        u, *coordinates = (middle[:, None] + half * parts).reshape(-1, len(half)).T
+        values = {name: model.of_coordinate(name, c) for name, c in zip(names, coordinates, strict=True)}
+        values |= {name: np.minimum(values[name], 0.5) for name in ("nu1", "nu2") if name in values}
+        x = np.exp(u - model.shift(values))
+        hertz = model.hertz(values, x, HERTZ[model.x, model.y][0])
+        with np.errstate(all="ignore"):
+            rows = [np.log(model.solved(values, x) / hertz)]
+            for name in model.moved:
+                value = np.broadcast_to(values.get(name, model.value(name)), x.shape)
+                by = _MOVE * (1.0 if is_ratio(name) else value)
+                ends = [np.log(model.solved(values | {name: value + sign * by}, x)) for sign in (1, -1)]
+                rows.append((ends[0] - ends[1]) / (2 * _MOVE))
+        g = np.array(rows).reshape(len(rows), len(places), self.points, -1)
+        for place, own in zip(places, np.einsum("lp,rtpc->trlc", self.along_u, g), strict=True):
+            self.tiles[place] = own
+
+    def rows(self, coordinates: np.ndarray, first: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """g along ln u for B curves: (B, 1 + moved, count * _LATTICE), and the derivatives of g itself by each coordinate, (axes, B, ...).
+
+        coordinates : (B, axes); first : (B,) the first tile of each along ln u; count : how many
+        """
+        B, names = len(coordinates), self.model.axes
+        wide = np.array([width(name) for name in names])
+        places = np.floor(coordinates / wide).astype(int)
+        own, slopes = self.lagrange((2 * (coordinates / wide - places) - 1).ravel())
+        own, slopes = (part.reshape(B, len(names), self.points) for part in (own, slopes))
+        factors = [[slopes[:, i] * 2 / wide[i] if i == j else own[:, i] for i in range(len(names))] for j in range(-1, len(names))]
+        weights = [_products(factor, B) for factor in factors]  # of g itself, and of its derivatives
+        key = np.column_stack([first, places])
+        several = np.unique(key, axis=0)
+        stacks = {tuple(place): [(place[0] + k, *place[1:]) for k in range(count)] for place in several.tolist()}
+        self.make([place for stack in stacks.values() for place in stack])
+        rows = np.empty((B, 1 + len(self.model.moved), count * _LATTICE))
+        by = np.empty((len(names), B, count * _LATTICE))
+        for place, stack in stacks.items():
+            here = (key == place).all(axis=1)
+            tiles = np.concatenate([self.tiles[one] for one in stack], axis=1)
+            # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
+            rows[here] = np.einsum("bc,rlc->brl", weights[0][here], tiles)
+            for slope, weight in zip(by, weights[1:], strict=True):
+                slope[here] = np.einsum("bc,lc->bl", weight[here], tiles[0])
+        return rows, by
+
+
+def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
+    """All products of one number of each factor (B, n): (B, n1 n2 ...)."""
+    whole = np.ones((B, 1))
+    for factor in factors:
+        whole = (whole[:, :, None] * factor[:, None, :]).reshape(B, -1)
+    return whole
+
+
+def cubic(rows: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Values and derivatives by the place, of rows (B, L) at places (B, n) counted in points, from 1 to L - 2."""
+    i = np.clip(np.floor(place).astype(int), 1, rows.shape[1] - 3)
+    t = place - i
+    a, b, c, d = (np.take_along_axis(rows, i + k, axis=1) for k in (-1, 0, 1, 2))
+    first, second, third = (c - a / 3 - b / 2 - d / 6), (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
+    return b + t * (first + t * (second + t * third)), first + t * (2 * second + 3 * t * third)
+
+

@@ -86,7 +86,10 @@ class Table:
         places = np.floor(coordinates / wide).astype(int)
         own, slopes = self.lagrange((2 * (coordinates / wide - places) - 1).ravel())
         own, slopes = (part.reshape(B, len(names), self.points) for part in (own, slopes))
-        factors = [[slopes[:, i] * 2 / wide[i] if i == j else own[:, i] for i in range(len(names))] for j in range(-1, len(names))]
+        factors = [
+            [slopes[:, i] * 2 / wide[i] if i == j else own[:, i] for i in range(len(names))]
+            for j in range(-1, len(names))
+        ]
         weights = [_products(factor, B) for factor in factors]  # of g itself, and of its derivatives
         key = np.column_stack([first, places])
         several = np.unique(key, axis=0)
@@ -119,5 +122,3 @@ def cubic(rows: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     a, b, c, d = (np.take_along_axis(rows, i + k, axis=1) for k in (-1, 0, 1, 2))
     first, second, third = (c - a / 3 - b / 2 - d / 6), (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
     return b + t * (first + t * (second + t * third)), first + t * (2 * second + 3 * t * third)
-
-

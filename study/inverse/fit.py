@@ -1,0 +1,276 @@
+"""`fit`: inputs of a contact from measured curves, with intervals."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver.sensitivity import is_ratio
+
+from ..inputs.definition import StudyError
+from ..inputs.vocabulary import ROWS
+from ..solving import solve
+from ..specimen.quantities import quantity
+from ..terminal import shown
+from ..work.progress import Progress
+from ..work.screen import screen_of
+from .asked import Asked, asked
+from .block import FitStatus, fit_block
+from .curves import curves as read_curves
+from .tables import Table
+
+_BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
+_OTHERS = {"D0": "contact point", "P0": "baseline", "tilt": "tilt of the baseline"}
+
+
+def fit(
+    curves: Any,
+    *,
+    free: list[str] | dict[str, Any],
+    contact_point: bool = True,
+    baseline: bool = True,
+    tilt: bool = False,
+    x: str = "D",
+    y: str = "P",
+    sigma: Any = None,
+    loss: str = "linear",
+    intervals: str | None = "profile",
+    level: float = 0.95,
+    plan: bool = False,
+    progress: bool | None = None,
+    **parameters: Any,
+) -> xr.Dataset:
+    """Fit inputs of a contact to measured curves: y = F(x - D0) + P0 + tilt x, F the solved contact (docs/fit.md).
+
+    Inputs without ± are exact. Those in `free` are fitted. An input with ± in the call ("1.5 ± 0.1 um") is unknown with a
+    Gaussian prior, of its logarithm. The spreads of R, of Poisson ratios and of named materials are taken over into the
+    answer. At most three inputs are unknown.
+
+    Parameters
+    ----------
+    curves : what `curves` takes
+    free : names of inputs, or {name: (low, high)}. A modulus may lie between 1e-3 and 1e3 times what Hertz's formula gives
+        for the deepest point, other inputs a decade each way from their value in the call, unless bounds are given
+    contact_point, baseline, tilt : whether D0, P0, and a slope of the baseline are fitted; of y over D alone
+    x, y : "D", "P"; or "P", "a"; or "a", "dP_dD"
+    sigma : standard deviation of a point of y, SI or a text with unit, or an array; None: from the residuals
+    loss : "huber": points far off count less
+    intervals : "profile" of the likelihood; "fisher", from the curvature at the minimum; None: no NAME_low, NAME_high.
+        Under "huber" they are from the curvature
+    level : of the intervals
+    plan : `curves` holds x alone, and the call the assumed values: how sure a fit would be
+    progress : whether to show how far it is; None: where the terminal or a notebook can
+    parameters : those of `study.solve` with units, without P, a and D
+
+    Returns
+    -------
+    xarray.Dataset : over `curve`: NAME, NAME_low, NAME_high and NAME_spread (that of ln NAME times NAME) of the unknown
+        inputs and of D0, P0, tilt, in SI; `covariance` (curve, cov_i, cov_j); y_fit and `residual` = y - fit over (curve,
+        point); `fit_status`, and `validity` of the contact at the deepest point. A curve that cannot be fitted has a status
+        and NaN
+
+    Raises
+    ------
+    StudyError : a call that cannot be used, before a curve is read; no curve is an error
+
+    Examples
+    --------
+    >>> import study
+    >>> bead = {"R": "5 um", "E2": "1 kPa", "nu2": 0.5, "base": "half_space", "micro": "smooth"}
+    >>> contact = study.solve(**bead, D=[f"{depth} nm" for depth in range(10, 200, 10)], x=2, profiles=False)
+    >>> measured = {"D": (contact.D.values, "m"), "P": (contact.P.values, "N")}
+    >>> fitted = study.fit(measured, **bead | {"E2": None}, free=["E2"])
+    >>> round(fitted.E2.item(), 2)
+    1000.0
+    """
+    options = {"contact_point": contact_point, "baseline": baseline, "tilt": tilt, "sigma": sigma, "loss": loss}
+    options |= {"intervals": intervals, "level": level, "plan": plan}
+    parameters = {name: value for name, value in parameters.items() if value is not None}
+    question = asked(free, parameters, x, y, options)
+    X, Y, S = _arrays(curves, question, sigma, plan)
+    if plan:
+        Y = _planned(question, X)
+    table, unknowns = Table(question.model), len(question.model.unknowns) + len(question.shifts)
+    there = np.isfinite(X) & np.isfinite(Y)
+    status = np.where(_usable(X, Y, there, unknowns), -1, FitStatus.INVALID_INPUT)
+    rows: dict[int, dict] = {}
+    size = -(-there.sum(axis=1) // _PART) * _PART
+    stream = screen_of(progress)
+    with Progress("fit", len(X), stream, passing=True) as told, np.errstate(all="ignore"):
+        for points in np.unique(size[status < 0]):
+            same = np.flatnonzero((size == points) & (status < 0))
+            for begin in range(0, len(same), _BLOCK):
+                index = same[begin : begin + _BLOCK]
+                filled = np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))])
+                blocks = [_packed(A, there, filled, points) for A in (X, Y, S) if A is not None]
+                answer = fit_block(question, table, *blocks, *([None] if S is None else []))
+                rows |= {int(curve): (answer, i) for i, curve in enumerate(index)}
+                told.update(len(index), 0)
+    return _dataset(question, rows, status, X, Y, there, plan)
+
+
+def _arrays(source: Any, question: Asked, sigma: Any, plan: bool) -> tuple:
+    model = question.model
+    data = _abscissa(source, model.x) if plan else read_curves(source)
+    lacking = [name for name in (model.x, *([] if plan else [model.y])) if name not in data]
+    if lacking:
+        raise StudyError([f"curves: {lacking[0]} is not there; x = {model.x}, y = {model.y} are to be fitted"])
+    X = data[model.x].values
+    Y = np.full(X.shape, np.nan) if plan else data[model.y].values
+    if sigma is None:
+        return X, Y, None
+    unit = ROWS[model.y].unit
+    try:
+        values = quantity("sigma", sigma, unit).value if isinstance(sigma, str) else np.asarray(sigma, float)
+    except (TypeError, ValueError) as error:
+        raise StudyError([str(error)]) from None
+    try:
+        S = np.broadcast_to(values, X.shape).copy()
+    except ValueError:
+        raise StudyError([f"sigma has the shape {np.shape(values)}: must be one number, or as y, {X.shape}"]) from None
+    if not np.all(S[np.isfinite(X)] > 0):
+        raise StudyError([f"sigma = {shown(sigma)}: must be above 0"])
+    return X, Y, S
+
+
+def _abscissa(source: Any, x: str) -> xr.Dataset:
+    """The abscissa of a plan."""
+    if isinstance(source, dict) and set(source) == {x}:
+        values, unit = source[x]
+        same = read_curves(
+            {x: (values, unit), "P" if x != "P" else "a": (np.zeros(np.shape(values)), "N" if x != "P" else "m")}
+        )
+        return same[[x]]
+    if isinstance(source, xr.Dataset):
+        return read_curves(source.assign(D=source[x], P=xr.zeros_like(source[x]).assign_attrs(units="N")))[[x]]
+    return read_curves(source)
+
+
+def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
+    """The curve of the assumed values."""
+    model = question.model
+    values = {name: np.full(1, model.value(name)) for name in model.unknowns}
+    with np.errstate(all="ignore"):
+        flat = np.where(X > 0, X, np.nan).ravel()
+        y = np.zeros(flat.shape)
+        good = np.isfinite(flat)
+        y[good] = model.solved({name: np.full(good.sum(), v[0]) for name, v in values.items()}, flat[good])
+    return np.where(np.isfinite(X), y.reshape(X.shape), np.nan)
+
+
+def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int) -> np.ndarray:
+    """Which curves have more points than unknowns, at more than one x, and more than one y."""
+    enough = there.sum(axis=1) > unknowns
+    span = [np.where(there, A, -np.inf).max(axis=1) - np.where(there, A, np.inf).min(axis=1) for A in (X, Y)]
+    return enough & (span[0] > 0) & (span[1] > 0) & (np.where(there, X, -np.inf).max(axis=1) > 0)
+
+
+def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:
+    """The points of some curves, without the gaps between them, filled up with NaN."""
+    packed = np.full((len(index), points), np.nan)
+    for row, curve in zip(packed, index, strict=True):
+        values = A[curve][there[curve]]
+        row[: len(values)] = values
+    return packed
+
+
+def _dataset(
+    question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
+) -> xr.Dataset:
+    model, C = question.model, len(X)
+    names = (*model.unknowns, *question.shifts)
+    k, unit = len(names), ROWS[model.y].unit
+    value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
+    covariance, drawn = np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
+    status = status.astype(np.int8)
+    for curve, (answer, i) in rows.items():
+        status[curve] = answer["status"][i]
+        if status[curve] == FitStatus.INVALID_INPUT:
+            continue
+        sizes = {"D0": answer["wide"][i], "P0": answer["top"][i], "tilt": answer["top"][i] / answer["wide"][i]}
+        p, more = answer["p"][i], answer["propagated"][i]
+        total = answer["covariance"][i] + more
+        by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
+        for j, name in enumerate(names):
+            ends = [_end(p[j], answer[end][i, j], answer["t"][i] * np.sqrt(more[j, j])) for end in ("low", "high")]
+            value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
+        covariance[curve] = total * by[:, None] * by[None, :]
+        spread[curve] = np.sqrt(np.diag(covariance[curve]))
+        drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
+    variables: dict[str, Any] = {}
+    for j, name in enumerate(names):
+        own = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
+        words = ROWS[name].long_name if name in ROWS else _OTHERS[name]
+        if not plan:
+            variables[name] = ("curve", value[:, j], {"units": own, "long_name": words})
+        ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
+        variables |= {
+            f"{name}_{end}": ("curve", array[:, j], {"units": own}) for end, array in (*ends_of, ("spread", spread))
+        }
+    coordinates = {"cov_i": list(names), "cov_j": list(names)}
+    variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)
+    if not plan:
+        about = {"units": unit}
+        variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
+        variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
+    flags = {
+        "flag_values": np.array([*FitStatus], np.int8),
+        "flag_meanings": " ".join(s.name.lower() for s in FitStatus),
+    }
+    variables["fit_status"] = ("curve", status, flags)
+    variables[model.x] = (("curve", "point"), X, {"units": ROWS[model.x].unit})
+    if not plan:
+        variables[model.y] = (("curve", "point"), Y, {"units": unit})
+    fitted = xr.Dataset(
+        variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
+    )
+    return fitted.assign(validity=_validity(question, fitted, value, X, there))
+
+
+def _slope(model, name: str, p: float, sizes: dict) -> float:
+    """d(value in SI)/d(unknown)."""
+    return sizes[name] if name in sizes else 1.0 if is_ratio(name) else float(np.exp(p))
+
+
+def _value(model, name: str, p: float, sizes: dict) -> float:
+    return float(p * sizes[name]) if name in sizes else float(model.of_coordinate(name, p))
+
+
+def _end(p: float, end: float, more: float) -> float:
+    """The end of an interval with what other inputs add to it."""
+    return p + np.sign(end - p) * np.hypot(end - p, more)
+
+
+def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray) -> xr.DataArray:
+    """What the deepest contact of each fitted curve violates of the assumptions of the model."""
+    model, scene = question.model, question.model.scene
+    good = np.isfinite(value).all(axis=1)
+    deepest = np.where(there, X, -np.inf).max(axis=1) - (fitted["D0"].values if "D0" in fitted else 0.0)
+    good &= deepest > 0
+    flags, about = np.zeros(len(X), np.int64), {}
+    if good.any():
+        columns = {name: (value[good, i], ROWS[name].unit) for i, name in enumerate(model.unknowns)}
+        columns |= {
+            name: (float(v), ROWS[name].unit)
+            for name, v in scene.values.items()
+            if name not in columns and name != model.x
+        }
+        columns[model.x] = (deepest[good], ROWS[model.x].unit)
+        given = {
+            name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": u})
+            for name, (v, u) in columns.items()
+        }
+        given |= {name: "rigid" for name in ("E2",) if np.isinf(np.asarray(given.get(name, 0.0))).all()}
+        given |= {
+            name: scene.parameters[name]
+            for name in ("base", "micro", "bonding", "beta", "cut")
+            if name in scene.parameters
+        }
+        if "R1" in given:
+            given.pop("R")
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            contacts = solve(**given, x=2, profiles=False, progress=False)
+        flags[good], about = contacts["validity"].values, contacts["validity"].attrs
+    return xr.DataArray(flags, dims="curve", attrs=about)

@@ -115,10 +115,19 @@ def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
     return whole
 
 
-def cubic(rows: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values and derivatives by the place, of rows (B, L) at places (B, n) counted in points, from 1 to L - 2."""
-    i = np.clip(np.floor(place).astype(int), 1, rows.shape[1] - 3)
-    t = place - i
-    a, b, c, d = (np.take_along_axis(rows, i + k, axis=1) for k in (-1, 0, 1, 2))
-    first, second, third = (c - a / 3 - b / 2 - d / 6), (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
-    return b + t * (first + t * (second + t * third)), first + t * (2 * second + 3 * t * third)
+class Places:
+    """Places (B, n) in rows of L points, where cubics through four points are read: counted in points, from 1 to L - 3."""
+
+    def __init__(self, place: np.ndarray, length: int):
+        i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, as none is below 0
+        self.t = place - i
+        self.flat = i + length * np.arange(len(place))[:, None] - 1
+
+    def read(self, rows: np.ndarray, slope: bool = False) -> tuple:
+        """Values (B, n) of rows (B, L), and their derivatives by the place, or None."""
+        t, flat = self.t, rows.reshape(-1)
+        a, b, c, d = (flat.take(self.flat + k) for k in range(4))
+        second, third = (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
+        first = c - b - second - third
+        value = b + t * (first + t * (second + t * third))
+        return value, first + t * (2 * second + 3 * t * third) if slope else None

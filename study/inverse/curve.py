@@ -73,10 +73,10 @@ class Curve:
         last = np.floor(deepest[:, 0] / WIDE).astype(int)
         first = last - (_TILES - 1)
         coordinates = p[:, [model.unknowns.index(name) for name in model.axes]]
-        rows, by_axis = self.table.rows(coordinates, first, _TILES)
+        rows, by_axis = self.table.rows(coordinates, first, _TILES, moved)
         place = (above - first[:, None] * WIDE) / STEP
         places = Places(place, rows.shape[2])
-        g, slope = places.read(np.ascontiguousarray(rows[:, 0]), slope=True)
+        g, slope = places.read(rows[0], slope=True)
         slope = slope / STEP
         power, (_, *of_u) = HERTZ[model.x, model.y]
         with np.errstate(over="ignore", invalid="ignore"):
@@ -85,7 +85,7 @@ class Curve:
         by = {"x": F * (power[0] + slope) / depth}
         for name in model.unknowns:
             by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, places)
-        others = [F * places.read(np.ascontiguousarray(rows[:, 1 + i]))[0] for i in range(len(model.moved))] if moved else []
+        others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
         return F, by, np.array(others)
 
     def _log_slope(self, name, values, power, of_u, slope, by_axis, places):

@@ -1,11 +1,11 @@
 """The model of measured curves: y = F(x - D0; inputs) + P0 + tilt x, and its derivatives by the unknowns, from a table."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .model import HERTZ
-from .tables import STEP, WIDE, Table, cubic
+from .tables import STEP, WIDE, Places, Table
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
 _REACH = np.log(800.0)  # below this part of twice the range of x the last exponent of y(x) goes on
@@ -30,6 +30,10 @@ class Curve:
     @property
     def names(self) -> tuple[str, ...]:
         return (*self.table.model.unknowns, *self.shifts)
+
+    def take(self, index: np.ndarray) -> "Curve":
+        """Some of the curves."""
+        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index])
 
     def values(self, p: np.ndarray) -> dict[str, np.ndarray]:
         """Input -> its SI values (B, 1)."""
@@ -69,9 +73,10 @@ class Curve:
         last = np.floor(deepest[:, 0] / WIDE).astype(int)
         first = last - (_TILES - 1)
         coordinates = p[:, [model.unknowns.index(name) for name in model.axes]]
-        rows, by_axis = self.table.rows(coordinates, first, _TILES)
+        rows, by_axis = self.table.rows(coordinates, first, _TILES, moved)
         place = (above - first[:, None] * WIDE) / STEP
-        g, slope = cubic(rows[:, 0], place)
+        places = Places(place, rows.shape[2])
+        g, slope = places.read(rows[0], slope=True)
         slope = slope / STEP
         power, (_, *of_u) = HERTZ[model.x, model.y]
         with np.errstate(over="ignore", invalid="ignore"):
@@ -79,11 +84,11 @@ class Curve:
         F = np.where(inside, F, 0.0)
         by = {"x": F * (power[0] + slope) / depth}
         for name in model.unknowns:
-            by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, place)
-        others = [F * cubic(rows[:, 1 + i], place)[0] for i in range(len(model.moved))] if moved else []
+            by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, places)
+        others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
         return F, by, np.array(others)
 
-    def _log_slope(self, name, values, power, of_u, slope, by_axis, place):
+    def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
         """d ln F by the coordinate of an input."""
         model = self.table.model
         E = {model.modulus: 1.0}
@@ -94,5 +99,5 @@ class Curve:
         if model.is_similar:
             total = total + slope * (of_u[0] * (name == "h") + of_u[1] * (name == "R") + of_u[2] * E.get(name, 0.0))
         if name in model.axes:
-            total = total + cubic(by_axis[model.axes.index(name)], place)[0]
+            total = total + places.read(by_axis[model.axes.index(name)])[0]
         return total

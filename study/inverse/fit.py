@@ -18,6 +18,7 @@ from ..work.screen import screen_of
 from .asked import Asked, asked
 from .block import FitStatus, fit_block
 from .curves import curves as read_curves
+from .model import HERTZ
 from .tables import Table
 
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
@@ -100,6 +101,7 @@ def fit(
     with Progress("fit", len(X), stream, passing=True) as told, np.errstate(all="ignore"):
         for points in np.unique(size[status < 0]):
             same = np.flatnonzero((size == points) & (status < 0))
+            same = same[np.argsort(_stiffness(X, Y, question)[same], kind="stable")]
             for begin in range(0, len(same), _BLOCK):
                 index = same[begin : begin + _BLOCK]
                 filled = np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))])
@@ -164,6 +166,12 @@ def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int) -> n
     enough = there.sum(axis=1) > unknowns
     span = [np.where(there, A, -np.inf).max(axis=1) - np.where(there, A, np.inf).min(axis=1) for A in (X, Y)]
     return enough & (span[0] > 0) & (span[1] > 0) & (np.where(there, X, -np.inf).max(axis=1) > 0)
+
+
+def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
+    """About the modulus of each curve, in any unit: like curves share the tiles of a table."""
+    q, e, _ = HERTZ[question.model.x, question.model.y][0]
+    return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
 
 
 def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:

@@ -7,7 +7,7 @@ import numpy as np
 
 from .least_squares import HUBER, Data, Fit, inverse, minimise, normal, scale
 
-_INNER = 30  # steps of an inner fit
+_INNER, _INNER_SURE = 30, 1e-4  # steps of an inner fit, and by what part of the mean square it may be off
 _OUTWARD, _BETWEEN = 24, 8  # steps of the walk to the limit, and between its last two places
 _PRECISE = 2e-3  # of the width of an interval
 
@@ -103,5 +103,5 @@ def _inner(curve, data, p, held, i, value, start):
     """The other unknowns where unknown i has a value, and the root of what the cost is above that of the best fit."""
     p = p.copy()
     p[:, i] = value
-    fit = minimise(curve, data, p, held, _INNER)
+    fit = minimise(curve, data, p, held, _INNER, _INNER_SURE)
     return fit.p, np.sqrt(np.maximum(fit.cost - start, 0.0))

@@ -3,13 +3,15 @@
 What a curve gets does not depend on the others of the batch: every sum is over one curve.
 """
 
-from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 STEPS = 100  # at most
 _CLOSE = 1e-9  # steps of all unknowns below this end the search; all unknowns are of order 1
+#: Unknowns are then within 1e-4 of their spreads.
+SURE = 1e-8
+_AT_LEAST = 8  # curves that are taken together
 _STIFF = 1e10  # damping at which only rounding is left
 #: Of Huber's loss: residuals beyond this times the scale count linearly; the scale is this times the median deviation.
 HUBER, MAD = 1.345, 1.4826
@@ -32,6 +34,10 @@ class Data(NamedTuple):
     stiffness: np.ndarray
     huber: bool = False
 
+    def take(self, index: np.ndarray) -> "Data":
+        """Those of some curves."""
+        return Data(*(array[index] for array in self[:6]), self.huber)
+
 
 class Fit(NamedTuple):
     """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights (B, n)
@@ -44,42 +50,63 @@ class Fit(NamedTuple):
     weights: np.ndarray
     ended: np.ndarray
 
+    def take(self, index: np.ndarray) -> "Fit":
+        """Those of some curves."""
+        return Fit(*(array[index] for array in self))
 
-def minimise(curve: Callable, data: Data, p: np.ndarray, held: np.ndarray | None = None, steps: int = STEPS) -> Fit:
+
+def minimise(
+    curve: Any, data: Data, p: np.ndarray, held: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
+) -> Fit:
     """The least squares of w (y - curve(p)), from p, without leaving the bounds.
 
-    curve : p -> values (B, n) and derivatives (B, n, k); NaN where there is none
+    curve : p -> values (B, n) and derivatives (B, n, k), NaN where there is none; `take(index)` has some of the curves
     held : (B, k) bool, unknowns that stay
+    sure : the search ends where a step would lower the cost by less than this part of the mean square
     """
     held = np.zeros(p.shape, bool) if held is None else held
     model, J = curve(p)
-    weights, cost = _weighed(data, p, model)
-    damping, ended = np.full(len(p), 1e-3), ~np.isfinite(cost)
-    eye = np.eye(p.shape[1], dtype=bool)
+    fit = Fit(p.copy(), np.zeros(len(p)), model, J, *_weighed(data, p, model)[:1], np.zeros(len(p), bool))
+    fit.cost[:] = _weighed(data, p, model)[1]
+    count = np.maximum((data.w > 0).sum(axis=1), 1)
+    left, damping = np.flatnonzero(np.isfinite(fit.cost)), np.full(len(p), 1e-3)
+    fit.ended[~np.isfinite(fit.cost)] = True
     for _ in range(steps):
-        if ended.all():
+        if not len(left):
             break
-        A, slope = normal(data, p, model, J, weights)
-        still = held | ((p <= data.low) & (slope < 0)) | ((p >= data.high) & (slope > 0))
-        both = still[:, :, None] | still[:, None, :]
-        diagonal = np.einsum("bii->bi", A)
-        damped = np.where(both, eye, A + eye * (damping[:, None] * np.maximum(diagonal, 1e-300))[:, :, None])
-        damped = np.where(np.isfinite(damped), damped, eye)
-        step = np.linalg.solve(damped, np.where(still, 0.0, slope)[:, :, None])[:, :, 0]
-        new = np.where(ended[:, None] | held, p, np.clip(p + step, data.low, data.high))
-        new_model, new_J = curve(new)
-        new_weights, new_cost = _weighed(data, new, new_model)
-        better = (new_cost <= cost) & ~ended
-        small = np.abs(new - p).max(axis=1) < _CLOSE
-        flat = better & (cost - new_cost <= 1e-13 * cost) & (damping <= 1e-3)
-        ended |= (better & small) | flat | (~better & (damping > _STIFF)) | (~better & small)
-        take = better[:, None]
-        p, model, J = np.where(take, new, p), np.where(take, new_model, model), np.where(take[..., None], new_J, J)
-        weights, cost = np.where(take, new_weights, weights), np.where(better, new_cost, cost)
+        # what is done stands aside; the number of curves is one of few, so that sums are made in one of few ways
+        rows = left if len(left) % _AT_LEAST == 0 else np.resize(left, -(-len(left) // _AT_LEAST) * _AT_LEAST)
+        new, decrease = _step(data.take(rows), fit.take(rows), held[rows], damping[rows])
+        part = curve.take(rows)
+        new_model, new_J = part(new)
+        weights, cost = _weighed(data.take(rows), new, new_model)
+        once = slice(0, len(left))
+        better = (cost <= fit.cost[rows])[once]
+        small = np.abs(new - fit.p[rows])[once].max(axis=1) < _CLOSE
+        near = (decrease <= sure * fit.cost[rows] / count[rows])[once] & (damping[left] <= 1e-3)
+        done = small | (better & near) | (~better & (damping[left] > _STIFF))
+        take = left[better]
+        for array, value in zip(fit[:5], (new, cost, new_model, new_J, weights), strict=True):
+            array[take] = value[once][better]
         if data.huber:  # the scale moves with the residuals: the cost by the new scale counts
-            weights, cost = _weighed(data, p, model)
-        damping = np.where(better, np.maximum(damping * 0.1, 1e-14), damping * 8)
-    return Fit(p, cost, model, J, weights, ended)
+            fit.weights[take], fit.cost[take] = _weighed(data.take(take), fit.p[take], fit.model[take])
+        damping[left] = np.where(better, np.maximum(damping[left] * 0.1, 1e-14), damping[left] * 8)
+        fit.ended[left[done]] = True
+        left = left[~done]
+    return fit
+
+
+def _step(data: Data, fit: Fit, held: np.ndarray, damping: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Where a damped step leads, within the bounds, and by how much it should lower the cost."""
+    p, eye = fit.p, np.eye(fit.p.shape[1], dtype=bool)
+    A, slope = normal(data, p, fit.model, fit.J, fit.weights)
+    still = held | ((p <= data.low) & (slope < 0)) | ((p >= data.high) & (slope > 0))
+    diagonal = np.maximum(np.einsum("bii->bi", A), 1e-300)
+    damped = np.where(still[:, :, None] | still[:, None, :], eye, A + eye * (damping[:, None] * diagonal)[:, :, None])
+    damped = np.where(np.isfinite(damped), damped, eye)
+    slope = np.where(still, 0.0, slope)
+    step = np.linalg.solve(damped, slope[:, :, None])[:, :, 0]
+    return np.where(held, p, np.clip(p + step, data.low, data.high)), (slope * step).sum(axis=1)
 
 
 def normal(data: Data, p: np.ndarray, model: np.ndarray, J: np.ndarray, weights: np.ndarray) -> tuple:

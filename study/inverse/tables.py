@@ -13,7 +13,7 @@ from .model import HERTZ, Model
 
 WIDE = np.log(16.0)  # of a tile, of a logarithm; of a Poisson ratio:
 _WIDE_RATIO = 0.25
-_LATTICE = 64
+_LATTICE = 32
 STEP = WIDE / _LATTICE
 #: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 1e-7 of
 #: solutions, with three 1e-5 (tests/inverse/test_tables.py).
@@ -31,7 +31,7 @@ class Table:
     """Tiles of a model, made on demand. Not for several threads."""
 
     def __init__(self, model: Model):
-        self.model, self.tiles = model, {}
+        self.model, self.tiles, self.stacks = model, {}, {}
         axes = 1 + len(model.axes)
         self.points = _POINTS[min(axes, 4)]
         t = np.cos(np.pi * (np.arange(self.points) + 0.5) / self.points)  # Chebyshev points of the first kind
@@ -76,8 +76,19 @@ class Table:
         for place, own in zip(places, np.einsum("lp,rtpc->trlc", self.along_u, g), strict=True):
             self.tiles[place] = own
 
-    def rows(self, coordinates: np.ndarray, first: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-        """g along ln u for B curves: (B, 1 + moved, count * _LATTICE), and the derivatives of g itself by each coordinate, (axes, B, ...).
+    def _stack(self, place: tuple[int, ...], count: int) -> np.ndarray:
+        """Tiles one after another along ln u."""
+        key = (count, *place)
+        if key not in self.stacks:
+            tiles = [self.tiles[(place[0] + k, *place[1:])] for k in range(count)]
+            self.stacks[key] = np.concatenate(tiles, axis=1)
+        return self.stacks[key]
+
+    def rows(
+        self, coordinates: np.ndarray, first: np.ndarray, count: int, moved: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """g along ln u for B curves: (1 + moved, B, count * _LATTICE), and the derivatives of g itself by each coordinate,
+        (axes, B, ...). The derivatives by the inputs `moved` of the model are there if wanted.
 
         coordinates : (B, axes); first : (B,) the first tile of each along ln u; count : how many
         """
@@ -90,20 +101,20 @@ class Table:
             [slopes[:, i] * 2 / wide[i] if i == j else own[:, i] for i in range(len(names))]
             for j in range(-1, len(names))
         ]
-        weights = [_products(factor, B) for factor in factors]  # of g itself, and of its derivatives
+        weights = np.array([_products(factor, B) for factor in factors])  # of g itself, and of its derivatives
         key = np.column_stack([first, places])
-        several = np.unique(key, axis=0)
-        stacks = {tuple(place): [(place[0] + k, *place[1:]) for k in range(count)] for place in several.tolist()}
-        self.make([place for stack in stacks.values() for place in stack])
-        rows = np.empty((B, 1 + len(self.model.moved), count * _LATTICE))
+        several = [tuple(place) for place in np.unique(key, axis=0).tolist()]
+        self.make([(place[0] + k, *place[1:]) for place in several for k in range(count)])
+        rows = np.empty((1 + len(self.model.moved), B, count * _LATTICE))
         by = np.empty((len(names), B, count * _LATTICE))
-        for place, stack in stacks.items():
+        for place in several:
             here = (key == place).all(axis=1)
-            tiles = np.concatenate([self.tiles[one] for one in stack], axis=1)
+            stack = self._stack(place, count)
             # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
-            rows[here] = np.einsum("bc,rlc->brl", weights[0][here], tiles)
-            for slope, weight in zip(by, weights[1:], strict=True):
-                slope[here] = np.einsum("bc,lc->bl", weight[here], tiles[0])
+            both = np.einsum("wbc,lc->wbl", weights[:, here], stack[0])
+            rows[0, here], by[:, here] = both[0], both[1:]
+            if moved and len(stack) > 1:
+                rows[1:, here] = np.einsum("bc,rlc->rbl", weights[0, here], stack[1:])
         return rows, by
 
 
@@ -115,10 +126,19 @@ def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
     return whole
 
 
-def cubic(rows: np.ndarray, place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Values and derivatives by the place, of rows (B, L) at places (B, n) counted in points, from 1 to L - 2."""
-    i = np.clip(np.floor(place).astype(int), 1, rows.shape[1] - 3)
-    t = place - i
-    a, b, c, d = (np.take_along_axis(rows, i + k, axis=1) for k in (-1, 0, 1, 2))
-    first, second, third = (c - a / 3 - b / 2 - d / 6), (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
-    return b + t * (first + t * (second + t * third)), first + t * (2 * second + 3 * t * third)
+class Places:
+    """Places (B, n) in rows of L points, where cubics through four points are read: counted in points, from 1 to L - 3."""
+
+    def __init__(self, place: np.ndarray, length: int):
+        i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, as none is below 0
+        self.t = place - i
+        self.flat = i + length * np.arange(len(place))[:, None] - 1
+
+    def read(self, rows: np.ndarray, slope: bool = False) -> tuple:
+        """Values (B, n) of rows (B, L), and their derivatives by the place, or None."""
+        t, flat = self.t, rows.reshape(-1)
+        a, b, c, d = (flat.take(self.flat + k) for k in range(4))
+        second, third = (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
+        first = c - b - second - third
+        value = b + t * (first + t * (second + t * third))
+        return value, first + t * (2 * second + 3 * t * third) if slope else None

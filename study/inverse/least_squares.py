@@ -79,7 +79,10 @@ def minimise(
         new, decrease = _step(data.take(rows), fit.take(rows), held[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)
-        weights, cost = _weighed(data.take(rows), new, new_model)
+        # Huber's limit is that of the residuals from which the step goes: both costs count alike. Cost by the limit of
+        # each would fall with the limit too, away from where the sum of the bounded residuals is 0
+        limit = huber_limit(data.take(rows), fit.model[rows])
+        weights, cost = _weighed(data.take(rows), new, new_model, limit)
         once = slice(0, len(left))
         better = (cost <= fit.cost[rows])[once]
         small = np.abs(new - fit.p[rows])[once].max(axis=1) < _CLOSE
@@ -88,7 +91,7 @@ def minimise(
         take = left[better]
         for array, value in zip(fit[:5], (new, cost, new_model, new_J, weights), strict=True):
             array[take] = value[once][better]
-        if data.huber:  # the scale moves with the residuals: the cost by the new scale counts
+        if data.huber:  # the limit of the new residuals, for the next step
             fit.weights[take], fit.cost[take] = _weighed(data.take(take), fit.p[take], fit.model[take])
         damping[left] = np.where(better, np.maximum(damping[left] * 0.1, 1e-14), damping[left] * 8)
         fit.ended[left[done]] = True
@@ -117,18 +120,30 @@ def normal(data: Data, p: np.ndarray, model: np.ndarray, J: np.ndarray, weights:
     return A, slope
 
 
-def _weighed(data: Data, p: np.ndarray, model: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Weights of the squares of the residuals, and the cost; infinite where the model has no value."""
+def _weighed(
+    data: Data, p: np.ndarray, model: np.ndarray, limit: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
+    """Weights of the squares of the residuals, and the cost; infinite where the model has no value.
+
+    limit : (B, 1) of Huber's loss; None: that of these residuals
+    """
     residual = np.where(data.w > 0, data.w * (data.y - model), 0.0)
     weights = data.w**2
     squares = residual**2
     if data.huber:
-        limit = HUBER * scale(residual, data.w)[:, None]
+        limit = huber_limit(data, model) if limit is None else limit
         large = np.abs(residual) > limit
         weights = np.where(large, weights * limit / np.where(large, np.abs(residual), 1.0), weights)
         squares = np.where(large, 2 * limit * np.abs(residual) - limit**2, squares)
     cost = squares.sum(axis=1) + (data.stiffness * (p - data.center) ** 2).sum(axis=1)
     return weights, np.where(np.isfinite(cost), cost, np.inf)
+
+
+def huber_limit(data: Data, model: np.ndarray) -> np.ndarray | None:
+    """(B, 1), beyond which residuals count linearly; None if all count by their squares."""
+    if not data.huber:
+        return None
+    return HUBER * scale(np.where(data.w > 0, data.w * (data.y - model), 0.0), data.w)[:, None]
 
 
 def scale(residual: np.ndarray, w: np.ndarray) -> np.ndarray:

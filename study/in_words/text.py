@@ -7,6 +7,7 @@ from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
 from ..specimen.pictures import curve, with_picture
+from .fits import of_fit
 from .inputs import is_rigid, used_inputs
 from .numbers import given_text, peak_text, result_text, ring_text, spread_of
 from .pressures import largest
@@ -55,7 +56,8 @@ def summary(contact: xr.Dataset) -> Summary:
 
     Parameters
     ----------
-    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out
+    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Or
+        of `study.fit`: what was fitted to each curve, and what a curve could not tell
 
     Returns
     -------
@@ -71,6 +73,8 @@ def summary(contact: xr.Dataset) -> Summary:
     >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
     'Given: a rigid punch'
     """
+    if "fit_status" in contact:
+        return Summary(of_fit(contact))
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")

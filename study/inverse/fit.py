@@ -8,6 +8,7 @@ import xarray as xr
 
 from solver.sensitivity import is_ratio
 
+from ..in_words.fits import NAMES_OF_SHIFTS
 from ..inputs.definition import StudyError
 from ..inputs.vocabulary import ROWS
 from ..solving import solve
@@ -21,8 +22,8 @@ from .curves import curves as read_curves
 from .model import HERTZ
 from .tables import Table
 
+_DRAWN, _PLACES = 64, 16  # curves of which it is known from which of so many x on an assumption fails
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
-_OTHERS = {"D0": "contact point", "P0": "baseline", "tilt": "tilt of the baseline"}
 
 
 def fit(
@@ -209,7 +210,7 @@ def _dataset(
     variables: dict[str, Any] = {}
     for j, name in enumerate(names):
         own = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
-        words = ROWS[name].long_name if name in ROWS else _OTHERS[name]
+        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
         if not plan:
             variables[name] = ("curve", value[:, j], {"units": own, "long_name": words})
         ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
@@ -233,7 +234,7 @@ def _dataset(
     fitted = xr.Dataset(
         variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
     )
-    return fitted.assign(validity=_validity(question, fitted, value, X, there))
+    return fitted.merge(_validity(question, fitted, value, X, there))
 
 
 def _slope(model, name: str, p: float, sizes: dict) -> float:
@@ -250,35 +251,47 @@ def _end(p: float, end: float, more: float) -> float:
     return p + np.sign(end - p) * np.hypot(end - p, more)
 
 
-def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray) -> xr.DataArray:
-    """What the deepest contact of each fitted curve violates of the assumptions of the model."""
-    model, scene = question.model, question.model.scene
-    good = np.isfinite(value).all(axis=1)
-    deepest = np.where(there, X, -np.inf).max(axis=1) - (fitted["D0"].values if "D0" in fitted else 0.0)
-    good &= deepest > 0
-    flags, about = np.zeros(len(X), np.int64), {}
+def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray) -> xr.Dataset:
+    """What the deepest contact of each fitted curve violates of the assumptions of the model, and up to which x none is."""
+    model = question.model
+    deepest, D0 = np.where(there, X, -np.inf).max(axis=1), fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
+    good = np.isfinite(value).all(axis=1) & (deepest > D0)
+    flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, -np.inf), {}
     if good.any():
-        columns = {name: (value[good, i], ROWS[name].unit) for i, name in enumerate(model.unknowns)}
-        columns |= {
-            name: (float(v), ROWS[name].unit)
-            for name, v in scene.values.items()
-            if name not in columns and name != model.x
-        }
-        columns[model.x] = (deepest[good], ROWS[model.x].unit)
-        given = {
-            name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": u})
-            for name, (v, u) in columns.items()
-        }
-        given |= {name: "rigid" for name in ("E2",) if np.isinf(np.asarray(given.get(name, 0.0))).all()}
-        given |= {
-            name: scene.parameters[name]
-            for name in ("base", "micro", "bonding", "beta", "cut")
-            if name in scene.parameters
-        }
-        if "R1" in given:
-            given.pop("R")
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            contacts = solve(**given, x=2, profiles=False, progress=False)
+        contacts = _contacts(question, value[good], (deepest - D0)[good])
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
-    return xr.DataArray(flags, dims="curve", attrs=about)
+        broken = np.flatnonzero(flags != 0)[:_DRAWN]
+        parts = np.arange(1, _PLACES) / _PLACES
+        for curve in broken:
+            x = parts * (deepest - D0)[curve]
+            holds = _contacts(question, np.repeat(value[[curve]], len(x), axis=0), x)["validity"].values == 0
+            valid[curve] = D0[curve] + x[holds][-1] if holds.any() else -np.inf
+        valid[np.setdiff1d(np.flatnonzero(flags != 0), broken)] = np.nan
+    variables = {
+        "validity": ("curve", flags, about),
+        f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
+    }
+    return xr.Dataset(variables)
+
+
+def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
+    """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
+    model, scene = question.model, question.model.scene
+    columns: dict[str, tuple] = {name: (value[:, i], ROWS[name].unit) for i, name in enumerate(model.unknowns)}
+    columns |= {
+        name: (float(v), ROWS[name].unit) for name, v in scene.values.items() if name not in columns and name != model.x
+    }
+    columns[model.x] = (x, ROWS[model.x].unit)
+    arrays = {
+        name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
+        for name, (v, unit) in columns.items()
+    }
+    arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
+    arrays |= {
+        name: scene.parameters[name] for name in ("base", "micro", "bonding", "beta", "cut") if name in scene.parameters
+    }
+    if "R1" in arrays:
+        del arrays["R"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return solve(**arrays, x=2, profiles=False, progress=False)

@@ -76,7 +76,7 @@ def test_same_minimum_as_scipy(unknowns):
     """To 1e-6 of unknowns of order 1, if the search goes on to the end. With h free the valley is long: to 2e-5."""
     curve, y, truth = measured(*unknowns)
     data = data_of(y, truth, half=np.log(3))
-    fit = minimise(curve, data, begin(truth), sure=1e-13)
+    fit = minimise(curve, data, begin(truth), sure=1e-13, steps=400)
     assert fit.ended.all()
     for i in range(CURVES):
         p, cost = by_scipy(curve, data, begin(truth), i)
@@ -89,7 +89,7 @@ def test_the_search_ends_where_it_is_sure(unknowns):
     """Within 1e-3 of the spreads of the minimum."""
     curve, y, truth = measured(*unknowns)
     data = data_of(y, truth, half=np.log(3))
-    fit, best = minimise(curve, data, begin(truth)), minimise(curve, data, begin(truth), sure=1e-13)
+    fit, best = minimise(curve, data, begin(truth)), minimise(curve, data, begin(truth), sure=1e-13, steps=400)
     sd = np.sqrt(np.einsum("bii->bi", covariance_of(data, best, best.cost / (POINTS - truth.shape[1]))))
     assert fit.ended.all() and (np.abs(fit.p - best.p) < 1e-3 * sd).all()
 
@@ -100,7 +100,7 @@ def test_priors_as_scipy():
     center, stiffness = np.zeros(truth.shape), np.zeros(truth.shape)
     center[:, 1], stiffness[:, 1] = np.log(1.5e-6), (0.01 / 0.1) ** 2
     data = data_of(y, truth)._replace(center=center, stiffness=stiffness)
-    fit = minimise(curve, data, begin(truth), sure=1e-13)
+    fit = minimise(curve, data, begin(truth), sure=1e-13, steps=400)
     assert fit.ended.all()
     for i in range(CURVES):
         p, cost = by_scipy(curve, data, begin(truth), i)
@@ -127,7 +127,7 @@ def test_huber_as_scipy():
     """At the scale that the last residuals have; with 5 % of outliers of 20 sigma."""
     curve, y, truth = measured("E1", outliers=0.05)
     data = data_of(y, truth, huber=True)
-    fit = minimise(curve, data, begin(truth), sure=1e-13)
+    fit = minimise(curve, data, begin(truth), sure=1e-13, steps=400)
     assert fit.ended.all()
     limit = HUBER * scale(data.y - fit.model, data.w)
     for i in range(CURVES):

@@ -95,7 +95,7 @@ def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
             least = np.sqrt(max(C[0, 0] + 2 * power * C[0, 1] + power**2 * C[1, 1], 0.0))
             at = readable(values[1], curve[second].attrs["units"])
             lines.append(
-                f"{first} and {second} cannot be told apart by this curve (correlation {correlation:.3f}). What is known: "
-                f"{first} ({second}/{at})^{power:.2f} to {100 * least:.2g} %."
+                f"{first} and {second} cannot be told apart by this curve (correlation {correlation:.3f}). "
+                f"What is known: {first} ({second}/{at})^{power:.2f} to {100 * least:.2g} %."
             )
     return lines

@@ -23,10 +23,10 @@ def curves(source: Any) -> xr.Dataset:
 
     Parameters
     ----------
-    source : path of a text file whose columns have headings with units, "D [nm]", "P [nN]", one curve, or several with a
-        column `curve`; or a dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve, point); or a
-        Dataset that has these over `point`, or over `curve` and `point`, with an attribute `units` each. In the order of
-        measuring: sorted or not, with repeated depths and NaN, which are no points
+    source : path of a text file whose columns have headings with units, "D [nm]", "P [nN]", one curve, or several
+        with a column `curve`; or a dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve,
+        point); or a Dataset that has these over `point`, or over `curve` and `point`, with an attribute `units` each.
+        Depths may be in any order, and equal; NaN is no point
 
     Returns
     -------

@@ -1,10 +1,10 @@
 """How right is `study.fit`, and how fast? `python tools/fit/coverage.py [CURVES]`, some ten minutes with 10,000.
 
-Curves P(D) of a rigid ball on a bonded layer, of random E1*/E2*, 0.01 to 100, and random a/h at the deepest point, 0.05 to
-5: exact loads from `solver.solve`, at 200 depths from -0.2 to 1 of the largest. The contact point is off by up to 5 % of
-the largest depth, the baseline by up to 5 % of the largest load, the noise has a standard deviation of 1 % of the largest
-load. With a prior of ± 10 % the true thickness of each curve is drawn from it; where h is free it is a factor of up to 3
-off the value in the call, about which its bounds are a decade each way. Printed are:
+Curves P(D) of a rigid ball on a bonded layer, of random E1*/E2*, 0.01 to 100, and random a/h at the deepest point,
+0.05 to 5: exact loads from `solver.solve`, at 200 depths from -0.2 to 1 of the largest. The contact point is off by up
+to 5 % of the largest depth, the baseline by up to 5 % of the largest load, the noise has a standard deviation of 1 %
+of the largest load. With a prior of ± 10 % the true thickness of each curve is drawn from it; where h is free it is a
+factor of up to 3 off the value in the call, about which its bounds are a decade each way. Printed are:
 
 - bias: |E1/true E1 - 1| without noise, of E1*/E2* from 1e-3 to 100 and a/h from 0.05 to 10;
 - covered: of how many curves the 95 % interval of E1 has the true one, with one standard deviation of that share;
@@ -59,7 +59,9 @@ def exact(n: np.ndarray, wide: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, n
     return x * R, y * modulus * R**2
 
 
-def curves(count: int, seed: int, noise: float, n=(0.01, 100.0), wide=(0.05, 5.0), h="known") -> tuple[xr.Dataset, dict]:
+def curves(
+    count: int, seed: int, noise: float, n=(0.01, 100.0), wide=(0.05, 5.0), h="known"
+) -> tuple[xr.Dataset, dict]:
     """Measured curves, and true E1, h, D0, P0 of each."""
     random = np.random.default_rng(seed)
     n, wide = between(random, *n, count), between(random, *wide, count)
@@ -98,7 +100,13 @@ def report_bias(count: int) -> None:
 
 
 def report_coverage(count: int) -> None:
-    for h, intervals in (("known", "fisher"), ("prior", "profile"), ("prior", "fisher"), ("free", "profile"), ("free", "fisher")):
+    for h, intervals in (
+        ("known", "fisher"),
+        ("prior", "profile"),
+        ("prior", "fisher"),
+        ("free", "profile"),
+        ("free", "fisher"),
+    ):
         measured, truth = curves(count, 2, 0.01, h=h)
         fit, seconds = fitted(measured, h, intervals)
         inside = (fit.E1_low.values <= truth["E1"]) & (truth["E1"] <= fit.E1_high.values)

@@ -1,4 +1,4 @@
-"""The model of measured curves: y = F(x - D0; inputs) + P0 + tilt x, and its derivatives by the unknowns, from a table."""
+"""The model of measured curves: y = F(x - D0; inputs) + P0 + tilt x, and its derivatives by the unknowns."""
 
 from dataclasses import dataclass, replace
 
@@ -60,8 +60,8 @@ class Curve:
         return total, J
 
     def contact(self, p: np.ndarray, moved: bool = False) -> tuple[np.ndarray, dict, np.ndarray]:
-        """F/high (B, n), its derivatives by x and the inputs, and if wanted by the inputs `moved` of the model, (moved, B,
-        n). 0 outside the contact."""
+        """F/high (B, n), its derivatives by x and the inputs, and if wanted by the inputs `moved` of the model,
+        (moved, B, n). 0 outside the contact."""
         model, values = self.table.model, self.values(p)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0

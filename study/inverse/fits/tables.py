@@ -1,8 +1,8 @@
-"""A table of y(x; unknown inputs) that is read a million times: Chebyshev polynomials on tiles, made where they are needed.
+"""A table of y(x; unknown inputs) that is read a million times: polynomials on tiles, made where they are needed.
 
-What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`Model`). Tiles lie on a fixed
-lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has _LATTICE
-points, between which a cubic is drawn; along the others it has Chebyshev points.
+What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`Model`). Tiles lie on a
+fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has
+_LATTICE points, between which a cubic is drawn; along the others it has Chebyshev points.
 """
 
 import numpy as np
@@ -51,8 +51,9 @@ class Table:
         return values, slopes
 
     def make(self, places: list[tuple[int, ...]]) -> None:
-        """Solve what the tiles need that are not there yet, all in one batch. A tile holds g, (1 + moved, _LATTICE, points
-        of the other coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no solution."""
+        """Solve what the tiles need that are not there yet, all in one batch. A tile holds g, (1 + moved, _LATTICE,
+        points of the other coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no
+        solution."""
         model, names = self.model, self.model.axes
         places = [place for place in dict.fromkeys(places) if place not in self.tiles]
         if not places:
@@ -87,8 +88,8 @@ class Table:
     def rows(
         self, coordinates: np.ndarray, first: np.ndarray, count: int, moved: bool = False
     ) -> tuple[np.ndarray, np.ndarray]:
-        """g along ln u for B curves: (1 + moved, B, count * _LATTICE), and the derivatives of g itself by each coordinate,
-        (axes, B, ...). The derivatives by the inputs `moved` of the model are there if wanted.
+        """g along ln u for B curves: (1 + moved, B, count * _LATTICE), and the derivatives of g itself by each
+        coordinate, (axes, B, ...). The derivatives by the inputs `moved` of the model are there if wanted.
 
         coordinates : (B, axes); first : (B,) the first tile of each along ln u; count : how many
         """
@@ -127,7 +128,8 @@ def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
 
 
 class Places:
-    """Places (B, n) in rows of L points, where cubics through four points are read: counted in points, from 1 to L - 3."""
+    """Places (B, n) in rows of L points, where cubics through four points are read: counted in points, from 1 to L -
+    3."""
 
     def __init__(self, place: np.ndarray, length: int):
         i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, as none is below 0

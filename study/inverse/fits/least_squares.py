@@ -40,8 +40,8 @@ class Data(NamedTuple):
 
 
 class Fit(NamedTuple):
-    """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights (B, n)
-    of the residuals' squares, and whether it ended by itself (B,)."""
+    """Where the search ended: unknowns p (B, k), cost (B,), model (B, n) and its derivatives J (B, n, k), the weights
+    (B, n) of the residuals' squares, and whether it ended by itself (B,)."""
 
     p: np.ndarray
     cost: np.ndarray

@@ -8,13 +8,13 @@ import numpy as np
 from solver import Problem, solve
 from solver.sensitivity import is_ratio
 
-from ..inputs.definition import Definition, StudyError
-from ..inputs.scene.scales import make_dimensionless, with_unit
-from ..inputs.scene.scene import Scene
-from ..inputs.vocabulary import PARAMETERS, VOCABULARY
+from ...inputs.definition import Definition, StudyError
+from ...inputs.scene.scales import make_dimensionless, with_unit
+from ...inputs.scene.scene import Scene
+from ...inputs.vocabulary import PARAMETERS, VOCABULARY
 
-#: Exponents of Hertz's contact: y = x^q E^e R^r on a half-space of the layer, and of x, h, R, E in the number u of which
-#: alone, beside ratios of moduli, y over that depends: the contact of a smooth paraboloid has no length but h²/R.
+#: Exponents of Hertz's contact: y = x^q E^e R^r on a half-space of the layer, and of x, h, R, E in the number u of
+#: which alone, beside ratios of moduli, y over that depends: the contact of a smooth paraboloid has no length but h²/R.
 HERTZ = {
     ("D", "P"): ((1.5, 1.0, 0.5), (1.0, -2.0, 1.0, 0.0)),
     ("P", "a"): ((1 / 3, -1 / 3, 1 / 3), (1.0, -3.0, 1.0, -1.0)),

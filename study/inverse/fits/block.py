@@ -67,15 +67,12 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
     best = _selected(fits, costs.argmin(axis=0))
     if sigma is None and not asked.priors:
         variance = best.cost / np.maximum(count - k, 1)
-    t = (
-        stats.norm.ppf((1 + asked.level) / 2)
-        if sigma is not None
-        else stats.t.ppf((1 + asked.level) / 2, np.maximum(count - k, 1))
-    )
+    tail = (1 + asked.level) / 2
+    t = stats.t.ppf(tail, np.maximum(count - k, 1)) if sigma is None else np.full(len(x), stats.norm.ppf(tail))
     covariance = covariance_of(data, best, variance)
     limit = best.cost + t**2 * variance
     sd = np.sqrt(np.einsum("bii->bi", covariance))
-    ends_low, ends_high = best.p - t_of(t) * sd, best.p + t_of(t) * sd
+    ends_low, ends_high = best.p - t[:, None] * sd, best.p + t[:, None] * sd
     open_, inputs = np.zeros((len(x), len(model.unknowns), 2), bool), len(model.unknowns)
     within = costs <= limit
     places = np.array([fit.p for fit in fits])
@@ -104,15 +101,9 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
     )
     status = np.where(np.isfinite(best.cost), status, FitStatus.INVALID_INPUT)
     propagated = _propagated(asked, curve, data, best)
-    return {
-        "names": curve.names, "p": best.p, "low": ends_low, "high": ends_high, "covariance": covariance, "t": t_of(t)[:, 0] if np.ndim(t) else np.full(len(x), t),
-        "propagated": propagated, "status": status, "fit": np.where(there, best.model * top[:, None], np.nan), "wide": wide, "top": top,
-    }  # fmt: skip
-
-
-def t_of(t: Any) -> Any:
-    """A column, or a number."""
-    return np.asarray(t)[:, None] if np.ndim(t) else t
+    fitted = np.where(there, best.model * top[:, None], np.nan)
+    numbers = {"p": best.p, "low": ends_low, "high": ends_high, "covariance": covariance, "propagated": propagated}
+    return numbers | {"t": t, "status": status, "fit": fitted, "wide": wide, "top": top}
 
 
 def _no_prior(low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -182,7 +173,8 @@ def _with_modulus(asked, curve, p, low, high, x, load):
 
 
 def _contact_points(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, q: float) -> tuple:
-    """D0, P0, and the depth and load (B,) of the deepest point above them: from the depths at 10 and 50 % of the load."""
+    """D0, P0, and the depth and load (B,) of the deepest point above them: from the depths at 10 and 50 % of the
+    load."""
     B = len(y)
     D0, P0, deepest, load = np.zeros(B), np.zeros(B), np.zeros(B), np.zeros(B)
     part = 0.2 ** (1 / q)
@@ -212,7 +204,7 @@ def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) 
     free, more = np.maximum(count - k, 1), max(k - 2, 1)
     with np.errstate(divide="ignore", invalid="ignore"):
         F = (line - residual) / more / (residual / free)
-    return ~(F > stats.f.ppf(_SURE, more, free)) & np.isfinite(best.cost)
+    return ~(stats.f.ppf(_SURE, more, free) < F) & np.isfinite(best.cost)
 
 
 def _propagated(asked: Asked, curve: Curve, data: Data, best: Fit) -> np.ndarray:

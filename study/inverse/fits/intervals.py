@@ -50,7 +50,8 @@ def profile(
     i: int,
     side: int,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where the profile of unknown i reaches `limit` on a side, -1 or 1: its place (B,), and whether it is a bound (B,).
+    """Where the profile of unknown i reaches `limit` on a side, -1 or 1: its place (B,), and whether it is a bound
+    (B,).
 
     ends : unknowns (B, k) where the walk begins: of the minima within the limit the farthest on this side
     sd : (B,) first step

@@ -9,11 +9,11 @@ import numpy as np
 
 from solver.sensitivity import is_ratio
 
-from ..inputs.definition import StudyError
-from ..inputs.reading import from_call
-from ..inputs.vocabulary import BODIES, CONTROLS, ROWS, SCENE
-from ..specimen.quantities import has_unit, quantity
-from ..terminal import shown
+from ...inputs.definition import StudyError
+from ...inputs.reading import from_call
+from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, SCENE
+from ...specimen.quantities import has_unit, quantity
+from ...terminal import shown
 from .model import PAIRS, Model
 
 MOST = 3  # unknown inputs
@@ -150,9 +150,8 @@ def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, f
         errors.append(str(error))
         return {}
     if not low < high or (low <= 0 and not is_ratio(name)):
-        errors.append(
-            f"free: {name} = ({pair[0]}, {pair[1]}): the low bound must be {'above 0 and ' * (not is_ratio(name))}below the high one"
-        )
+        wanted = "below the high one" if is_ratio(name) else "above 0 and below the high one"
+        errors.append(f"free: {name} = ({pair[0]}, {pair[1]}): the low bound must be {wanted}")
     return {name: (low, high)}
 
 

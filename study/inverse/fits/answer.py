@@ -1,0 +1,131 @@
+"""The Dataset of a fit: from the unknowns of each curve to inputs in SI with their intervals."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver.sensitivity import is_ratio
+
+from ...in_words.fits import NAMES_OF_SHIFTS
+from ...inputs.vocabulary import ROWS
+from ...solving import solve
+from .asked import Asked
+from .block import FitStatus
+
+_DRAWN, _PLACES = 64, 16  # curves of which it is known from which of so many x on an assumption fails
+
+
+def answer(
+    question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
+) -> xr.Dataset:
+    model, C = question.model, len(X)
+    names = (*model.unknowns, *question.shifts)
+    k, unit = len(names), ROWS[model.y].unit
+    value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
+    covariance, drawn = np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
+    status = status.astype(np.int8)
+    for curve, (answer, i) in rows.items():
+        status[curve] = answer["status"][i]
+        if status[curve] == FitStatus.INVALID_INPUT:
+            continue
+        sizes = {"D0": answer["wide"][i], "P0": answer["top"][i], "tilt": answer["top"][i] / answer["wide"][i]}
+        p, more = answer["p"][i], answer["propagated"][i]
+        total = answer["covariance"][i] + more
+        by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
+        for j, name in enumerate(names):
+            ends = [_end(p[j], answer[end][i, j], answer["t"][i] * np.sqrt(more[j, j])) for end in ("low", "high")]
+            value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
+        covariance[curve] = total * by[:, None] * by[None, :]
+        spread[curve] = np.sqrt(np.diag(covariance[curve]))
+        drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
+    variables: dict[str, Any] = {}
+    for j, name in enumerate(names):
+        own = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
+        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
+        if not plan:
+            variables[name] = ("curve", value[:, j], {"units": own, "long_name": words})
+        ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
+        variables |= {
+            f"{name}_{end}": ("curve", array[:, j], {"units": own}) for end, array in (*ends_of, ("spread", spread))
+        }
+    coordinates = {"cov_i": list(names), "cov_j": list(names)}
+    variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)
+    if not plan:
+        about = {"units": unit}
+        variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
+        variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
+    flags = {
+        "flag_values": np.array([*FitStatus], np.int8),
+        "flag_meanings": " ".join(s.name.lower() for s in FitStatus),
+    }
+    variables["fit_status"] = ("curve", status, flags)
+    variables[model.x] = (("curve", "point"), X, {"units": ROWS[model.x].unit})
+    if not plan:
+        variables[model.y] = (("curve", "point"), Y, {"units": unit})
+    fitted = xr.Dataset(
+        variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
+    )
+    return fitted.merge(_validity(question, fitted, value, X, there))
+
+
+def _slope(model, name: str, p: float, sizes: dict) -> float:
+    """d(value in SI)/d(unknown)."""
+    return sizes[name] if name in sizes else 1.0 if is_ratio(name) else float(np.exp(p))
+
+
+def _value(model, name: str, p: float, sizes: dict) -> float:
+    return float(p * sizes[name]) if name in sizes else float(model.of_coordinate(name, p))
+
+
+def _end(p: float, end: float, more: float) -> float:
+    """The end of an interval with what other inputs add to it."""
+    return p + np.sign(end - p) * np.hypot(end - p, more)
+
+
+def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray) -> xr.Dataset:
+    """What the deepest contact of each fitted curve violates of the assumptions of the model, and up to which x none
+    is."""
+    model = question.model
+    deepest, D0 = np.where(there, X, -np.inf).max(axis=1), fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
+    good = np.isfinite(value).all(axis=1) & (deepest > D0)
+    flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, -np.inf), {}
+    if good.any():
+        contacts = _contacts(question, value[good], (deepest - D0)[good])
+        flags[good], about = contacts["validity"].values, contacts["validity"].attrs
+        broken = np.flatnonzero(flags != 0)[:_DRAWN]
+        parts = np.arange(1, _PLACES) / _PLACES
+        for curve in broken:
+            x = parts * (deepest - D0)[curve]
+            holds = _contacts(question, np.repeat(value[[curve]], len(x), axis=0), x)["validity"].values == 0
+            valid[curve] = D0[curve] + x[holds][-1] if holds.any() else -np.inf
+        valid[np.setdiff1d(np.flatnonzero(flags != 0), broken)] = np.nan
+    variables = {
+        "validity": ("curve", flags, about),
+        f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
+    }
+    return xr.Dataset(variables)
+
+
+def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
+    """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
+    model, scene = question.model, question.model.scene
+    columns: dict[str, tuple] = {name: (value[:, i], ROWS[name].unit) for i, name in enumerate(model.unknowns)}
+    columns |= {
+        name: (float(v), ROWS[name].unit) for name, v in scene.values.items() if name not in columns and name != model.x
+    }
+    columns[model.x] = (x, ROWS[model.x].unit)
+    arrays = {
+        name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
+        for name, (v, unit) in columns.items()
+    }
+    arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
+    arrays |= {
+        name: scene.parameters[name] for name in ("base", "micro", "bonding", "beta", "cut") if name in scene.parameters
+    }
+    if "R1" in arrays:
+        del arrays["R"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return solve(**arrays, x=2, profiles=False, progress=False)

@@ -35,7 +35,7 @@ def measured(*unknowns, noise=0.01, outliers=0.0, seed=47):
     return curve, y, p
 
 
-def data_of(y, p, huber=False, w=None, half=np.log(1e3)):
+def data_of(y, p, huber=False, w=None, half=6.9):  # ln 1e3
     w = np.ones(y.shape) if w is None else w
     none = np.zeros(p.shape)
     return Data(y, w, p - half, p + half, none, none, huber)

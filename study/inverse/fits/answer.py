@@ -6,13 +6,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from solver.sensitivity import is_ratio
 
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...inputs.vocabulary import ROWS
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
+from .model import is_ratio
 
 _DRAWN, _PLACES = 64, 16  # curves of which it is known from which of so many x on an assumption fails
 
@@ -28,7 +28,7 @@ def answer(
     status = status.astype(np.int8)
     for curve, (answer, i) in rows.items():
         status[curve] = answer["status"][i]
-        if status[curve] == FitStatus.INVALID_INPUT:
+        if status[curve] in (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT):
             continue
         sizes = {"D0": answer["wide"][i], "P0": answer["top"][i], "tilt": answer["top"][i] / answer["wide"][i]}
         p, more = answer["p"][i], answer["propagated"][i]
@@ -88,7 +88,8 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     """What the deepest contact of each fitted curve violates of the assumptions of the model, and up to which x none
     is."""
     model = question.model
-    deepest, D0 = np.where(there, X, -np.inf).max(axis=1), fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
+    deepest = np.where(there, X, -np.inf).max(axis=1, initial=-np.inf)
+    D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
     good = np.isfinite(value).all(axis=1) & (deepest > D0)
     flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, -np.inf), {}
     if good.any():
@@ -111,7 +112,8 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
 def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
     """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
     model, scene = question.model, question.model.scene
-    columns: dict[str, tuple] = {name: (value[:, i], ROWS[name].unit) for i, name in enumerate(model.unknowns)}
+    values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})
+    columns: dict[str, tuple] = {name: (values[name], ROWS[name].unit) for name in model.unknowns}
     columns |= {
         name: (float(v), ROWS[name].unit) for name, v in scene.values.items() if name not in columns and name != model.x
     }
@@ -121,9 +123,8 @@ def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
         for name, (v, unit) in columns.items()
     }
     arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
-    arrays |= {
-        name: scene.parameters[name] for name in ("base", "micro", "bonding", "beta", "cut") if name in scene.parameters
-    }
+    others = {*scene.parameters} - {*arrays, "n", "m", "P", "a", "D"}  # those without units
+    arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
     if "R1" in arrays:
         del arrays["R"]
     with warnings.catch_warnings():

@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from solver.sensitivity import is_ratio
+from solver.parameters import ends
 
-from ...inputs.definition import StudyError
+from ...inputs.definition import Definition, StudyError
 from ...inputs.reading import from_call
 from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
-from .model import PAIRS, Model
+from .model import PAIRS, Model, is_ratio
 
 MOST = 3  # unknown inputs
 ROUGHNESS = ("Nbar", "Ra", "sigma", "cut", "B", "beta")
@@ -78,13 +78,14 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
         missing = lacking or [name for name in names if parameters.get(name) is None]
         raise StudyError([f'free: {name} has no value: {wanted}: free={{"{name}": (low, high)}}' for name in missing])
-    try:
-        definition = from_call(parameters | stand_in | {x: _ABSCISSA[x]}, [], False, {"output": {"profiles": False}})
-    except StudyError as error:
-        raise StudyError(message.replace("solve: ", "fit: ", 1) for message in error.messages) from None
+    given = parameters | stand_in | {x: _ABSCISSA[x]}
+    _check_ends(given, bounds)
+    definition = _definition(given, "fit")
     scene = definition.scene
     if scene is None:
         raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
+    priors = tuple(name for name in priors if name in scene.spreads)  # ± 0 is exact
+    unknowns = (*names, *priors)
     moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
     model = Model.of(definition, x, y, unknowns, moved)
     absent = [name for name in unknowns if name not in scene.values and name not in scene.parameters]
@@ -93,7 +94,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     for name in names:
         if name not in bounds and name != model.modulus:
             value = model.value(name)
-            bounds[name] = (0.0, 0.5) if is_ratio(name) else (value / 10, 10 * value)
+            bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
     spread = {name: _log_spread(model, name) for name in (*priors, *moved)}
     prior = {name: (float(model.coordinate(name, model.value(name))), spread.pop(name)) for name in priors}
     shifts = [
@@ -164,6 +165,28 @@ def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, f
         wanted = "below the high one" if is_ratio(name) else "above 0 and below the high one"
         errors.append(f"free: {name} = ({pair[0]}, {pair[1]}): the low bound must be {wanted}")
     return {name: (low, high)}
+
+
+def _definition(parameters: dict, where: str) -> Definition:
+    try:
+        return from_call(parameters, [], False, {"output": {"profiles": False}})
+    except StudyError as error:
+        raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
+
+
+def _check_ends(parameters: dict, bounds: dict) -> None:
+    """Whether the contact takes the bounds. Raises StudyError if not."""
+    for name, pair in bounds.items():
+        for end in pair:
+            _definition(parameters | {name: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free")
+
+
+def _within(name: str, low: float, high: float) -> tuple[float, float]:
+    """Bounds within the interval of an input without unit."""
+    if ROWS[name].unit != "1":
+        return low, high
+    least, most, *_ = ends(ROWS[name].parameter.interval)
+    return max(low, least), min(high, most)
 
 
 def _stand_in(name: str, bounds: dict) -> str | float | None:

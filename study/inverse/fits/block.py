@@ -7,13 +7,12 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from solver.sensitivity import is_ratio
 
 from .asked import DECADE, Asked
 from .curve import Curve
 from .intervals import covariance_of, profile
 from .least_squares import Data, Fit, minimise
-from .model import HERTZ
+from .model import HERTZ, is_ratio
 from .tables import Table
 
 _STARTS = 6  # across the bounds of a second unknown input
@@ -89,7 +88,7 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
                 open_[:, i, int(side > 0)] = bound
     at_bound = ((best.p <= low) | (best.p >= high))[:, :inputs].any(axis=1)
     status = np.select(
-        [_no_contact(curve, data, best, count, k), ~best.ended, at_bound, open_.any(axis=(1, 2)), several],
+        [_no_contact(curve, data, best, count, k) & (model.x == "D"), ~best.ended, at_bound, open_.any(axis=(1, 2)), several],
         [
             FitStatus.NO_CONTACT,
             FitStatus.ITERATION_LIMIT,
@@ -132,7 +131,7 @@ def _starts(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: n
             low[:, i], high[:, i] = least / curve.wide - 1.0, least / curve.wide + 0.999
         elif name in ("P0", "tilt"):
             p[:, i] = P0 / top if name == "P0" else 0.0
-            low[:, i], high[:, i] = -1e3, 1e3
+            low[:, i], high[:, i] = p[:, i] - 1e3, p[:, i] + 1e3
         elif name in asked.bounds:
             low[:, i], high[:, i] = model.coordinate(name, np.array(asked.bounds[name]))
             p[:, i] = (low[:, i] + high[:, i]) / 2

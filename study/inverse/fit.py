@@ -101,10 +101,10 @@ def fit(
                 index = same[begin : begin + _BLOCK]
                 filled = np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))])
                 blocks = [_packed(A, there, filled, points) for A in (X, Y, S) if A is not None]
-                answer = fit_block(question, table, *blocks, *([None] if S is None else []))
-                rows |= {int(curve): (answer, i) for i, curve in enumerate(index)}
+                fits = fit_block(question, table, *blocks, *([None] if S is None else []))
+                rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 told.update(len(index), 0)
-    return answer(question, rows, status, X, Y, there, plan)
+    return answered(question, rows, status, X, Y, there, plan)
 
 
 def _arrays(source: Any, question: Asked, sigma: Any, plan: bool) -> tuple:

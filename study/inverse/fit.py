@@ -12,12 +12,14 @@ from ..terminal import shown
 from ..work.progress import Progress
 from ..work.screen import screen_of
 from .curves import curves as read_curves
+from .fits.answer import answer
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
 from .fits.model import HERTZ
 from .fits.tables import Table
 
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
+_ENDS = ((np.min, np.inf), (np.max, -np.inf))
 
 
 def fit(
@@ -89,7 +91,7 @@ def fit(
         Y = _planned(question, X)
     table, unknowns = Table(question.model), len(question.model.unknowns) + len(question.shifts)
     there = np.isfinite(X) & np.isfinite(Y)
-    status = np.where(_usable(X, Y, there, unknowns), -1, FitStatus.INVALID_INPUT)
+    status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, dict] = {}
     size = -(-there.sum(axis=1) // _PART) * _PART
     stream = screen_of(progress)
@@ -126,8 +128,8 @@ def _arrays(source: Any, question: Asked, sigma: Any, plan: bool) -> tuple:
         S = np.broadcast_to(values, X.shape).copy()
     except ValueError:
         raise StudyError([f"sigma has the shape {np.shape(values)}: must be one number, or as y, {X.shape}"]) from None
-    if not np.all(S[np.isfinite(X)] > 0):
-        raise StudyError([f"sigma = {shown(sigma)}: must be above 0"])
+    if isinstance(sigma, (bool, np.bool_)) or not np.all(np.isfinite(S[there := np.isfinite(X)]) & (S[there] > 0)):
+        raise StudyError([f"sigma = {shown(sigma)}: must be above 0, in {unit} or with a unit"])
     return X, Y, S
 
 
@@ -156,17 +158,19 @@ def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(X), y.reshape(X.shape), np.nan)
 
 
-def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int) -> np.ndarray:
-    """Which curves have more points than unknowns, at more than one x, and more than one y."""
+def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anywhere: bool) -> np.ndarray:
+    """Which curves have more points than unknowns, at more than one x, and more than one y; without a contact point one
+    above 0, which is else where the contact begins."""
     enough = there.sum(axis=1) > unknowns
-    span = [np.where(there, A, -np.inf).max(axis=1) - np.where(there, A, np.inf).min(axis=1) for A in (X, Y)]
-    return enough & (span[0] > 0) & (span[1] > 0) & (np.where(there, X, -np.inf).max(axis=1) > 0)
+    ends = [[limit(np.where(there, A, out), axis=1, initial=out) for limit, out in _ENDS] for A in (X, Y)]
+    spread = [high - low > 0 for low, high in ends]
+    return enough & spread[0] & spread[1] & ((ends[0][1] > 0) | anywhere)
 
 
 def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
     """About the modulus of each curve, in any unit: like curves share the tiles of a table."""
     q, e, _ = HERTZ[question.model.x, question.model.y][0]
-    return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
+    return (Y.max(axis=1) - Y.min(axis=1)) ** (1 / e) / np.abs(X).max(axis=1) ** (q / e)
 
 
 def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:

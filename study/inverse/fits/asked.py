@@ -11,7 +11,7 @@ from solver.sensitivity import is_ratio
 
 from ...inputs.definition import StudyError
 from ...inputs.reading import from_call
-from ...inputs.vocabulary import BODIES, CONTROLS, ROWS, SCENE
+from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from .model import PAIRS, Model
@@ -51,16 +51,17 @@ class Asked:
 def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     """Check a call. Raises StudyError before any curve is read."""
     errors = _choices(x, y, options)
-    names, texts = (tuple(free), dict(free)) if isinstance(free, dict) else (_listed(free), {})
-    known = [name for name in (*SCENE, *ROWS) if ROWS[name].unit != "" and name not in CONTROLS]
+    names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
+    known = _numbers()
     for name in names:
-        if name not in known or name in BODIES:
+        if name not in known:
             errors.append(f"free: {shown(name)} is no input that can be fitted, such as E1, h or Ra")
+    errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
     priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
     unknowns = (*names, *priors)
     errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in unknowns and b in unknowns]
-    if not names:
+    if not names and not errors:
         errors.append('free: name at least one input, such as free=["E1"]')
     if len(unknowns) > MOST:
         errors.append(
@@ -123,8 +124,18 @@ def _choices(x: str, y: str, options: dict) -> list[str]:
     return errors
 
 
-def _listed(free: Any) -> tuple:
-    return (free,) if isinstance(free, str) else tuple(free)
+def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
+    names = (free,) if isinstance(free, str) else tuple(free) if isinstance(free, (list, tuple, dict, set, np.ndarray)) else (None,)
+    if not all(isinstance(name, str) for name in names):
+        errors.append(f'free = {shown(free)}: must be names of inputs, such as ["E1"], or {{"E1": ("1 kPa", "1 MPa")}}')
+        return ()
+    return names
+
+
+def _numbers() -> set[str]:
+    """Inputs that may be fitted: numbers of the contact, not settings of the solver."""
+    rows = {name for name in PARAMETERS if ROWS[name].parameter.interval and not ROWS[name].parameter.whole}
+    return (rows | set(SCENE)) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
 
 
 def _has_prior(name: str, value: Any) -> bool:

@@ -6,6 +6,8 @@ from typing import Any
 import numpy as np
 
 from solver import Problem, solve
+from solver.parameters import PARAMETERS as LIMITS
+from solver.parameters import ends
 from solver.sensitivity import is_ratio
 
 from ...inputs.definition import Definition, StudyError
@@ -85,6 +87,19 @@ class Model:
     def of_coordinate(self, name: str, coordinate: Any) -> Any:
         """The value in SI of a coordinate."""
         return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
+
+    def within(self, values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Values (M,) within what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval, beyond which
+        y over its Hertzian part does not change any more."""
+        values = values | {name: np.minimum(values[name], 0.5) for name in ("nu1", "nu2") if name in values}
+        own = self.scene.values | values
+        if {"E1", "E2"} <= {*own} and np.isfinite(own["E2"]).all() and {"E1", "E2"} & {*values}:
+            low, high, *_ = ends(LIMITS["n"].interval)
+            nu1, nu2 = (own.get(name, 0.3) for name in ("nu1", "nu2"))
+            n = own["E1"] / (1 - nu1**2) / own["E2"] * (1 - nu2**2)
+            factor = np.clip(n, 2 * low, high / 2) / n  # not at its very ends, for what is then moved
+            values = values | ({"E1": values["E1"] * factor} if "E1" in values else {"E2": values["E2"] / factor})
+        return values
 
     def hertz(self, values: dict[str, Any], x: Any, power: tuple) -> Any:
         """x^q E^e R^r, with E the reduced modulus of what is touched."""

@@ -63,7 +63,7 @@ class Table:
         parts = np.stack([grid.ravel() for grid in np.meshgrid(*([self.t] * len(half)), indexing="ij")], axis=-1)
         u, *coordinates = (middle[:, None] + half * parts).reshape(-1, len(half)).T
         values = {name: model.of_coordinate(name, c) for name, c in zip(names, coordinates, strict=True)}
-        values |= {name: np.minimum(values[name], 0.5) for name in ("nu1", "nu2") if name in values}
+        values = model.within(values)
         x = np.exp(u - model.shift(values))
         hertz = model.hertz(values, x, HERTZ[model.x, model.y][0])
         with np.errstate(all="ignore"):

@@ -26,10 +26,10 @@ def curves(source: Any) -> xr.Dataset:
     Parameters
     ----------
     source : path of a text file whose columns have headings with units, "D [nm]", "P [nN]", one curve, or several
-        with a column `curve`; or of a file of an instrument that afmformats reads (.jpk-force, .ibw, .tab, .h5 ..., the
-        extra `afm`), whose approach is taken; or a dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve,
-        point); or a Dataset that has these over `point`, or over `curve` and `point`, with an attribute `units` each.
-        Depths may be in any order, and equal; NaN is no point
+        with a column `curve`; or of an instrument (.jpk-force, .ibw, .tab, .h5 ..., by the extra `afm`), whose approach
+        is taken; or a dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve, point); or a
+        Dataset that has these over `point`, or over `curve` and `point`, with an attribute `units` each. Depths may be
+        in any order, and equal; NaN is no point
 
     Returns
     -------

@@ -12,7 +12,6 @@ from ..terminal import shown
 from ..work.progress import Progress
 from ..work.screen import screen_of
 from .curves import curves as read_curves
-from .fits.answer import answer
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
 from .fits.model import HERTZ

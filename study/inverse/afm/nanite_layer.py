@@ -8,9 +8,9 @@ from functools import lru_cache
 
 import lmfit
 import numpy as np
-import roughcoat  # noqa: F401  (so that `solver` is its own, whatever lies beside the data)
 from numpy.polynomial import Chebyshev
 
+import roughcoat  # noqa: F401  (so that `solver` is its own, whatever lies beside the data)
 from solver import Problem, solve
 
 _LOW, _HIGH, _NODES = np.log(1e-6), np.log(1e4), 80  # of ln(d R/h²), a/h from 0.001 to some 100: within 1e-6

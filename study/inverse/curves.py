@@ -12,6 +12,8 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import VOCABULARY
 from ..specimen.quantities import quantity
 from ..terminal import shown
+from .afm.reading import is_of_instrument
+from .afm.reading import read as of_instrument
 
 COLUMNS = ("D", "P", "a", "dP_dD")
 _UNITS = {"D": "m", "P": "N", "a": "m", "dP_dD": "N/m"}
@@ -24,9 +26,10 @@ def curves(source: Any) -> xr.Dataset:
     Parameters
     ----------
     source : path of a text file whose columns have headings with units, "D [nm]", "P [nN]", one curve, or several
-        with a column `curve`; or a dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve,
-        point); or a Dataset that has these over `point`, or over `curve` and `point`, with an attribute `units` each.
-        Depths may be in any order, and equal; NaN is no point
+        with a column `curve`; or of an instrument (.jpk-force, .ibw, .tab, .h5 ..., by the extra `afm`), whose approach
+        is taken; or a dictionary {"D": (array, unit), "P": (array, unit)}, arrays (point,) or (curve, point); or a
+        Dataset that has these over `point`, or over `curve` and `point`, with an attribute `units` each. Depths may be
+        in any order, and equal; NaN is no point
 
     Returns
     -------
@@ -42,6 +45,8 @@ def curves(source: Any) -> xr.Dataset:
     >>> study.curves({"D": ([0.0, 10.0], "nm"), "P": ([0.0, 2.0], "nN")}).P.values.tolist()
     [[0.0, 2e-09]]
     """
+    if isinstance(source, (str, Path)) and is_of_instrument(Path(source)):
+        return _of_columns(of_instrument(Path(source)))
     if isinstance(source, (str, Path)):
         return _of_columns(*_read(Path(source)))
     if isinstance(source, dict):

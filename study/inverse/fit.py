@@ -12,7 +12,6 @@ from ..terminal import shown
 from ..work.progress import Progress
 from ..work.screen import screen_of
 from .curves import curves as read_curves
-from .fits.answer import answer
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
 from .fits.model import HERTZ
@@ -106,7 +105,7 @@ def fit(
                 fits = fit_block(question, table, *blocks, *([None] if S is None else []))
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 told.update(len(index), 0)
-    return answer(question, rows, status, X, Y, there, plan)
+    return answered(question, rows, status, X, Y, there, plan)
 
 
 def _arrays(source: Any, question: Asked, sigma: Any, plan: bool) -> tuple:

@@ -17,7 +17,7 @@ from .model import is_ratio
 _DRAWN, _PLACES = 64, 16  # curves of which it is known from which of so many x on an assumption fails
 
 
-def answer(
+def answered(
     question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
 ) -> xr.Dataset:
     model, C = question.model, len(X)

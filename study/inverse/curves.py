@@ -17,6 +17,8 @@ from .afm.reading import read as of_instrument
 
 COLUMNS = ("D", "P", "a", "dP_dD")
 _UNITS = {"D": "m", "P": "N", "a": "m", "dP_dD": "N/m"}
+_SUCH = {"D": "nm", "P": "nN", "a": "um", "dP_dD": "N/m"}
+_SPACED = re.compile(r"\S+(?:\s+(?:\[[^\]]*\]|\([^)]*\)))?")  # headings apart by spaces, each with its unit
 _HEADING = re.compile(r"\s*(\w+)\s*(?:\[([^\]]*)\]|\(([^)]*)\))?\s*")
 
 
@@ -61,7 +63,7 @@ def curves(source: Any) -> xr.Dataset:
             array = source[name]
             ordered = array.transpose(*(dim for dim in ("curve", "point") if dim in array.dims))
             columns[name] = (ordered.values, str(array.attrs.get("units", "")))
-        return _of_columns(columns)
+        return _of_columns(columns).assign_coords({"curve": source["curve"]} if "curve" in source.coords else {})
     raise StudyError([f"curves = {shown(source)}: must be a file, a dictionary of (array, unit), or a Dataset"])
 
 
@@ -74,7 +76,7 @@ def _pair(name: str, value: Any) -> tuple[Any, str]:
 
 
 def _of_columns(
-    columns: dict[str, tuple[Any, str]], curve: np.ndarray | None = None, where: str = "curves"
+    columns: dict[str, tuple[Any, str]], curve: list[str] | None = None, where: str = "curves"
 ) -> xr.Dataset:
     errors = [
         f"{where}: {name} is no column of curves: known are {', '.join(COLUMNS)}"
@@ -89,23 +91,27 @@ def _of_columns(
     for name in (name for name in columns if name in COLUMNS):
         values, unit = columns[name]
         try:
-            array = np.atleast_1d(np.asarray(values, float))
-            size = quantity(name, f"1 {unit}" if unit else 1.0, _UNITS[name]).value
+            if not unit:
+                raise ValueError(f"{name} has no unit, such as {_SUCH[name]}")
+            array = np.atleast_1d(np.ma.filled(np.ma.asarray(values, float), np.nan))
+            size = quantity(name, f"1 {unit}", _UNITS[name]).value
         except (TypeError, ValueError) as error:
-            errors.append(f"{where}: {error}")
+            errors.append(f"{where}: {error}" if name in str(error) else f"{where}: {name}: {error}")
             continue
         if array.ndim > 2:
             errors.append(f"{where}: {name} has {array.ndim} dimensions: (point,) or (curve, point)")
-        arrays[name] = array * size
+        arrays[name] = np.where(np.isfinite(array), array, np.nan) * size
     if errors:
         raise StudyError(errors)
+    labels = None if curve is None else list(dict.fromkeys(curve))
     if curve is not None:
         arrays = {name: _apart(array, curve) for name, array in arrays.items()}
-    try:
-        shape = np.broadcast_shapes(*(np.atleast_2d(array).shape for array in arrays.values()))
-    except ValueError:
-        sizes = ", ".join(f"{name} {array.shape[-1]}" for name, array in arrays.items())
-        raise StudyError([f"{where}: the columns have unequal numbers of points: {sizes}"]) from None
+    shapes = [np.atleast_2d(array).shape for array in arrays.values()]
+    for axis, what in ((1, "points"), (0, "curves")):
+        if len({shape[axis] for shape in shapes} - ({1} if axis == 0 else set())) > 1:
+            sizes = ", ".join(f"{name} {shape[axis]}" for name, shape in zip(arrays, shapes, strict=True))
+            raise StudyError([f"{where}: the columns have unequal numbers of {what}: {sizes}"])
+    shape = np.broadcast_shapes(*shapes)
     variables = {
         name: (
             ("curve", "point"),
@@ -114,19 +120,20 @@ def _of_columns(
         )
         for name, array in arrays.items()
     }
-    return xr.Dataset(variables)
+    return xr.Dataset(variables, {} if labels is None else {"curve": labels})
 
 
-def _apart(array: np.ndarray, curve: np.ndarray) -> np.ndarray:
+def _apart(array: np.ndarray, curve: list[str]) -> np.ndarray:
     """One long column as rows, one for each value of the column `curve`, in their order."""
-    labels = list(dict.fromkeys(curve.tolist()))
+    labels = list(dict.fromkeys(curve))
+    curve = np.array(curve)
     parts = [array[curve == label] for label in labels]
     longest = max(map(len, parts))
     return np.array([np.pad(part, (0, longest - len(part)), constant_values=np.nan) for part in parts])
 
 
-def _read(path: Path) -> tuple[dict, np.ndarray | None, str]:
-    """Columns, the column `curve` or None, and the name of the file, for messages."""
+def _read(path: Path) -> tuple[dict, list[str] | None, str]:
+    """Columns, the labels in the column `curve` or None, and the name of the file, for messages."""
     where = path.as_posix()
     try:
         text = path.read_text(encoding="utf-8-sig")
@@ -138,27 +145,41 @@ def _read(path: Path) -> tuple[dict, np.ndarray | None, str]:
     if not lines:
         raise StudyError([f"{where}: is empty"])
     separator = next((sign for sign in ("\t", ";", ",") if sign in lines[0]), None)
-    rows = [line.split() if separator is None else next(csv.reader([line], delimiter=separator)) for line in lines]
-    matches = [_HEADING.fullmatch(cell) for cell in rows[0]]
-    if not all(matches) or all(_number(cell) is not None for cell in rows[0]):
+    heading = _cells(lines[0], separator) if separator else _SPACED.findall(lines[0])
+    matches = [_HEADING.fullmatch(cell) for cell in heading]
+    if not matches or not all(matches) or all(_number(cell) is not None for cell in heading):
         raise StudyError(
             [f'{where}: the first line must have headings with units, such as "D [nm],P [nN]": {shown(lines[0])}']
         )
     names = [(match[1], (match[2] or match[3] or "").strip()) for match in matches if match]
-    values = np.full((len(rows) - 1, len(names)), np.nan)
-    for i, row in enumerate(rows[1:]):
-        if len(row) != len(names):
-            raise StudyError(
-                [f"{where}: row {i + 1} under the heading has {len(row)} fields, the heading has {len(names)}"]
-            )
-        for j, cell in enumerate(row):
-            number = _number(cell)
-            if number is None:
-                raise StudyError([f"{where}: row {i + 1}, {names[j][0]} = {shown(cell)}: must be a number"])
-            values[i, j] = number
-    known = {name: (values[:, j], unit) for j, (name, unit) in enumerate(names) if name != "curve"}
-    unnamed = [name for name, _ in names]
-    return known, values[:, unnamed.index("curve")] if "curve" in unnamed else None, where
+    columns = [name for name, _ in names]
+    twice = [name for name in dict.fromkeys(columns) if columns.count(name) > 1]
+    if twice or not lines[1:]:
+        problem = f"the heading has {twice[0]} twice" if twice else "there is no row under the heading"
+        raise StudyError([f"{where}: {problem}"])
+    rows = [_row(_cells(line, separator), columns, f"{where}: row {i + 1}") for i, line in enumerate(lines[1:])]
+    labels = [str(row.pop("curve")) for row in rows] if "curve" in columns else None
+    return {name: ([row[name] for row in rows], unit) for name, unit in names if name != "curve"}, labels, where
+
+
+def _cells(line: str, separator: str | None) -> list[str]:
+    return line.split() if separator is None else next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+
+
+def _row(cells: list[str], columns: list[str], where: str) -> dict[str, Any]:
+    """Column -> number; of the column `curve` the label."""
+    if len(cells) != len(columns):
+        raise StudyError([f"{where} under the heading has {len(cells)} fields, the heading has {len(columns)}"])
+    row: dict[str, Any] = {}
+    for name, cell in zip(columns, cells, strict=True):
+        number = _number(cell)
+        if name == "curve" and cell.strip() == "":
+            raise StudyError([f"{where}: curve is empty: it must have the name of the curve"])
+        if name != "curve" and number is None:
+            comma = ': write a decimal point, not a comma' if _number(cell.replace(",", ".")) is not None else ""
+            raise StudyError([f"{where}, {name} = {shown(cell)}: must be a number{comma}"])
+        row[name] = cell.strip() if name == "curve" else number
+    return row
 
 
 def _number(cell: str) -> float | None:

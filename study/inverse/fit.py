@@ -1,20 +1,23 @@
 """`fit`: inputs of a contact from measured curves, with intervals."""
 
+import warnings
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from ..inputs.definition import StudyError
-from ..inputs.vocabulary import ROWS
+from ..inputs.vocabulary import NOT_RUN, ROWS
 from ..specimen.quantities import quantity
 from ..terminal import shown
 from ..work.progress import Progress
 from ..work.screen import screen_of
 from .curves import curves as read_curves
+from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
-from .fits.model import HERTZ
+from .fits.model import HERTZ, Model
 from .fits.tables import Table
 
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
@@ -71,6 +74,10 @@ def fit(
     ------
     StudyError : a call that cannot be used, before a curve is read; no curve is an error
 
+    Notes
+    -----
+    An interrupt ends it; curves that are fitted are returned, the others have the status 127, `not_run`.
+
     Examples
     --------
     >>> import study
@@ -85,37 +92,43 @@ def fit(
     options |= {"intervals": intervals, "level": level, "plan": plan}
     parameters = {name: value for name, value in parameters.items() if value is not None}
     question = asked(free, parameters, x, y, options)
-    X, Y, S = _arrays(curves, question, sigma, plan)
+    data = _columns(curves, question.model, plan)
+    X, Y, S = _arrays(data, question.model, sigma)
     if plan:
         Y = _planned(question, X)
     table, unknowns = Table(question.model), len(question.model.unknowns) + len(question.shifts)
     there = np.isfinite(X) & np.isfinite(Y)
     status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
     rows: dict[int, dict] = {}
-    size = -(-there.sum(axis=1) // _PART) * _PART
-    stream = screen_of(progress)
-    with Progress("fit", len(X), stream, passing=True) as told, np.errstate(all="ignore"):
-        for points in np.unique(size[status < 0]):
-            same = np.flatnonzero((size == points) & (status < 0))
-            same = same[np.argsort(_stiffness(X, Y, question)[same], kind="stable")]
-            for begin in range(0, len(same), _BLOCK):
-                index = same[begin : begin + _BLOCK]
-                filled = np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))])
-                blocks = [_packed(A, there, filled, points) for A in (X, Y, S) if A is not None]
-                fits = fit_block(question, table, *blocks, *([None] if S is None else []))
+    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
+    with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told, np.errstate(all="ignore"):
+        try:
+            for index, filled, points in blocks:
+                arrays = [_packed(A, there, filled, points) for A in (X, Y, S) if A is not None]
+                fits = fit_block(question, table, *arrays, *([None] if S is None else []))
                 rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
                 told.update(len(index), 0)
-    return answered(question, rows, status, X, Y, there, plan)
+        except KeyboardInterrupt:
+            if not rows:
+                raise
+            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=2)
+    status = np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
+    fitted = answered(question, rows, status, X, Y, there, plan)
+    return fitted.assign_coords({name: data[name] for name in data.coords})
 
 
-def _arrays(source: Any, question: Asked, sigma: Any, plan: bool) -> tuple:
-    model = question.model
+def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
     data = _abscissa(source, model.x) if plan else read_curves(source)
     lacking = [name for name in (model.x, *([] if plan else [model.y])) if name not in data]
     if lacking:
         raise StudyError([f"curves: {lacking[0]} is not there; x = {model.x}, y = {model.y} are to be fitted"])
+    return data
+
+
+def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
+    """x, y and the standard deviations of y over (curve, point); NaN for y of a plan."""
     X = data[model.x].values
-    Y = np.full(X.shape, np.nan) if plan else data[model.y].values
+    Y = data[model.y].values if model.y in data else np.full(X.shape, np.nan)
     if sigma is None:
         return X, Y, None
     unit = ROWS[model.y].unit
@@ -169,7 +182,21 @@ def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anyw
 def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
     """About the modulus of each curve, in any unit: like curves share the tiles of a table."""
     q, e, _ = HERTZ[question.model.x, question.model.y][0]
-    return (Y.max(axis=1) - Y.min(axis=1)) ** (1 / e) / np.abs(X).max(axis=1) ** (q / e)
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")  # of curves without points
+        return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
+
+
+def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
+    """Curves of each block, those by which it is filled up to _BLOCK, and the number of its points. Curves that are alike
+    come together: they share tiles."""
+    size = -(-there.sum(axis=1) // _PART) * _PART
+    for points in np.unique(size[usable]):
+        same = np.flatnonzero((size == points) & usable)
+        same = same[np.argsort(stiffness[same], kind="stable")]
+        for begin in range(0, len(same), _BLOCK):
+            index = same[begin : begin + _BLOCK]
+            yield index, np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))]), points
 
 
 def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:

@@ -8,7 +8,7 @@ import xarray as xr
 
 
 from ...in_words.fits import NAMES_OF_SHIFTS
-from ...inputs.vocabulary import ROWS
+from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...solving import solve
 from .asked import Asked
 from .block import FitStatus
@@ -56,10 +56,8 @@ def answered(
         about = {"units": unit}
         variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
         variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
-    flags = {
-        "flag_values": np.array([*FitStatus], np.int8),
-        "flag_meanings": " ".join(s.name.lower() for s in FitStatus),
-    }
+    meanings = {int(s): s.name.lower() for s in FitStatus} | ({NOT_RUN: "not_run"} if NOT_RUN in status else {})
+    flags = {"flag_values": np.array([*meanings], np.int8), "flag_meanings": " ".join(meanings.values())}
     variables["fit_status"] = ("curve", status, flags)
     variables[model.x] = (("curve", "point"), X, {"units": ROWS[model.x].unit})
     if not plan:

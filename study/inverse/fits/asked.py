@@ -22,6 +22,7 @@ ROUGHNESS = ("Nbar", "Ra", "sigma", "cut", "B", "beta")
 _ALIKE = [*combinations(ROUGHNESS, 2), ("E1", "nu1"), ("E1", "R"), ("E1", "n")]
 _ALIKE_WORDS = "a curve cannot tell them apart: give one of them a value"
 _ABSCISSA = {"D": "1 nm", "P": "1 nN", "a": "1 nm"}
+_OF_BODIES = {"layer": ("E1", "nu1"), "body": ("E2", "nu2"), "punch": ("E_punch", "nu_punch")}
 _MODULUS = "1 MPa"  # stands for a modulus that is not known while the call is checked
 DECADE = np.log(10.0)
 
@@ -72,14 +73,16 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
         bounds |= _bounds(name, texts[name], errors)
     if errors:
         raise StudyError(errors)
-    stand_in = {name: _stand_in(name, bounds) for name in names if parameters.get(name) is None}
+    from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
+    open_ = [name for name in names if parameters.get(name) is None and name not in from_material]
+    stand_in = {name: _stand_in(name, bounds) for name in open_}
     lacking = [name for name, value in stand_in.items() if value is None]
-    if lacking or (options["plan"] and any(parameters.get(name) is None for name in names)):
+    if lacking or (options["plan"] and open_):
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
-        missing = lacking or [name for name in names if parameters.get(name) is None]
-        raise StudyError([f'free: {name} has no value: {wanted}: free={{"{name}": (low, high)}}' for name in missing])
+        way = ", free={{\"{0}\": (low, high)}}, or {0}=..." if not options["plan"] else ", {0}=..."
+        raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
     given = parameters | stand_in | {x: _ABSCISSA[x]}
-    _check_ends(given, bounds)
+    _check_ends(given, {name: pair for name, pair in bounds.items() if name not in from_material})
     definition = _definition(given, "fit")
     scene = definition.scene
     if scene is None:

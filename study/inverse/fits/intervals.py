@@ -70,7 +70,7 @@ def profile(
             break
         trial = inside + side * step
         trial = np.minimum(trial, bound) if side > 0 else np.maximum(trial, bound)
-        p, h = _inner(curve, data, p, held, i, np.where(done, inside, trial), start)
+        p, h = _inner(curve, data, p, held, i, trial, start, ~done)
         out = ~done & (h > top)
         outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
         at_bound = ~done & ~out & (trial == bound)
@@ -90,8 +90,8 @@ def profile(
         with np.errstate(divide="ignore", invalid="ignore"):
             share = (top - height) / (beyond - height)
         share = np.clip(np.where(np.isfinite(share), share, 0.5), 0.05, 0.95)
-        trial = np.where(left, inside + share * (outside - inside), inside)
-        p, h = _inner(curve, data, p, held, i, trial, start)
+        trial = inside + share * (outside - inside)
+        p, h = _inner(curve, data, p, held, i, trial, start, left)
         out = left & (h > top)
         outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
         inside, height = np.where(left & ~out, trial, inside), np.where(left & ~out, h, height)
@@ -100,9 +100,11 @@ def profile(
     return np.where(found, inside + np.where(np.isfinite(share), share, 0.5) * (outside - inside), place), open_
 
 
-def _inner(curve, data, p, held, i, value, start):
-    """The other unknowns where unknown i has a value, and the root of what the cost is above that of the best fit."""
-    p = p.copy()
-    p[:, i] = value
-    fit = minimise(curve, data, p, held, _INNER, _INNER_SURE)
-    return fit.p, np.sqrt(np.maximum(fit.cost - start, 0.0))
+def _inner(curve, data, p, held, i, value, start, wanted):
+    """The other unknowns where unknown i has a value, and the root of what the cost is above that of the best fit; of the
+    curves that are `wanted`. Others stay: what a curve gets must not depend on how far its company has to walk."""
+    rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
+    p[rows, i] = value[rows]
+    fit = minimise(curve.take(rows), data.take(rows), p[rows], held[rows], _INNER, _INNER_SURE)
+    p[rows], height[rows] = fit.p, np.sqrt(np.maximum(fit.cost - start[rows], 0.0))
+    return p, height

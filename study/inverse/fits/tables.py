@@ -49,18 +49,19 @@ class Table:
         slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
         return values, slopes
 
-    def make(self, places: list[tuple[int, ...]]) -> None:
-        """Solve what the tiles need that are not there yet, all in one batch. A tile holds g, (1 + moved, _LATTICE,
-        points of the other coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no
-        solution."""
-        model, names = self.model, self.model.axes
-        places = [place for place in dict.fromkeys(places) if place not in self.tiles]
-        if not places:
+    def make(self, place: tuple[int, ...]) -> None:
+        """Solve what a tile needs that is not there yet. It holds g, (1 + moved, _LATTICE, points of the other
+        coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no solution.
+
+        Each tile is a batch of its own: the last digits of a solution depend on what is solved with it.
+        """
+        if place in self.tiles:
             return
-        middle = (np.array(places) + 0.5) * [WIDE, *map(width, names)]
+        model, names = self.model, self.model.axes
+        middle = (np.array(place) + 0.5) * [WIDE, *map(width, names)]
         half = [WIDE / 2 + _MARGIN, *(width(name) / 2 for name in names)]
         parts = np.stack([grid.ravel() for grid in np.meshgrid(*([self.t] * len(half)), indexing="ij")], axis=-1)
-        u, *coordinates = (middle[:, None] + half * parts).reshape(-1, len(half)).T
+        u, *coordinates = (middle + half * parts).T
         values = {name: model.of_coordinate(name, c) for name, c in zip(names, coordinates, strict=True)}
         values = model.within(values)
         x = np.exp(u - model.shift(values))
@@ -72,9 +73,8 @@ class Table:
                 by = _MOVE * (1.0 if is_ratio(name) else value)
                 ends = [np.log(model.solved(values | {name: value + sign * by}, x)) for sign in (1, -1)]
                 rows.append((ends[0] - ends[1]) / (2 * _MOVE))
-        g = np.array(rows).reshape(len(rows), len(places), self.points, -1)
-        for place, own in zip(places, np.einsum("lp,rtpc->trlc", self.along_u, g), strict=True):
-            self.tiles[place] = own
+        g = np.array(rows).reshape(len(rows), self.points, -1)
+        self.tiles[place] = np.einsum("lp,rpc->rlc", self.along_u, g)
 
     def _stack(self, place: tuple[int, ...], count: int) -> np.ndarray:
         """Tiles one after another along ln u."""
@@ -104,7 +104,9 @@ class Table:
         weights = np.array([_products(factor, B) for factor in factors])  # of g itself, and of its derivatives
         key = np.column_stack([first, places])
         several = [tuple(place) for place in np.unique(key, axis=0).tolist()]
-        self.make([(place[0] + k, *place[1:]) for place in several for k in range(count)])
+        for place in several:
+            for k in range(count):
+                self.make((place[0] + k, *place[1:]))
         rows = np.empty((1 + len(self.model.moved), B, count * _LATTICE))
         by = np.empty((len(names), B, count * _LATTICE))
         for place in several:

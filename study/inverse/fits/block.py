@@ -10,11 +10,12 @@ from scipy import stats
 
 from .asked import DECADE, Asked
 from .curve import Curve
-from .intervals import covariance_of, profile
-from .least_squares import Data, Fit, minimise
+from .intervals import covariance_of, profiles
+from .least_squares import SURE, Data, Fit, minimise
 from .model import HERTZ, is_ratio
 from .tables import Table
 
+_ROUGHLY = 1e-4  # of several starts only the best goes on to the end; the others end within some 0.03 of a spread
 _STARTS = 6  # across the bounds of a second unknown input
 _SURE = 0.999  # of Fisher's F that a contact is there
 #: y = _HERTZ x^q E^e R^r of a rigid ball on a half-space.
@@ -61,9 +62,13 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
             begin[:, columns] = center
             variance = minimise(curve, data, begin, held).cost / np.maximum(count - k + len(columns), 1)
         data.center[:, columns], data.stiffness[:, columns] = center, variance[:, None] / sd**2
-    fits = [minimise(curve, data, start) for start in starts]
-    costs = np.array([fit.cost for fit in fits])
-    best = _selected(fits, costs.argmin(axis=0))
+    # all starts at once: what a step costs is that of its calls, hardly that of its numbers
+    every = np.tile(np.arange(len(x)), len(starts))
+    rough = SURE if len(starts) == 1 else _ROUGHLY
+    fits = minimise(curve.take(every), data.take(every), np.concatenate(starts), sure=rough)
+    costs, places = fits.cost.reshape(len(starts), -1), fits.p.reshape(len(starts), len(x), k)
+    best = fits.take(costs.argmin(axis=0) * len(x) + np.arange(len(x)))
+    best = minimise(curve, data, best.p) if len(starts) > 1 else best
     if sigma is None and not asked.priors:
         variance = best.cost / np.maximum(count - k, 1)
     tail = (1 + asked.level) / 2
@@ -74,18 +79,17 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
     ends_low, ends_high = best.p - t[:, None] * sd, best.p + t[:, None] * sd
     open_, inputs = np.zeros((len(x), len(model.unknowns), 2), bool), len(model.unknowns)
     within = costs <= limit
-    places = np.array([fit.p for fit in fits])
     apart = np.abs(places[:, :, :inputs] - best.p[:, :inputs]) > np.maximum(sd[:, :inputs], _SAME)
     several = (within & apart.any(axis=2)).any(axis=0)
     if asked.intervals == "profile" and not data.huber:
-        for i in range(inputs):
-            for side in (-1, 1):
-                far = np.where(within, side * places[:, :, i], -np.inf).argmax(axis=0)
-                ends = places[far, np.arange(len(x))], costs[far, np.arange(len(x))]
-                first = np.clip(sd[:, i] * t, 1e-6, (high - low)[:, i] / 4)
-                value, bound = profile(curve, data, best, ends, limit, first, i, side)
-                (ends_low if side < 0 else ends_high)[:, i] = value
-                open_[:, i, int(side > 0)] = bound
+        far = [
+            np.where(within, side * places[:, :, i], -np.inf).argmax(axis=0) for i in range(inputs) for side in (-1, 1)
+        ]
+        ends = [(places[start, np.arange(len(x))], costs[start, np.arange(len(x))]) for start in far]
+        first = np.clip(sd * t[:, None], 1e-6, (high - low) / 4)
+        value, bound = profiles(curve, data, best, ends, limit, first)
+        ends_low[:, :inputs], ends_high[:, :inputs] = value[:, :, 0], value[:, :, 1]
+        open_ = bound
     at_bound = ((best.p <= low) | (best.p >= high))[:, :inputs].any(axis=1)
     status = np.select(
         [_no_contact(curve, data, best, count, k) & (model.x == "D"), ~best.ended, at_bound, open_.any(axis=(1, 2)), several],
@@ -107,11 +111,6 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
 
 def _no_prior(low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.zeros(low.shape), np.zeros(low.shape)
-
-
-def _selected(fits: list[Fit], index: np.ndarray) -> Fit:
-    rows = np.arange(len(index))
-    return Fit(*(np.array(parts)[index, rows] for parts in zip(*fits, strict=True)))
 
 
 def _starts(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray) -> tuple:

@@ -1,7 +1,6 @@
 """How sure a fit is: covariances, and intervals by profiles of the likelihood."""
 
-from collections.abc import Callable
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -40,37 +39,58 @@ def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
     return np.einsum("bij,bjk,bkl->bil", A, middle, A)
 
 
-def profile(
-    curve: Callable,
+def profiles(
+    curve: Any,
     data: Data,
     best: Fit,
-    ends: tuple[np.ndarray, np.ndarray],
+    ends: list[tuple[np.ndarray, np.ndarray]],
     limit: np.ndarray,
-    sd: np.ndarray,
-    i: int,
-    side: int,
+    first: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where the profile of unknown i reaches `limit` on a side, -1 or 1: its place (B,), and whether it is a bound
-    (B,).
+    """Where the profiles of the first unknowns reach `limit`, their low and high ends: places (B, unknowns, 2), and whether
+    these are bounds.
 
-    ends : unknowns (B, k) where the walk begins: of the minima within the limit the farthest on this side
-    sd : (B,) first step
+    ends : of each unknown for its low and its high end the unknowns (B, k) and costs (B,) where the walk begins: of the
+        minima within the limit the farthest on this side
+    first : (B, k) first steps
+
+    All are walked at once: a row is a curve, an unknown and a side.
     """
-    held = np.zeros(best.p.shape, bool)
-    held[:, i] = True
-    bound = (data.high if side > 0 else data.low)[:, i]
-    p, inside = ends[0].copy(), ends[0][:, i].copy()
-    start = best.cost
-    height = np.sqrt(np.maximum(ends[1] - start, 0.0))
+    B, walks = len(best.p), len(ends)
+    rows, walk = np.tile(np.arange(B), walks), np.repeat(np.arange(walks), B)
+    which, side = walk // 2, np.where(walk % 2, 1.0, -1.0)
+    begin = np.concatenate([p for p, _ in ends]), np.concatenate([cost for _, cost in ends])
+    place, at_bound = _walk(
+        (curve.take(rows), data.take(rows)), best.take(rows), begin, limit[rows], first[rows, which], which, side
+    )
+    shape = (walks // 2, 2, B)
+    return np.moveaxis(place.reshape(shape), 2, 0), np.moveaxis(at_bound.reshape(shape), 2, 0)
+
+
+def _walk(
+    of: tuple[Any, Data],
+    best: Fit,
+    begin: tuple[np.ndarray, np.ndarray],
+    limit: np.ndarray,
+    step: np.ndarray,
+    which: np.ndarray,
+    side: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Where the profile of unknown `which` (B,) reaches `limit` on its side (B,), -1 or 1: its place (B,), and whether it
+    is a bound."""
+    every, data, start = np.arange(len(which)), of[1], best.cost
+    bound = np.where(side > 0, data.high[every, which], data.low[every, which])
+    p, inside = begin[0].copy(), begin[0][every, which]
+    height = np.sqrt(np.maximum(begin[1] - start, 0.0))
     top = np.sqrt(np.maximum(limit - start, 0.0))
     outside, beyond, open_ = np.full(len(p), np.nan), np.full(len(p), np.nan), np.zeros(len(p), bool)
-    step, done = np.maximum(sd, 1e-6), ~np.isfinite(limit)
+    step, done = np.maximum(step, 1e-6), ~np.isfinite(limit)
     for _ in range(_OUTWARD):
         if done.all():
             break
         trial = inside + side * step
-        trial = np.minimum(trial, bound) if side > 0 else np.maximum(trial, bound)
-        p, h = _inner(curve, data, p, held, i, trial, start, ~done)
+        trial = np.where(side > 0, np.minimum(trial, bound), np.maximum(trial, bound))
+        p, h = _inner(of, p, which, trial, start, ~done)
         out = ~done & (h > top)
         outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
         at_bound = ~done & ~out & (trial == bound)
@@ -78,33 +98,40 @@ def profile(
         moving = ~done & ~out
         inside, height = np.where(moving, trial, inside), np.where(moving, h, height)
         done = done | out | at_bound
-        p[out, i] = inside[out]
         step = step * 1.7
     place = np.where(open_, bound, inside)
     found = np.isfinite(outside)
     for _ in range(_BETWEEN):
         width = np.abs(outside - inside)
-        left = found & (width > _PRECISE * np.abs(outside - best.p[:, i]))
+        left = found & (width > _PRECISE * np.abs(outside - best.p[every, which]))
         if not left.any():
             break
-        with np.errstate(divide="ignore", invalid="ignore"):
-            share = (top - height) / (beyond - height)
-        share = np.clip(np.where(np.isfinite(share), share, 0.5), 0.05, 0.95)
+        share = np.clip(_share(top, height, beyond), 0.05, 0.95)
         trial = inside + share * (outside - inside)
-        p, h = _inner(curve, data, p, held, i, trial, start, left)
+        p, h = _inner(of, p, which, trial, start, left)
         out = left & (h > top)
         outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
         inside, height = np.where(left & ~out, trial, inside), np.where(left & ~out, h, height)
+    share = np.clip(_share(top, height, beyond), 0.0, 1.0)
+    return np.where(found, inside + share * (outside - inside), place), open_
+
+
+def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarray:
+    """Which part of the way from `height` to `beyond` is up to the top, if the way is straight."""
     with np.errstate(divide="ignore", invalid="ignore"):
-        share = np.clip((top - height) / (beyond - height), 0.0, 1.0)
-    return np.where(found, inside + np.where(np.isfinite(share), share, 0.5) * (outside - inside), place), open_
+        share = (top - height) / (beyond - height)
+    return np.where(np.isfinite(share), share, 0.5)
 
 
-def _inner(curve, data, p, held, i, value, start, wanted):
-    """The other unknowns where unknown i has a value, and the root of what the cost is above that of the best fit; of the
-    curves that are `wanted`. Others stay: what a curve gets must not depend on how far its company has to walk."""
+def _inner(
+    of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The other unknowns where unknown `which` has a value, and the root of what the cost is above that of the best fit; of
+    the rows that are `wanted`. Others stay: what a curve gets must not depend on how far its company has to walk."""
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
-    p[rows, i] = value[rows]
-    fit = minimise(curve.take(rows), data.take(rows), p[rows], held[rows], _INNER, _INNER_SURE)
+    p[rows, which[rows]] = value[rows]
+    held = np.zeros((len(rows), p.shape[1]), bool)
+    held[np.arange(len(rows)), which[rows]] = True
+    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], held, _INNER, _INNER_SURE)
     p[rows], height[rows] = fit.p, np.sqrt(np.maximum(fit.cost - start[rows], 0.0))
     return p, height

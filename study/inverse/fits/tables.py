@@ -55,8 +55,6 @@ class Table:
 
         Each tile is a batch of its own: the last digits of a solution depend on what is solved with it.
         """
-        if place in self.tiles:
-            return
         model, names = self.model, self.model.axes
         middle = (np.array(place) + 0.5) * [WIDE, *map(width, names)]
         half = [WIDE / 2 + _MARGIN, *(width(name) / 2 for name in names)]
@@ -80,7 +78,11 @@ class Table:
         """Tiles one after another along ln u."""
         key = (count, *place)
         if key not in self.stacks:
-            tiles = [self.tiles[(place[0] + k, *place[1:])] for k in range(count)]
+            several = [(place[0] + k, *place[1:]) for k in range(count)]
+            for tile in several:
+                if tile not in self.tiles:
+                    self.make(tile)
+            tiles = [self.tiles[tile] for tile in several]
             self.stacks[key] = np.concatenate(tiles, axis=1)
         return self.stacks[key]
 
@@ -104,9 +106,6 @@ class Table:
         weights = np.array([_products(factor, B) for factor in factors])  # of g itself, and of its derivatives
         key = np.column_stack([first, places])
         several = [tuple(place) for place in np.unique(key, axis=0).tolist()]
-        for place in several:
-            for k in range(count):
-                self.make((place[0] + k, *place[1:]))
         rows = np.empty((1 + len(self.model.moved), B, count * _LATTICE))
         by = np.empty((len(names), B, count * _LATTICE))
         for place in several:

@@ -13,18 +13,21 @@ NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of th
 MOST_CURVES = 20  # that are written out
 #: Inputs whose logarithms have a correlation beyond this are told apart by no curve; their product of powers may be.
 _ALIKE = 0.995
+_WITHOUT_NUMBERS = ("no_contact", "invalid_input", "not_run")
 _SENTENCES = {
     "at_bound": "The best value is at a bound: widen the bounds, or the curve does not hold it.",
     "iteration_limit": "The search has not ended: do not use these values.",
     "several_minima": "Another value fits as well: the interval holds all of them.",
     "not_identifiable": "The curve does not hold a bound of the interval: that end is where the search stopped.",
     "no_contact": "The curve is no better described by a contact than by a straight line: there is no contact in it.",
+    "not_run": "It was not fitted: the call was interrupted before.",
     "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
 }
 
 
 def of_fit(fitted: xr.Dataset) -> str:
-    """The text of a Dataset of `study.fit`."""
+    """The text of a Dataset of `study.fit`, or of one of its curves."""
+    fitted = fitted if "curve" in fitted.dims else fitted.expand_dims("curve")
     names = [str(name) for name in fitted["cov_i"].values]
     inputs, shifts = [n for n in names if n not in NAMES_OF_SHIFTS], [n for n in names if n in NAMES_OF_SHIFTS]
     x, y, level = fitted.attrs["x"], fitted.attrs["y"], fitted.attrs["level"]
@@ -50,8 +53,8 @@ def of_fit(fitted: xr.Dataset) -> str:
 
 def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: list[str]) -> list[str]:
     status = str(decode(curve["fit_status"]).item())
-    lines = [f"Curve {i}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
-    if status == "invalid_input":
+    lines = [f"Curve {curve['curve'].item() if 'curve' in curve.coords else i}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
+    if status in _WITHOUT_NUMBERS:
         return [*lines, _SENTENCES[status]]
     rows = [(name, _long_name(name), _text(curve, name)) for name in (*inputs, *shifts)]
     widths = max(len(words) for _, words, _ in rows), max(len(name) for name, _, _ in rows)

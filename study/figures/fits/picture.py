@@ -20,6 +20,7 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
 
     Raises StudyError for more than 4 curves, and for a plan, which has none.
     """
+    fitted = fitted if "curve" in fitted.dims else fitted.expand_dims("curve")
     x, y = fitted.attrs["x"], fitted.attrs["y"]
     if f"{y}_fit" not in fitted:
         raise StudyError(["a plan has no curves to draw"])

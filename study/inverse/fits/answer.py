@@ -14,7 +14,7 @@ from .asked import Asked
 from .block import FitStatus
 from .model import is_ratio
 
-_DRAWN, _PLACES = 64, 16  # curves of which it is known from which of so many x on an assumption fails
+_HALVINGS = 4  # so that it is known to 1/16 of the depth from where on an assumption fails
 
 
 def answered(
@@ -93,13 +93,15 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     if good.any():
         contacts = _contacts(question, value[good], (deepest - D0)[good])
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs
-        broken = np.flatnonzero(flags != 0)[:_DRAWN]
-        parts = np.arange(1, _PLACES) / _PLACES
-        for curve in broken:
-            x = parts * (deepest - D0)[curve]
-            holds = _contacts(question, np.repeat(value[[curve]], len(x), axis=0), x)["validity"].values == 0
-            valid[curve] = D0[curve] + x[holds][-1] if holds.any() else -np.inf
-        valid[np.setdiff1d(np.flatnonzero(flags != 0), broken)] = np.nan
+        broken = np.flatnonzero(flags != 0)
+        holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
+        for _ in range(_HALVINGS if len(broken) else 0):
+            part = (holds + fails) // 2
+            x = part / 2**_HALVINGS * (deepest - D0)[broken]
+            good_there = _contacts(question, value[broken], x)["validity"].values == 0
+            holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
+        x = holds / 2**_HALVINGS * (deepest - D0)[broken]
+        valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
     variables = {
         "validity": ("curve", flags, about),
         f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),

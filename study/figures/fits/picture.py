@@ -38,7 +38,7 @@ def fits(fitted: xr.Dataset, where: dict, new: Callable[..., Figure]) -> tuple[F
     for (above, below), i in zip(panels.T, numbers, strict=True):
         curve = fitted.isel(curve=i)
         across, up, drawn = (curve[name].values for name in (x, y, f"{y}_fit"))
-        valid = across <= float(curve[f"{x}_valid"])
+        valid = ~(across > float(curve[f"{x}_valid"]))  # NaN where nothing is fitted
         order = np.argsort(across)
         for face, here in (("C0", valid), ("none", ~valid)):
             style = {

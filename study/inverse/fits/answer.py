@@ -89,7 +89,7 @@ def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndar
     deepest = np.where(there, X, -np.inf).max(axis=1, initial=-np.inf)
     D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
     good = np.isfinite(value).all(axis=1) & (deepest > D0)
-    flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, -np.inf), {}
+    flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
     if good.any():
         contacts = _contacts(question, value[good], (deepest - D0)[good])
         flags[good], about = contacts["validity"].values, contacts["validity"].attrs

@@ -29,7 +29,8 @@ from solver import Problem, solve
 R, E2, NU1, NU2 = 1e-4, 70e9, 0.4, 0.2
 H = 1e-6  # in the call
 SCENE = {"R": "100 um", "nu1": NU1, "E2": "70 GPa", "nu2": NU2, "bonding": "bonded", "micro": "smooth"}
-POINTS, TIMED, NODES = 200, 4096, 40
+POINTS, TIMED = 200, 4096
+NODES, EXACT = 40, 120  # depths that are solved: loads are right to 1e-5 of the largest, and to 2e-9
 KINDS = ("known", "prior", "free")  # of what is known of h
 
 
@@ -37,22 +38,22 @@ def between(random: np.random.Generator, low: float, high: float, count: int) ->
     return np.exp(random.uniform(np.log(low), np.log(high), count))
 
 
-def exact(n: np.ndarray, wide: np.ndarray, h: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def exact(n: np.ndarray, wide: np.ndarray, h: np.ndarray, nodes: int) -> tuple[np.ndarray, np.ndarray]:
     """Depths and loads (curves, POINTS) in SI of layers of E1* = n E2*, of a/h = wide at the deepest point.
 
-    The solver's loads over D^1.5 at NODES depths are a polynomial of the root of the depth, right to 1e-9.
+    The solver's loads over D^1.5 at some depths are a polynomial of the root of the depth.
     """
     scene = {"nu1": NU1, "nu2": NU2, "bonding": "bonded", "micro": "smooth", "base": "layered", "rtol": 1e-9}
     center = np.array([0.0])
     deepest = solve(Problem.of(a=wide * h / R, h=h / R, n=n, **scene), center)
     assert not deepest.status.any()
-    root = (chebyshev.chebpts1(NODES) + 1) / 2
+    root = (chebyshev.chebpts1(nodes) + 1) / 2
     depths = deepest.D[:, None] * root**2
     columns = {"h": h / R, "n": n}
-    columns = {name: np.repeat(value, NODES) for name, value in columns.items()}
+    columns = {name: np.repeat(value, nodes) for name, value in columns.items()}
     loads = solve(Problem.of(D=depths.ravel(), **columns, **scene), center)
     assert not loads.status.any()
-    polynomials = chebyshev.chebfit(2 * root - 1, np.log(loads.P.reshape(depths.shape) / depths**1.5).T, NODES - 1)
+    polynomials = chebyshev.chebfit(2 * root - 1, np.log(loads.P.reshape(depths.shape) / depths**1.5).T, nodes - 1)
     share = np.linspace(-0.2, 1.0, POINTS)
     inside = np.sqrt(np.maximum(share, 0.0))
     x = deepest.D[:, None] * share
@@ -69,7 +70,7 @@ def curves(
     n, wide = between(random, *n, count), between(random, *wide, count)
     factor = {"known": np.ones(count), "prior": np.exp(0.1 * random.standard_normal(count))}
     h = H * (factor[h] if h in factor else between(random, 1 / 3, 3.0, count))
-    x, y = exact(n, wide, h)
+    x, y = exact(n, wide, h, NODES if noise else EXACT)
     D0, P0 = (random.uniform(-0.05, 0.05, count) * A[:, -1] for A in (x, y))
     largest = y.max(axis=1, keepdims=True)
     y = y + P0[:, None] + noise * largest * random.standard_normal(y.shape)

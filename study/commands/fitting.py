@@ -32,6 +32,8 @@ def items(options) -> list[list[str]]:
 def fit(options, texts: list[str]) -> int:
     """Fit and say it. Exit code 1 if a curve has no fit that can be used."""
     path, *words = texts
+    if "=" in path and not Path(path).exists():
+        raise StudyError([f"{path}: the file of the curve comes first, then what is known: fit curve.csv {path} ..."])
     free, settings, parameters = asked(words)
     picture = options.plot
     if picture and not picture.lower().endswith((".png", ".pdf", ".svg")):
@@ -58,7 +60,9 @@ def asked(words: list[str]) -> tuple[Any, dict, dict]:
     bounds = {name: tuple(_RANGE.split(v)) for name, v in parameters.items() if isinstance(v, str) and ".." in v}
     free: dict[str, Any] = {name.strip(): None for name in settings.pop("free", "").split(",") if name.strip()}
     free |= bounds
-    errors = [] if free else ['name what is fitted, such as free=E1, or E1="1 kPa .. 1 MPa"']
+    names = [word.partition("=")[0].strip() for word in words]
+    errors = [f"{name} is given twice" for name in _OPTIONS if names.count(name) > 1]
+    errors += [] if free else ['name what is fitted, such as free=E1, or E1="1 kPa .. 1 MPa"']
     for name in _SWITCHES:
         if name in settings:
             value = SWITCH.get(settings[name].lower())
@@ -83,7 +87,7 @@ def as_json(fitted: xr.Dataset) -> str:
 
 
 def _of_curve(curve: xr.Dataset) -> dict:
-    numbers: dict[str, Any] = {}
+    numbers: dict[str, Any] = {"curve": curve["curve"].item()} if "curve" in curve.coords else {}
     for name in map(str, curve["cov_i"].values):
         ends = {"value": name, "low": f"{name}_low", "high": f"{name}_high", "spread": f"{name}_spread"}
         numbers[name] = {key: _number(curve[variable]) for key, variable in ends.items() if variable in curve}

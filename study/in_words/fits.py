@@ -53,7 +53,8 @@ def of_fit(fitted: xr.Dataset) -> str:
 
 def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: list[str]) -> list[str]:
     status = str(decode(curve["fit_status"]).item())
-    lines = [f"Curve {curve['curve'].item() if 'curve' in curve.coords else i}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
+    name = curve["curve"].item() if "curve" in curve.coords else i
+    lines = [f"Curve {name}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
     if status in _WITHOUT_NUMBERS:
         return [*lines, _SENTENCES[status]]
     rows = [(name, _long_name(name), _text(curve, name)) for name in (*inputs, *shifts)]

@@ -176,7 +176,7 @@ def _row(cells: list[str], columns: list[str], where: str) -> dict[str, Any]:
         if name == "curve" and cell.strip() == "":
             raise StudyError([f"{where}: curve is empty: it must have the name of the curve"])
         if name != "curve" and number is None:
-            comma = ': write a decimal point, not a comma' if _number(cell.replace(",", ".")) is not None else ""
+            comma = ": write a decimal point, not a comma" if _number(cell.replace(",", ".")) is not None else ""
             raise StudyError([f"{where}, {name} = {shown(cell)}: must be a number{comma}"])
         row[name] = cell.strip() if name == "curve" else number
     return row

@@ -188,8 +188,8 @@ def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
 
 
 def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
-    """Curves of each block, those by which it is filled up to _BLOCK, and the number of its points. Curves that are alike
-    come together: they share tiles."""
+    """Curves of each block, those by which it is filled up to _BLOCK, and the number of its points. Curves that are
+    alike come together: they share tiles."""
     size = -(-there.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)

@@ -38,5 +38,6 @@ def fit(D, P, free=("E1",), intervals="fisher", **options):
 
 def status(fitted):
     """Names of the statuses of all curves."""
-    meanings = dict(zip(fitted.fit_status.attrs["flag_values"].tolist(), fitted.fit_status.attrs["flag_meanings"].split(), strict=True))
+    about = fitted.fit_status.attrs
+    meanings = dict(zip(about["flag_values"].tolist(), about["flag_meanings"].split(), strict=True))
     return [meanings[value] for value in fitted.fit_status.values.tolist()]

@@ -1,4 +1,4 @@
-"""The model file in nanite itself, and force curves in the files of instruments, where nanite is installed (extra afm)."""
+"""The model file in nanite itself, and force curves in files of instruments, where nanite is installed (extra afm)."""
 
 import sys
 import warnings
@@ -23,7 +23,7 @@ def model():
 
 @pytest.fixture(scope="module")
 def curve(tmp_path_factory):
-    """A force curve of a bead on 1.5 µm of a gel of 5 kPa on glass, as an instrument would store it: the exact layer."""
+    """A force curve of a bead on 1.5 µm of a gel of 5 kPa on glass, as an instrument would store it: exact layer."""
     tip = np.linspace(5e-7, -5e-7, 300)
     force = np.zeros(300)
     D, E = -tip[tip < 0] / GEL["R"], 5e3 / (1 - GEL["nu"] ** 2)

@@ -35,7 +35,8 @@ def test_words_json_and_a_figure(folder, capsys):
     assert code == 0 and "E1 = 5.0" in words and "contact point" in words
     code, text, said = run(capsys, "curve.csv", *CALL, "E1=1 kPa .. 1 MPa", "--json", "--plot", "fit.png")
     numbers = json.loads(text)
-    assert code == 0 and numbers["fit_status"] == "converged" and "fit.png" in said and (folder / "fit.png").stat().st_size
+    assert code == 0 and numbers["fit_status"] == "converged"
+    assert "fit.png" in said and (folder / "fit.png").stat().st_size
     assert numbers["E1"]["low"] < 5e3 < numbers["E1"]["high"] and numbers["E1"]["unit"] == "Pa"
 
 

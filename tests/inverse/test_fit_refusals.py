@@ -1,4 +1,4 @@
-"""Calls of `study.fit` that cannot be used are refused before a curve is read, with the input, its value and what is allowed."""
+"""Calls of `study.fit` that cannot be used are refused, with the input, its value and what is allowed."""
 
 import numpy as np
 import pytest

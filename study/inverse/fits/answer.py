@@ -6,7 +6,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-
 from ...in_words.fits import NAMES_OF_SHIFTS
 from ...inputs.vocabulary import NOT_RUN, ROWS
 from ...solving import solve

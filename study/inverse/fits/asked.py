@@ -79,7 +79,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     lacking = [name for name, value in stand_in.items() if value is None]
     if lacking or (options["plan"] and open_):
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
-        way = ", free={{\"{0}\": (low, high)}}, or {0}=..." if not options["plan"] else ", {0}=..."
+        way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
         raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
     given = parameters | stand_in | {x: _ABSCISSA[x]}
     _check_ends(given, {name: pair for name, pair in bounds.items() if name not in from_material})
@@ -129,7 +129,8 @@ def _choices(x: str, y: str, options: dict) -> list[str]:
 
 
 def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
-    names = (free,) if isinstance(free, str) else tuple(free) if isinstance(free, (list, tuple, dict, set, np.ndarray)) else (None,)
+    several = isinstance(free, (list, tuple, dict, set, np.ndarray))
+    names = tuple(free) if several else (free,)
     if not all(isinstance(name, str) for name in names):
         errors.append(f'free = {shown(free)}: must be names of inputs, such as ["E1"], or {{"E1": ("1 kPa", "1 MPa")}}')
         return ()

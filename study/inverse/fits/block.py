@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-
 from .asked import DECADE, Asked
 from .curve import Curve
 from .intervals import covariance_of, profiles
@@ -91,8 +90,9 @@ def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: n
         ends_low[:, :inputs], ends_high[:, :inputs] = value[:, :, 0], value[:, :, 1]
         open_ = bound
     at_bound = ((best.p <= low) | (best.p >= high))[:, :inputs].any(axis=1)
+    no_contact = _no_contact(curve, data, best, count, k) & (model.x == "D")  # else the contact is not in doubt
     status = np.select(
-        [_no_contact(curve, data, best, count, k) & (model.x == "D"), ~best.ended, at_bound, open_.any(axis=(1, 2)), several],
+        [no_contact, ~best.ended, at_bound, open_.any(axis=(1, 2)), several],
         [
             FitStatus.NO_CONTACT,
             FitStatus.ITERATION_LIMIT,

@@ -47,8 +47,8 @@ def profiles(
     limit: np.ndarray,
     first: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where the profiles of the first unknowns reach `limit`, their low and high ends: places (B, unknowns, 2), and whether
-    these are bounds.
+    """Where the profiles of the first unknowns reach `limit`, their low and high ends: places (B, unknowns, 2), and
+    whether these are bounds.
 
     ends : of each unknown for its low and its high end the unknowns (B, k) and costs (B,) where the walk begins: of the
         minima within the limit the farthest on this side
@@ -76,8 +76,8 @@ def _walk(
     which: np.ndarray,
     side: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where the profile of unknown `which` (B,) reaches `limit` on its side (B,), -1 or 1: its place (B,), and whether it
-    is a bound."""
+    """Where the profile of unknown `which` (B,) reaches `limit` on its side (B,), -1 or 1: its place (B,), and whether
+    it is a bound."""
     every, data, start = np.arange(len(which)), of[1], best.cost
     bound = np.where(side > 0, data.high[every, which], data.low[every, which])
     p, inside = begin[0].copy(), begin[0][every, which]
@@ -126,8 +126,8 @@ def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarra
 def _inner(
     of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The other unknowns where unknown `which` has a value, and the root of what the cost is above that of the best fit; of
-    the rows that are `wanted`. Others stay: what a curve gets must not depend on how far its company has to walk."""
+    """The other unknowns where unknown `which` has a value, and the root of what the cost is above that of the best
+    fit; of the rows that are `wanted`. Others stay: what a curve gets must not depend on how far its company walks."""
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
     p[rows, which[rows]] = value[rows]
     held = np.zeros((len(rows), p.shape[1]), bool)

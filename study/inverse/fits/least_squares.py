@@ -12,6 +12,9 @@ _CLOSE = 1e-9  # steps of all unknowns below this end the search; all unknowns a
 #: Unknowns are then within 1e-4 of their spreads.
 SURE = 1e-8
 _AT_LEAST = 8  # curves that are taken together
+#: So many steps with hardly a gain end the search: where a point lies at the beginning of the contact, the cost has a
+#: crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
+_IDLE = 30
 _STIFF = 1e10  # damping at which only rounding is left
 #: Of Huber's loss: residuals beyond this times the scale count linearly; the scale is this times the median deviation.
 HUBER, MAD = 1.345, 1.4826
@@ -71,6 +74,7 @@ def minimise(
     count = np.maximum((data.w > 0).sum(axis=1), 1)
     left, damping = np.flatnonzero(np.isfinite(fit.cost)), np.full(len(p), 1e-3)
     fit.ended[~np.isfinite(fit.cost)] = True
+    idle, little = np.zeros(len(p), int), max(sure, min(1e3 * sure, 1e-5))
     for _ in range(steps):
         if not len(left):
             break
@@ -87,7 +91,9 @@ def minimise(
         better = (cost <= fit.cost[rows])[once]
         small = np.abs(new - fit.p[rows])[once].max(axis=1) < _CLOSE
         near = (decrease <= sure * fit.cost[rows] / count[rows])[once] & (damping[left] <= 1e-3)
-        done = small | (better & near) | (~better & (damping[left] > _STIFF))
+        gain = np.where(better, (fit.cost[rows] - cost)[once], 0.0)
+        idle[left] = np.where(gain <= little * fit.cost[left] / count[left], idle[left] + 1, 0)
+        done = small | (better & near) | (~better & (damping[left] > _STIFF)) | (idle[left] >= _IDLE)
         take = left[better]
         for array, value in zip(fit[:5], (new, cost, new_model, new_J, weights), strict=True):
             array[take] = value[once][better]

@@ -90,7 +90,8 @@ class Model:
 
     def of_coordinate(self, name: str, coordinate: Any) -> Any:
         """The value in SI of a coordinate."""
-        return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
+        with np.errstate(over="ignore"):  # of the end of an interval of what is hardly known
+            return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
 
     def within(self, values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
         """Values (M,) within what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval, beyond which

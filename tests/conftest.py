@@ -14,6 +14,7 @@ os.environ |= {f"{name}_NUM_THREADS": "1" for name in ("OPENBLAS", "OMP", "MKL")
 
 import pytest
 import xarray as xr
+from explorer_page import explorer  # noqa: F401
 from interrupted_study import undisturbed  # noqa: F401
 from line_study import computed, file, quiet  # noqa: F401
 from screens import impatient, stderr  # noqa: F401

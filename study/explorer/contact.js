@@ -1,7 +1,7 @@
 "use strict";
 /* One contact: from texts with units to the parameters of the solver, and from its numbers to texts. The names are those
    of `roughcoat point`. DATA, which page.py writes, has meshes, materials, limits and sentences of the Python program. */
-const Contact = ((Core, Stress, DATA) => {
+const Contact = ((Core, DATA) => {
   Core.load(DATA.meshes);
   const MATERIALS = Object.fromEntries(DATA.materials.map((own) => [own.name, own]));
 
@@ -17,21 +17,27 @@ const Contact = ((Core, Stress, DATA) => {
     1: { what: "a number", read: { "": 1 }, write: [["", 1]] },
   };
 
-  /** Inputs that are numbers: SI unit, words, and the range of the slider. */
+  /** Inputs that are numbers: SI unit, words, those of the form under the name of the body, and the range of the slider. */
   const INPUTS = {
-    R: { unit: "m", label: "radius of the ball R", range: [1e-6, 1] },
-    E_punch: { unit: "Pa", label: "Young's modulus of the ball", range: [1e4, 1.2e12] },
-    nu_punch: { unit: "1", label: "Poisson ratio of the ball", range: [0, 0.5] },
-    E1: { unit: "Pa", label: "Young's modulus of the layer E1", range: [1e4, 1.2e12] },
-    nu1: { unit: "1", label: "Poisson ratio of the layer ν1", range: [0, 0.5] },
-    h: { unit: "m", label: "thickness of the layer h", range: [1e-9, 1e-1] },
-    E2: { unit: "Pa", label: "Young's modulus of the body E2", range: [1e4, 1.2e12] },
-    nu2: { unit: "1", label: "Poisson ratio of the body ν2", range: [0, 0.5] },
-    P: { unit: "N", label: "load P", range: [1e-6, 1e5] },
-    a: { unit: "m", label: "contact radius a", range: [1e-8, 1e-1] },
-    D: { unit: "m", label: "depth D", range: [1e-10, 1e-2] },
-    Nbar: { unit: "1/m^2", label: "asperities per area N̄", range: [1e4, 1e14] },
-    Ra: { unit: "m", label: "radius of an asperity Ra", range: [1e-8, 1e-2] },
+    R: { unit: "m", label: "radius of the ball R", short: "radius R", range: [1e-6, 1] },
+    E_punch: { unit: "Pa", label: "Young's modulus of the ball", short: "Young's modulus E", range: [1e4, 1.2e12] },
+    nu_punch: { unit: "1", label: "Poisson ratio of the ball", short: "Poisson ratio ν", range: [0, 0.5] },
+    E1: { unit: "Pa", label: "Young's modulus of the layer E1", short: "Young's modulus E1", range: [1e4, 1.2e12] },
+    nu1: { unit: "1", label: "Poisson ratio of the layer ν1", short: "Poisson ratio ν1", range: [0, 0.5] },
+    h: { unit: "m", label: "thickness of the layer h", short: "thickness h", range: [1e-9, 1e-1] },
+    E2: { unit: "Pa", label: "Young's modulus of the body E2", short: "Young's modulus E2", range: [1e4, 1.2e12] },
+    nu2: { unit: "1", label: "Poisson ratio of the body ν2", short: "Poisson ratio ν2", range: [0, 0.5] },
+    P: { unit: "N", label: "load P", short: "load P", range: [1e-6, 1e5] },
+    a: { unit: "m", label: "contact radius a", short: "contact radius a", range: [1e-8, 1e-1] },
+    D: { unit: "m", label: "depth D", short: "depth D", range: [1e-10, 1e-2] },
+    Nbar: { unit: "1/m^2", label: "asperities per area N̄", short: "asperities per area N̄", range: [1e4, 1e14] },
+    Ra: { unit: "m", label: "radius of an asperity Ra", short: "radius of each Ra", range: [1e-8, 1e-2] },
+  };
+  /** Inputs that may be left out: yield strengths, of one's own materials. */
+  const STRENGTHS = {
+    Y_punch: { unit: "Pa", label: "yield strength of the ball", short: "yield strength Y", body: "punch" },
+    Y1: { unit: "Pa", label: "yield strength of the layer Y1", short: "yield strength Y1", body: "layer" },
+    Y2: { unit: "Pa", label: "yield strength of the body Y2", short: "yield strength Y2", body: "body" },
   };
   const RESULTS = {
     P: { unit: "N", label: "load", symbol: "P" },
@@ -51,7 +57,7 @@ const Contact = ((Core, Stress, DATA) => {
 
   /** {value, spread, word, size} in SI of a text such as "5 mm", "200 ± 10 GPa", "2 um ± 5 %"; an Error with a message. */
   function parse(name, text) {
-    const { unit } = INPUTS[name], { what, read } = UNITS[unit], example = Object.keys(read)[unit === "1" ? 0 : 2];
+    const { unit } = INPUTS[name] || STRENGTHS[name], { what, read } = UNITS[unit], example = Object.keys(read)[unit === "1" ? 0 : 2];
     const wanted = unit === "1" ? "must be a number without a unit" : `must be ${what} with its unit: ${Object.keys(read).join(", ")}`;
     const plain = String(text).trim().replace(/[µμ]/g, "u").replace(/²/g, "^2").replace(/−/g, "-"), found = QUANTITY.exec(plain);
     if (!found) throw Error(plain.includes(",") ? `${name}: write the number with a decimal point` : `${name} = "${text}": ${wanted}`);
@@ -81,9 +87,9 @@ const Contact = ((Core, Stress, DATA) => {
 
   const reduced = (E, nu) => E / (1 - nu * nu);
 
-  /** Numbers {name: {value, spread}} of the texts, and {name: message} of what is wrong. */
+  /** Numbers {name: {value, spread}} of the texts, `strengths` in Pa, and {name: message} of what is wrong. */
   function read(texts) {
-    const v = {}, problems = {};
+    const v = {}, problems = {}, strengths = {};
     const take = (name) => {
       try { v[name] = parse(name, texts[name] ?? ""); } catch (error) { problems[name] = error.message; }
     };
@@ -96,6 +102,11 @@ const Contact = ((Core, Stress, DATA) => {
         v[ratio] = { value: MATERIALS[own].nu, spread: MATERIALS[own].nu_spread };
       } else if (own) problems[body] = `${body}: "${own}" is no material of the table`;
       else { take(modulus); take(ratio); }
+    }
+    for (const [name, { body }] of Object.entries(STRENGTHS)) {
+      if (texts[body] || !String(texts[name] ?? "").trim() || (body === "layer" && texts.base === "half_space")) continue;
+      try { strengths[name] = parse(name, texts[name]).value; } catch (error) { problems[name] = error.message; }
+      if (!(strengths[name] > 0)) problems[name] ??= `${name}: must be above 0`;
     }
     v.nu_punch ??= { value: 0.3, spread: 0 };
     v.nu2 ??= { value: 0.3, spread: 0 };
@@ -111,7 +122,7 @@ const Contact = ((Core, Stress, DATA) => {
       }
     }
     if (texts.body === "rigid" && !layered) problems.body = "body: a rigid body without a layer does not yield";
-    return { v, problems, layered, control: controls[0] };
+    return { v, strengths, problems, layered, control: controls[0] };
   }
 
   /** Parameters of the solver in units R = E2* = 1, and these units, of the SI numbers of `read`. */
@@ -217,46 +228,6 @@ const Contact = ((Core, Stress, DATA) => {
     return p > DATA.limits.RING * Q.p0 ? { p, r: best.x * Q.a, p_peak: real * case_.unit } : null;
   }
 
-  /* ---- stresses on the axis ---- */
-
-  /** Their field, and the largest von Mises stress in each body that is not rigid: {field, bodies: [{body, z, mises,
-      strength (NaN: not known), share}], edge, below: sr of the layer at the interface}, in SI but z in a. {film: true}
-      where the layer is too thin for the page. */
-  function stresses({ ev, case_, texts, inputs }) {
-    const field = Stress.field(ev), strengthOf = (body) => MATERIALS[texts[body]]?.Y ?? NaN;
-    if (!field) return { film: true };
-    const peaks = Stress.peaks(ev, field, inputs.v.nu_punch.value);
-    const bodies = ["punch", "layer", "body"].filter((body) => peaks[body]).map((body) => {
-      const mises = peaks[body].value * case_.unit, strength = strengthOf(body);
-      return { body, z: peaks[body].z, mises, strength, share: mises / strength };
-    });
-    const below = field.layer && field.layer(case_.p.h / ev.a).sr * case_.unit;
-    return { field, bodies, edge: field.edge * case_.unit, below };
-  }
-
-  /** The load in SI at which the largest von Mises stress of a body on the axis is its strength, to 1e-3, by false position
-      in logarithms between loads where it is less and more; Infinity where it is less up to a = 0.2 R, NaN where the
-      page cannot tell. */
-  function yieldLoad({ case_, inputs, Q }, { body, mises, strength }) {
-    const excess = (control, value) => {
-      const solved = Core.solve({ ...case_.p, control, value }, true), field = solved.status === "converged" && Stress.field(solved.ev);
-      const peak = field && Stress.peaks(solved.ev, field, inputs.v.nu_punch.value)[body];
-      return peak ? { P: Math.log(solved.Q.P), by: Math.log(peak.value * case_.unit / strength) } : null;
-    };
-    let low = { P: Math.log(Q.P / case_.units.P), by: Math.log(mises / strength) }, high = low;
-    for (let count = 0; low && low.by > 0 && count < 60; count++) [high, low] = [low, excess("P", Math.exp(low.P - 3 * low.by - 0.1))];
-    if (high.by < 0) high = excess("a", DATA.limits.STEEP);
-    if (!low || !high) return NaN;
-    if (high.by < 0) return Infinity;
-    for (let count = 0; count < 40; count++) {
-      const next = excess("P", Math.exp(low.P + (high.P - low.P) * low.by / (low.by - high.by)));
-      if (!next || Math.abs(next.by) < 1e-3) return next ? Math.exp(next.P) * case_.units.P : NaN;
-      const before = next.by < 0 ? high : low; // the end that stays counts half, or it would stay for ever
-      [low, high] = next.by < 0 ? [next, { ...before, by: before.by / 2 }] : [{ ...before, by: before.by / 2 }, next];
-    }
-    return NaN;
-  }
-
   /* ---- validity ---- */
 
   const interpolated = (rows, at) => {
@@ -319,19 +290,20 @@ const Contact = ((Core, Stress, DATA) => {
 
   /* ---- words, and the same contact elsewhere ---- */
 
-  const bodyWords = (texts, body) => texts[body] || `a material with E = ${texts[BODIES[body][0]]}`;
+  const pretty = (text) => plain(text).replace(/\bu(?=m|N)/g, "µ");
+  const bodyWords = (texts, body) => texts[body] || `a material with E = ${pretty(texts[BODIES[body][0]])}`;
 
   /** What was found, in sentences. */
   function words(contact) {
     const { texts, Q, inputs, case_ } = contact, show = (name) => shown(contact, name).whole, rough = case_.p.rough;
-    const under = case_.p.layered ? `${texts.h} of ${bodyWords(texts, "layer")}, ${texts.bonding === "bonded" ? "bonded to" : "sliding on"} ${bodyWords(texts, "body")}` : bodyWords(texts, "body");
+    const under = case_.p.layered ? `${pretty(texts.h)} of ${bodyWords(texts, "layer")}, ${texts.bonding === "bonded" ? "bonded to" : "sliding on"} ${bodyWords(texts, "body")}` : bodyWords(texts, "body");
     const ball = texts.punch === "rigid" ? "A rigid ball" : `A ball of ${bodyWords(texts, "punch")}`;
-    const found = [`${ball}, R = ${texts.R}${rough ? ", with asperities," : ""} is pressed with ${show("P")} on ${under}.`,
+    const found = [`${ball}, R = ${pretty(texts.R)}${rough ? ", with asperities," : ""} is pressed with ${show("P")} on ${under}.`,
       `They touch on a circle of radius ${show("a")}; the bodies approach by ${show("D")}. The nominal pressure in the centre is ${show("p0")}.`];
     if (rough) found.push(`The asperities really touch on a share ${show("Ar_An")} of that circle; in the central spot the pressure is ${show("p_max")}.`);
     if (contact.ring) found.push(`The layer bends like a plate: the largest nominal pressure, ${readable(contact.ring.p, "Pa", contact.digits)}, is in a ring at r = ${readable(contact.ring.r, "m", contact.digits)}.`);
     found.push(`Its stiffness dP/dD is ${show("dP_dD")}.`);
-    found.push("Not checked on this page: adhesion, friction, and stresses beside the axis. The command below says what is nearest to its limit, and at which load.");
+    found.push("Whether it holds is said below, by the stresses on the axis. Not checked on this page: adhesion, friction, and stresses beside the axis.");
     return found;
   }
 
@@ -341,15 +313,16 @@ const Contact = ((Core, Stress, DATA) => {
     return given && !contact.spread[name] ? { ...own, whole: `${Number(own.text)} ${own.unit}` } : own;
   }
 
-  const ORDER = ["R", "punch", "E_punch", "nu_punch", "layer", "E1", "nu1", "h", "bonding", "body", "E2", "nu2", "P", "a", "D", "base", "micro", "Nbar", "Ra"];
+  const ORDER = ["R", "punch", "E_punch", "nu_punch", "Y_punch", "layer", "E1", "nu1", "Y1", "h", "bonding", "body", "E2", "nu2", "Y2", "P", "a", "D", "base", "micro", "Nbar", "Ra"];
   const plain = (text) => String(text).trim().replace(/[µμ]/g, "u").replace(/²/g, "^2").replace(/−/g, "-");
-  const isWord = (name, text) => !INPUTS[name] || /[^\d.eE+-]/.test(text);
+  const isWord = (name, text) => !(INPUTS[name] || STRENGTHS[name]) || /[^\d.eE+-]/.test(text);
 
   /** The texts that the contact uses, in order: what `point`, `solve` and a study file take. */
   function used(texts) {
     const left = new Set();
     for (const [body, own] of Object.entries(BODIES)) if (texts[body]) own.forEach((name) => left.add(name));
-    if (texts.base === "half_space") ["layer", "E1", "nu1", "h", "bonding"].forEach((name) => left.add(name));
+    if (texts.base === "half_space") ["layer", "E1", "nu1", "Y1", "h", "bonding"].forEach((name) => left.add(name));
+    for (const [name, { body }] of Object.entries(STRENGTHS)) if (texts[body] || !String(texts[name] ?? "").trim()) left.add(name);
     if (texts.micro === "smooth") ["Nbar", "Ra"].forEach((name) => left.add(name));
     return ORDER.filter((name) => texts[name] !== undefined && !left.has(name)).map((name) => [name, plain(texts[name])]);
   }
@@ -371,7 +344,7 @@ const Contact = ((Core, Stress, DATA) => {
     return known.length ? { bonding: "bonded", micro: "smooth", ...Object.fromEntries(known) } : { ...START };
   }
 
-  return { solve, stresses, yieldLoad, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, RESULTS,
+  return { solve, read, shown, words, readable, written, parse, percent, toHash, fromHash, used, COPIES, INPUTS, STRENGTHS, RESULTS,
     CONTROLS, BODIES, MATERIALS, UNITS };
-})(...(typeof module === "undefined" ? [Core, Stress, DATA] : [require("./core.js"), require("./stress.js"), globalThis.DATA]));
+})(typeof module === "undefined" ? Core : require("./core.js"), typeof module === "undefined" ? DATA : globalThis.DATA);
 if (typeof module !== "undefined") module.exports = Contact;

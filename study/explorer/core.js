@@ -11,17 +11,22 @@ const Core = (() => {
   function gauss(n) {
     if (rules[n]) return rules[n];
     const t = new Float64Array(n), w = new Float64Array(n);
-    for (let i = 0; i < n; i++) {
+    for (let i = 0; 2 * i < n; i++) { // the others are their mirror images
       let x = Math.cos(Math.PI * (i + 0.75) / (n + 0.5)), slope = 1;
       for (let step = 0; step < 100; step++) {
         let before = 1, now = x;
-        for (let k = 2; k <= n; k++) [before, now] = [now, ((2 * k - 1) * x * now - (k - 1) * before) / k];
+        for (let k = 2; k <= n; k++) {
+          const next = ((2 * k - 1) * x * now - (k - 1) * before) / k;
+          before = now;
+          now = next;
+        }
         slope = n * (x * now - before) / (x * x - 1);
         x -= now / slope;
         if (Math.abs(now / slope) < 1e-15) break;
       }
       t[i] = (1 - x) / 2;
-      w[i] = 1 / ((1 - x * x) * slope * slope);
+      t[n - 1 - i] = (1 + x) / 2;
+      w[i] = w[n - 1 - i] = 1 / ((1 - x * x) * slope * slope);
     }
     return (rules[n] = { t, w });
   }
@@ -256,11 +261,17 @@ const Core = (() => {
     return phi;
   }
 
+  /** How many points over the angle carry the transform of a polynomial of n nodes at k: few numbers, for time. */
+  function anglesFor(k, n) {
+    const least = 0.42 * k + 3 * Math.cbrt(k) + 2 * n, step = least > 256 ? 128 : 32;
+    return step * Math.ceil(least / step);
+  }
+
   /** Transforms of the Lagrange polynomials (n x G) at k: over the angle, s = sin(angle), the phase is k cos(angle). */
   function transforms(mesh, k) {
     const n = mesh.n, G = k.length, phi = new Float64Array(n * G), basis = {};
     for (let g = 0; g < G; g++) {
-      const points = 32 * Math.ceil((0.42 * k[g] + 3 * Math.cbrt(k[g]) + 2 * n) / 32);
+      const points = anglesFor(k[g], n);
       if (!basis[points]) {
         const rule = gauss(points), B = new Float64Array(points * n), out = new Float64Array(n), cos = new Float64Array(points);
         for (let i = 0; i < points; i++) {
@@ -271,11 +282,12 @@ const Core = (() => {
         }
         basis[points] = { B, cos };
       }
-      const { B, cos } = basis[points];
+      const { B, cos } = basis[points], sums = new Float64Array(n);
       for (let i = 0; i < points; i++) {
         const value = j0(k[g] * cos[i]);
-        for (let j = 0; j < n; j++) phi[j * G + g] += value * B[i * n + j];
+        for (let j = 0; j < n; j++) sums[j] += value * B[i * n + j];
       }
+      for (let j = 0; j < n; j++) phi[j * G + g] = sums[j];
     }
     return phi;
   }
@@ -615,6 +627,6 @@ const Core = (() => {
     }
   }
 
-  return { load, solve, sensitivity, profile, pressure, displacements, kernel, model, gauss, j0, j1 };
+  return { load, solve, sensitivity, profile, pressure, displacements, kernel, model, gauss, anglesFor, j0, j1 };
 })();
 if (typeof module !== "undefined") module.exports = Core;

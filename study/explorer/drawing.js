@@ -3,8 +3,8 @@
 const Drawing = ((Core, Contact) => {
   const escaped = (text) => String(text).replace(/[&<>"]/g, (c) => ({ "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;" })[c]);
   const path = (points) => points.map(([x, y], i) => `${i ? "L" : "M"}${x.toFixed(1)} ${y.toFixed(1)}`).join("");
-  const text = (x, y, words, { anchor = "start", soft = false, fill = "" } = {}) =>
-    `<text x="${x}" y="${y}" text-anchor="${anchor}"${soft ? ' class="soft"' : ""}${fill ? ` style="fill:${fill}"` : ""}>${escaped(words)}</text>`;
+  const text = (x, y, words, { anchor = "start", soft = false, clear = false, fill = "" } = {}) =>
+    `<text x="${x}" y="${y}" text-anchor="${anchor}"${soft ? ` class="soft${clear ? " clear" : ""}"` : ""}${fill ? ` style="fill:${fill}"` : ""}>${escaped(words)}</text>`;
   const svg = (width, height, label, inside) => `<svg viewBox="0 0 ${width} ${height}" role="img" aria-label="${escaped(label)}">${inside}</svg>`;
 
   /** Round numbers from 0 to about `top`. */
@@ -80,7 +80,7 @@ const Drawing = ((Core, Contact) => {
     const thick = bottom - d.zero, show = (E) => Contact.readable(E, "Pa", 3);
     if (layered) {
       const name = `layer, h = ${Contact.readable(case_.p.h * case_.R, "m", 3)}`;
-      out += thick > 16 ? text(left + 8, Math.min(d.zero + thick / 2 + 12, low - 6), name) : text(left + 8, d.zero - 8, name);
+      out += thick > 16 ? text(left + 8, Math.min(d.zero + thick / 2 + (thick > 44 ? 12 : 4), low - 6), name) : text(left + 8, d.zero - 8, name);
     }
     if (low - bottom > 24) out += text(left + 8, Math.min(low - 8, bottom + (thick > 16 ? 18 : 22)), d.texts.body === "rigid" ? "rigid body" : `body, E = ${show(contact.inputs.v.E2.value)}`);
     const [word, size] = Contact.UNITS.m.write.find((row) => Q.a >= row[1]) || ["nm", 1e-9], power = 10 ** Math.floor(Math.log10(Q.a / size));
@@ -89,49 +89,53 @@ const Drawing = ((Core, Contact) => {
     return out + text(left + long + 8, low + 14, `${Number(bar.toPrecision(3))} ${word}${d.narrow ? " (dashed: unloaded)" : ", in both directions; dashed: before loading"}`, { soft: true });
   }
 
+  const LEAST = 0.24; // of the height a layer has this at least, and is then drawn stretched
+
   /** Stresses over the depth on the axis: von Mises' (thick), radial and axial; the strengths of layer and body dashed. */
   function stresses(contact, own, width) {
-    const { ev, case_, Q } = contact, layered = Boolean(own.field.layer), h = layered ? case_.p.h / ev.a : 0;
-    const left = width < 520 ? 44 : 64, right = 16, top = 40, high = 240, inner = width - left - right, end = Math.max(1.5, Math.min(3, 2.5 * h));
-    const bodies = [[own.field.layer, 0, Math.min(h, end), "layer"], [own.field.body, h, end, "body"]].filter(([field, low, to]) => field && to > low);
-    const drawn = bodies.map(([field, low, to, body]) => {
+    const { case_, Q } = contact, { h } = own.field, layered = Boolean(own.field.layer), narrow = width < 520;
+    const left = narrow ? 44 : 64, right = 16, top = 40, high = 250, inner = width - left - right, end = own.field.body ? Math.max(1.5, Math.min(3, 2.5 * h)) : h;
+    const inLayer = layered ? Math.min(h, end) : 0, part = inLayer < end ? Math.max(inLayer / end, layered ? LEAST : 0) : 1, stretched = layered && part > inLayer / end;
+    const yOf = (z) => top + high * (z <= inLayer ? part * z / (inLayer || 1) : part + (1 - part) * (z - inLayer) / (end - inLayer));
+    const drawn = [[own.field.layer, 0, inLayer, "layer"], [own.field.body, h, end, "body"]].filter(([field, low, to]) => field && to > low).map(([field, low, to, body]) => {
       const zs = Array.from({ length: 41 }, (_, i) => low + (to - low) * (i / 40) ** 1.5);
       return { body, low, to, rows: zs.map((z) => ({ z, ...field(z) })) };
     });
     const all = drawn.flatMap(({ rows }) => rows.flatMap((row) => [row.mises, row.sr, row.sz])).map((value) => value * case_.unit);
-    const [least, most] = [Math.min(0, ...all), Math.max(...all)], span = 1.05 * (most - least), [word, size] = Contact.UNITS.Pa.write.find((row) => Math.max(most, -least) >= row[1]) || ["Pa", 1];
-    const xOf = (value) => left + (value - least + 0.02 * span) / span * inner, yOf = (z) => top + z / end * high;
-    let out = "";
-    if (layered) out += `<rect x="${left}" y="${top}" width="${inner}" height="${yOf(Math.min(h, end)) - top}" fill="var(--layer)" opacity="0.25"/>`;
-    const step = ticks(span / size, width < 520 ? 4 : 7)[1] || 1;
+    const [least, most] = [Math.min(0, ...all), Math.max(...all)], span = 1.05 * (most - least), [word, size] = unitOf("Pa", Math.max(most, -least));
+    const xOf = (value) => left + (value - least + 0.02 * span) / span * inner;
+    let out = layered ? `<rect x="${left}" y="${top}" width="${inner}" height="${yOf(inLayer) - top}" fill="var(--layer)" opacity="0.25"/>` : "";
+    const step = ticks(span / size, narrow ? 4 : 7)[1] || 1;
     for (let tick = Math.ceil(least / size / step) * step; tick * size <= most * 1.02; tick += step) {
       const x = xOf(tick * size);
-      out += `<path d="M${x} ${top}V${top + high}" stroke="var(--line)"/>${text(x, top - 6, Number(tick.toPrecision(6)), { anchor: "middle", soft: true })}`;
+      out += `<path d="M${x} ${top}V${top + high}" stroke="var(--line)"/>${text(x, top - 6, String(Number(tick.toPrecision(6))).replace("-", "−"), { anchor: "middle", soft: true })}`;
     }
-    for (const tick of ticks(end * Q.a / Contact.UNITS.m.write.find((row) => end * Q.a >= row[1])[1])) {
-      const [, long] = Contact.UNITS.m.write.find((row) => end * Q.a >= row[1]), y = yOf(tick * long / Q.a);
-      out += `<path d="M${left - 4} ${y}h4" stroke="var(--soft)"/>${text(left - 7, y + 4, Number(tick.toPrecision(6)), { anchor: "end", soft: true })}`;
-    }
-    out += text(2, 14, `depth in ${Contact.UNITS.m.write.find((row) => end * Q.a >= row[1])[0]}, stress in ${word}`, { soft: true });
-    const limit = ["", width < 520 ? "strength" : "yield strength", 'stroke="var(--beyond)" stroke-width="1.5" stroke-dasharray="2 3"'];
+    const [long, metre] = unitOf("m", end * Q.a), under = stretched ? inLayer : 0;
+    const marks = [...(stretched ? [0, inLayer] : []), ...ticks(end * Q.a / metre, narrow ? 4 : 5).map((tick) => tick * metre / Q.a)];
+    marks.filter((z, i) => !stretched || i < 2 || yOf(z) > yOf(under) + 12).forEach((z) => {
+      out += `<path d="M${left - 4} ${yOf(z)}h4" stroke="var(--soft)"/>${text(left - 7, yOf(z) + 4, Number((z * Q.a / metre).toPrecision(3)), { anchor: "end", soft: true })}`;
+    });
+    out += text(2, 14, `depth in ${long}, stress in ${word}, tension positive`, { soft: true });
+    const limit = ["", narrow ? "strength" : "yield strength", 'stroke="var(--beyond)" stroke-width="1.5" stroke-dasharray="2 3"'];
     const looks = [["mises", "von Mises", 'stroke="var(--pressure)" stroke-width="2.5"'], ["sr", "radial", 'stroke="var(--area)" stroke-width="1.5"'], ["sz", "axial", 'stroke="var(--soft)" stroke-width="1.5" stroke-dasharray="5 4"']];
     for (const { rows } of drawn) {
       for (const [name, , look] of looks) out += `<path d="${path(rows.map((row) => [xOf(row[name] * case_.unit), yOf(row.z)]))}" fill="none" ${look}/>`;
     }
-    for (const { body, low, to } of drawn) {
-      const strength = own.bodies.find((row) => row.body === body)?.strength;
-      if (strength <= most) out += `<path d="M${xOf(strength)} ${yOf(low)}V${yOf(to)}" ${limit[2]}/>`;
-    }
+    const strong = drawn.map((row) => ({ ...row, strength: own.parts.find(({ part }) => part === row.body)?.strength })).filter((row) => row.strength <= most);
+    for (const { low, to, strength } of strong) out += `<path d="M${xOf(strength)} ${yOf(low)}V${yOf(to)}" ${limit[2]}/>`;
     out += `<path d="M${left} ${top}V${top + high}M${xOf(0)} ${top}V${top + high}" stroke="var(--soft)"/>`;
-    let place = left;
-    for (const [, name, look] of own.bodies.some(({ body, strength }) => body !== "punch" && strength <= most) ? [...looks, limit] : looks) {
+    let place = narrow ? 4 : left;
+    for (const [, name, look] of strong.length ? [...looks, limit] : looks) {
       out += `<path d="M${place} ${top + high + 16}h22" ${look}/>${text(place + 27, top + high + 20, name, { soft: true })}`;
-      place += 38 + 6.5 * name.length;
+      place += (narrow ? 34 : 38) + 6.5 * name.length;
     }
-    if (layered && yOf(Math.min(h, end)) - top > 14) out += text(left + 6, top + 14, "layer", { soft: true });
-    const row = own.bodies.reduce((one, other) => (other.mises > one.mises ? other : one));
-    return svg(width, top + high + 26, `Stresses on the axis over the depth; the largest von Mises stress, ${Contact.readable(row.mises, "Pa")}, is in the ${row.body === "punch" ? "ball" : row.body}.`, out);
+    if (layered) out += text(left + inner - 6, top + 15, stretched ? (narrow ? "layer, stretched" : "layer, its depth stretched") : "layer", { anchor: "end", soft: true, clear: true });
+    if (own.field.body && inLayer < end) out += text(left + inner - 6, top + high - 6, "body", { anchor: "end", soft: true, clear: true });
+    const row = own.parts.reduce((one, other) => (other.mises > one.mises ? other : one));
+    return svg(width, top + high + 26, `Stresses on the axis over the depth; the largest von Mises stress, ${Contact.readable(row.mises, "Pa")}, is in the ${{ punch: "ball", asperities: "central asperity" }[row.part] || row.part}.`, out);
   }
+
+  const unitOf = (unit, value) => Contact.UNITS[unit].write.find((row) => value >= row[1]) || Contact.UNITS[unit].write.at(-1);
 
   function describe(contact) {
     const show = (name) => Contact.shown(contact, name).whole;

@@ -1,7 +1,7 @@
 "use strict";
 /* The map: a result over two inputs, 24 x 24 contacts on 16 nodes each, solved a few milliseconds at a time. */
 const ContactMap = ((Contact, Drawing) => {
-  const SIDE = 24, LEFT = 72, TOP = 10, BAR = 86, BELOW = 46;
+  const SIDE = 24, LEFT = 72, TOP = 10, BAR = 104, BELOW = 46;
   let CELL = 22, WIDTH = 0, HEIGHT = 0; // of the box
   const COLOURS = [[68, 1, 84], [71, 44, 122], [59, 81, 139], [44, 113, 142], [33, 144, 141], [39, 173, 129], [92, 200, 99], [170, 220, 50], [253, 231, 37]];
   let job = 0, now = null, cursor = null;
@@ -26,15 +26,22 @@ const ContactMap = ((Contact, Drawing) => {
     for (const [body, own] of Object.entries(Contact.BODIES)) {
       if (!own.some((name) => name in numbers)) continue;
       for (const name of own) texts[name] = textOf(name, contact.inputs.v[name].value);
+      keepStrength(texts, body);
       delete texts[body];
     }
     for (const [name, value] of Object.entries(numbers)) texts[name] = textOf(name, value);
     return texts;
   }
 
+  /** The strength of the material of a body as a text of its own, or "". */
+  function keepStrength(texts, body) {
+    const name = Object.keys(Contact.STRENGTHS).find((own) => Contact.STRENGTHS[own].body === body), material = Contact.MATERIALS[texts[body]];
+    if (material) texts[name] = material.Y ? textOf(name, material.Y) : "";
+  }
+
   /** A number as it would be typed, with three or more digits. */
   function textOf(name, value, digits = 4) {
-    const unit = Contact.INPUTS[name].unit, rows = Contact.UNITS[unit].write, [word, size] = rows.find((row) => value >= row[1]) || rows[rows.length - 1];
+    const unit = (Contact.INPUTS[name] || Contact.STRENGTHS[name]).unit, rows = Contact.UNITS[unit].write, [word, size] = rows.find((row) => value >= row[1]) || rows[rows.length - 1];
     return `${Number((value / size).toPrecision(digits))} ${word.replace("µ", "u").replace("²", "^2")}`.trim();
   }
 
@@ -174,5 +181,11 @@ const ContactMap = ((Contact, Drawing) => {
     point(box, next >= 0 && next < SIDE * SIDE && !wraps ? next : from);
   }
 
-  return { draw, textOf, moved, paint: () => now && paint() };
+  /** The contact has changed: what is being drawn is of another, and nothing is taken from it. */
+  function stop() {
+    job++;
+    now = now && { ...now, take: () => {} };
+  }
+
+  return { draw, stop, textOf, keepStrength, paint: () => now && paint() };
 })(Contact, Drawing);

@@ -2,7 +2,8 @@
 /* The form, and what is shown of the contact that it describes. */
 (() => {
   const $ = (id) => document.getElementById(id);
-  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, drawn = "";
+  let texts = Contact.fromHash(location.hash), contact = null, copy = "command", waiting = false, later = 0, addressed = 0, seen = location.hash, drawn = "";
+  let width = 0; // of drawings; 0: to be asked, which makes the browser lay the page out
   /** What was typed before a material or no layer took its place. */
   const kept = { E_punch: "210 GPa", nu_punch: "0.3", E1: "200 GPa", nu1: "0.25", h: "2 um", E2: "210 GPa", nu2: "0.3",
     layer: "DLC a-C:H", Nbar: "4 1/um^2", Ra: "2 um" };
@@ -26,24 +27,27 @@
     for (const id of ["tornado-of", "tornado-by", "map-of", "map-x", "map-y", "map-wide"]) $(id).addEventListener("change", redraw);
     $("restart").addEventListener("click", () => change(Contact.fromHash("")));
     $("copy").addEventListener("click", () => toClipboard($("copied").textContent));
-    $("copy-link").addEventListener("click", () => toClipboard(location.href));
+    $("copy-link").addEventListener("click", () => toClipboard(location.href.replace(/#.*|$/, Contact.toHash(texts))));
     $("version").textContent = DATA.version;
-    addEventListener("hashchange", () => { if (location.hash !== Contact.toHash(texts)) change(Contact.fromHash(location.hash)); });
-    addEventListener("resize", redraw);
+    addEventListener("hashchange", () => {
+      seen = location.hash;
+      if (seen !== Contact.toHash(texts)) change(Contact.fromHash(seen));
+    });
+    addEventListener("resize", () => { width = 0; redraw(); });
     matchMedia("(prefers-color-scheme: dark)").addEventListener("change", ContactMap.paint);
     change(texts);
   }
 
   /** A text with unit, and a slider on a logarithmic scale (of a Poisson ratio linear). */
   function field(box, name) {
-    const own = Contact.INPUTS[name], ratio = own.unit === "1", [low, high] = own.range;
+    const own = Contact.INPUTS[name] || Contact.STRENGTHS[name], ratio = own.unit === "1", [low, high] = own.range || [];
     box.className = "field";
     box.dataset.field = name;
-    box.innerHTML = `<label>${own.label} <input type="text" id="in-${name}" aria-describedby="wrong-${name}" spellcheck="false"></label>
-      <input type="range" min="0" max="1000" step="1" aria-label="${own.label}, slider"><p class="complaint" id="wrong-${name}" hidden></p>`;
+    box.innerHTML = `<label>${own.short} <input type="text" id="in-${name}" aria-label="${own.label}" aria-describedby="wrong-${name}" spellcheck="false"${own.range ? "" : ' placeholder="not known"'}></label>
+      ${own.range ? `<input type="range" min="0" max="1000" step="1" aria-label="${own.label}, slider">` : ""}<p class="complaint" id="wrong-${name}" hidden></p>`;
     const [input, slider] = box.querySelectorAll("input");
     input.addEventListener("input", () => { texts[name] = input.value; redraw(); });
-    slider.addEventListener("input", () => {
+    slider?.addEventListener("input", () => {
       const share = slider.value / 1000, value = ratio ? low + (high - low) * share : low * (high / low) ** share;
       texts[name] = withSpread(name, value);
       input.value = texts[name];
@@ -65,22 +69,29 @@
     const names = DATA.materials.map((own) => own.name), extra = body === "layer" ? [NONE] : ["rigid"];
     const called = { punch: "material of the ball", layer: "material of the layer", body: "material of the body" }[body];
     box.className = "field";
-    box.innerHTML = `<label>${called} <select id="in-${body}">${[...extra, OWN, ...names].map((name) => `<option>${name}</option>`).join("")}</select></label>
+    box.innerHTML = `<label>material <select id="in-${body}" aria-label="${called}">${[...extra, OWN, ...names].map((name) => `<option>${name}</option>`).join("")}</select></label>
       <p class="complaint" id="wrong-${body}" hidden></p><p class="hint"></p>`;
     const select = box.querySelector("select");
-    for (const name of Contact.BODIES[body]) { const one = document.createElement("div"); box.after(one); field(one, name); }
-    box.after(...[...box.parentElement.querySelectorAll(":scope > .field")].filter((one) => Contact.BODIES[body].includes(one.dataset.field)).reverse());
+    box.after(...numbersOf(body).map((name) => {
+      const line = document.createElement("div");
+      field(line, name);
+      return line;
+    }));
     select.addEventListener("change", () => {
       const own = Contact.BODIES[body], value = select.value;
       if (body === "layer") { delete texts.base; texts.h ??= kept.h; }
       if (value === OWN) { // the numbers of the material that was chosen, to be changed
         for (const name of own) texts[name] = contact?.inputs?.v[name] && Number.isFinite(contact.inputs.v[name].value) ? ContactMap.textOf(name, contact.inputs.v[name].value) : kept[name];
+        ContactMap.keepStrength(texts, body);
         delete texts[body];
       } else if (value === NONE) texts.base = "half_space";
       else texts[body] = value;
       change(texts);
     });
   }
+
+  /** Modulus, Poisson ratio and strength of a material of one's own. */
+  const numbersOf = (body) => [...Contact.BODIES[body], ...Object.keys(Contact.STRENGTHS).filter((name) => Contact.STRENGTHS[name].body === body)];
 
   function choice(key, options, value, set) {
     const box = document.querySelector(`[data-choice="${key}"]`);
@@ -103,9 +114,10 @@
     for (const body of Object.keys(Contact.BODIES)) {
       const select = $(`in-${body}`);
       select.value = body === "layer" && !layered ? NONE : texts[body] ?? OWN;
-      for (const name of Contact.BODIES[body]) document.querySelector(`[data-field="${name}"]`).hidden = select.value !== OWN;
+      for (const name of numbersOf(body)) document.querySelector(`[data-field="${name}"]`).hidden = select.value !== OWN;
     }
     for (const name of Object.keys(Contact.INPUTS)) if (texts[name] !== undefined) $(`in-${name}`).value = texts[name];
+    for (const name of Object.keys(Contact.STRENGTHS)) $(`in-${name}`).value = texts[name] ?? "";
     document.querySelector('[data-field="h"]').hidden = !layered;
     document.querySelector('[data-choice="bonding"]').hidden = !layered;
     for (const name of Contact.CONTROLS) document.querySelector(`[data-field="${name}"]`).hidden = texts[name] === undefined;
@@ -124,6 +136,7 @@
 
   function show() {
     const begin = performance.now(), found = Contact.solve(texts);
+    ContactMap.stop();
     contact = found.inputs ? found : contact && { ...contact, Q: null, inputs: Contact.read(texts) };
     complaints(found.problems);
     slides(Contact.read(texts).v);
@@ -132,7 +145,8 @@
     for (const box of document.querySelectorAll("#results > section")) box.hidden = !solved && !["answer-title", "copy-title"].includes(box.getAttribute("aria-labelledby"));
     $("trouble").innerHTML = solved ? "" : `<p>${trouble(found)}</p>`;
     $("words").hidden = $("numbers").hidden = !solved;
-    if (Object.keys(found.problems).length === 0) history.replaceState(null, "", Contact.toHash(texts));
+    clearTimeout(addressed); // it takes some milliseconds: not while a slider moves
+    if (Object.keys(found.problems).length === 0) addressed = setTimeout(address, 100);
     clearTimeout(later);
     $("brief").textContent = solved ? ["a", "D", "p0"].map((name) => `${Contact.RESULTS[name].symbol} ${Contact.shown({ ...found, spread: {} }, name).whole}`).join(" · ") : "no solution";
     if (!solved) return;
@@ -144,14 +158,20 @@
       $("words").lastChild.append(`${sentence} `);
     });
     table(found);
-    const width = Math.max(320, Math.min(960, $("section").clientWidth));
+    width ||= Math.max(320, Math.min(960, $("section").clientWidth));
     $("section").innerHTML = Drawing.section(found, width);
     lights(found);
     $("tornado").innerHTML = Drawing.tornado(found, $("tornado-of").value, $("tornado-by").value, width);
     $("time").textContent = `Solved and drawn in ${(performance.now() - begin).toFixed(0)} ms.`;
     $("map").ariaBusy = "true"; // until it is whole
     $("stresses").ariaBusy = "true";
-    later = setTimeout(() => { stresses(found, width); later = setTimeout(() => map(found), 0); }, 150);
+    later = setTimeout(() => stresses(found), 150);
+  }
+
+  /** Put the contact into the address, unless somebody has just put another there. */
+  function address() {
+    if (location.hash === seen) history.replaceState(null, "", Contact.toHash(texts));
+    seen = location.hash;
   }
 
   function trouble(found) {
@@ -163,7 +183,7 @@
   }
 
   function complaints(problems) {
-    for (const name of [...Object.keys(Contact.INPUTS), ...Object.keys(Contact.BODIES)]) {
+    for (const name of [...Object.keys(Contact.INPUTS), ...Object.keys(Contact.STRENGTHS), ...Object.keys(Contact.BODIES)]) {
       const line = $(`wrong-${name}`);
       line.textContent = problems[name] || "";
       line.hidden = !problems[name];
@@ -194,7 +214,7 @@
     const rows = names.map((name) => {
       const { label, symbol, unit } = Contact.RESULTS[name];
       const others = found.limits.map((own) => `<td class="limit">${own.Q && own.Q[name] !== null ? Contact.readable(own.Q[name], unit, 4) : "–"}</td>`).join("");
-      return `<tr><th scope="row">${label}</th><td>${symbol}</td><td class="value" data-result="${name}">${Contact.shown(found, name).whole}</td>${others}</tr>`;
+      return `<tr><th scope="row">${label}</th><td>${symbol}</td><td class="value" data-result="${name}">${Contact.shown(found, name).whole.replace(/± .*$/, '<span class="pm">$&</span>')}</td>${others}</tr>`;
     });
     if (found.ring) {
       const ring = `<tr><th scope="row">largest nominal pressure, in a ring at r = ${Contact.readable(found.ring.r, "m")}</th><td>pring</td><td class="value" data-result="p_ring">${Contact.readable(found.ring.p, "Pa", found.digits)}</td>${found.limits.map(() => "<td></td>").join("")}</tr>`;
@@ -208,32 +228,51 @@
     $("lights").innerHTML = found.lights.map((row) => `<li data-name="${row.name}" data-state="${row.state}"><span class="state ${row.state}">${words[row.state]}</span><span>${row.title}</span><span class="size">${row.size}</span></li>`).join("");
   }
 
-  /** Stresses on the axis, and at which load each body begins to yield there. */
-  function stresses(found, width) {
-    const own = Contact.stresses(found), named = { punch: "ball", layer: "layer", body: "body" }, rough = found.case_.p.rough;
-    $("stresses").innerHTML = own.film ? "" : Drawing.stresses(found, own, width);
-    if (own.film) {
-      $("strengths").innerHTML = "";
-      $("stress-note").textContent = "The layer is thinner than 1/64 of the contact radius: this page leaves its stresses to the command below.";
-    } else {
-      const rows = own.bodies.map((row) => {
-        const known = Number.isFinite(row.strength), load = known ? Contact.yieldLoad(found, row) : NaN;
-        const state = row.share > 1 ? "beyond" : row.share > 0.5 ? "near" : "good";
-        const share = row.share < 1 ? Contact.percent(row.share) : `${Number(row.share.toPrecision(2))} times`;
-        const cells = [Contact.readable(row.mises, "Pa"), known ? `<span class="${state}">${share}</span>` : "–",
-          load === Infinity ? "not up to a = 0.2 R" : Number.isFinite(load) ? Contact.readable(load, "N") : "–",
-          known ? Contact.readable(row.strength, "Pa") : "not known", Contact.readable(row.z * found.Q.a, "m")];
-        return `<tr data-body-of="${row.body}"><th scope="row">${named[row.body]}</th>${cells.map((cell) => `<td>${cell}</td>`).join("")}</tr>`;
-      });
-      const heads = ["", "largest von Mises stress", "of the yield strength", "yields from P =", "yield strength", "depth"];
-      $("strengths").innerHTML = `<thead><tr>${heads.map((word) => `<th scope="col">${word}</th>`).join("")}</tr></thead><tbody>${rows.join("")}</tbody>`;
-      const show = (value) => `${Contact.readable(Math.abs(value), "Pa")} ${value < 0 ? "of pressure" : "of tension"}`;
-      const surface = `At the edge of the contact the surface bears ${show(own.edge)} along r`;
-      const under = own.below === null ? "" : `, the layer at its underside on the axis ${show(own.below)}`;
-      const tips = rough ? " Under single asperities stresses are higher: what meets there yields first." : "";
-      $("stress-note").textContent = `${surface}${under}.${own.below === null ? "" : " A thin layer may bear more beside the axis, near the edge."}${tips} The command below looks everywhere.`;
-    }
+  const PARTS = { punch: "ball", layer: "layer", body: "body", asperities: "asperity" };
+
+  /** Stresses on the axis, and what of its strength each part bears; then the loads of first yield, and the map. */
+  function stresses(found) {
+    const own = Strength.stresses(found), { parts } = own, digits = Math.min(3, found.digits);
+    $("stresses").innerHTML = Drawing.stresses(found, own, width);
+    const share = (row) => (row.share < 1 ? Contact.percent(row.share) : `${row.share < 100 ? row.share.toPrecision(2) : Math.round(row.share)} times`);
+    const state = (row) => (row.share > 1 ? "beyond" : row.share > 0.5 ? "near" : "good"), known = parts.filter((row) => Number.isFinite(row.strength));
+    const rows = [
+      ["largest von Mises stress", (row) => Contact.readable(row.mises, "Pa", digits)],
+      ["its depth below the surface", (row) => Contact.readable(row.z * found.Q.a, "m", 2)],
+      ["yield strength", (row) => (known.includes(row) ? Contact.readable(row.strength, "Pa") : "not known")],
+      ["share of that", (row) => (known.includes(row) ? `<span class="${state(row)}">${share(row)}</span>` : "–")],
+      ["yields from P =", (row) => (known.includes(row) ? `<span data-load="${row.part}">…</span>` : "–")],
+    ].map(([name, cell]) => `<tr><th scope="row">${name}</th>${parts.map((row) => `<td>${cell(row)}</td>`).join("")}</tr>`);
+    const heads = ["", ...parts.map((row) => PARTS[row.part])].map((word) => `<th scope="col">${word}</th>`).join("");
+    $("strengths").innerHTML = `<thead><tr>${heads}</tr></thead><tbody>${rows.join("")}</tbody>`;
+    const nearest = known.reduce((one, other) => (one?.share > other.share ? one : other), null);
+    $("verdict").textContent = nearest === null ? "No strength is known of these bodies: choose “own E and ν” to give one."
+      : `On the axis the ${nearest.part === "asperities" ? "central asperity" : PARTS[nearest.part]} is nearest to its limit: it bears ${share(nearest)}${nearest.share < 1 ? " of" : ""} its yield strength.${nearest.share > 1 ? " The results are those of bodies that stay elastic." : ""}`;
+    $("verdict").className = nearest ? state(nearest) : "";
+    const show = (value) => `${Contact.readable(Math.abs(value), "Pa")} ${value < 0 ? "of pressure" : "of tension"}`;
+    const edge = Number.isNaN(own.edge) ? "" : `At the edge of the contact the surface bears ${show(own.edge)} along r. `;
+    const under = own.below === null ? "" : `On the axis the underside of the layer bears ${show(own.below)} along r. `;
+    const aside = own.below === null ? "" : "A layer may bear more beside the axis, near the edge. ";
+    $("stress-note").textContent = `${edge}${under}On the axis Tresca's stress is von Mises'. ${aside}The command below looks everywhere, and study.stresses takes friction.`;
     $("stresses").ariaBusy = "false";
+    const search = loads(found, known);
+    (function some() { // the page answers between the contacts that are solved
+      const end = performance.now() + 8;
+      while (performance.now() < end) if (search.next().done) { later = setTimeout(() => map(found), 0); return; }
+      later = setTimeout(some, 0);
+    })();
+  }
+
+  /** Write the loads of first yield; a generator. */
+  function* loads(found, parts) {
+    const ends = new Set();
+    for (const row of parts) {
+      const { P, a, above, below } = yield* Strength.load(found, row), { p } = found.case_, cell = document.querySelector(`[data-load="${row.part}"]`);
+      const text = Contact.readable(P, "N"), first = row.part === "asperities" && p.Nbar * Math.PI * a * a < 1;
+      cell.textContent = above ? (Number.isNaN(P) ? "not on this page" : `above ${text}`) : first ? "first touch" : below ? `below ${text}` : text;
+      if (above) ends.add({ end: "a = 0.2 R", film: "where the layer is too thin for this page", open: "where this page finds no solution" }[above]);
+    }
+    if (ends.size) $("stress-note").textContent += ` “Above”: looked for up to ${[...ends].join(", or ")}.`;
   }
 
   function map(found) {

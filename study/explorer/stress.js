@@ -2,28 +2,61 @@
 /* Stresses on the axis r = 0, and at the edge of the contact on the surface: docs/stresses.md. Depths are in a, stresses in
    the unit of the pressure, tension is positive. What stands behind each part in Python is named at it. */
 const Stress = ((Core) => {
-  /** Nodes of a panel of k, the largest width of one, and kh at which waves have decayed to 1e-7. */
-  const POINTS = 16, WIDEST = 12, END = 16;
-  /** Thinner layers, in a, take seconds: they are left to the program. */
-  const THINNEST = 1 / 64;
+  /** Nodes of a panel of k, and the largest width of one. */
+  const POINTS = 16, WIDEST = 12;
+  /** Waves count by erfc((k - MIDDLE)/WIDTH)/2. In the pressure waves beyond are those of the edge of the contact, of which the
+      axis feels exp(-(WIDTH/2)²): so thin layers need no more waves than thick ones (tests/explorer/test_stress.py). */
+  const MIDDLE = 60, WIDTH = 12, LAST = 108;
+  /** Nodes over the angle arcsin(s) that carry p^(k) up to LAST; solver/numerics. */
+  const ANGLES = 128;
+  /** Of the edge: 2kh at which waves have decayed to 1e-7, and the thinnest layer in a, for time. */
+  const END = 16, THINNEST = 1 / 64;
 
-  /* ---- a half-space, from its pressure ---- */
+  /* ---- the pressure as a sum of waves ---- */
 
-  /** sr and sz on the axis at depth z of a half-space under the pressure p(s): integrals over v = z/sqrt(r² + z²). */
-  function halfSpace(p, nu, z) {
-    if (!(z > 0)) return { sr: -(1 + 2 * nu) / 2 * p(1), sz: -p(1) };
-    const rule = Core.gauss(24), first = z / Math.hypot(1, z);
-    let whole = 0, steep = 0;
-    for (let low = first; low < 1; low *= 2) {
-      const high = Math.min(1, 2 * low);
-      for (let i = 0; i < 24; i++) {
-        const t = rule.t[i], edge = low === first, v = low + (high - low) * (edge ? t * t : t); // p ~ s at the edge
-        const weight = (high - low) * rule.w[i] * (edge ? 2 * t : 1), value = p(Math.sqrt(Math.max(0, 1 - z * z * (1 / (v * v) - 1))));
-        whole += weight * value;
-        steep += 3 * weight * value * v * v;
+  const panels = new Map();
+
+  /** k, weights and J0(k cos(angle)) of the panel i: [2^(i - 1), 2^i] up to 8, then of the width 12. */
+  function panel(i) {
+    if (panels.has(i)) return panels.get(i);
+    const rule = Core.gauss(POINTS), angles = Core.gauss(ANGLES), low = i > 3 ? 8 + (i - 4) * WIDEST : 2 ** (i - 1);
+    const width = i > 3 ? WIDEST : low, k = rule.t.map((t) => low + width * t), J0 = new Float64Array(POINTS * ANGLES);
+    const w = k.map((at, j) => width * rule.w[j] * at * (1 - erf((at - MIDDLE) / WIDTH)) / 2);
+    for (let j = 0; j < POINTS; j++) for (let g = 0; g < ANGLES; g++) J0[j * ANGLES + g] = Core.j0(k[j] * Math.cos(Math.PI / 2 * angles.t[g]));
+    const made = { k, w, J0 };
+    panels.set(i, made);
+    return made;
+  }
+
+  function erf(x) {
+    const rule = Core.gauss(32);
+    let sum = 0;
+    for (let i = 0; i < 32; i++) sum += rule.w[i] * Math.exp(-((x * rule.t[i]) ** 2));
+    return 2 / Math.sqrt(Math.PI) * x * sum;
+  }
+
+  /** The pressure at the nodes of an angle in [0, pi/2] with the weights of p^(k). */
+  function weighted(p, count) {
+    const angles = Core.gauss(count);
+    return Float64Array.from(angles.t, (t, i) => {
+      const angle = Math.PI / 2 * t, s = Math.sin(angle);
+      return p(s) * s * Math.cos(angle) * Math.PI / 2 * angles.w[i];
+    });
+  }
+
+  /** Nodes k from `least` on, and weights with the transform of the pressure: w p^(k) k. */
+  function transformed(p, least) {
+    const values = weighted(p, ANGLES), k = [], w = [];
+    for (let i = Math.floor(Math.log2(least)); 8 + (i - 4) * WIDEST < LAST; i++) {
+      const own = panel(i);
+      for (let j = 0; j < POINTS; j++) {
+        let sum = 0;
+        for (let g = 0; g < ANGLES; g++) sum += own.J0[j * ANGLES + g] * values[g];
+        k.push(own.k[j]);
+        w.push(own.w[j] * sum);
       }
     }
-    return { sr: (steep - 2 * (1 + nu) * whole) / 2, sz: -steep };
+    return { k: Float64Array.from(k), w: Float64Array.from(w) };
   }
 
   /* ---- waves of layer and body; solver/fields/transfer.py. A state is [u, w, S, T] ---- */
@@ -50,9 +83,13 @@ const Stress = ((Core) => {
     return total;
   }
 
-  /** The state at the depth x below one of state v, for x below about 1.5. */
-  function carried(x, nu, v) {
-    const first = slope(v, nu), second = minus(slope(first, nu), v), third = slope(second, nu);
+  /** v, A v, N v and A N v of a state v: with cosh x, sinh x, (x sinh x)/2 and (x cosh x - sinh x)/2 the state at the depth
+      x below, for x below about 1.5. */
+  function powers(nu, v) {
+    const first = slope(v, nu), second = minus(slope(first, nu), v);
+    return [v, first, second, slope(second, nu)];
+  }
+  function carried(x, [v, first, second, third]) {
     const cosh = Math.cosh(x), sinh = Math.sinh(x), half = x * sinh / 2, rest = odd(x) / 2;
     return v.map((value, i) => cosh * value + sinh * first[i] + half * second[i] + rest * third[i]);
   }
@@ -68,89 +105,99 @@ const Stress = ((Core) => {
     return [bonded ? above * u - below * (cross * S - normal * T) : T, above * w + below * (normal * S - (bonded ? cross * T : 0))];
   }
 
-  /** Of the wave k: a function of the depth z that gives the state less that of a half-space of the layer, and the
-      tractions S, T on the body. */
+  /** The wave k: tractions S, T on the body; of a thin layer its `powers`; of a thick one tractions (down, up) of the waves
+      that decay from the surface and from the interface. */
   function wave(b, k, h) {
     const X = k * h, nu = b.nu1;
-    let layer, below;
+    let made, under;
     if (X < 1) {
-      const ends = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0]].map((v) => jumps(b, carried(X, nu, v)));
-      const surface = [...solved(ends[0], ends[1], ends[2].map((v) => -v)), -1, 0];
-      layer = (z) => minus(carried(k * z, nu, surface), decaying(k * z, nu, -1, 0));
-      below = carried(X, nu, surface);
+      const ends = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, -1, 0]].map((v) => jumps(b, carried(X, powers(nu, v))));
+      const own = powers(nu, [...solved(ends[0], ends[1], ends[2].map((v) => -v)), -1, 0]);
+      made = { powers: own };
+      under = carried(X, own);
     } else {
       const column = (S, T) => {
         const up = growing(X, nu, S, T);
         return jumps(b, minus(growing(0, nu, S, T), decaying(X, nu, up[2], up[3])));
       };
       const up = solved(column(1, 0), column(0, 1), jumps(b, decaying(X, nu, -1, 0)).map((v) => -v)), back = growing(X, nu, ...up);
-      layer = (z) => {
-        const rising = growing(X - k * z, nu, ...up);
-        return decaying(k * z, nu, -back[2], -back[3]).map((value, i) => value + rising[i]);
-      };
-      below = minus(growing(0, nu, ...up), decaying(X, nu, 1 + back[2], back[3]));
+      made = { down: [-1 - back[2], -back[3]], up };
+      under = minus(growing(0, nu, ...up), decaying(X, nu, 1 + back[2], back[3]));
     }
-    return { layer, S: below[2], T: b.bonded ? below[3] : 0 };
+    return { ...made, S: under[2], T: b.bonded ? under[3] : 0 };
   }
 
-  const radialSum = (nu, [u, , S]) => (2 * nu * S + (1 + nu) * u) / (1 - nu);
+  /** u and S at the depth z in the layer, and at the depth z below tractions S, T on a body. */
+  function inLayer(nu, k, h, own, z, out) {
+    const x = k * z;
+    if (own.powers) {
+      const cosh = Math.cosh(x), sinh = Math.sinh(x), half = x * sinh / 2, rest = odd(x) / 2, [v, first, second, third] = own.powers;
+      out[0] = cosh * v[0] + sinh * first[0] + half * second[0] + rest * third[0];
+      out[1] = cosh * v[2] + sinh * first[2] + half * second[2] + rest * third[2];
+      return;
+    }
+    below(nu, x, own.down[0], own.down[1], out);
+    const y = k * h - x, [S, T] = own.up, decay = Math.exp(-y), shift = y * (S + T);
+    out[0] += decay * ((1 - 2 * nu) * S + 2 * (1 - nu) * T - shift);
+    out[1] += decay * (S + shift);
+  }
+  function below(nu, x, S, T, out) {
+    const decay = Math.exp(-x), shift = x * (S - T);
+    out[0] = decay * ((1 - 2 * nu) * S - 2 * (1 - nu) * T - shift);
+    out[1] = decay * (S + shift);
+  }
+
+  const radialSum = (nu, u, S) => (2 * nu * S + (1 + nu) * u) / (1 - nu);
 
   /* ---- the field of a contact ---- */
 
-  /** Nodes k, and weights with the transform of the pressure: w p^(k) k. */
-  function transformed(p, nodes, h, n) {
-    const rule = Core.gauss(POINTS), last = END / h, k = [], w = [], values = {};
-    let low = 0, high = 1e-4 * Math.min(1, 1 / h) / Math.max(1, n);
-    while (low < last) {
-      for (let i = 0; i < POINTS; i++) { k.push(low + (high - low) * rule.t[i]); w.push((high - low) * rule.w[i]); }
-      [low, high] = [high, Math.min(2 * high, high + WIDEST)];
+  /** sr and sz on the axis: state(i, out) gives u and S of the wave i. */
+  function summed(nu, { w }, state) {
+    const out = new Float64Array(2);
+    let sr = 0, sz = 0;
+    for (let i = 0; i < w.length; i++) {
+      state(i, out);
+      sr += w[i] * radialSum(nu, out[0], out[1]) / 2;
+      sz += w[i] * out[1];
     }
-    k.forEach((at, i) => {
-      const points = 32 * Math.ceil((0.42 * at + 3 * Math.cbrt(at) + 2 * nodes) / 32), angles = Core.gauss(points);
-      values[points] ??= Float64Array.from(angles.t, (t, j) => {
-        const angle = Math.PI / 2 * t, s = Math.sin(angle);
-        return p(s) * s * Math.cos(angle) * Math.PI / 2 * angles.w[j];
-      });
-      let sum = 0;
-      for (let j = 0; j < points; j++) sum += values[points][j] * Core.j0(at * Math.cos(Math.PI / 2 * angles.t[j]));
-      w[i] *= sum * at;
-    });
-    return { k, w };
+    return { sr, sz, mises: Math.abs(sr - sz) };
   }
 
-  /** The field of the solved contact `ev`: {p, layer(z), body(z), edge}, functions of the depth that give {sr, sz, mises};
-      `layer` is null without one, `body` of a rigid one; edge: sr on the surface at r = a. Null of thinner layers. */
+  /** The field of the solved contact `ev`: {layer(z), body(z), punch(z, nu), edge()}, functions of the depth that give
+      {sr, sz, mises}; `layer` is null without one, `body` of a rigid one. edge: sr on the surface at r = a, NaN of layers
+      that are too thin for it. On the axis Tresca's stress is von Mises'. */
   function field(ev) {
-    const { c, mesh } = ev, h = c.h / ev.a, p = (s) => c.pStar * Core.pressure(ev, s);
-    const whole = (at) => ({ ...at, mises: Math.abs(at.sr - at.sz) }), load = c.pStar * ev.load;
-    if (!c.layered) return { p, layer: null, body: (z) => whole(halfSpace(p, c.nu2, z)), edge: (1 - 2 * c.nu2) * load };
-    if (h < THINNEST) return null;
-    const b = { alpha: c.n * (1 - c.nu1) / (1 - c.nu2), nu1: c.nu1, nu2: c.nu2, bonded: c.bonded };
-    const { k, w } = transformed(p, mesh.n, h, c.n), waves = k.map((at) => wave(b, at, h));
-    let more = 0;
-    waves.forEach((own, i) => {
-      const v = own.layer(0), J0 = Core.j0(k[i]);
-      more += w[i] * (radialSum(c.nu1, v) * J0 - v[0] * (2 * Core.j1(k[i]) / k[i] - J0)) / 2;
-    });
-    const layer = (z) => {
-      const at = halfSpace(p, c.nu1, z);
-      waves.forEach((own, i) => {
-        const v = own.layer(z);
-        at.sr += w[i] * radialSum(c.nu1, v) / 2;
-        at.sz += w[i] * v[2];
-      });
-      return whole(at);
+    const { c } = ev, h = c.layered ? c.h / ev.a : 0, p = (s) => c.pStar * Core.pressure(ev, s), load = c.pStar * ev.load;
+    const all = transformed(p, 1e-4 * Math.min(1, 1 / h) / Math.max(1, c.layered ? c.n : 1)), { k } = all;
+    const bare = (z, nu) => summed(nu, all, (i, out) => below(nu, k[i] * z, -1, 0, out));
+    if (!c.layered) return { h, layer: null, body: (z) => bare(z, c.nu2), punch: bare, edge: () => (1 - 2 * c.nu2) * load };
+    const b = { alpha: c.n * (1 - c.nu1) / (1 - c.nu2), nu1: c.nu1, nu2: c.nu2, bonded: c.bonded }, waves = Array.from(k, (at) => wave(b, at, h));
+    return {
+      h, punch: bare,
+      layer: (z) => summed(c.nu1, all, (i, out) => inLayer(c.nu1, k[i], h, waves[i], z, out)),
+      body: c.n > 0 ? (z) => summed(c.nu2, all, (i, out) => below(c.nu2, k[i] * (z - h), waves[i].S, waves[i].T, out)) : null,
+      edge: () => (h < THINNEST ? NaN : (1 - 2 * c.nu1) * load + edgeOf(b, p, h, c.n, ev.mesh.n)),
     };
-    const body = (z) => {
-      const at = { sr: 0, sz: 0 };
-      waves.forEach((own, i) => {
-        const v = decaying(k[i] * (z - h), c.nu2, own.S, own.T);
-        at.sr += w[i] * radialSum(c.nu2, v) / 2;
-        at.sz += w[i] * v[2];
-      });
-      return whole(at);
-    };
-    return { p, layer, body: c.n > 0 ? body : null, edge: (1 - 2 * c.nu1) * load + more };
+  }
+
+  /** By how much sr at the edge differs from that of a half-space of the layer: the sum over all waves. */
+  function edgeOf(b, p, h, n, nodes) {
+    const rule = Core.gauss(POINTS), values = {}, v = [0, 0], bare = [0, 0];
+    let sum = 0, low = 0, high = 1e-4 * Math.min(1, 1 / h) / Math.max(1, n);
+    while (low < END / (2 * h)) {
+      for (let i = 0; i < POINTS; i++) {
+        const k = low + (high - low) * rule.t[i], points = Core.anglesFor(k, nodes), angles = Core.gauss(points);
+        values[points] ??= weighted(p, points);
+        let transform = 0;
+        for (let j = 0; j < points; j++) transform += values[points][j] * Core.j0(k * Math.cos(Math.PI / 2 * angles.t[j]));
+        inLayer(b.nu1, k, h, wave(b, k, h), 0, v);
+        below(b.nu1, 0, -1, 0, bare);
+        const u = v[0] - bare[0], S = v[1] - bare[1], J0 = Core.j0(k);
+        sum += (high - low) * rule.w[i] * transform * k * (radialSum(b.nu1, u, S) * J0 - u * (2 * Core.j1(k) / k - J0)) / 2;
+      }
+      [low, high] = [high, Math.min(2 * high, high + WIDEST)];
+    }
+    return sum;
   }
 
   /** The largest value of f(z) on a grid, made better by golden section between its neighbours: {z, value}. */
@@ -170,17 +217,38 @@ const Stress = ((Core) => {
   /** Depths from 0 to `end`, close together near the surface. */
   const depths = (end, count) => Array.from({ length: count + 1 }, (_, i) => end * (i / count) ** 2);
 
-  /** The largest von Mises stresses on the axis: {layer, body, punch}, each {z, value} or null. */
-  function peaks(ev, own, nuPunch) {
-    const h = ev.c.layered ? ev.c.h / ev.a : 0, punch = ev.c.m > 0;
-    const inLayer = h <= 3 ? Array.from({ length: 21 }, (_, i) => h * i / 20) : [...depths(3, 20), ...depths(h - 3, 8).slice(1).map((z) => 3 + z)];
-    return {
-      layer: own.layer && largest((z) => own.layer(z).mises, inLayer),
-      body: own.body && largest((z) => own.body(z).mises, depths(3 + 2 * h, 24).map((z) => h + z)),
-      punch: punch ? largest((z) => { const at = halfSpace(own.p, nuPunch, z); return Math.abs(at.sr - at.sz); }, depths(3, 20)) : null,
-    };
+  /** The largest von Mises stress on the axis of the "layer", the "body" or the "punch": {z, value}. */
+  function peak({ h, layer, body, punch }, which, nuPunch) {
+    if (which === "layer") {
+      const zs = h <= 3 ? Array.from({ length: 21 }, (_, i) => h * i / 20) : [...depths(3, 20), ...depths(h - 3, 8).slice(1).map((z) => 3 + z)];
+      return largest((z) => layer(z).mises, zs);
+    }
+    return which === "body" ? largest((z) => body(z).mises, depths(3 + 2 * h, 24).map((z) => h + z)) : largest((z) => punch(z, nuPunch).mises, depths(3, 20));
   }
 
-  return { field, peaks, THINNEST };
+  /* ---- asperities; solver/yields/asperities.py ---- */
+
+  /** The largest von Mises stress on the axis of the central spot, {z, value}: that of the spot less that of p on its cell, and
+      that of the contact. */
+  function spot(ev, own) {
+    const { c } = ev, nu = c.layered ? c.nu1 : c.nu2, at = Core.profile(ev, 0), share = Math.sqrt(at.lam), rule = Core.gauss(20);
+    const p0s = 2 * c.E * share / (Math.PI * Math.sqrt(Math.PI * c.Nbar) * c.Ra), ratio = at.p / p0s, b = share / Math.sqrt(Math.PI * c.Nbar) / ev.a;
+    const whole = own.layer ? (z) => own.layer(Math.min(z, own.h)) : own.body;
+    const of = (z) => {
+      let E = 0, F = 0;
+      for (let i = 0; i < 20; i++) {
+        const angle = Math.asin(share) * rule.t[i], t = Math.sin(angle) / share;
+        const part = (t * Math.cos(angle) / share + 2 / Math.PI * ratio * t) * Math.asin(share) * rule.w[i] * t / (z * z + t * t);
+        E += part;
+        F += part * 2 * z * z / (z * z + t * t);
+      }
+      const cos = z / Math.hypot(1 / share, z), { sr, sz } = whole(z * b);
+      return Math.abs(p0s * ((1 - 2 * nu) / 2 * E + 1.5 * F - ratio * ((1 - 2 * nu) / 2 + (1 + nu) * cos - 1.5 * cos ** 3)) + sr - sz);
+    };
+    const found = largest(of, Array.from({ length: 9 }, (_, i) => 0.2 + 0.15 * i));
+    return { z: found.z * b, value: found.value };
+  }
+
+  return { field, peak, spot, THINNEST };
 })(typeof module === "undefined" ? Core : require("./core.js"));
 if (typeof module !== "undefined") module.exports = Stress;

@@ -18,6 +18,7 @@ from .afm.reading import read as of_instrument
 COLUMNS = ("D", "P", "a", "dP_dD")
 _UNITS = {"D": "m", "P": "N", "a": "m", "dP_dD": "N/m"}
 _SUCH = {"D": "nm", "P": "nN", "a": "um", "dP_dD": "N/m"}
+_CALLED = "D (depth), P (load), a (contact radius) or dP_dD (stiffness)"
 _SPACED = re.compile(r"\S+(?:\s+(?:\[[^\]]*\]|\([^)]*\)))?")  # headings apart by spaces, each with its unit
 _HEADING = re.compile(r"\s*(\w+)\s*(?:\[([^\]]*)\]|\(([^)]*)\))?\s*")
 
@@ -79,7 +80,7 @@ def _of_columns(
     columns: dict[str, tuple[Any, str]], curve: list[str] | None = None, where: str = "curves"
 ) -> xr.Dataset:
     errors = [
-        f"{where}: {name} is no column of curves: known are {', '.join(COLUMNS)}"
+        f"{where}: {shown(name)} is no column of curves: call it {_CALLED}, or leave it out"
         for name in columns
         if name not in COLUMNS
     ]
@@ -135,13 +136,7 @@ def _apart(array: np.ndarray, curve: list[str]) -> np.ndarray:
 def _read(path: Path) -> tuple[dict, list[str] | None, str]:
     """Columns, the labels in the column `curve` or None, and the name of the file, for messages."""
     where = path.as_posix()
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise StudyError(
-            [f"{where}: cannot be read as text: {error.strerror if isinstance(error, OSError) else error}"]
-        ) from None
-    lines = [line for line in text.splitlines() if line.strip() and not line.lstrip().startswith("#")]
+    lines = [line for line in _text(path).splitlines() if line.strip() and not line.lstrip().startswith("#")]
     if not lines:
         raise StudyError([f"{where}: is empty"])
     separator = next((sign for sign in ("\t", ";", ",") if sign in lines[0]), None)
@@ -160,6 +155,24 @@ def _read(path: Path) -> tuple[dict, list[str] | None, str]:
     rows = [_row(_cells(line, separator), columns, f"{where}: row {i + 1}") for i, line in enumerate(lines[1:])]
     labels = [str(row.pop("curve")) for row in rows] if "curve" in columns else None
     return {name: ([row[name] for row in rows], unit) for name, unit in names if name != "curve"}, labels, where
+
+
+def _text(path: Path) -> str:
+    where = path.as_posix()
+    if path.is_dir():
+        raise StudyError([f"{where} is a folder: name a file in it"])
+    try:
+        raw = path.read_bytes()
+    except FileNotFoundError:
+        raise StudyError([f"{where}: there is no such file"]) from None
+    except OSError as error:
+        raise StudyError([f"{where}: cannot be read: {error.strerror}"]) from None
+    if b"\0" in raw:  # of a spreadsheet, say, or in UTF-16
+        raise StudyError([f"{where}: cannot be read as text: save it as CSV, in UTF-8"])
+    try:
+        return raw.decode("utf-8-sig")
+    except UnicodeDecodeError:
+        return raw.decode("latin-1")  # older instruments write a µ of Latin-1 in the heading
 
 
 def _cells(line: str, separator: str | None) -> list[str]:

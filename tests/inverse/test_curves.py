@@ -51,7 +51,7 @@ def test_several_curves_in_a_file_keep_their_names(tmp_path):
 WRONG = {
     "D,P\n1,2\n": ("D has no unit", "P has no unit"),
     "D [N],P [nN]\n1,2\n": ("D", "is a force: must be a length"),
-    "depth [nm],P [nN]\n1,2\n": ("depth is no column of curves", "D, P, a, dP_dD"),
+    "depth [nm],P [nN]\n1,2\n": ('"depth" is no column of curves', "call it D (depth), P (load)", "leave it out"),
     "D [nm],D [nm],P [nN]\n1,2,3\n": ("D twice",),
     "D [nm],P [nN]\n": ("no row",),
     "D [nm]\n1\n": ("two columns are needed",),
@@ -74,11 +74,18 @@ def test_wrong_text(tmp_path, text):
 
 
 def test_files_that_are_not_there_or_no_text(tmp_path):
-    for path in (tmp_path / "nothing.csv", tmp_path):
-        with pytest.raises(study.StudyError, match="cannot be read as text"):
-            study.curves(path)
-    with pytest.raises(study.StudyError, match="cannot be read as text"):
+    with pytest.raises(study.StudyError, match="nothing.csv: there is no such file"):
+        study.curves(tmp_path / "nothing.csv")
+    with pytest.raises(study.StudyError, match="is a folder: name a file in it"):
+        study.curves(tmp_path)
+    with pytest.raises(study.StudyError, match="cannot be read as text: save it as CSV, in UTF-8"):
         read(tmp_path, "D [nm],P [nN]\n1,2\n", "utf-16")
+
+
+def test_a_micro_sign_of_another_encoding(tmp_path):
+    text = "D [µm],P [nN]\n1,2\n3,4\n"
+    for encoding in ("utf-8", "latin-1"):
+        np.testing.assert_allclose(read(tmp_path, text, encoding).D.values, [[1e-6, 3e-6]], rtol=1e-15)
 
 
 def test_arrays_and_datasets():

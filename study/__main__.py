@@ -155,7 +155,7 @@ def _attempt(act, options, item, kept: str) -> int:
     except StudyError as error:
         text, code = str(error), error.code
     except OSError as error:  # the disk is full, say, or the scheduler is gone
-        text, code = f"{item}: {error}{kept}", 1
+        text, code = f"{item if isinstance(item, str) else options.command}: {error}{kept}", 1
     except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
         text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
     if ending.state.interrupted:  # a library has turned the interrupt into this error

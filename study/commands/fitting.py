@@ -1,5 +1,6 @@
 """The command `fit`: inputs of a contact from a measured curve, in the terminal, in words or as JSON."""
 
+import io
 import json
 import re
 import sys
@@ -11,9 +12,11 @@ import numpy as np
 import xarray as xr
 
 from ..data.dataset import decode
+from ..figures.formats import write
 from ..figures.lines import plot
 from ..in_words import summary
 from ..inputs.definition import StudyError
+from ..inputs.vocabulary import ROWS, absent, suggest
 from ..inverse.fit import fit as fitted_by
 from ..terminal import answer, say
 from .arguments import SWITCH
@@ -22,6 +25,7 @@ from .point import parameters_of
 _RANGE = re.compile(r"\s*\.\.\s*")
 _SWITCHES = ("contact_point", "baseline", "tilt")
 _OPTIONS = (*_SWITCHES, "x", "y", "sigma", "loss", "intervals", "level", "free")
+_PYTHON = ("plan", "progress")  # options of `study.fit` that a terminal does not have
 
 
 def items(options) -> list[list[str]]:
@@ -46,8 +50,9 @@ def fit(options, texts: list[str]) -> int:
             raise StudyError(message.removeprefix("fit: ") for message in error.messages) from None
     code = answer(as_json(fitted) if options.json else summary(fitted))
     if picture:
-        plot(fitted).savefig(picture)
-        say(f"figure: {Path(picture).as_posix()}", sys.stderr)
+        page = io.BytesIO()
+        plot(fitted).savefig(page, format=Path(picture).suffix[1:].lower())
+        say(f"figure: {write(Path(picture), page.getvalue()).as_posix()}", sys.stderr)
     usable = fitted["fit_status"].isin([0, 1, 3, 4])
     return code or int(not usable.all())
 
@@ -56,6 +61,9 @@ def asked(words: list[str]) -> tuple[Any, dict, dict]:
     """What is free, options of the fit, and inputs. An input "LOW .. HIGH" is free within these bounds. StudyError."""
     own = {word.partition("=")[0].strip(): word.partition("=")[2].strip() for word in words}
     settings: dict[str, Any] = {name: text for name, text in own.items() if name in _OPTIONS}
+    errors = [message for name in dict.fromkeys(own) if (message := _no_option(name))]
+    if errors:
+        raise StudyError(errors)
     parameters = parameters_of([word for word in words if word.partition("=")[0].strip() not in _OPTIONS])
     bounds = {name: tuple(_RANGE.split(v)) for name, v in parameters.items() if isinstance(v, str) and ".." in v}
     free: dict[str, Any] = {name.strip(): None for name in settings.pop("free", "").split(",") if name.strip()}
@@ -78,6 +86,14 @@ def asked(words: list[str]) -> tuple[Any, dict, dict]:
     if errors:
         raise StudyError(errors)
     return free, settings, {name: value for name, value in parameters.items() if name not in bounds}
+
+
+def _no_option(name: str) -> str:
+    """What is said of a name that is like an option but none; "" of others."""
+    if name in _PYTHON:
+        return f"{name} is an option of study.fit in Python alone (docs/fit.md): leave it out"
+    near = "" if name in (*_OPTIONS, *ROWS) or absent(name) else suggest(name, _OPTIONS)
+    return f'"{name}" is neither an option nor an input{near}' if "did you mean" in near else ""
 
 
 def as_json(fitted: xr.Dataset) -> str:

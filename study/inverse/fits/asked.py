@@ -11,7 +11,7 @@ from solver.parameters import ends
 
 from ...inputs.definition import Definition, StudyError
 from ...inputs.reading import from_call
-from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE
+from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, suggest
 from ...specimen.quantities import has_unit, quantity
 from ...terminal import shown
 from .model import PAIRS, Model, is_ratio
@@ -36,6 +36,7 @@ class Asked:
     priors : input with ± in the call -> (coordinate, its spread), as the unknowns of `Model`
     spreads : other input -> its spread in its coordinate
     shifts : unknowns after the inputs
+    call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
     """
 
     model: Model
@@ -47,6 +48,7 @@ class Asked:
     loss: str
     intervals: str | None
     level: float
+    call: dict[str, Any]
 
 
 def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
@@ -56,7 +58,8 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     known = _numbers()
     for name in names:
         if name not in known:
-            errors.append(f"free: {shown(name)} is no input that can be fitted, such as E1, h or Ra")
+            near = suggest(name, known, ["such as E1, h or Ra"]).replace("; known: ", ", ")
+            errors.append(f"free: {shown(name)} is no input that can be fitted{near}")
     errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
     priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
@@ -105,14 +108,14 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     ]
     shifts = shifts if x == "D" else []
     about = (options["loss"], options["intervals"], float(options["level"]))
-    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about)
+    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, given)
 
 
 def _choices(x: str, y: str, options: dict) -> list[str]:
     errors = []
     if (x, y) not in PAIRS:
-        listed = ", ".join(f'x="{a}", y="{b}"' for a, b in PAIRS)
-        errors.append(f"x = {shown(x)}, y = {shown(y)}: must be one of {listed}")
+        listed = "; or ".join(f'x="{a}", y="{b}"' for a, b in PAIRS)
+        errors.append(f"x = {shown(x)}, y = {shown(y)}: must be {listed}")
     if options["loss"] not in ("linear", "huber"):
         errors.append(f'loss = {shown(options["loss"])}: must be "linear" or "huber"')
     if options["intervals"] not in ("profile", "fisher", None):

@@ -7,6 +7,7 @@ from ..data.dataset import decode
 from ..inputs.vocabulary import ROWS
 from ..rules.rule import RULES
 from ..specimen.quantities import readable
+from .sentences import NOT_VIOLATED
 
 NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of the baseline"}
 """Unknowns of a fit that are no inputs of the contact."""
@@ -19,7 +20,8 @@ _SENTENCES = {
     "iteration_limit": "The search has not ended: do not use these values.",
     "several_minima": "Another value fits as well: the interval holds all of them.",
     "not_identifiable": "The curve does not hold a bound of the interval: that end is where the search stopped.",
-    "no_contact": "The curve is no better described by a contact than by a straight line: there is no contact in it.",
+    "no_contact": "A straight line describes the curve as well: there is no contact in it, or these inputs make none like "
+    "it. The depth D has to grow, and the load P to rise, as the punch goes in.",
     "not_run": "It was not fitted: the call was interrupted before.",
     "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
 }
@@ -34,11 +36,12 @@ def of_fit(fitted: xr.Dataset) -> str:
     count = fitted.sizes["curve"]
     beside = f", beside {' and '.join(NAMES_OF_SHIFTS[name] for name in shifts)}" if shifts else ""
     kind = "A plan for" if f"{y}_fit" not in fitted else "Fitted to"
-    lines = [
+    lines = [fitted.attrs["given"], ""] if "given" in fitted.attrs else []
+    lines += [
         f"{kind} {count} curve{'s' * (count != 1)} {y}({x}): {', '.join(inputs)}{beside}. ± is one standard deviation."
     ]
     if f"{names[0]}_low" in fitted:
-        lines[0] += f" In brackets: {100 * level:g} % intervals."
+        lines[-1] += f" In brackets: {100 * level:g} % intervals."
     for i in range(min(count, MOST_CURVES)):
         lines += ["", *_of_curve(fitted.isel(curve=i), i, count, inputs, shifts)]
     if count > MOST_CURVES:
@@ -48,7 +51,7 @@ def of_fit(fitted: xr.Dataset) -> str:
             f"and {count - MOST_CURVES} more. Of all: "
             + ", ".join(f"{n} {w}" for w, n in zip(words, counts, strict=True)),
         ]
-    return "\n".join(lines)
+    return "\n".join([*lines, *([""] * (count > 1) + [text] if (text := fitted.attrs.get("assumed")) else [])])
 
 
 def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: list[str]) -> list[str]:
@@ -60,11 +63,26 @@ def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: 
     rows = [(name, _long_name(name), _text(curve, name)) for name in (*inputs, *shifts)]
     widths = max(len(words) for _, words, _ in rows), max(len(name) for name, _, _ in rows)
     lines += [f"  {words:{widths[0]}}  {name:{widths[1]}} = {text}" for name, words, text in rows]
+    lines += _residual(curve)
     lines += [_SENTENCES[status]] if status in _SENTENCES else []
     lines += _known(curve, inputs)
     broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
     lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
+    lines += [f"At the deepest point {NOT_VIOLATED[0].lower()}{NOT_VIOLATED[1:]}"] * (
+        count == 1 and not broken and status == "converged"
+    )
     return lines
+
+
+def _residual(curve: xr.Dataset) -> list[str]:
+    """How far the points are from the fit; nothing of a plan."""
+    if "residual" not in curve:
+        return []
+    name, rms = curve.attrs["y"], float(np.sqrt((curve["residual"] ** 2).mean()))
+    share = rms / float(curve[name].max() - curve[name].min())
+    unit = curve["residual"].attrs["units"]
+    off = readable(float(f"{rms:.2g}"), unit)
+    return [f"The points are {off} from the fit (rms), {100 * share:.2g} % of the range of {name}."]
 
 
 def _long_name(name: str) -> str:

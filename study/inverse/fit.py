@@ -18,6 +18,7 @@ from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
 from .fits.model import HERTZ, Model
+from .fits.said import said
 from .fits.tables import Table
 
 _BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
@@ -114,7 +115,8 @@ def fit(
             warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=2)
     status = np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
     fitted = answered(question, rows, status, X, Y, there, plan)
-    return fitted.assign_coords({name: data[name] for name in data.coords})
+    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
+    return fitted.assign_attrs(said(question, fitted))
 
 
 def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:

@@ -40,6 +40,27 @@ def test_words_json_and_a_figure(folder, capsys):
     assert numbers["E1"]["low"] < 5e3 < numbers["E1"]["high"] and numbers["E1"]["unit"] == "Pa"
 
 
+def test_what_was_given_and_what_was_assumed(folder, capsys):
+    """A default that changes the answer is said: without `bonding` and `nu1` E1 is twice as large."""
+    _, words, _ = run(capsys, "curve.csv", "R=5um", "h=1.5um", "E2=70GPa", "micro=smooth", "free=E1")
+    first, *rest = words.splitlines()
+    assert first.startswith("Given: a rigid punch (assumed), R = 5 µm, nu1 = 0.3 (assumed), E2 = 70 GPa")
+    assert first.endswith("h = 1.5 µm, frictionless (assumed)")
+    assert sum(line.startswith("Assumed: ") for line in rest) == 2
+    call = ["R=5um", "nu1=0.49", "h=1.5 ± 0.1 um", "E2=70GPa", "bonding=bonded", "micro=smooth", "Ra=1um"]
+    _, words, _ = run(capsys, "curve.csv", *call, "free=E1")
+    assert "h = 1.50 ± 0.10 µm" in words and "\nNot used: Ra = 1 µm\n" in words and "Assumed" not in words
+    assert "of the range of P." in words and "At the deepest point: The strain is not small" in words
+
+
+def test_a_figure_in_a_folder_that_is_not_there(folder, capsys):
+    code, _, said = run(capsys, "curve.csv", *CALL, "free=E1", "--plot", "new/fit.pdf")
+    assert code == 0 and said == "figure: new/fit.pdf\n" and (folder / "new" / "fit.pdf").stat().st_size
+    (folder / "new" / "fit.pdf").rename("file")
+    code, _, said = run(capsys, "curve.csv", *CALL, "free=E1", "--plot", "file/fit.pdf")
+    assert code == 1 and said.startswith("fit: ") and "file" in said and "curve.csv" not in said
+
+
 def test_several_curves_and_one_without_contact(folder, capsys):
     code, text, _ = run(capsys, "two.csv", *CALL, "free=E1", "--json")
     assert code == 1 and [curve["curve"] for curve in json.loads(text)] == ["left", "right"]
@@ -52,7 +73,11 @@ def test_several_curves_and_one_without_contact(folder, capsys):
 @pytest.mark.parametrize(
     ("words", "message"),
     [
-        (["none.csv", *CALL, "free=E1"], "none.csv: cannot be read"),
+        (["none.csv", *CALL, "free=E1"], "none.csv: there is no such file"),
+        (["curve.csv", *CALL, "free=e1"], 'did you mean "E1"?'),
+        (["curve.csv", *CALL, "free=E1", "contactpoint=false"], 'did you mean "contact_point"?'),
+        (["curve.csv", *CALL, "free=E1", "plan=true"], "plan is an option of study.fit in Python alone"),
+        (["curve.csv", *CALL, "free=E1", "progress=true"], "progress is an option of study.fit in Python alone"),
         ([*CALL, "free=E1"], "the file of the curve comes first"),
         (["curve.csv", *CALL], "name what is fitted, such as free=E1"),
         (["curve.csv", *CALL, "free=E1", "free=h"], "free is given twice"),

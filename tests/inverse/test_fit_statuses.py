@@ -46,6 +46,12 @@ def test_each_bad_curve_has_its_status_and_nothing_is_raised_or_warned_of():
     assert text.count("no contact") >= 5 and text.count("invalid input") >= 4 and "nan" not in text
 
 
+def test_a_contact_that_keeps_to_the_assumptions_is_said_to():
+    depths = np.linspace(-0.2, 1.0, 60) * 1e-7
+    text = str(study.summary(fit(depths, gel(depths=depths)[0])))
+    assert "At the deepest point none of the assumptions that are checked is violated" in text
+
+
 def test_no_points_at_all():
     assert status(fit(DEPTHS[:0], DEPTHS[:0])) == ["invalid_input"]
 

@@ -90,7 +90,8 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     count = prod(contacts.sizes[dim] for dim in rest)
     if count > MOST_PANELS:
         sizes = ", ".join(f"{dim} ({contacts.sizes[dim]})" for dim in rest)
-        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose with --where NAME=VALUE"])
+        way = "choose with NAME=VALUE (in a terminal --where NAME=VALUE)"
+        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; {way}"])
     whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in contacts.dims}
     contacts = contacts.assign(whole)  # variables: xarray 2026.2 does not align coordinates that are there
     columns = 2 if count == 4 else min(count, 3)

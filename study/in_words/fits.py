@@ -20,8 +20,8 @@ _SENTENCES = {
     "iteration_limit": "The search has not ended: do not use these values.",
     "several_minima": "Another value fits as well: the interval holds all of them.",
     "not_identifiable": "The curve does not hold a bound of the interval: that end is where the search stopped.",
-    "no_contact": "A straight line describes the curve as well: there is no contact in it, or these inputs make none like "
-    "it. The depth D has to grow, and the load P to rise, as the punch goes in.",
+    "no_contact": "A straight line describes the curve as well: there is no contact in it, or these inputs make none "
+    "like it. The depth D has to grow, and the load P to rise, as the punch goes in.",
     "not_run": "It was not fitted: the call was interrupted before.",
     "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
 }
@@ -92,7 +92,7 @@ def _long_name(name: str) -> str:
 def _text(curve: xr.Dataset, name: str) -> str:
     unit, spread = curve[f"{name}_spread"].attrs["units"], float(curve[f"{name}_spread"])
     if name not in curve:  # a plan
-        return f"assumed, ± {readable(spread, unit)}"
+        return f"assumed, ± {readable(float(f'{spread:.2g}'), unit)}"
     text = readable(float(curve[name]), unit, spread)
     if f"{name}_low" not in curve:
         return text

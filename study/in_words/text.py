@@ -70,6 +70,8 @@ def summary(contact: xr.Dataset) -> Summary:
     >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
     'Given: a rigid punch'
     """
+    if not isinstance(contact, xr.Dataset):
+        raise ValueError(f"summary takes a dataset of study.solve or study.fit, not {type(contact).__name__}")
     if "fit_status" in contact:
         return Summary(of_fit(contact))
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]

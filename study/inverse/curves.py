@@ -65,7 +65,8 @@ def curves(source: Any) -> xr.Dataset:
             ordered = array.transpose(*(dim for dim in ("curve", "point") if dim in array.dims))
             columns[name] = (ordered.values, str(array.attrs.get("units", "")))
         return _of_columns(columns).assign_coords({"curve": source["curve"]} if "curve" in source.coords else {})
-    raise StudyError([f"curves = {shown(source)}: must be a file, a dictionary of (array, unit), or a Dataset"])
+    what = shown(source) if source is None or isinstance(source, (int, float)) else f"a {type(source).__name__}"
+    raise StudyError([f'curves: must be a file, {{"D": (array, "nm"), "P": (array, "nN")}}, or a Dataset, not {what}'])
 
 
 def _pair(name: str, value: Any) -> tuple[Any, str]:

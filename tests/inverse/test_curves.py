@@ -113,8 +113,10 @@ def test_arrays_and_datasets():
         ({"D": (["x"], "nm"), "P": ([2.0], "nN")}, "D: could not convert"),
         ({"D": (np.ones((2, 2, 2)), "nm"), "P": ([1.0, 2.0], "nN")}, "D has 3 dimensions"),
         (xr.Dataset({"D": ("i", [1.0], {"units": "m"}), "P": ("i", [1.0], {"units": "N"})}), "the dimension i"),
-        (None, "must be a file"),
-        (3.0, "must be a file"),
+        (None, "or a Dataset, not None"),
+        (3.0, "or a Dataset, not 3.0"),
+        (np.ones((2, 2)), '"P": (array, "nN")}, or a Dataset, not a ndarray'),
+        (["a.csv", "b.csv"], "or a Dataset, not a list"),
     ],
 )
 def test_wrong_arrays(source, part):

@@ -1,5 +1,7 @@
 """`study.fit` finds what the curve was made with, whatever the order, the offsets and the company of its points."""
 
+import re
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -192,6 +194,9 @@ def test_plan_says_how_sure_a_fit_would_be():
     planned = study.fit({"D": (DEPTHS, "m")}, free=["E1"], plan=True, sigma=sigma, E1="5 kPa", progress=False, **GEL)
     np.testing.assert_allclose(planned.E1_spread, fit(DEPTHS, P, sigma=sigma).E1_spread, rtol=0.05)
     assert "residual" not in planned and "P_fit" not in planned and status(planned) == ["converged"]
+    text = str(study.summary(planned))
+    assert "nu1 = 0.49, E1 = 5 kPa, " in text or "E1 = 5 kPa, nu1 = 0.49, " in text
+    assert re.search(r"E1 = assumed, ± \d+ Pa\n", text)
 
 
 def test_names_of_curves_stay():

@@ -17,9 +17,10 @@ def said(question: Asked, fitted: xr.Dataset) -> dict[str, str]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         contact = solve(**question.call, x=2, profiles=False, progress=False)
-    for name in question.free:  # what is assumed depends on how soft the layer is
-        if name in fitted and np.isfinite(value := fitted[name].median().item()):
+    free = [name for name in question.free if name in fitted]  # of a plan none: these are its assumed values
+    for name in free:  # what is assumed depends on how soft the layer is
+        if np.isfinite(value := fitted[name].median().item()):
             contact[name] = contact[name].copy(data=value)
-    words = {"given": "\n".join(given(contact, question.free))}
+    words = {"given": "\n".join(given(contact, free))}
     doubts = [f"Assumed: {sentence}" for sentence in assumed(contact)]
     return words | ({"assumed": "\n".join(doubts)} if doubts else {})

@@ -37,8 +37,7 @@ def plot(dataset: xr.Dataset, x: str = "", y: str = "", hue: str = "", **where: 
 
     Parameters
     ----------
-    dataset : of `study.solve`, or the results of a study; or of `study.fit`, which needs no x and y: the curves with
-        their fits, residuals below
+    dataset : of `study.solve`, results of a study, or of `study.fit`: curves, fits and residuals, without x and y
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it; y = "input": how
         much each input changes x, a, P, D, p0, p_max, Ar_An or dP_dD of one contact, as bars
     hue : name of a dimension, or "label" of the cases
@@ -90,8 +89,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     count = prod(contacts.sizes[dim] for dim in rest)
     if count > MOST_PANELS:
         sizes = ", ".join(f"{dim} ({contacts.sizes[dim]})" for dim in rest)
-        way = "choose with NAME=VALUE (in a terminal --where NAME=VALUE)"
-        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; {way}"])
+        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose by NAME=VALUE, or --where"])
     whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in contacts.dims}
     contacts = contacts.assign(whole)  # variables: xarray 2026.2 does not align coordinates that are there
     columns = 2 if count == 4 else min(count, 3)
@@ -209,9 +207,8 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             elif along == "case":
                 axes.errorbar(across / sizes[0], up / sizes[1], half / sizes[1], fmt="none", color=colour, alpha=0.5)
             else:
-                axes.fill_between(
-                    across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND
-                )
+                low, high = (up - half) / sizes[1], (up + half) / sizes[1]
+                axes.fill_between(across / sizes[0], low, high, color=colour, **BAND)
         axes.plot(across / sizes[0], up / sizes[1], color=colour, **NOT_VALID)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colour, linestyle="-")
         if along == "case":

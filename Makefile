@@ -110,6 +110,9 @@ bench: $(READY) ## speed of the solver: bench.json
 speed: $(READY) ## speeds of what people run, on an idle machine: docs/speed.md
 	$(VENV)/bin/python tools/bench/benchmark.py --page docs/speed.md
 
+fit_coverage: $(READY) ## how right `rc.fit` is, and how fast, on 10,000 curves: the table of docs/fit.md
+	$(VENV)/bin/python tools/fit/coverage.py
+
 lint: $(READY) ## ruff, and mypy for the public names
 	$(VENV)/bin/ruff check .
 	$(VENV)/bin/mypy

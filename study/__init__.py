@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from .in_words import summary
     from .inputs import vocabulary
     from .inputs.definition import StudyError
+    from .inverse.curves import curves
+    from .inverse.fit import fit
     from .solving import solve
     from .specimen import materials, roughness
     from .yields.first import first_yield
@@ -41,12 +43,14 @@ __all__ = [
     "Study",
     "StudyError",
     "catalogue",
+    "curves",
     "decode",
     "derived",
     "drawing",
     "extremes",
     "figure",
     "first_yield",
+    "fit",
     "from_physical",
     "h_protect",
     "load",
@@ -72,6 +76,8 @@ _HOME = {
     "extremes": "fields",
     "first_yield": "yields.first",
     "h_protect": "yields.protect",
+    "fit": "inverse.fit",
+    "curves": "inverse.curves",
     "stresses": "fields",
     "load": "api",
     "Study": "api",

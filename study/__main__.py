@@ -1,11 +1,11 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-point | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot | table |
+point | fit | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot | table |
 tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (point, scan, materials, docs, list, check, status, --dry-run).
+that do nothing but answer (point, fit, scan, materials, docs, list, check, status, --dry-run).
 """
 
 import argparse
@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
         if items:
             argument = sub.add_argument("items", nargs=least, metavar=items, default=[])
             argument.completer = partial(proposed, name)
-        if module not in ("point", "exploring", "reading"):
+        if module not in ("point", "fitting", "exploring", "reading"):
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
@@ -53,6 +53,14 @@ def parser() -> argparse.ArgumentParser:
     sub.add_argument("--stresses", type=folder, metavar="FILE", help="draw its stresses too: .png, .pdf or .svg")
     sub.epilog = (
         'such as R="5 mm" punch="steel 52100" h="2 um" layer="DLC a-C:H" body="steel 52100" P="10 N" micro=smooth'
+    )
+    sub = command("fitting", "fit", "fit inputs of a contact to a measured curve, with intervals", "FILE")
+    sub.usage = "%(prog)s FILE NAME=VALUE ... [--json] [--plot FILE]"
+    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.add_argument("--plot", type=folder, metavar="FILE", help="draw the fit over the points: .png, .pdf or .svg")
+    sub.epilog = (
+        'such as roughcoat fit curve.csv R="5 um" punch=rigid nu1=0.49 h="1.5 ± 0.1 um" bonding=bonded '
+        'body="glass soda-lime" micro=smooth free=E1, of columns "D [nm]" and "P [nN]"'
     )
     sub = command("exploring", "explore", "write a page that solves contacts in a browser, without a network")
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")
@@ -147,7 +155,7 @@ def _attempt(act, options, item, kept: str) -> int:
     except StudyError as error:
         text, code = str(error), error.code
     except OSError as error:  # the disk is full, say, or the scheduler is gone
-        text, code = f"{item}: {error}{kept}", 1
+        text, code = f"{item if isinstance(item, str) else options.command}: {error}{kept}", 1
     except SystemExit as ended:  # of what is not ours, such as the function of a figure: it is no end of the command
         text, code = f"{item}: something that it needs calls sys.exit({ended})", 1
     if ending.state.interrupted:  # a library has turned the interrupt into this error

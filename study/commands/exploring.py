@@ -15,6 +15,7 @@ def explore(options, _) -> int:
         raise StudyError([f"--out {path} is a folder: name a file in it, such as {path / 'contact.html'}"])
     if path.exists() and MARK not in path.read_bytes()[: 10 * len(MARK)]:
         raise StudyError([f"--out {path}: there is a file that is no page of the explorer; it stays"])
+    path.parent.mkdir(parents=True, exist_ok=True)
     with replacing(path) as temporary:
         temporary.write_text(page(), encoding="utf-8")
     return answer(f"{path}: open it in a browser; it needs no network")

@@ -159,7 +159,7 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
 
     Raises
     ------
-    ValueError : a dataset without physical units
+    ValueError : a dataset without physical units, or of `study.fit`
 
     Examples
     --------
@@ -170,6 +170,8 @@ def readable(dataset: xr.Dataset) -> xr.Dataset:
     """
     if not isinstance(dataset, xr.Dataset):
         raise ValueError("readable takes the dataset, not an array of it: study.readable(contact).a")
+    if "fit_status" in dataset:
+        raise ValueError("readable takes contacts: a dataset of study.fit stays in SI, study.summary says it readably")
     if PHYSICAL_SCALE not in dataset.attrs:
         raise ValueError("the dataset is dimensionless: study.to_physical gives it units")
     changed = {}

@@ -17,6 +17,7 @@ from ..inputs.definition import StudyError
 from ..inputs.vocabulary import CONTROLS, suggest
 from ..specimen.quantities import quantity
 from .drawable import check_size, drawable
+from .fits.picture import fits
 from .labels import axis_label, legend_texts, multiple, name_of, stated, with_units, wrapped
 from .registry import Columns, joined
 from .style import StyledFigure, as_points, shades, spaced_by_factors, style, tick_decades
@@ -27,7 +28,7 @@ BAND = {"alpha": 0.25, "linewidth": 0}  # of ± one standard deviation
 NOT_VALID = {"linestyle": (0, (1, 1.2)), "linewidth": 0.9}
 
 
-def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where: Any) -> Figure:
+def plot(dataset: xr.Dataset, x: str = "", y: str = "", hue: str = "", **where: Any) -> Figure:
     """A figure of `y` against `x`, a curve for each value of `hue`, a panel for each combination of the other axes.
 
     A notebook shows it where it is the last value of a cell; `savefig` writes it. It is none of pyplot, and looks the
@@ -36,7 +37,7 @@ def plot(dataset: xr.Dataset, x: str, y: str, hue: str = "", **where: Any) -> Fi
 
     Parameters
     ----------
-    dataset : of `study.solve`, or the results of a study
+    dataset : of `study.solve`, results of a study, or of `study.fit`: curves, fits and residuals, without x and y
     x, y : names of variables of the dataset, or of study.derived.QUANTITIES, which follow from it; y = "input": how
         much each input changes x, a, P, D, p0, p_max, Ar_An or dP_dD of one contact, as bars
     hue : name of a dimension, or "label" of the cases
@@ -58,6 +59,10 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     """The figure of `plot`, and the numbers that it shows (Columns). `new` makes an empty figure."""
     if not isinstance(dataset, xr.Dataset):
         raise StudyError([f"a figure is of a dataset of contacts, not of a {type(dataset).__name__}"])
+    if "fit_status" in dataset:
+        return fits(dataset, where, new)
+    if not x or not y:
+        raise StudyError(['plot: name x and y, such as plot(contacts, x="P", y="p_max")'])
     if stacked := [dim for dim, index in dataset.indexes.items() if index.nlevels > 1 and dim in dataset.dims]:
         raise StudyError([f'{stacked[0]} is several axes in one: give dataset.unstack("{stacked[0]}")'])
     bare = [dim for dim in dataset.dims if dim in (x, y, hue, *where) and dim not in dataset.coords]
@@ -84,7 +89,7 @@ def drawn(dataset: xr.Dataset, x: str, y: str, hue: str, where: dict, new: Calla
     count = prod(contacts.sizes[dim] for dim in rest)
     if count > MOST_PANELS:
         sizes = ", ".join(f"{dim} ({contacts.sizes[dim]})" for dim in rest)
-        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose with --where NAME=VALUE"])
+        raise StudyError([f"{count} panels, of {sizes}: at most {MOST_PANELS}; choose by NAME=VALUE, or --where"])
     whole = {name: array.variable for name, array in zip((x, y), pair, strict=True) if name not in contacts.dims}
     contacts = contacts.assign(whole)  # variables: xarray 2026.2 does not align coordinates that are there
     columns = 2 if count == 4 else min(count, 3)
@@ -202,9 +207,8 @@ def curves(axes, case: xr.Dataset, names: tuple, whole: xr.Dataset) -> list[Colu
             elif along == "case":
                 axes.errorbar(across / sizes[0], up / sizes[1], half / sizes[1], fmt="none", color=colour, alpha=0.5)
             else:
-                axes.fill_between(
-                    across / sizes[0], (up - half) / sizes[1], (up + half) / sizes[1], color=colour, **BAND
-                )
+                low, high = (up - half) / sizes[1], (up + half) / sizes[1]
+                axes.fill_between(across / sizes[0], low, high, color=colour, **BAND)
         axes.plot(across / sizes[0], up / sizes[1], color=colour, **NOT_VALID)
         axes.plot(across / sizes[0], np.where(valid, up, np.nan) / sizes[1], color=colour, linestyle="-")
         if along == "case":

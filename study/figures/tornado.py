@@ -26,7 +26,7 @@ def tornado(contact: xr.Dataset, name: str, new: Callable[..., Figure]) -> tuple
     if name not in QUANTITIES:
         raise StudyError([f"y = {ORDINATE}: x must be one of {', '.join(QUANTITIES)}, not {name}"])
     if sizes := ", ".join(f"{dim} ({size})" for dim, size in contact["status"].sizes.items() if size > 1):
-        raise StudyError([f"y = {ORDINATE} is of one contact: choose one of {sizes}, such as --where P=VALUE"])
+        raise StudyError([f"y = {ORDINATE} is of one contact: choose one of {sizes}, by P=VALUE, or --where"])
     contact = contact.squeeze(contact["status"].dims)
     by_input = sensitivities(contact)[f"{name}_sensitivity"].to_series().to_dict()
     parts = {key: by_input[key] * part for key, part in relative_spreads(contact, by_input).items()}

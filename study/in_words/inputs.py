@@ -1,14 +1,18 @@
-"""Which inputs of contacts a text or a figure states, and in which order."""
+"""Which inputs of contacts a text or a figure states, in which order, and in which words."""
 
 import numpy as np
 import xarray as xr
 
 from solver.laws import LAWS
 
+from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
 from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY, matters, names
+from .numbers import given_text, spread_of
 
 _OF_BODIES = [name for body, (modulus, ratio, _) in BODIES.items() for name in (body, modulus, ratio)]
+#: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
+_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 
 
 def all_inputs() -> list[str]:
@@ -61,3 +65,31 @@ def is_rigid(contacts: xr.Dataset, body: str) -> bool:
     if ratio not in contacts or (ratio == "n" and (contacts["base"] == "half_space").any()):
         return False
     return bool((contacts[ratio] == 0).all())
+
+
+def given(case: xr.Dataset, left_out=()) -> list[str]:
+    """The line "Given: ..." of one contact, and "Not used: ..." if it has inputs that change nothing; without its
+    control and the names `left_out`."""
+    used = used_inputs(case)
+    inputs = [name for name in used if name not in (*left_out, *CONTROLS)]
+    unsaid = " (assumed)" * ("R" in case and "E_punch" not in case)
+    rigid = [f"a rigid punch{unsaid}"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
+    unused = [name for name in _OPTIONAL if name in case and name not in (*used, *left_out)]
+    unused = [name for name in unused if np.isfinite(case[name])]  # NaN: given for other cases
+    texts = [*rigid, *(given_text(case, name) for name in inputs), *_pieces(case, used)]
+    lines = ["Given: " + ", ".join(texts)]
+    return lines + [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused)
+
+
+def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
+    """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
+    of_material: dict[str, list[str]] = {}
+    for body, (modulus, ratio, _) in BODIES.items():
+        if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
+            of_material.setdefault(str(case[body].values), []).append(body)
+    texts = []
+    for material, bodies in of_material.items():
+        one = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
+        which = "one piece" if one else "independent pieces"
+        texts += [f"{', '.join(bodies[:-1])} and {bodies[-1]} {which} of {material}"] * (len(bodies) > 1)
+    return texts

@@ -69,11 +69,12 @@ def sentences(case: xr.Dataset, judged: list[str], alone: bool) -> list[str]:
         found += [f"Strength: {' '.join(strength)}"] * bool(strength)
         unknown = ", and whether the bodies stay elastic" * (not strength)
         found.append(f"Not checked (docs/model.md, Limits): adhesion{unknown}.")
-    return found + [f"Assumed: {sentence}" for sentence in _assumed(case.variables)]
+    return found + [f"Assumed: {sentence}" for sentence in assumed(case)]
 
 
-def _assumed(v) -> list[str]:
+def assumed(case: xr.Dataset) -> list[str]:
     """A sentence for each default that stands for an input which was not given, and may be far from it."""
+    v = case.variables
     taken = {name for name in v if v[name].attrs.get("comment") == ASSUMED}
     found = [SLIDES] * bool("bonding" in taken and v["base"] != "half_space")
     for modulus, ratio, _ in BODIES.values():

@@ -138,16 +138,20 @@ def _material(case: xr.Dataset, body: str) -> Any:
         return None
 
 
+def _part(share: float) -> str:
+    return f"{share:.2g} {'times' if share > 1 else 'of'}"
+
+
 def _nearest(again: Again, problem: Problem, solution: Any, compared: list) -> list[str]:
     """What is nearest to its limit, the others, and the load at which it would be there."""
     limit, stress, r, z = compared[0]
     share = stress / limit.strength
     place = _place(again, r, z, float(problem.value[0]))
     value, strength = _with_unit(again, stress), _with_unit(again, limit.strength)
-    words = f"nearest to its limit is {limit.who}: the {limit.what}, {value} {place}, is {share:.2g} of the {limit.of}"
+    words = f"nearest to its limit is {limit.who}: the {limit.what}, {value} {place}, is {_part(share)} the {limit.of}"
     said = [f"{words}, {strength}."]
     if len(compared) > 1:
-        rest = ", ".join(f"{one.who} {value / one.strength:.2g} of its {one.of}" for one, value, *_ in compared[1:])
+        rest = ", ".join(f"{one.who} {_part(value / one.strength)} its {one.of}" for one, value, *_ in compared[1:])
         said.append(f"Less near: {rest}.")
     load = _load(problem, solution, limit, share)
     if load is not None:

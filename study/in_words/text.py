@@ -3,12 +3,12 @@
 import numpy as np
 import xarray as xr
 
-from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
-from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
+from ..inputs.vocabulary import VOCABULARY
 from ..specimen.pictures import curve, with_picture
-from .inputs import is_rigid, used_inputs
-from .numbers import given_text, peak_text, result_text, ring_text, spread_of
+from .fits import of_fit
+from .inputs import given, is_rigid
+from .numbers import given_text, peak_text, result_text, ring_text
 from .pressures import largest
 from .sentences import sentences
 
@@ -17,8 +17,6 @@ SHOWN = ("P", "a", "D", "p0", "p_max", "Ar_An", "dP_dD")
 _JUDGED = tuple(name for name in SHOWN if name != "dP_dD")  # what `error` is the largest error of
 #: Left out of smooth contacts: there the real pressure is the nominal one, and the real area is the nominal area.
 OF_ASPERITIES = ("p_max", "Ar_An")
-#: Inputs without a default that a contact may have and not use: "sigma" of micro = "disc_cell", "E1" of a half-space.
-_OPTIONAL = ("E1", "h", "Nbar", "Ra", "sigma", "B", "beta", "hardness", "yield_strength", "Y1", "Y2", "Y_punch")
 #: What stands behind "indentation depth" where the punch yields too, or may.
 OF_BOTH = " (approach of both bodies)"
 RING_LABEL, PEAK_LABEL = "largest nominal pressure, in a ring", "largest real pressure, in the ring"
@@ -55,7 +53,8 @@ def summary(contact: xr.Dataset) -> Summary:
 
     Parameters
     ----------
-    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out
+    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Or
+        of `study.fit`: what was fitted to each curve, and what a curve could not tell
 
     Returns
     -------
@@ -71,6 +70,10 @@ def summary(contact: xr.Dataset) -> Summary:
     >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
     'Given: a rigid punch'
     """
+    if not isinstance(contact, xr.Dataset):
+        raise ValueError(f"summary takes a dataset of study.solve or study.fit, not {type(contact).__name__}")
+    if "fit_status" in contact:
+        return Summary(of_fit(contact))
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
@@ -95,21 +98,13 @@ def summary(contact: xr.Dataset) -> Summary:
 def _summary_of_case(case: xr.Dataset, dims=()) -> str:
     """The text of one case; inputs along `dims` are not repeated."""
     rough = case["micro"].values not in smooth_laws()
-    used = used_inputs(case)
-    inputs = [name for name in used if name not in (*dims, *CONTROLS)]
-    unsaid = " (assumed)" * ("R" in case and "E_punch" not in case)
-    rigid = [f"a rigid punch{unsaid}"] * is_rigid(case, "punch") + ["a rigid base"] * is_rigid(case, "base")
-    unused = [name for name in _OPTIONAL if name in case and name not in (*used, *dims)]
-    unused = [name for name in unused if np.isfinite(case[name])]  # NaN: given for other cases
-    given = [*rigid, *(given_text(case, name) for name in inputs), *_pieces(case, used)]
-    lines = ["Given: " + ", ".join(given)]
-    lines += [f"Not used: {', '.join(given_text(case, name) for name in unused)}"] * bool(unused) + [""]
     names = [name for name in SHOWN if rough or name not in OF_ASPERITIES]
     names += ["plastic_share"] * bool("plastic_share" in case and np.isfinite(case["plastic_share"]))
     rows = _rows(case, names)
     width = max(len(label) for label, _, _ in rows)
-    lines += [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
-    return "\n".join([*lines, "", *sentences(case, [name for name in names if name in _JUDGED], not dims)])
+    lines = [f"  {label:{width}}  {symbol:6} = {text}" for label, symbol, text in rows]
+    judged = [name for name in names if name in _JUDGED]
+    return "\n".join([*given(case, dims), "", *lines, "", *sentences(case, judged, not dims)])
 
 
 def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
@@ -123,17 +118,3 @@ def _rows(case: xr.Dataset, names: list[str]) -> list[tuple[str, str, str]]:
         if name == "p_max" and top.place is not None and np.isfinite(top.real):
             rows.append((PEAK_LABEL, VOCABULARY["p_peak"].symbol, peak_text(case, top.real)))
     return rows
-
-
-def _pieces(case: xr.Dataset, used: list[str]) -> list[str]:
-    """Of bodies of one material whose moduli have a spread, whether these are independent: it changes every ±."""
-    of_material: dict[str, list[str]] = {}
-    for body, (modulus, ratio, _) in BODIES.items():
-        if body in case and modulus in used and spread_of(case, modulus) + spread_of(case, ratio) > 0:
-            of_material.setdefault(str(case[body].values), []).append(body)
-    texts = []
-    for material, bodies in of_material.items():
-        one = all(case[body].attrs.get("comment") == SAME_PIECE for body in bodies)
-        which = "one piece" if one else "independent pieces"
-        texts += [f"{', '.join(bodies[:-1])} and {bodies[-1]} {which} of {material}"] * (len(bodies) > 1)
-    return texts

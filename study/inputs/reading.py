@@ -198,6 +198,8 @@ def hint(text: str, reason: str) -> str:
         return "; a name is given twice in one section"
     place = re.search(r"at line (\d+)", reason)
     line = text.split("\n")[int(place[1]) - 1][:300] if place else ""
+    if "Unclosed" in reason and len(re.findall(r"[\[{]", line or "[")) > len(re.findall(r"[\]}]", line)):
+        return "; a list ends with ], a range with }"
     if re.search("[“”„‘’«»]", line):
         return '; quotes are straight: "5 mm"'
     if re.search(r"=\s*[-+]?\d+,\d", line):

@@ -15,6 +15,14 @@ def test_the_command_writes_the_page_and_replaces_an_older_one(tmp_path, monkeyp
     assert "contact.html" in capsys.readouterr().out
 
 
+def test_a_folder_that_is_not_there_is_made(tmp_path, capsys):
+    assert main(["explore", "--out", str(tmp_path / "new" / "mine.html")]) == 0
+    assert (tmp_path / "new" / "mine.html").stat().st_size
+    assert main(["explore", "--out", str(tmp_path / "new" / "mine.html" / "page.html")]) == 1
+    said = capsys.readouterr().err
+    assert said.startswith("explore: ") and ".tmp" not in said
+
+
 def test_another_file_is_not_replaced(tmp_path, capsys):
     (tmp_path / "mine.html").write_text("a night of writing")
     assert main(["explore", "--out", str(tmp_path / "mine.html")]) == 2

@@ -197,7 +197,7 @@ def test_every_lowest_panel_has_its_abscissa():
 
 def test_too_many_panels():
     found = study.solve(P=[1e-6, 1e-5], h=np.linspace(0.01, 0.02, 13), n=0.5, micro="smooth", x=2)
-    with pytest.raises(StudyError, match=r"13 panels, of h \(13\): at most 12; choose with --where"):
+    with pytest.raises(StudyError, match=r"13 panels, of h \(13\): at most 12; choose by NAME=VALUE, or --where"):
         shown(found, "P", "a")
 
 

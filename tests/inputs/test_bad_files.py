@@ -152,6 +152,7 @@ def test_another_encoding_is_answered_with_the_right_one(tmp_path, content):
         ("P = 1e-6,", False),
         ("P = 1e-6 2e-6", False),
         ('E1 = "200 GPa', False),
+        ("P = {start = 1, stop = 2", False),
     ],
 )
 def test_texts_without_quotes_are_told_of_them(tmp_path, line, hinted):
@@ -160,6 +161,14 @@ def test_texts_without_quotes_are_told_of_them(tmp_path, line, hinted):
     with pytest.raises(study.StudyError, match="is not valid TOML") as caught:
         study_file.read(path)
     assert str(caught.value).endswith('; texts stand in quotes, a number with its unit too: "5 mm"') == hinted
+
+
+@pytest.mark.parametrize("line", ["P = {start = 1, stop = 2", "P = [1, 2", 'layer = ["DLC", "TiN"'])
+def test_what_is_not_closed_is_told_so(tmp_path, line):
+    path = tmp_path / "fig99.toml"
+    path.write_text(f"[axes]\n{line}\n", encoding="utf-8")
+    with pytest.raises(study.StudyError, match=r"a list ends with \], a range with }$"):
+        study_file.read(path)
 
 
 @pytest.mark.parametrize(

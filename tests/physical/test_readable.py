@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import xarray as xr
 from test_physical import COATED, quiet
 
 import study
@@ -24,6 +25,8 @@ def test_multiples():
 
 
 def test_numbers_without_units_have_no_multiples():
+    with pytest.raises(ValueError, match="a dataset of study.fit stays in SI"):
+        study.readable(xr.Dataset({"fit_status": 0}))
     with pytest.raises(ValueError, match="the dataset is dimensionless"):
         study.readable(study.solve(P=1e-5, base="half_space", micro="smooth", x=2))
     with pytest.raises(ValueError, match=r"takes the dataset, not an array of it: study.readable\(contact\).a"):

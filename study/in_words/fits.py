@@ -1,0 +1,123 @@
+"""Fits of measured curves in words: the fitted inputs with their intervals, and what a curve could not tell."""
+
+import numpy as np
+import xarray as xr
+
+from ..data.dataset import decode
+from ..inputs.vocabulary import ROWS
+from ..rules.rule import RULES
+from ..specimen.quantities import readable
+from .sentences import NOT_VIOLATED
+
+NAMES_OF_SHIFTS = {"D0": "contact point", "P0": "baseline", "tilt": "slope of the baseline"}
+"""Unknowns of a fit that are no inputs of the contact."""
+MOST_CURVES = 20  # that are written out
+#: Inputs whose logarithms have a correlation beyond this are told apart by no curve; their product of powers may be.
+_ALIKE = 0.995
+_WITHOUT_NUMBERS = ("no_contact", "invalid_input", "not_run")
+_SENTENCES = {
+    "at_bound": "The best value is at a bound: widen the bounds, or the curve does not hold it.",
+    "iteration_limit": "The search has not ended: do not use these values.",
+    "several_minima": "Another value fits as well: the interval holds all of them.",
+    "not_identifiable": "The curve does not hold a bound of the interval: that end is where the search stopped.",
+    "no_contact": "A straight line describes the curve as well: there is no contact in it, or these inputs make none "
+    "like it. The depth D has to grow, and the load P to rise, as the punch goes in.",
+    "not_run": "It was not fitted: the call was interrupted before.",
+    "invalid_input": "There are fewer points than unknowns, all at one place, or no solution: nothing is fitted.",
+}
+
+
+def of_fit(fitted: xr.Dataset) -> str:
+    """The text of a Dataset of `study.fit`, or of one of its curves."""
+    fitted = fitted if "curve" in fitted.dims else fitted.expand_dims("curve")
+    names = [str(name) for name in fitted["cov_i"].values]
+    inputs, shifts = [n for n in names if n not in NAMES_OF_SHIFTS], [n for n in names if n in NAMES_OF_SHIFTS]
+    x, y, level = fitted.attrs["x"], fitted.attrs["y"], fitted.attrs["level"]
+    count = fitted.sizes["curve"]
+    beside = f", beside {' and '.join(NAMES_OF_SHIFTS[name] for name in shifts)}" if shifts else ""
+    kind = "A plan for" if f"{y}_fit" not in fitted else "Fitted to"
+    lines = [fitted.attrs["given"], ""] if "given" in fitted.attrs else []
+    lines += [
+        f"{kind} {count} curve{'s' * (count != 1)} {y}({x}): {', '.join(inputs)}{beside}. ± is one standard deviation."
+    ]
+    if f"{names[0]}_low" in fitted:
+        lines[-1] += f" In brackets: {100 * level:g} % intervals."
+    for i in range(min(count, MOST_CURVES)):
+        lines += ["", *_of_curve(fitted.isel(curve=i), i, count, inputs, shifts)]
+    if count > MOST_CURVES:
+        words, counts = np.unique(decode(fitted["fit_status"]).values.astype(str), return_counts=True)
+        lines += [
+            "",
+            f"and {count - MOST_CURVES} more. Of all: "
+            + ", ".join(f"{n} {w}" for w, n in zip(words, counts, strict=True)),
+        ]
+    return "\n".join([*lines, *([""] * (count > 1) + [text] if (text := fitted.attrs.get("assumed")) else [])])
+
+
+def _of_curve(curve: xr.Dataset, i: int, count: int, inputs: list[str], shifts: list[str]) -> list[str]:
+    status = str(decode(curve["fit_status"]).item())
+    name = curve["curve"].item() if "curve" in curve.coords else i
+    lines = [f"Curve {name}: {status.replace('_', ' ')}"] if count > 1 or status != "converged" else []
+    if status in _WITHOUT_NUMBERS:
+        return [*lines, _SENTENCES[status]]
+    rows = [(name, _long_name(name), _text(curve, name)) for name in (*inputs, *shifts)]
+    widths = max(len(words) for _, words, _ in rows), max(len(name) for name, _, _ in rows)
+    lines += [f"  {words:{widths[0]}}  {name:{widths[1]}} = {text}" for name, words, text in rows]
+    lines += _residual(curve)
+    lines += [_SENTENCES[status]] if status in _SENTENCES else []
+    lines += _known(curve, inputs)
+    broken = str(decode(curve["validity"]).item()).split() if int(curve["validity"]) else []
+    lines += [f"At the deepest point: {RULES[name].sentence}" for name in broken if name in RULES]
+    lines += [f"At the deepest point {NOT_VIOLATED[0].lower()}{NOT_VIOLATED[1:]}"] * (
+        count == 1 and not broken and status == "converged"
+    )
+    return lines
+
+
+def _residual(curve: xr.Dataset) -> list[str]:
+    """How far the points are from the fit; nothing of a plan."""
+    if "residual" not in curve:
+        return []
+    name, rms = curve.attrs["y"], float(np.sqrt((curve["residual"] ** 2).mean()))
+    share = rms / float(curve[name].max() - curve[name].min())
+    unit = curve["residual"].attrs["units"]
+    off = readable(float(f"{rms:.2g}"), unit)
+    return [f"The points are {off} from the fit (rms), {100 * share:.2g} % of the range of {name}."]
+
+
+def _long_name(name: str) -> str:
+    return NAMES_OF_SHIFTS.get(name) or ROWS[name].long_name
+
+
+def _text(curve: xr.Dataset, name: str) -> str:
+    unit, spread = curve[f"{name}_spread"].attrs["units"], float(curve[f"{name}_spread"])
+    if name not in curve:  # a plan
+        return f"assumed, ± {readable(float(f'{spread:.2g}'), unit)}"
+    text = readable(float(curve[name]), unit, spread)
+    if f"{name}_low" not in curve:
+        return text
+    return f"{text}  ({readable(float(curve[f'{name}_low']), unit)} to {readable(float(curve[f'{name}_high']), unit)})"
+
+
+def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:
+    """Of two inputs that cannot be told apart: which product of their powers is known, and how well."""
+    lines = []
+    for a, first in enumerate(inputs):
+        for second in inputs[a + 1 :]:
+            pair = [first, second]
+            if any(name not in curve for name in pair):
+                continue
+            values = np.array([float(curve[name]) for name in pair])
+            C = curve["covariance"].sel(cov_i=pair, cov_j=pair).values / np.outer(values, values)
+            with np.errstate(invalid="ignore", divide="ignore"):
+                correlation = C[0, 1] / np.sqrt(C[0, 0] * C[1, 1])
+            if not np.abs(correlation) > _ALIKE:
+                continue
+            power = -C[0, 1] / C[1, 1]
+            least = np.sqrt(max(C[0, 0] + 2 * power * C[0, 1] + power**2 * C[1, 1], 0.0))
+            at = readable(values[1], curve[second].attrs["units"])
+            lines.append(
+                f"{first} and {second} cannot be told apart by this curve (correlation {correlation:.3f}). "
+                f"What is known: {first} ({second}/{at})^{power:.2f} to {100 * least:.2g} %."
+            )
+    return lines

@@ -1,0 +1,1 @@
+"""For users of atomic force microscopes: force curves of instruments, and a model file of nanite. See docs/afm.md."""

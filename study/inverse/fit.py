@@ -1,0 +1,210 @@
+"""`fit`: inputs of a contact from measured curves, with intervals."""
+
+import warnings
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..inputs.definition import StudyError
+from ..inputs.vocabulary import NOT_RUN, ROWS
+from ..specimen.quantities import quantity
+from ..terminal import shown
+from ..work.progress import Progress
+from ..work.screen import screen_of
+from .curves import curves as read_curves
+from .fits.answer import answered
+from .fits.asked import Asked, asked
+from .fits.block import FitStatus, fit_block
+from .fits.model import HERTZ, Model
+from .fits.said import said
+from .fits.tables import Table
+
+_BLOCK, _PART = 64, 64  # curves at a time, and their points are filled up to a multiple of this
+_ENDS = ((np.min, np.inf), (np.max, -np.inf))
+
+
+def fit(
+    curves: Any,
+    *,
+    free: list[str] | dict[str, Any],
+    contact_point: bool = True,
+    baseline: bool = True,
+    tilt: bool = False,
+    x: str = "D",
+    y: str = "P",
+    sigma: Any = None,
+    loss: str = "linear",
+    intervals: str | None = "profile",
+    level: float = 0.95,
+    plan: bool = False,
+    progress: bool | None = None,
+    **parameters: Any,
+) -> xr.Dataset:
+    """Fit inputs of a contact to measured curves: y = F(x - D0) + P0 + tilt x, F the solved contact (docs/fit.md).
+
+    Inputs without ± are exact. Those in `free` are fitted. An input with ± in the call ("1.5 ± 0.1 um") is unknown
+    with a Gaussian prior, of its logarithm. The spreads of R, of Poisson ratios and of named materials are taken over
+    into the answer. At most three inputs are unknown.
+
+    Parameters
+    ----------
+    curves : what `curves` takes
+    free : names of inputs, or {name: (low, high)}. Without bounds a modulus lies between 1e-3 and 1e3 times what
+        Hertz's formula gives for the deepest point, another input up to a decade from its value in the call
+    contact_point, baseline, tilt : whether D0, P0, and a slope of the baseline are fitted; of y over D alone
+    x, y : "D", "P"; or "P", "a"; or "a", "dP_dD"
+    sigma : standard deviation of a point of y, SI or a text with unit, or an array; None: from the residuals
+    loss : "huber": points far off count less
+    intervals : "profile" of the likelihood; "fisher", from the curvature at the minimum; None: no NAME_low, NAME_high.
+        Under "huber" they are from the curvature
+    level : of the intervals
+    plan : `curves` holds x alone, and the call the assumed values: how sure a fit would be
+    progress : whether to show how far it is; None: where the terminal or a notebook can
+    parameters : those of `study.solve` with units, without P, a and D
+
+    Returns
+    -------
+    xarray.Dataset : over `curve`: NAME, NAME_low, NAME_high and NAME_spread (that of ln NAME times NAME) of the unknown
+        inputs and of D0, P0, tilt, in SI; `covariance` (curve, cov_i, cov_j); y_fit and `residual` = y - fit over
+        (curve, point); `fit_status`; `validity` of the contact at the deepest point, and x_valid, up to which no
+        assumption is violated. A curve that cannot be fitted has a status and NaN
+
+    Raises
+    ------
+    StudyError : a call that cannot be used, before a curve is read; no curve is an error
+
+    Notes
+    -----
+    An interrupt ends it; curves that are fitted are returned, the others have the status 127, `not_run`.
+
+    Examples
+    --------
+    >>> import study
+    >>> bead = {"R": "5 um", "E2": "1 kPa", "nu2": 0.5, "base": "half_space", "micro": "smooth"}
+    >>> contact = study.solve(**bead, D=[f"{depth} nm" for depth in range(10, 200, 10)], x=2, profiles=False)
+    >>> measured = {"D": (contact.D.values, "m"), "P": (contact.P.values, "N")}
+    >>> fitted = study.fit(measured, **bead | {"E2": None}, free=["E2"])
+    >>> round(fitted.E2.item(), 2)
+    1000.0
+    """
+    options = {"contact_point": contact_point, "baseline": baseline, "tilt": tilt, "sigma": sigma, "loss": loss}
+    options |= {"intervals": intervals, "level": level, "plan": plan}
+    parameters = {name: value for name, value in parameters.items() if value is not None}
+    question = asked(free, parameters, x, y, options)
+    data = _columns(curves, question.model, plan)
+    X, Y, S = _arrays(data, question.model, sigma)
+    if plan:
+        Y = _planned(question, X)
+    table, unknowns = Table(question.model), len(question.model.unknowns) + len(question.shifts)
+    there = np.isfinite(X) & np.isfinite(Y)
+    status = np.where(_usable(X, Y, there, unknowns, "D0" in question.shifts), -1, FitStatus.INVALID_INPUT)
+    rows: dict[int, dict] = {}
+    blocks = list(_blocks(there, status < 0, _stiffness(X, Y, question) if X.size else np.zeros(len(X))))
+    with Progress("fit", int((status < 0).sum()), screen_of(progress), passing=True) as told, np.errstate(all="ignore"):
+        try:
+            for index, filled, points in blocks:
+                arrays = [_packed(A, there, filled, points) for A in (X, Y, S) if A is not None]
+                fits = fit_block(question, table, *arrays, *([None] if S is None else []))
+                rows |= {int(curve): (fits, i) for i, curve in enumerate(index)}
+                told.update(len(index), 0)
+        except KeyboardInterrupt:
+            if not rows:
+                raise
+            warnings.warn(f"fit: interrupted after {len(rows)} of {len(X)} curves, which are kept", stacklevel=2)
+    status = np.where((status < 0) & ~np.isin(np.arange(len(X)), list(rows)), NOT_RUN, status)
+    fitted = answered(question, rows, status, X, Y, there, plan)
+    fitted = fitted.assign_coords({name: data[name] for name in data.coords})
+    return fitted.assign_attrs(said(question, fitted))
+
+
+def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
+    data = _abscissa(source, model.x) if plan else read_curves(source)
+    lacking = [name for name in (model.x, *([] if plan else [model.y])) if name not in data]
+    if lacking:
+        raise StudyError([f"curves: {lacking[0]} is not there; x = {model.x}, y = {model.y} are to be fitted"])
+    return data
+
+
+def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
+    """x, y and the standard deviations of y over (curve, point); NaN for y of a plan."""
+    X = data[model.x].values
+    Y = data[model.y].values if model.y in data else np.full(X.shape, np.nan)
+    if sigma is None:
+        return X, Y, None
+    unit = ROWS[model.y].unit
+    try:
+        values = quantity("sigma", sigma, unit).value if isinstance(sigma, str) else np.asarray(sigma, float)
+    except (TypeError, ValueError) as error:
+        raise StudyError([str(error)]) from None
+    try:
+        S = np.broadcast_to(values, X.shape).copy()
+    except ValueError:
+        raise StudyError([f"sigma has the shape {np.shape(values)}: must be one number, or as y, {X.shape}"]) from None
+    if isinstance(sigma, (bool, np.bool_)) or not np.all(np.isfinite(S[there := np.isfinite(X)]) & (S[there] > 0)):
+        raise StudyError([f"sigma = {shown(sigma)}: must be above 0, in {unit} or with a unit"])
+    return X, Y, S
+
+
+def _abscissa(source: Any, x: str) -> xr.Dataset:
+    """The abscissa of a plan."""
+    if isinstance(source, dict) and set(source) == {x}:
+        values, unit = source[x]
+        same = read_curves(
+            {x: (values, unit), "P" if x != "P" else "a": (np.zeros(np.shape(values)), "N" if x != "P" else "m")}
+        )
+        return same[[x]]
+    if isinstance(source, xr.Dataset):
+        return read_curves(source.assign(D=source[x], P=xr.zeros_like(source[x]).assign_attrs(units="N")))[[x]]
+    return read_curves(source)
+
+
+def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
+    """The curve of the assumed values."""
+    model = question.model
+    values = {name: np.full(1, model.value(name)) for name in model.unknowns}
+    with np.errstate(all="ignore"):
+        flat = np.where(X > 0, X, np.nan).ravel()
+        y = np.zeros(flat.shape)
+        good = np.isfinite(flat)
+        y[good] = model.solved({name: np.full(good.sum(), v[0]) for name, v in values.items()}, flat[good])
+    return np.where(np.isfinite(X), y.reshape(X.shape), np.nan)
+
+
+def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anywhere: bool) -> np.ndarray:
+    """Which curves have more points than unknowns, at more than one x, and more than one y; without a contact point one
+    above 0, which is else where the contact begins."""
+    enough = there.sum(axis=1) > unknowns
+    ends = [[limit(np.where(there, A, out), axis=1, initial=out) for limit, out in _ENDS] for A in (X, Y)]
+    spread = [high - low > 0 for low, high in ends]
+    return enough & spread[0] & spread[1] & ((ends[0][1] > 0) | anywhere)
+
+
+def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
+    """About the modulus of each curve, in any unit: like curves share the tiles of a table."""
+    q, e, _ = HERTZ[question.model.x, question.model.y][0]
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")  # of curves without points
+        return (np.nanmax(Y, axis=1) - np.nanmin(Y, axis=1)) ** (1 / e) / np.nanmax(np.abs(X), axis=1) ** (q / e)
+
+
+def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
+    """Curves of each block, those by which it is filled up to _BLOCK, and the number of its points. Curves that are
+    alike come together: they share tiles."""
+    size = -(-there.sum(axis=1) // _PART) * _PART
+    for points in np.unique(size[usable]):
+        same = np.flatnonzero((size == points) & usable)
+        same = same[np.argsort(stiffness[same], kind="stable")]
+        for begin in range(0, len(same), _BLOCK):
+            index = same[begin : begin + _BLOCK]
+            yield index, np.concatenate([index, np.repeat(index[-1:], _BLOCK - len(index))]), points
+
+
+def _packed(A: np.ndarray, there: np.ndarray, index: np.ndarray, points: int) -> np.ndarray:
+    """The points of some curves, without the gaps between them, filled up with NaN."""
+    packed = np.full((len(index), points), np.nan)
+    for row, curve in zip(packed, index, strict=True):
+        values = A[curve][there[curve]]
+        row[: len(values)] = values
+    return packed

@@ -1,0 +1,131 @@
+"""The Dataset of a fit: from the unknowns of each curve to inputs in SI with their intervals."""
+
+import warnings
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ...in_words.fits import NAMES_OF_SHIFTS
+from ...inputs.vocabulary import NOT_RUN, ROWS
+from ...solving import solve
+from .asked import Asked
+from .block import FitStatus
+from .model import is_ratio
+
+_HALVINGS = 4  # so that it is known to 1/16 of the depth from where on an assumption fails
+
+
+def answered(
+    question: Asked, rows: dict, status: np.ndarray, X: np.ndarray, Y: np.ndarray, there: np.ndarray, plan: bool
+) -> xr.Dataset:
+    model, C = question.model, len(X)
+    names = (*model.unknowns, *question.shifts)
+    k, unit = len(names), ROWS[model.y].unit
+    value, low, high, spread = (np.full((C, k), np.nan) for _ in range(4))
+    covariance, drawn = np.full((C, k, k), np.nan), np.full(X.shape, np.nan)
+    status = status.astype(np.int8)
+    for curve, (answer, i) in rows.items():
+        status[curve] = answer["status"][i]
+        if status[curve] in (FitStatus.INVALID_INPUT, FitStatus.NO_CONTACT):
+            continue
+        sizes = {"D0": answer["wide"][i], "P0": answer["top"][i], "tilt": answer["top"][i] / answer["wide"][i]}
+        p, more = answer["p"][i], answer["propagated"][i]
+        total = answer["covariance"][i] + more
+        by = np.array([_slope(model, name, p[j], sizes) for j, name in enumerate(names)])
+        for j, name in enumerate(names):
+            ends = [_end(p[j], answer[end][i, j], answer["t"][i] * np.sqrt(more[j, j])) for end in ("low", "high")]
+            value[curve, j], low[curve, j], high[curve, j] = (_value(model, name, v, sizes) for v in (p[j], *ends))
+        covariance[curve] = total * by[:, None] * by[None, :]
+        spread[curve] = np.sqrt(np.diag(covariance[curve]))
+        drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
+    variables: dict[str, Any] = {}
+    for j, name in enumerate(names):
+        own = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
+        words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
+        if not plan:
+            variables[name] = ("curve", value[:, j], {"units": own, "long_name": words})
+        ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
+        variables |= {
+            f"{name}_{end}": ("curve", array[:, j], {"units": own}) for end, array in (*ends_of, ("spread", spread))
+        }
+    coordinates = {"cov_i": list(names), "cov_j": list(names)}
+    variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)
+    if not plan:
+        about = {"units": unit}
+        variables[f"{model.y}_fit"] = (("curve", "point"), drawn, about)
+        variables["residual"] = (("curve", "point"), Y - drawn, about | {"long_name": f"{model.y} - fit"})
+    meanings = {int(s): s.name.lower() for s in FitStatus} | ({NOT_RUN: "not_run"} if NOT_RUN in status else {})
+    flags = {"flag_values": np.array([*meanings], np.int8), "flag_meanings": " ".join(meanings.values())}
+    variables["fit_status"] = ("curve", status, flags)
+    variables[model.x] = (("curve", "point"), X, {"units": ROWS[model.x].unit})
+    if not plan:
+        variables[model.y] = (("curve", "point"), Y, {"units": unit})
+    fitted = xr.Dataset(
+        variables, coordinates, {"level": question.level, "x": model.x, "y": model.y, "free": " ".join(question.free)}
+    )
+    return fitted.merge(_validity(question, fitted, value, X, there))
+
+
+def _slope(model, name: str, p: float, sizes: dict) -> float:
+    """d(value in SI)/d(unknown)."""
+    return sizes[name] if name in sizes else 1.0 if is_ratio(name) else float(np.exp(p))
+
+
+def _value(model, name: str, p: float, sizes: dict) -> float:
+    return float(p * sizes[name]) if name in sizes else float(model.of_coordinate(name, p))
+
+
+def _end(p: float, end: float, more: float) -> float:
+    """The end of an interval with what other inputs add to it."""
+    return p + np.sign(end - p) * np.hypot(end - p, more)
+
+
+def _validity(question: Asked, fitted: xr.Dataset, value: np.ndarray, X: np.ndarray, there: np.ndarray) -> xr.Dataset:
+    """What the deepest contact of each fitted curve violates of the assumptions of the model, and up to which x none
+    is."""
+    model = question.model
+    deepest = np.where(there, X, -np.inf).max(axis=1, initial=-np.inf)
+    D0 = fitted["D0"].values if "D0" in fitted else np.zeros(len(X))
+    good = np.isfinite(value).all(axis=1) & (deepest > D0)
+    flags, valid, about = np.zeros(len(X), np.int64), np.where(good, deepest, np.nan), {}
+    if good.any():
+        contacts = _contacts(question, value[good], (deepest - D0)[good])
+        flags[good], about = contacts["validity"].values, contacts["validity"].attrs
+        broken = np.flatnonzero(flags != 0)
+        holds, fails = np.zeros(len(broken), int), np.full(len(broken), 2**_HALVINGS)  # in parts of the depth
+        for _ in range(_HALVINGS if len(broken) else 0):
+            part = (holds + fails) // 2
+            x = part / 2**_HALVINGS * (deepest - D0)[broken]
+            good_there = _contacts(question, value[broken], x)["validity"].values == 0
+            holds, fails = np.where(good_there, part, holds), np.where(good_there, fails, part)
+        x = holds / 2**_HALVINGS * (deepest - D0)[broken]
+        valid[broken] = np.where(holds > 0, D0[broken] + x, -np.inf)
+    variables = {
+        "validity": ("curve", flags, about),
+        f"{model.x}_valid": ("curve", valid, {"units": ROWS[model.x].unit}),
+    }
+    return xr.Dataset(variables)
+
+
+def _contacts(question: Asked, value: np.ndarray, x: np.ndarray) -> xr.Dataset:
+    """Contacts of the unknown inputs `value` (M, k) at x (M,), over `curve`."""
+    model, scene = question.model, question.model.scene
+    values = model.within({name: value[:, i] for i, name in enumerate(model.unknowns)})
+    columns: dict[str, tuple] = {name: (values[name], ROWS[name].unit) for name in model.unknowns}
+    columns |= {
+        name: (float(v), ROWS[name].unit) for name, v in scene.values.items() if name not in columns and name != model.x
+    }
+    columns[model.x] = (x, ROWS[model.x].unit)
+    arrays = {
+        name: xr.DataArray(v, dims=("curve",) if np.ndim(v) else (), attrs={"units": unit})
+        for name, (v, unit) in columns.items()
+    }
+    arrays |= {"E2": "rigid"} if np.isinf(np.asarray(columns.get("E2", (0.0,))[0])).all() else {}
+    others = {*scene.parameters} - {*arrays, "n", "m", "P", "a", "D"}  # those without units
+    arrays |= {name: scene.parameters[name] for name in others if ROWS[name].unit == "1"}
+    if "R1" in arrays:
+        del arrays["R"]
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return solve(**arrays, x=2, profiles=False, progress=False)

@@ -1,0 +1,210 @@
+"""What a call of `fit` asks: the model, its unknown inputs with bounds and priors, and whose spreads it takes over."""
+
+import math
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Any
+
+import numpy as np
+
+from solver.parameters import ends
+
+from ...inputs.definition import Definition, StudyError
+from ...inputs.reading import from_call
+from ...inputs.vocabulary import BODIES, CONTROLS, PARAMETERS, ROWS, SCENE, suggest
+from ...specimen.quantities import has_unit, quantity
+from ...terminal import shown
+from .model import PAIRS, Model, is_ratio
+
+MOST = 3  # unknown inputs
+ROUGHNESS = ("Nbar", "Ra", "sigma", "cut", "B", "beta")
+#: Pairs of inputs that change a curve alike, so that only one of them can be told.
+_ALIKE = [*combinations(ROUGHNESS, 2), ("E1", "nu1"), ("E1", "R"), ("E1", "n")]
+_ALIKE_WORDS = "a curve cannot tell them apart: give one of them a value"
+_ABSCISSA = {"D": "1 nm", "P": "1 nN", "a": "1 nm"}
+_OF_BODIES = {"layer": ("E1", "nu1"), "body": ("E2", "nu2"), "punch": ("E_punch", "nu_punch")}
+_MODULUS = "1 MPa"  # stands for a modulus that is not known while the call is checked
+DECADE = np.log(10.0)
+
+
+@dataclass(frozen=True)
+class Asked:
+    """A checked call.
+
+    model : the curve, with its unknown inputs: free ones, then those with a prior
+    bounds : free input -> (low, high) in SI; what is not here has bounds of its own for each curve
+    priors : input with ± in the call -> (coordinate, its spread), as the unknowns of `Model`
+    spreads : other input -> its spread in its coordinate
+    shifts : unknowns after the inputs
+    call : arguments of `study.solve`: stand-ins for unknown inputs without a value, and for x
+    """
+
+    model: Model
+    free: tuple[str, ...]
+    bounds: dict[str, tuple[float, float]]
+    priors: dict[str, tuple[float, float]]
+    spreads: dict[str, float]
+    shifts: tuple[str, ...]
+    loss: str
+    intervals: str | None
+    level: float
+    call: dict[str, Any]
+
+
+def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
+    """Check a call. Raises StudyError before any curve is read."""
+    errors = _choices(x, y, options)
+    names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
+    known = _numbers()
+    for name in names:
+        if name not in known:
+            near = suggest(name, known, ["such as E1, h or Ra"]).replace("; known: ", ", ")
+            errors.append(f"free: {shown(name)} is no input that can be fitted{near}")
+    errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
+    errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
+    priors = tuple(name for name in parameters if _has_prior(name, parameters[name]) and name not in names)
+    unknowns = (*names, *priors)
+    errors += [f"free: {a} and {b}: {_ALIKE_WORDS}" for a, b in _ALIKE if a in unknowns and b in unknowns]
+    if not names and not errors:
+        errors.append('free: name at least one input, such as free=["E1"]')
+    if len(unknowns) > MOST:
+        errors.append(
+            f"fit: at most {MOST} inputs can be unknown, here are {', '.join(unknowns)}: leave out a ±, or fix one"
+        )
+    bounds: dict[str, tuple[float, float]] = {}
+    for name in (name for name in texts if name in known):
+        bounds |= _bounds(name, texts[name], errors)
+    if errors:
+        raise StudyError(errors)
+    from_material = {name for body, rows in _OF_BODIES.items() if parameters.get(body) is not None for name in rows}
+    open_ = [name for name in names if parameters.get(name) is None and name not in from_material]
+    stand_in = {name: _stand_in(name, bounds) for name in open_}
+    lacking = [name for name, value in stand_in.items() if value is None]
+    if lacking or (options["plan"] and open_):
+        wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
+        way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
+        raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
+    given = parameters | stand_in | {x: _ABSCISSA[x]}
+    _check_ends(given, {name: pair for name, pair in bounds.items() if name not in from_material})
+    definition = _definition(given, "fit")
+    scene = definition.scene
+    if scene is None:
+        raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
+    priors = tuple(name for name in priors if name in scene.spreads)  # ± 0 is exact
+    unknowns = (*names, *priors)
+    moved = tuple(name for name in scene.spreads if name not in unknowns and name not in CONTROLS)
+    model = Model.of(definition, x, y, unknowns, moved)
+    absent = [name for name in unknowns if name not in scene.values and name not in scene.parameters]
+    if absent:
+        raise StudyError([f"free: {name} does not act in this contact" for name in absent])
+    for name in names:
+        if name not in bounds and name != model.modulus:
+            value = model.value(name)
+            bounds[name] = (0.0, 0.5) if is_ratio(name) else _within(name, value / 10, 10 * value)
+    spread = {name: _log_spread(model, name) for name in (*priors, *moved)}
+    prior = {name: (float(model.coordinate(name, model.value(name))), spread.pop(name)) for name in priors}
+    shifts = [
+        name for name, wanted in (("D0", "contact_point"), ("P0", "baseline"), ("tilt", "tilt")) if options[wanted]
+    ]
+    shifts = shifts if x == "D" else []
+    about = (options["loss"], options["intervals"], float(options["level"]))
+    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, given)
+
+
+def _choices(x: str, y: str, options: dict) -> list[str]:
+    errors = []
+    if (x, y) not in PAIRS:
+        listed = "; or ".join(f'x="{a}", y="{b}"' for a, b in PAIRS)
+        errors.append(f"x = {shown(x)}, y = {shown(y)}: must be {listed}")
+    if options["loss"] not in ("linear", "huber"):
+        errors.append(f'loss = {shown(options["loss"])}: must be "linear" or "huber"')
+    if options["intervals"] not in ("profile", "fisher", None):
+        errors.append(f'intervals = {shown(options["intervals"])}: must be "profile", "fisher" or None')
+    level = options["level"]
+    if isinstance(level, bool) or not isinstance(level, (int, float)) or not 0 < level < 1:
+        errors.append(f"level = {shown(level)}: must be between 0 and 1, such as 0.95")
+    for name in ("contact_point", "baseline", "tilt", "plan"):
+        if not isinstance(options[name], bool):
+            errors.append(f"{name} = {shown(options[name])}: must be True or False")
+    if options["plan"] is True and options["sigma"] is None:
+        errors.append("plan: give sigma, the standard deviation of a point")
+    return errors
+
+
+def _listed(free: Any, errors: list[str]) -> tuple[str, ...]:
+    several = isinstance(free, (list, tuple, dict, set, np.ndarray))
+    names = tuple(free) if several else (free,)
+    if not all(isinstance(name, str) for name in names):
+        errors.append(f'free = {shown(free)}: must be names of inputs, such as ["E1"], or {{"E1": ("1 kPa", "1 MPa")}}')
+        return ()
+    return names
+
+
+def _numbers() -> set[str]:
+    """Inputs that may be fitted: numbers of the contact, not settings of the solver."""
+    rows = {name for name in PARAMETERS if ROWS[name].parameter.interval and not ROWS[name].parameter.whole}
+    return (rows | set(SCENE)) - {*BODIES, *CONTROLS, "rtol", "accuracy", "k", "n", "m"}
+
+
+def _has_prior(name: str, value: Any) -> bool:
+    """Whether ± stands in the call: of R, Poisson ratios and names of materials it is taken over, not fitted."""
+    if name == "R" or name in BODIES or is_ratio(name) or name in CONTROLS:
+        return False
+    spread = getattr(value, "std_dev", None) or getattr(getattr(value, "magnitude", None), "std_dev", None)
+    return bool(spread) or (
+        isinstance(value, str) and has_unit(value) and any(sign in value for sign in ("±", "+/-", "+-"))
+    )
+
+
+def _bounds(name: str, pair: Any, errors: list[str]) -> dict[str, tuple[float, float]]:
+    unit = ROWS[name].unit
+    if pair is None:
+        return {}
+    if not isinstance(pair, (tuple, list)) or len(pair) != 2:
+        errors.append(f"free: {name} = {shown(pair)}: must be (low, high)")
+        return {}
+    try:
+        low, high = (quantity(f"free: {name}", end, unit).value for end in pair)
+    except ValueError as error:
+        errors.append(str(error))
+        return {}
+    if not low < high or (low <= 0 and not is_ratio(name)):
+        wanted = "below the high one" if is_ratio(name) else "above 0 and below the high one"
+        errors.append(f"free: {name} = ({pair[0]}, {pair[1]}): the low bound must be {wanted}")
+    return {name: (low, high)}
+
+
+def _definition(parameters: dict, where: str) -> Definition:
+    try:
+        return from_call(parameters, [], False, {"output": {"profiles": False}})
+    except StudyError as error:
+        raise StudyError(message.replace("solve: ", f"{where}: ", 1) for message in error.messages) from None
+
+
+def _check_ends(parameters: dict, bounds: dict) -> None:
+    """Whether the contact takes the bounds. Raises StudyError if not."""
+    for name, pair in bounds.items():
+        for end in pair:
+            _definition(parameters | {name: end if ROWS[name].unit == "1" else f"{end!r} {ROWS[name].unit}"}, "free")
+
+
+def _within(name: str, low: float, high: float) -> tuple[float, float]:
+    """Bounds within the interval of an input without unit."""
+    if ROWS[name].unit != "1":
+        return low, high
+    least, most, *_ = ends(ROWS[name].parameter.interval)
+    return max(low, least), min(high, most)
+
+
+def _stand_in(name: str, bounds: dict) -> str | float | None:
+    """A value for a free input without one, while the call is checked."""
+    if name in bounds:
+        low, high = bounds[name]
+        middle = (low + high) / 2 if is_ratio(name) else math.sqrt(low * high)
+        return middle if ROWS[name].unit == "1" else f"{middle!r} {ROWS[name].unit}"
+    return _MODULUS if name in ("E1", "E2") else 0.3 if is_ratio(name) else None
+
+
+def _log_spread(model: Model, name: str) -> float:
+    spread = float(model.scene.spreads[name])
+    return spread if is_ratio(name) else spread / model.value(name)

@@ -1,0 +1,103 @@
+"""The model of measured curves: y = F(x - D0; inputs) + P0 + tilt x, and its derivatives by the unknowns."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .model import HERTZ
+from .tables import STEP, WIDE, Places, Table
+
+_TILES = 4  # along ln u: from the largest depth down, more than _REACH
+_REACH = np.log(800.0)  # below this part of twice the range of x the last exponent of y(x) goes on
+
+
+@dataclass
+class Curve:
+    """B curves of n points.
+
+    table : of the model
+    x : (B, n), SI
+    wide, high : (B,) units of x and y of each curve; unknowns are D0/wide, P0/high and tilt wide/high, after the inputs
+    shifts : names of the unknowns after the inputs, of "D0", "P0", "tilt"
+    """
+
+    table: Table
+    x: np.ndarray
+    wide: np.ndarray
+    high: np.ndarray
+    shifts: tuple[str, ...]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        return (*self.table.model.unknowns, *self.shifts)
+
+    def take(self, index: np.ndarray) -> "Curve":
+        """Some of the curves."""
+        return replace(self, x=self.x[index], wide=self.wide[index], high=self.high[index])
+
+    def values(self, p: np.ndarray) -> dict[str, np.ndarray]:
+        """Input -> its SI values (B, 1)."""
+        model = self.table.model
+        return {name: model.of_coordinate(name, p[:, i : i + 1]) for i, name in enumerate(model.unknowns)}
+
+    def __call__(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """y/high (B, n), and derivatives (B, n, k)."""
+        F, by, _ = self.contact(p)
+        J = np.zeros((*self.x.shape, len(self.names)))
+        model = self.table.model
+        for i, name in enumerate(model.unknowns):
+            J[:, :, i] = by[name]
+        total = F
+        for name, column in zip(self.shifts, range(len(model.unknowns), len(self.names)), strict=True):
+            if name == "D0":
+                J[:, :, column] = -by["x"] * self.wide[:, None]
+            elif name == "P0":
+                J[:, :, column] = 1.0
+                total = total + p[:, column : column + 1]
+            else:
+                J[:, :, column] = self.x / self.wide[:, None]
+                total = total + p[:, column : column + 1] * J[:, :, column]
+        return total, J
+
+    def contact(self, p: np.ndarray, moved: bool = False) -> tuple[np.ndarray, dict, np.ndarray]:
+        """F/high (B, n), its derivatives by x and the inputs, and if wanted by the inputs `moved` of the model,
+        (moved, B, n). 0 outside the contact."""
+        model, values = self.table.model, self.values(p)
+        depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
+        inside = depth > 0
+        depth = np.where(inside, depth, 1e-12 * self.wide[:, None])
+        shift = np.broadcast_to(model.shift(values), (len(p), 1))
+        deepest = np.log(2 * self.wide)[:, None] + shift
+        u = np.log(depth) + shift
+        above = np.maximum(u, deepest - _REACH)
+        last = np.floor(deepest[:, 0] / WIDE).astype(int)
+        first = last - (_TILES - 1)
+        coordinates = p[:, [model.unknowns.index(name) for name in model.axes]]
+        rows, by_axis = self.table.rows(coordinates, first, _TILES, moved)
+        place = (above - first[:, None] * WIDE) / STEP
+        places = Places(place, rows.shape[2])
+        g, slope = places.read(rows[0], slope=True)
+        slope = slope / STEP
+        power, (_, *of_u) = HERTZ[model.x, model.y]
+        with np.errstate(over="ignore", invalid="ignore"):
+            F = model.hertz(values, depth, power) * np.exp(g + slope * (u - above)) / self.high[:, None]
+        F = np.where(inside, F, 0.0)
+        by = {"x": F * (power[0] + slope) / depth}
+        for name in model.unknowns:
+            by[name] = F * self._log_slope(name, values, power, of_u, slope, by_axis, places)
+        others = [F * places.read(rows[1 + i])[0] for i in range(len(model.moved))] if moved else []
+        return F, by, np.array(others)
+
+    def _log_slope(self, name, values, power, of_u, slope, by_axis, places):
+        """d ln F by the coordinate of an input."""
+        model = self.table.model
+        E = {model.modulus: 1.0}
+        nu = {"E1": "nu1", "E2": "nu2"}[model.modulus]
+        if name == nu:
+            E[nu] = 2 * values[nu] / (1 - values[nu] ** 2)
+        total = power[1] * E.get(name, 0.0) + power[2] * (name == "R")
+        if model.is_similar:
+            total = total + slope * (of_u[0] * (name == "h") + of_u[1] * (name == "R") + of_u[2] * E.get(name, 0.0))
+        if name in model.axes:
+            total = total + places.read(by_axis[model.axes.index(name)])[0]
+        return total

@@ -1,0 +1,137 @@
+"""How sure a fit is: covariances, and intervals by profiles of the likelihood."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from .least_squares import HUBER, Data, Fit, inverse, minimise, normal, scale
+
+_INNER, _INNER_SURE = 30, 1e-4  # steps of an inner fit, and by what part of the mean square it may be off
+_OUTWARD, _BETWEEN = 24, 8  # steps of the walk to the limit, and between its last two places
+_PRECISE = 2e-3  # of the width of an interval
+
+
+class Sure(NamedTuple):
+    """covariance (B, k, k) of the unknowns; low, high (B, k); open (B, k, 2): ends that are bounds."""
+
+    covariance: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+    open: np.ndarray
+
+
+def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
+    """(B, k, k) from the curvature at the minimum; of Huber's loss the sandwich.
+
+    variance : (B,) of a point of weight 1
+    """
+    if not data.huber:
+        A, _ = normal(data, fit.p, fit.model, fit.J, fit.weights)
+        return inverse(A) * variance[:, None, None]
+    residual = np.where(data.w > 0, data.w * (data.y - fit.model), 0.0)
+    limit = HUBER * scale(residual, data.w)[:, None]
+    inside = np.where(np.abs(residual) <= limit, data.w**2, 0.0)
+    A = np.einsum("bni,bn,bnj->bij", fit.J, inside, fit.J) + np.eye(fit.p.shape[1]) * data.stiffness[:, :, None]
+    score = data.w * np.clip(residual, -limit, limit)
+    middle = np.einsum("bni,bn,bnj->bij", fit.J, score**2, fit.J)
+    middle = middle + np.eye(fit.p.shape[1]) * (data.stiffness * variance[:, None])[:, :, None]
+    A = inverse(A)
+    return np.einsum("bij,bjk,bkl->bil", A, middle, A)
+
+
+def profiles(
+    curve: Any,
+    data: Data,
+    best: Fit,
+    ends: list[tuple[np.ndarray, np.ndarray]],
+    limit: np.ndarray,
+    first: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Where the profiles of the first unknowns reach `limit`, their low and high ends: places (B, unknowns, 2), and
+    whether these are bounds.
+
+    ends : of each unknown for its low and its high end the unknowns (B, k) and costs (B,) where the walk begins: of the
+        minima within the limit the farthest on this side
+    first : (B, k) first steps
+
+    All are walked at once: a row is a curve, an unknown and a side.
+    """
+    B, walks = len(best.p), len(ends)
+    rows, walk = np.tile(np.arange(B), walks), np.repeat(np.arange(walks), B)
+    which, side = walk // 2, np.where(walk % 2, 1.0, -1.0)
+    begin = np.concatenate([p for p, _ in ends]), np.concatenate([cost for _, cost in ends])
+    place, at_bound = _walk(
+        (curve.take(rows), data.take(rows)), best.take(rows), begin, limit[rows], first[rows, which], which, side
+    )
+    shape = (walks // 2, 2, B)
+    return np.moveaxis(place.reshape(shape), 2, 0), np.moveaxis(at_bound.reshape(shape), 2, 0)
+
+
+def _walk(
+    of: tuple[Any, Data],
+    best: Fit,
+    begin: tuple[np.ndarray, np.ndarray],
+    limit: np.ndarray,
+    step: np.ndarray,
+    which: np.ndarray,
+    side: np.ndarray,
+) -> tuple[np.ndarray, np.ndarray]:
+    """Where the profile of unknown `which` (B,) reaches `limit` on its side (B,), -1 or 1: its place (B,), and whether
+    it is a bound."""
+    every, data, start = np.arange(len(which)), of[1], best.cost
+    bound = np.where(side > 0, data.high[every, which], data.low[every, which])
+    p, inside = begin[0].copy(), begin[0][every, which]
+    height = np.sqrt(np.maximum(begin[1] - start, 0.0))
+    top = np.sqrt(np.maximum(limit - start, 0.0))
+    outside, beyond, open_ = np.full(len(p), np.nan), np.full(len(p), np.nan), np.zeros(len(p), bool)
+    step, done = np.maximum(step, 1e-6), ~np.isfinite(limit)
+    for _ in range(_OUTWARD):
+        if done.all():
+            break
+        trial = inside + side * step
+        trial = np.where(side > 0, np.minimum(trial, bound), np.maximum(trial, bound))
+        p, h = _inner(of, p, which, trial, start, ~done)
+        out = ~done & (h > top)
+        outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
+        at_bound = ~done & ~out & (trial == bound)
+        open_ |= at_bound
+        moving = ~done & ~out
+        inside, height = np.where(moving, trial, inside), np.where(moving, h, height)
+        done = done | out | at_bound
+        step = step * 1.7
+    place = np.where(open_, bound, inside)
+    found = np.isfinite(outside)
+    for _ in range(_BETWEEN):
+        width = np.abs(outside - inside)
+        left = found & (width > _PRECISE * np.abs(outside - best.p[every, which]))
+        if not left.any():
+            break
+        share = np.clip(_share(top, height, beyond), 0.05, 0.95)
+        trial = inside + share * (outside - inside)
+        p, h = _inner(of, p, which, trial, start, left)
+        out = left & (h > top)
+        outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
+        inside, height = np.where(left & ~out, trial, inside), np.where(left & ~out, h, height)
+    share = np.clip(_share(top, height, beyond), 0.0, 1.0)
+    return np.where(found, inside + share * (outside - inside), place), open_
+
+
+def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarray:
+    """Which part of the way from `height` to `beyond` is up to the top, if the way is straight."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        share = (top - height) / (beyond - height)
+    return np.where(np.isfinite(share), share, 0.5)
+
+
+def _inner(
+    of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """The other unknowns where unknown `which` has a value, and the root of what the cost is above that of the best
+    fit; of the rows that are `wanted`. Others stay: what a curve gets must not depend on how far its company walks."""
+    rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
+    p[rows, which[rows]] = value[rows]
+    held = np.zeros((len(rows), p.shape[1]), bool)
+    held[np.arange(len(rows)), which[rows]] = True
+    fit = minimise(of[0].take(rows), of[1].take(rows), p[rows], held, _INNER, _INNER_SURE)
+    p[rows], height[rows] = fit.p, np.sqrt(np.maximum(fit.cost - start[rows], 0.0))
+    return p, height

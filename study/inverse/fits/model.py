@@ -1,0 +1,145 @@
+"""The curve y(x) of a scene as a function of its unknown inputs: exact, from the solver, in SI units."""
+
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from solver import Problem, solve
+from solver.parameters import PARAMETERS as LIMITS
+from solver.parameters import ends
+
+from ...inputs.definition import Definition, StudyError
+from ...inputs.scene.scales import make_dimensionless, with_unit
+from ...inputs.scene.scene import Scene
+from ...inputs.vocabulary import PARAMETERS, VOCABULARY
+
+#: Exponents of Hertz's contact: y = x^q E^e R^r on a half-space of the layer, and of x, h, R, E in the number u of
+#: which alone, beside ratios of moduli, y over that depends: the contact of a smooth paraboloid has no length but h²/R.
+HERTZ = {
+    ("D", "P"): ((1.5, 1.0, 0.5), (1.0, -2.0, 1.0, 0.0)),
+    ("P", "a"): ((1 / 3, -1 / 3, 1 / 3), (1.0, -3.0, 1.0, -1.0)),
+    ("a", "dP_dD"): ((1.0, 1.0, 0.0), (1.0, -1.0, 0.0, 0.0)),
+}
+PAIRS = tuple(HERTZ)
+_RTOL = 1e-7  # of the solutions: tables are as good as these
+_SMOOTH = ("layered", "half_space")  # bases on which a smooth contact depends on u
+
+
+def is_ratio(name: str) -> bool:
+    """Whether an input is a Poisson ratio, which may be 0: it counts itself, not its logarithm."""
+    return name in ("nu1", "nu2", "nu_punch")
+
+
+@dataclass(frozen=True)
+class Model:
+    """A curve y(x) of one contact.
+
+    scene : its inputs in SI; those in `unknowns` have any value
+    x, y : ("D", "P"), ("P", "a") or ("a", "dP_dD")
+    unknowns : names of inputs; their coordinate is the logarithm of the SI value, of Poisson ratios the ratio
+    moved : other inputs, by whose logarithms (ratios: themselves) derivatives are wanted
+    """
+
+    scene: Scene
+    x: str
+    y: str
+    unknowns: tuple[str, ...]
+    moved: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, definition: Definition, x: str, y: str, unknowns: tuple[str, ...], moved: tuple[str, ...]) -> "Model":
+        """Of a checked call. Raises StudyError for inputs of several values."""
+        several = [*definition.grid.sizes]
+        if several:
+            raise StudyError([f"fit: {name} has several values: one for all curves is allowed" for name in several])
+        assert definition.scene is not None
+        return cls(definition.scene, x, y, unknowns, moved)
+
+    @property
+    def modulus(self) -> str:
+        """The modulus of what is touched: E1 of a layer, else E2."""
+        return "E1" if "E1" in self.scene.values else "E2"
+
+    @property
+    def is_similar(self) -> bool:
+        """Whether h and R count by u alone: of a smooth paraboloid on the exact layer or a half-space."""
+        numbers = self.scene.parameters
+        return numbers.get("micro") == "smooth" and numbers.get("base", "layered") in _SMOOTH
+
+    @property
+    def scales_only(self) -> bool:
+        """Whether the modulus of what is touched is the only finite one, so that it is a factor alone."""
+        values = self.scene.values
+        others = {"E1", "E2", "E_punch"} - {self.modulus}
+        return self.is_similar and all(np.isinf(values.get(name, np.inf)) for name in others)
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Unknown inputs by which y over its Hertzian part depends apart from u."""
+        left_out = {"h", "R"} if self.is_similar else set()
+        left_out |= {self.modulus} if self.scales_only else set()
+        return tuple(name for name in self.unknowns if name not in left_out)
+
+    def value(self, name: str) -> float:
+        return float(self.scene.values[name] if name in self.scene.values else self.scene.parameters[name])
+
+    def coordinate(self, name: str, value: Any) -> np.ndarray:
+        """The coordinate of a value in SI."""
+        return np.asarray(value, float) if is_ratio(name) else np.log(value)
+
+    def of_coordinate(self, name: str, coordinate: Any) -> Any:
+        """The value in SI of a coordinate."""
+        with np.errstate(over="ignore"):  # of the end of an interval of what is hardly known
+            return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
+
+    def within(self, values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Values (M,) within what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval, beyond which
+        y over its Hertzian part does not change any more."""
+        values = values | {name: np.minimum(values[name], 0.5) for name in ("nu1", "nu2") if name in values}
+        own = self.scene.values | values
+        if {"E1", "E2"} <= {*own} and np.isfinite(own["E2"]).all() and {"E1", "E2"} & {*values}:
+            low, high, *_ = ends(LIMITS["n"].interval)
+            nu1, nu2 = (own.get(name, 0.3) for name in ("nu1", "nu2"))
+            n = own["E1"] / (1 - nu1**2) / own["E2"] * (1 - nu2**2)
+            factor = np.clip(n, 2 * low, high / 2) / n  # not at its very ends, for what is then moved
+            values = values | ({"E1": values["E1"] * factor} if "E1" in values else {"E2": values["E2"] / factor})
+        return values
+
+    def hertz(self, values: dict[str, Any], x: Any, power: tuple) -> Any:
+        """x^q E^e R^r, with E the reduced modulus of what is touched."""
+        q, e, r = power
+        E, R = self._touched(values), values.get("R", self.scene.R)
+        return x**q * E**e * R**r
+
+    def _touched(self, values: dict[str, Any]) -> Any:
+        nu = {"E1": "nu1", "E2": "nu2"}[self.modulus]
+        E = values.get(self.modulus, self.scene.values[self.modulus])
+        return E / (1 - values.get(nu, self.scene.values.get(nu, 0.3)) ** 2)
+
+    def log_u(self, values: dict[str, Any], x: Any) -> Any:
+        """ln u; without similarity ln x."""
+        if not self.is_similar:
+            return np.log(x)
+        return np.log(x) + self.shift(values)
+
+    def shift(self, values: dict[str, Any]) -> Any:
+        """ln u - ln x."""
+        if not self.is_similar:
+            return 0.0
+        _, (_, h, R, E) = HERTZ[self.x, self.y]
+        own = self.scene.values
+        thickness = values.get("h", own.get("h", 1.0))
+        return h * np.log(thickness) + R * np.log(values.get("R", self.scene.R)) + E * np.log(self._touched(values))
+
+    def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:
+        """y (M,) at x (M,), both in SI, for values (M,) of inputs; NaN where a contact has no solution."""
+        changed = replace(self.scene, values=self.scene.values | values, parameters=dict(self.scene.parameters))
+        make_dimensionless(changed)
+        numbers = {name: value for name, value in changed.parameters.items() if name in PARAMETERS}
+        unit, R = changed.unit, changed.R
+        control = with_unit(x, tuple(-power for power in VOCABULARY[self.x].powers), unit, R)
+        numbers = {name: value for name, value in numbers.items() if name not in ("P", "a", "D")} | {"rtol": _RTOL}
+        solution = solve(Problem.of(**{self.x: control}, **numbers), np.array([0.0]))
+        y = with_unit(getattr(solution, self.y), VOCABULARY[self.y].powers, unit, R)
+        return np.where(solution.status == 0, y, np.nan)

@@ -1,0 +1,145 @@
+"""A table of y(x; unknown inputs) that is read a million times: polynomials on tiles, made where they are needed.
+
+What is tabulated is g = ln(y/Hertz's y) over ln u and the coordinates of the unknown inputs (`Model`). Tiles lie on a
+fixed lattice, so that the numbers of a curve do not depend on which other curves there are. Along ln u a tile has
+_LATTICE points, between which a cubic is drawn; along the others it has Chebyshev points.
+"""
+
+import numpy as np
+
+from .model import HERTZ, Model, is_ratio
+
+WIDE = np.log(16.0)  # of a tile, of a logarithm; of a Poisson ratio:
+_WIDE_RATIO = 0.25
+_LATTICE = 32
+STEP = WIDE / _LATTICE
+#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 1e-7 of
+#: solutions, with three 1e-5 (tests/inverse/test_tables.py).
+_POINTS = {1: 16, 2: 14, 3: 8, 4: 6}
+_MARGIN = 2.5 * STEP  # beyond the ends of a tile: the cubic takes points on both sides
+_MOVE = 1e-4  # of inputs by which derivatives are wanted
+
+
+def width(name: str) -> float:
+    """Of a tile along the coordinate of an input."""
+    return _WIDE_RATIO if is_ratio(name) else WIDE
+
+
+class Table:
+    """Tiles of a model, made on demand. Not for several threads."""
+
+    def __init__(self, model: Model):
+        self.model, self.tiles, self.stacks = model, {}, {}
+        axes = 1 + len(model.axes)
+        self.points = _POINTS[min(axes, 4)]
+        t = np.cos(np.pi * (np.arange(self.points) + 0.5) / self.points)  # Chebyshev points of the first kind
+        self.t = t
+        self.weights = (-1.0) ** np.arange(self.points) * np.sin(np.pi * (np.arange(self.points) + 0.5) / self.points)
+        lattice = (np.arange(_LATTICE) / _LATTICE * WIDE - WIDE / 2) / (WIDE / 2 + _MARGIN)
+        self.along_u = self.lagrange(lattice)[0]
+
+    def lagrange(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Lagrange polynomials of the Chebyshev points at s (B,), and their derivatives: (B, points) each."""
+        away = s[:, None] - self.t
+        away = np.where(np.abs(away) < 1e-13, 1e-13, away)
+        part = self.weights / away
+        total = part.sum(axis=1, keepdims=True)
+        values = part / total
+        slopes = -part / away / total + values * (part / away).sum(axis=1, keepdims=True) / total
+        return values, slopes
+
+    def make(self, place: tuple[int, ...]) -> None:
+        """Solve what a tile needs that is not there yet. It holds g, (1 + moved, _LATTICE, points of the other
+        coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no solution.
+
+        Each tile is a batch of its own: the last digits of a solution depend on what is solved with it.
+        """
+        model, names = self.model, self.model.axes
+        middle = (np.array(place) + 0.5) * [WIDE, *map(width, names)]
+        half = [WIDE / 2 + _MARGIN, *(width(name) / 2 for name in names)]
+        parts = np.stack([grid.ravel() for grid in np.meshgrid(*([self.t] * len(half)), indexing="ij")], axis=-1)
+        u, *coordinates = (middle + half * parts).T
+        values = {name: model.of_coordinate(name, c) for name, c in zip(names, coordinates, strict=True)}
+        values = model.within(values)
+        x = np.exp(u - model.shift(values))
+        hertz = model.hertz(values, x, HERTZ[model.x, model.y][0])
+        with np.errstate(all="ignore"):
+            rows = [np.log(model.solved(values, x) / hertz)]
+            for name in model.moved:
+                value = np.broadcast_to(values.get(name, model.value(name)), x.shape)
+                by = _MOVE * (1.0 if is_ratio(name) else value)
+                ends = [np.log(model.solved(values | {name: value + sign * by}, x)) for sign in (1, -1)]
+                rows.append((ends[0] - ends[1]) / (2 * _MOVE))
+        g = np.array(rows).reshape(len(rows), self.points, -1)
+        self.tiles[place] = np.einsum("lp,rpc->rlc", self.along_u, g)
+
+    def _stack(self, place: tuple[int, ...], count: int) -> np.ndarray:
+        """Tiles one after another along ln u."""
+        key = (count, *place)
+        if key not in self.stacks:
+            several = [(place[0] + k, *place[1:]) for k in range(count)]
+            for tile in several:
+                if tile not in self.tiles:
+                    self.make(tile)
+            tiles = [self.tiles[tile] for tile in several]
+            self.stacks[key] = np.concatenate(tiles, axis=1)
+        return self.stacks[key]
+
+    def rows(
+        self, coordinates: np.ndarray, first: np.ndarray, count: int, moved: bool = False
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """g along ln u for B curves: (1 + moved, B, count * _LATTICE), and the derivatives of g itself by each
+        coordinate, (axes, B, ...). The derivatives by the inputs `moved` of the model are there if wanted.
+
+        coordinates : (B, axes); first : (B,) the first tile of each along ln u; count : how many
+        """
+        B, names = len(coordinates), self.model.axes
+        wide = np.array([width(name) for name in names])
+        places = np.floor(coordinates / wide).astype(int)
+        own, slopes = self.lagrange((2 * (coordinates / wide - places) - 1).ravel())
+        own, slopes = (part.reshape(B, len(names), self.points) for part in (own, slopes))
+        factors = [
+            [slopes[:, i] * 2 / wide[i] if i == j else own[:, i] for i in range(len(names))]
+            for j in range(-1, len(names))
+        ]
+        weights = np.array([_products(factor, B) for factor in factors])  # of g itself, and of its derivatives
+        key = np.column_stack([first, places])
+        several = [tuple(place) for place in np.unique(key, axis=0).tolist()]
+        rows = np.empty((1 + len(self.model.moved), B, count * _LATTICE))
+        by = np.empty((len(names), B, count * _LATTICE))
+        for place in several:
+            here = (key == place).all(axis=1)
+            stack = self._stack(place, count)
+            # einsum, not BLAS: the sums of a curve do not depend on how many others stand here
+            both = np.einsum("wbc,lc->wbl", weights[:, here], stack[0])
+            rows[0, here], by[:, here] = both[0], both[1:]
+            if moved and len(stack) > 1:
+                rows[1:, here] = np.einsum("bc,rlc->rbl", weights[0, here], stack[1:])
+        return rows, by
+
+
+def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
+    """All products of one number of each factor (B, n): (B, n1 n2 ...)."""
+    whole = np.ones((B, 1))
+    for factor in factors:
+        whole = (whole[:, :, None] * factor[:, None, :]).reshape(B, -1)
+    return whole
+
+
+class Places:
+    """Places (B, n) in rows of L points, where cubics through four points are read: counted in points, from 1 to L -
+    3."""
+
+    def __init__(self, place: np.ndarray, length: int):
+        i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, as none is below 0
+        self.t = place - i
+        self.flat = i + length * np.arange(len(place))[:, None] - 1
+
+    def read(self, rows: np.ndarray, slope: bool = False) -> tuple:
+        """Values (B, n) of rows (B, L), and their derivatives by the place, or None."""
+        t, flat = self.t, rows.reshape(-1)
+        a, b, c, d = (flat.take(self.flat + k) for k in range(4))
+        second, third = (a + c) / 2 - b, (d - a) / 6 + (b - c) / 2
+        first = c - b - second - third
+        value = b + t * (first + t * (second + t * third))
+        return value, first + t * (2 * second + 3 * t * third) if slope else None

@@ -1,0 +1,1 @@
+"""Asked backwards: which input makes a wanted result, and which contacts are good enough."""

@@ -1,0 +1,113 @@
+"""What a design says of each contact: the answer with its ±, or why there is none and what would help."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+import xarray as xr
+
+from ..data.dataset import decode, parts
+from ..data.si import dataset_of
+from ..derivatives import sensitivities
+from ..inputs.scene.changes import RATIOS
+from ..inputs.vocabulary import NOT_RUN, ROWS, VOCABULARY
+from ..specimen.quantities import readable
+from .design_cases import Wanted, solved
+
+if TYPE_CHECKING:
+    from .design import Answer
+
+_MOST = 0.99  # an input that makes more of the variance makes "nearly all" of it
+
+
+def messages(want: Wanted, answer: "Answer", contacts: xr.Dataset) -> list[str]:
+    """A text for each case (B,).
+
+    contacts : the solutions, with the spread and the ends of the input
+    """
+    helps = _helps(want, answer)
+    valid = decode(contacts["validity"]).values.reshape(answer.t.shape)
+    ends = [contacts[f"{want.name}{end}"].values.reshape(answer.t.shape) for end in ("", "_spread", "_low", "_high")]
+    texts = []
+    for row, status in enumerate(answer.status.tolist()):
+        if status == NOT_RUN:
+            texts.append("not searched: interrupted before")
+        elif not np.isfinite(answer.t[row]).any():
+            texts.append(_none(want, answer, row) + helps.get(row, ""))
+        else:
+            columns = [number for number, t in enumerate(answer.t[row]) if np.isfinite(t)]
+            each = [_solution(want, answer, row, number, [end[row, number] for end in ends]) for number in columns]
+            outside = [f"; outside the model there: {valid[row, n].replace(' ', ', ')}" * bool(valid[row, n]) for n in columns]
+            found = "; or ".join(map("".join, zip(each, outside, strict=True)))
+            edge = f". {want.name} is at a bound there: beyond it there may be more" * (status == 4)
+            texts.append(f"{_value(want, want.target, want.level)} at {found}{edge}")
+    return texts
+
+
+def _text(want: Wanted, name: str, value: float, spread: float = 0.0) -> str:
+    """A number with its unit and ±."""
+    if want.definition.scene:
+        return readable(value, ROWS[name].unit, spread)
+    return f"{value:.5g} {VOCABULARY[name].scale}".rstrip()
+
+
+def _value(want: Wanted, name: str, value: float, spread: float = 0.0) -> str:
+    return f"{name} = {_text(want, name, value, spread)}"
+
+
+def _solution(want: Wanted, answer: "Answer", row: int, number: int, ends: list[float]) -> str:
+    """One solution with its ±, and which input makes most of it."""
+    x, spread, low, high = ends
+    text = _value(want, want.name, x, spread)
+    if not spread > 0:
+        return text
+    text += f" ({' to '.join(_text(want, want.name, end) if np.isfinite(end) else 'none' for end in (low, high))})"
+    least, _, largest, _ = answer.reach[row]
+    off = answer.spread[row, number]
+    if not (np.isfinite(low) and np.isfinite(high)):
+        never = [f"below {_text(want, want.target, least)}"] * bool(least > want.level - off)
+        never += [f"above {_text(want, want.target, largest)}"] * bool(largest < want.level + off)
+        text += f", for {want.target} is never {' or '.join(never)} within the bounds" * bool(never)
+    if answer.shares:
+        most = max(answer.shares, key=lambda name: answer.shares[name][row, number])
+        share = answer.shares[most][row, number]
+        text += f"; {most} makes {'nearly all' if share > _MOST else f'{100 * share:.0f} %'} of its variance"
+    return text
+
+
+def _none(want: Wanted, answer: "Answer", row: int) -> str:
+    """Why there is no solution, with the range that is reached."""
+    least, t_least, largest, t_largest = answer.reach[row]
+    span = f"{want.name} from {_text(want, want.name, want.low)} to {_text(want, want.name, want.high)}"
+    wish = _value(want, want.target, want.level)
+    if not np.isfinite(least):
+        return f"no {wish}: with {span} no contact has a solution"
+    at = [_value(want, want.name, float(want.x_of(t))) for t in (t_least, t_largest)]
+    reached = f"{_text(want, want.target, least)} (at {at[0]}) to {_text(want, want.target, largest)} (at {at[1]})"
+    if answer.status[row] == 5:
+        return f"no {wish}: with {span} it is {reached}, and where it would be as wanted contacts have no solution"
+    return f"no {wish}: with {span} it is {reached}"
+
+
+def _helps(want: Wanted, answer: "Answer") -> dict[int, str]:
+    """Case without a solution -> which input would move the result most, where it is nearest to what is wanted."""
+    lacking = np.isin(answer.status, (2, 3))
+    if not lacking.any():
+        return {}
+    nearest = np.where(answer.status == 2, answer.reach[:, 1], answer.reach[:, 3])
+    definition = want.at(np.where(lacking, nearest, np.nan)[:, None])
+    arrays = solved(definition, lacking)
+    contacts = dataset_of(definition, parts(definition, arrays, "study.design").settings_apart())
+    by_input = sensitivities(contacts)[f"{want.target}_sensitivity"]
+    fits = ("B", "beta") if definition.grid.fitted else ()
+    names = [name for name in by_input["input"].values.tolist() if name not in (want.name, *fits)]
+    slopes = by_input.sel(input=names).values.reshape(want.size, len(names))
+    values = [contacts[name].broadcast_like(contacts["status"]).values.ravel() if name in RATIOS else 1 for name in names]
+    slopes = slopes * np.stack(np.broadcast_arrays(*values, np.ones(want.size))[:-1], axis=-1)
+    texts = {}
+    for row in np.flatnonzero(lacking & np.isfinite(slopes).all(axis=1)).tolist():
+        best = int(np.argmax(np.abs(slopes[row])))
+        slope = float(slopes[row, best])
+        if slope:
+            way = "larger" if slope > 0 else "smaller"
+            texts[row] = f". {names[best]} would move it most: 1 % more makes it {abs(slope):.2g} % {way}"
+    return texts

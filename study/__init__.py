@@ -30,6 +30,8 @@ if TYPE_CHECKING:
     from .in_words import summary
     from .inputs import vocabulary
     from .inputs.definition import StudyError
+    from .inverse.design import design
+    from .inverse.design_choice import feasible, front
     from .solving import solve
     from .specimen import materials, roughness
     from .yields.first import first_yield
@@ -43,11 +45,14 @@ __all__ = [
     "catalogue",
     "decode",
     "derived",
+    "design",
     "drawing",
     "extremes",
+    "feasible",
     "figure",
     "first_yield",
     "from_physical",
+    "front",
     "h_protect",
     "load",
     "materials",
@@ -70,6 +75,9 @@ _HOME = {
     "solve": "solving",
     "sensitivities": "derivatives",
     "extremes": "fields",
+    "design": "inverse.design",
+    "feasible": "inverse.design_choice",
+    "front": "inverse.design_choice",
     "first_yield": "yields.first",
     "h_protect": "yields.protect",
     "stresses": "fields",

@@ -5,7 +5,7 @@ import xarray as xr
 
 from ..data.si import SAME_PIECE
 from ..inputs.laws import smooth_laws
-from ..inputs.vocabulary import BODIES, CONTROLS, VOCABULARY
+from ..inputs.vocabulary import BODIES, CONTROLS, NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
 from .inputs import is_rigid, used_inputs
 from .numbers import given_text, peak_text, result_text, ring_text, spread_of
@@ -55,7 +55,8 @@ def summary(contact: xr.Dataset) -> Summary:
 
     Parameters
     ----------
-    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out
+    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Of
+        `study.design` the text has what was found for each contact, and of a single one each solution
 
     Returns
     -------
@@ -71,6 +72,8 @@ def summary(contact: xr.Dataset) -> Summary:
     >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
     'Given: a rigid punch'
     """
+    if "design_status" in contact:
+        return _of_design(contact)
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
@@ -90,6 +93,23 @@ def summary(contact: xr.Dataset) -> Summary:
     if cases.sizes["one"] > MOST_CASES:
         texts.append(f"--- and {cases.sizes['one'] - MOST_CASES} more cases: choose some with sel() or isel()")
     return Summary("\n\n".join(texts))
+
+
+def _of_design(designed: xr.Dataset) -> Summary:
+    """What `study.design` found for each contact that was asked for; of a single one each solution in words."""
+    dims = [str(dim) for dim in designed["design_status"].dims]
+    if not dims:
+        solutions = [designed.isel(solution=number) for number in range(designed.sizes["solution"])]
+        solutions = [one for one in solutions if one["status"] != NOT_RUN]
+        text = "\n\n".join([str(designed["message"].values) + ".", *map(_summary_of_case, solutions)])
+        return Summary.of(text, solutions[0]) if len(solutions) == 1 else Summary(text)
+    cases, texts = designed.stack({"one": dims}, create_index=False), []
+    for i in range(min(cases.sizes["one"], MOST_CASES)):
+        case = cases.isel(one=i)
+        where = str(case["label"].values) if "label" in case else ", ".join(given_text(case, dim) for dim in dims)
+        texts.append(f"--- {where}\n{case['message'].values}.")
+    more = cases.sizes["one"] - MOST_CASES
+    return Summary("\n".join([*texts, *[f"--- and {more} more: choose some with sel() or isel()"] * (more > 0)]))
 
 
 def _summary_of_case(case: xr.Dataset, dims=()) -> str:

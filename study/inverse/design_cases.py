@@ -100,13 +100,14 @@ class Wanted:
         definition, scene = self.definition, self.definition.scene
         grid, dims = definition.grid, (*definition.grid.sizes, "solution")
         x = self.x_of(t).reshape(*grid.shape, -1)
-        values = grid.values | {self.name: (dims, x)}
-        if scene:
+        if not scene:
+            values = grid.values | {self.name: (dims, x)}
+        else:
             scene = replace(scene, values=scene.values | {self.name: xr.DataArray(x, dims=dims)})
             scene.parameters = dict(scene.parameters)
             make_dimensionless(scene)
             arrays = {key: (getattr(v, "dims", ()), np.asarray(v)) for key, v in scene.parameters.items()}
-            values |= {key: pair for key, pair in arrays.items() if key in PARAMETERS}
+            values = grid.values | {key: pair for key, pair in arrays.items() if key in PARAMETERS}
         grid = replace(grid, sizes=grid.sizes | {"solution": x.shape[-1]}, values=values)
         if self._refits:
             products = np.broadcast_arrays(along(grid, "Nbar"), along(grid, "Ra"), x)[:2]

@@ -60,7 +60,8 @@ def _solution(want: Wanted, answer: "Answer", row: int, number: int, ends: list[
     text = _value(want, want.name, x, spread)
     if not spread > 0:
         return text
-    text += f" ({' to '.join(_text(want, want.name, end) if np.isfinite(end) else 'none' for end in (low, high))})"
+    rounded = [_text(want, want.name, float(f"{end:.4g}")) if np.isfinite(end) else "none" for end in (low, high)]
+    text += f" ({' to '.join(rounded)})"
     least, _, largest, _ = answer.reach[row]
     off = answer.spread[row, number]
     if not (np.isfinite(low) and np.isfinite(high)):
@@ -108,6 +109,8 @@ def _helps(want: Wanted, answer: "Answer") -> dict[int, str]:
         best = int(np.argmax(np.abs(slopes[row])))
         slope = float(slopes[row, best])
         if slope:
-            way = "larger" if slope > 0 else "smaller"
-            texts[row] = f". {names[best]} would move it most: 1 % more makes it {abs(slope):.2g} % {way}"
+            smaller = answer.status[row] == 2
+            way = "less" if (slope > 0) == smaller else "more"
+            change = f"{abs(slope):.2g} % {'smaller' if smaller else 'larger'}"
+            texts[row] = f". {names[best]} would move it most: 1 % {way} makes it {change}"
     return texts

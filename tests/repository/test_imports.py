@@ -29,7 +29,7 @@ ROOMS = {
     ),
     "study": (
         *("terminal", "specimen", "inputs", "pages", "rules", "data", "again", "derivatives", "fields", "in_words"),
-        *("files", "store", "work", "carried", "lazy", "solving", "yields", "figures", "api", "catalogue", "explorer"),
+        *("files", "store", "work", "carried", "lazy", "solving", "inverse", "yields", "figures", "api", "catalogue", "explorer"),
         *("commands", "__main__"),
     ),
 }

@@ -1,7 +1,7 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-point | design | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot | table |
-tradeoff.
+point | design | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot |
+table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands

@@ -101,5 +101,3 @@ def _level(target: str, value: Any, definition: Definition) -> float:
     if not 0 < level <= (1 if target == "Ar_An" else math.inf):
         raise StudyError([f"{said}: {limits}"])
     return level
-
-

@@ -10,7 +10,6 @@ import xarray as xr
 from solver import Problem, solve
 from solver.laws.trial import going_on
 
-from ..data.dataset import not_run
 from ..data.units import with_unit
 from ..inputs.definition import Definition
 from ..inputs.grid import along, columns
@@ -112,22 +111,17 @@ class Wanted:
         if self._refits:
             products = np.broadcast_arrays(along(grid, "Nbar"), along(grid, "Ra"), x)[:2]
             grid = replace(grid, values=grid.values | {key: (dims, v) for key, v in _fits(*products).items()})
-        inputs = inputs_of(moved(scene, self.name), grid) if scene and scene.spreads else ()
+        inputs: tuple[str, ...] = ()
+        if scene and scene.spreads:
+            moving = replace(scene, spreads=scene.spreads | {self.name: scene.values[self.name]})
+            inputs = inputs_of(moving, grid)
         return replace(definition, grid=grid, scene=scene, inputs=inputs)
 
 
-def moved(scene: Scene, name: str) -> Scene:
-    """The scene with a spread of an input that is as large as the input, beside the spreads of others."""
-    return replace(scene, spreads=scene.spreads | {name: scene.values[name]})
-
-
-def solved(definition: Definition, there: np.ndarray) -> dict[str, np.ndarray]:
-    """The columns of all cases (B, ...); those that are not `there` (B,) are not run."""
-    arrays, index = not_run(definition, len(there)), np.flatnonzero(there)
-    for block in np.array_split(index, max(1, round(len(index) / BLOCK))) if len(index) else ():
-        for name, values in compute(parcel(definition, block)).items():
-            arrays[name][block] = values
-    return arrays
+def solve_into(arrays: dict[str, np.ndarray], definition: Definition, index: np.ndarray) -> None:
+    """Solve the cases `index` and put their columns into those of all."""
+    for name, values in compute(parcel(definition, index)).items():
+        arrays[name][index] = values
 
 
 def _fits(Nbar: Any, Ra: Any) -> dict[str, np.ndarray]:

@@ -96,7 +96,8 @@ def front(contacts: xr.Dataset, least: Sequence[str] = (), most: Sequence[str] =
     rows = np.flatnonzero(good.values.ravel() & np.isfinite(costs).all(axis=1))
     on_front = np.zeros(good.size, bool)
     on_front[rows[_unbeaten(costs[rows])]] = True
-    about = {"long_name": f"no other contact has {' and '.join([*(f'less {n}' for n in least), *(f'more {n}' for n in most)])}"}
+    words = " and ".join([*(f"less {name}" for name in least), *(f"more {name}" for name in most)])
+    about = {"long_name": f"whether no other contact beats it, with {words}"}
     return contacts.assign(on_front=(good.dims, on_front.reshape(good.shape), about))
 
 
@@ -136,7 +137,8 @@ def _limit(name: str, limit: str, values: xr.DataArray) -> tuple:
     if not sign or values.dtype.kind not in "iuf":
         example = "< 250 MPa" if unit != "1" else "< 0.02"
         words = f'must be a text that begins with <, <=, > or >=, such as "{example}"'
-        raise StudyError([f"feasible: {name} = {shown(limit)}: {words if values.dtype.kind in 'iuf' else 'is no number'}"])
+        words = words if values.dtype.kind in "iuf" else f"{name} is no number"
+        raise StudyError([f"feasible: {name} = {shown(limit)}: {words}"])
     si_unit = ROWS[name].unit if name in ROWS and unit != "1" else unit
     try:
         number = quantity(name, text.removeprefix(sign).strip(), si_unit)

@@ -33,7 +33,7 @@ class Curves:
     y: np.ndarray
 
     def reach(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Smallest y of each row and its t, largest y and its t, (k,) each; NaN and t of the first point without any."""
+        """Smallest y of each row and its t, largest y and its t, (k,) each; without any y NaN and the first t."""
         low, high = (np.where(np.isnan(self.y), fill, self.y) for fill in (np.inf, -np.inf))
         places = np.argmin(low, axis=1), np.argmax(high, axis=1)
         rows = np.arange(len(self.t))
@@ -137,3 +137,43 @@ def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.nd
     found = np.full((len(level), max(1, count.max(initial=0))), np.nan)
     found[place[order], np.arange(len(place)) - (np.cumsum(count) - count)[place[order]]] = t[order]
     return found
+
+
+def ends(
+    evaluate: Evaluate, curves: Curves, rows: np.ndarray, t: np.ndarray, level: float, spread: np.ndarray, rtol: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """t below and above each solution, (k, n) each, where the result is `spread` (k, n) off, on its own branch.
+
+    A result that rises is sought at level - spread below the solution and at level + spread above it, one that falls
+    the other way round. NaN where the next solution, or the end of the curve, comes first; t itself without a spread.
+
+    t : (k, n) solutions, padded with NaN
+    """
+    low, high = np.where(spread == 0, t, np.nan), np.where(spread == 0, t, np.nan)
+    place, number = np.nonzero(np.isfinite(t) & (spread > 0))
+    if len(place):
+        mine, at, off = curves.at(place), t[place, number], spread[place, number]
+        up, down = (crossings(evaluate, mine, rows[place], level + sign * off, rtol) for sign in (1, -1))
+        rising, limits = _rises(mine, at, level), np.pad(t, ((0, 0), (1, 1)), constant_values=np.nan)
+        for array, sign in (low, -1), (high, 1):
+            limit = limits[place, number + 1 + sign]
+            limit = np.where(np.isnan(limit), np.inf, sign * limit)
+            nearest = [_nearest(sign * places, sign * at, limit) for places in (up, down)]
+            array[place, number] = sign * np.where(rising == (sign > 0), *nearest)
+    return low, high
+
+
+def _nearest(places: np.ndarray, at: np.ndarray, limit: np.ndarray) -> np.ndarray:
+    """The first of some places (k, m) behind `at` and not behind `limit`, (k,) each; NaN if there is none."""
+    there = (places > at[:, None]) & (places <= limit[:, None])
+    nearest = np.where(there, places, np.inf).min(axis=1)
+    return np.where(np.isfinite(nearest), nearest, np.nan)
+
+
+def _rises(curves: Curves, at: np.ndarray, level: float) -> np.ndarray:
+    """(k,) bool: whether the result rises with the input at a solution."""
+    numbers = np.arange(len(at))
+    right = np.minimum(np.sum(curves.t <= at[:, None], axis=1), curves.y.shape[1] - 1)
+    left = np.maximum(np.sum(curves.t < at[:, None], axis=1) - 1, 0)
+    behind = curves.y[numbers, right]
+    return np.where(np.isfinite(behind), behind > level, curves.y[numbers, left] < level)

@@ -1,25 +1,20 @@
 """What a design says of each contact: the answer with its ±, or why there is none and what would help."""
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 import xarray as xr
 
-from ..data.dataset import decode, parts
-from ..data.si import dataset_of
+from ..data.dataset import decode
 from ..derivatives import sensitivities
 from ..inputs.scene.changes import RATIOS
 from ..inputs.vocabulary import NOT_RUN, ROWS, VOCABULARY
 from ..specimen.quantities import readable
-from .design_cases import Wanted, solved
-
-if TYPE_CHECKING:
-    from .design import Answer
+from .design_answer import Answer, solved
+from .design_cases import Wanted
 
 _MOST = 0.99  # an input that makes more of the variance makes "nearly all" of it
 
 
-def messages(want: Wanted, answer: "Answer", contacts: xr.Dataset) -> list[str]:
+def messages(want: Wanted, answer: Answer, contacts: xr.Dataset) -> list[str]:
     """A text for each case (B,).
 
     contacts : the solutions, with the spread and the ends of the input
@@ -34,10 +29,12 @@ def messages(want: Wanted, answer: "Answer", contacts: xr.Dataset) -> list[str]:
         elif not np.isfinite(answer.t[row]).any():
             texts.append(_none(want, answer, row) + helps.get(row, ""))
         else:
-            columns = [number for number, t in enumerate(answer.t[row]) if np.isfinite(t)]
-            each = [_solution(want, answer, row, number, [end[row, number] for end in ends]) for number in columns]
-            outside = [f"; outside the model there: {valid[row, n].replace(' ', ', ')}" * bool(valid[row, n]) for n in columns]
-            found = "; or ".join(map("".join, zip(each, outside, strict=True)))
+            each = []
+            for number in np.flatnonzero(np.isfinite(answer.t[row])).tolist():
+                text = _solution(want, answer, row, number, [end[row, number] for end in ends])
+                beyond = valid[row, number].replace(" ", ", ")
+                each.append(text + f"; outside the model there: {beyond}" * bool(beyond))
+            found = "; or ".join(each)
             edge = f". {want.name} is at a bound there: beyond it there may be more" * (status == 4)
             texts.append(f"{_value(want, want.target, want.level)} at {found}{edge}")
     return texts
@@ -54,7 +51,7 @@ def _value(want: Wanted, name: str, value: float, spread: float = 0.0) -> str:
     return f"{name} = {_text(want, name, value, spread)}"
 
 
-def _solution(want: Wanted, answer: "Answer", row: int, number: int, ends: list[float]) -> str:
+def _solution(want: Wanted, answer: Answer, row: int, number: int, ends: list[float]) -> str:
     """One solution with its ±, and which input makes most of it."""
     x, spread, low, high = ends
     text = _value(want, want.name, x, spread)
@@ -63,19 +60,19 @@ def _solution(want: Wanted, answer: "Answer", row: int, number: int, ends: list[
     rounded = [_text(want, want.name, float(f"{end:.4g}")) if np.isfinite(end) else "none" for end in (low, high)]
     text += f" ({' to '.join(rounded)})"
     least, _, largest, _ = answer.reach[row]
-    off = answer.spread[row, number]
+    off = answer.change.spread[row, number]
     if not (np.isfinite(low) and np.isfinite(high)):
         never = [f"below {_text(want, want.target, least)}"] * bool(least > want.level - off)
         never += [f"above {_text(want, want.target, largest)}"] * bool(largest < want.level + off)
         text += f", for {want.target} is never {' or '.join(never)} within the bounds" * bool(never)
-    if answer.shares:
-        most = max(answer.shares, key=lambda name: answer.shares[name][row, number])
-        share = answer.shares[most][row, number]
+    if answer.change.shares:
+        most = max(answer.change.shares, key=lambda name: answer.change.shares[name][row, number])
+        share = answer.change.shares[most][row, number]
         text += f"; {most} makes {'nearly all' if share > _MOST else f'{100 * share:.0f} %'} of its variance"
     return text
 
 
-def _none(want: Wanted, answer: "Answer", row: int) -> str:
+def _none(want: Wanted, answer: Answer, row: int) -> str:
     """Why there is no solution, with the range that is reached."""
     least, t_least, largest, t_largest = answer.reach[row]
     span = f"{want.name} from {_text(want, want.name, want.low)} to {_text(want, want.name, want.high)}"
@@ -89,21 +86,20 @@ def _none(want: Wanted, answer: "Answer", row: int) -> str:
     return f"no {wish}: with {span} it is {reached}"
 
 
-def _helps(want: Wanted, answer: "Answer") -> dict[int, str]:
+def _helps(want: Wanted, answer: Answer) -> dict[int, str]:
     """Case without a solution -> which input would move the result most, where it is nearest to what is wanted."""
     lacking = np.isin(answer.status, (2, 3))
     if not lacking.any():
         return {}
     nearest = np.where(answer.status == 2, answer.reach[:, 1], answer.reach[:, 3])
-    definition = want.at(np.where(lacking, nearest, np.nan)[:, None])
-    arrays = solved(definition, lacking)
-    contacts = dataset_of(definition, parts(definition, arrays, "study.design").settings_apart())
+    contacts, _ = solved(want, np.where(lacking, nearest, np.nan)[:, None])
     by_input = sensitivities(contacts)[f"{want.target}_sensitivity"]
-    fits = ("B", "beta") if definition.grid.fitted else ()
+    fits = ("B", "beta") if want.definition.grid.fitted else ()
     names = [name for name in by_input["input"].values.tolist() if name not in (want.name, *fits)]
-    slopes = by_input.sel(input=names).values.reshape(want.size, len(names))
-    values = [contacts[name].broadcast_like(contacts["status"]).values.ravel() if name in RATIOS else 1 for name in names]
-    slopes = slopes * np.stack(np.broadcast_arrays(*values, np.ones(want.size))[:-1], axis=-1)
+    slopes = by_input.sel(input=names).values.reshape(want.size, len(names)).copy()
+    for column, name in enumerate(names):
+        if name in RATIOS:  # whose derivatives are not by the logarithm
+            slopes[:, column] *= contacts[name].broadcast_like(contacts["status"]).values.ravel()
     texts = {}
     for row in np.flatnonzero(lacking & np.isfinite(slopes).all(axis=1)).tolist():
         best = int(np.argmax(np.abs(slopes[row])))

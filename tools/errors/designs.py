@@ -80,7 +80,8 @@ def main(total: int = 10_000, seed: int = 1) -> None:
     random, begun, everything = np.random.default_rng(seed), time.process_time(), []
     size = max(1, round(total / (EACH * len(BY) * (len(TARGETS) - 1))))
     for name in BY:
-        parts = [tried(name, target, size, random) for target in TARGETS if target not in (name, "P" * (name not in "aD"))]
+        control = name if name in ("P", "a", "D") else "P"
+        parts = [tried(name, target, size, random) for target in TARGETS if target != control]
         everything.append([np.concatenate(part) for part in zip(*parts, strict=True)])
         print(line(name, *everything[-1]), flush=True)
     print(line("all", *(np.concatenate(part) for part in zip(*everything, strict=True))))

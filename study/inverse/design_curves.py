@@ -15,6 +15,8 @@ EDGE = 1e-6
 _BENT = 1e-5
 #: Places of turns, in parts of the distance of two points of the scan: a turn is flat, and errs by the square of this.
 _TURN = 1e-3
+#: Beside each bound is a point more, at this part of the distance of two: so a turn in the first or last interval shows.
+_BESIDE = 0.01
 _HALVINGS = 12  # of the interval in which contacts cease to have a solution
 _NEAR = 1e-12  # of two ends of a bracket, in ln of the input
 
@@ -46,9 +48,10 @@ class Curves:
 
 def scanned(evaluate: Evaluate, rows: np.ndarray, low: float, high: float) -> Curves:
     """The curves of cases `rows` between two bounds of t, with the ends of gaps and the turns among the points."""
-    k = len(rows)
-    t = np.tile(np.linspace(low, high, SCAN), (k, 1))
-    curves = Curves(t, evaluate(t.ravel(), np.repeat(rows, SCAN)).reshape(k, SCAN))
+    points, k = np.linspace(low, high, SCAN), len(rows)
+    near = _BESIDE * (points[1] - points[0])
+    t = np.tile([low, low + near, *points[1:-1], high - near, high], (k, 1))
+    curves = Curves(t, evaluate(t.ravel(), np.repeat(rows, t.shape[1])).reshape(t.shape))
     curves = _with(curves, *_ends_of_gaps(evaluate, rows, curves))
     return _with(curves, *_turns(evaluate, rows, curves, _TURN * (high - low) / (SCAN - 1)))
 

@@ -110,6 +110,33 @@ def test_at_a_bound():
         assert "h is at a bound" in designed.message.item()
 
 
+def test_near_a_bound():
+    """Up to 1e-6 in ln h it is at the bound."""
+    p0 = study.solve(**PLATE, h=0.02, profiles=False).p0.item()
+    for part, status in ((5e-7, AT_EDGE), (3e-6, FOUND)):
+        designed = study.design({"p0": p0}, by={"h": (0.02 * (1 - part), 0.1)}, **PLATE)
+        assert designed.design_status == status and designed.sizes["solution"] == 1
+
+
+def test_contacts_that_are_not_solved_are_no_solution():
+    """Their last numbers may be anything."""
+    given = {key: value for key, value in ROUGH.items() if key != "h"} | {"max_iterations": 1}
+    designed = study.design({"p_max": 0.03}, by={"h": (1e-3, 1.0)}, **given)
+    assert designed.design_status == UNSOLVED
+
+
+def test_a_poisson_ratio_may_help_most():
+    """Of nearly incompressible layers; its derivative, by the ratio itself, counts for 1 % of the ratio."""
+    given = {"n": 0.05, "P": 1e-5, "nu1": 0.49, "bonding": "bonded", "micro": "smooth"}
+    designed = study.design({"p0": 1.0}, by={"h": (1e-3, 2e-3)}, **given)
+    contact = study.solve(**given, h=1e-3)
+    by_input = study.sensitivities(contact).p0_sensitivity.to_series().drop("h")
+    by_input["nu1"] *= 0.49
+    assert by_input.abs().idxmax() == "nu1"
+    way = "more" if by_input["nu1"] > 0 else "less"
+    assert f"nu1 would move it most: 1 % {way} makes it {abs(by_input['nu1']):.2g} % larger" in designed.message.item()
+
+
 def test_where_contacts_have_no_solution():
     """The thin layer ends at some n. A target on the near side is found, one beyond is out of what is reached."""
     thin = {"base": "thin_layer", "micro": "smooth", "bonding": "bonded", "P": 1e-5, "h": 0.005}

@@ -72,7 +72,7 @@ def summary(contact: xr.Dataset) -> Summary:
     >>> summary(study.solve(P=1e-5, micro="smooth", base="half_space")).splitlines()[0]
     'Given: a rigid punch'
     """
-    if "design_status" in contact:
+    if "design_status" in contact and "solution" in contact.dims:
         return _of_design(contact)
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:

@@ -49,7 +49,7 @@ def design(
         `h_high` where the result is one standard deviation off, NaN if it is nowhere on that side. Without spreads
         `h_spread` is 0. Over the dimensions of the parameters: `design_status` (found; several; none_below, none_above:
         the target is below, or above, all that is reached; at_edge: a solution within 1e-6 of a bound, in ln; unsolved:
-        where it would be, contacts have no solution) and `message`, what was found in words
+        where it would be, contacts have no solution, or the result jumps) and `message`, what was found in words
 
     Raises
     ------

@@ -15,7 +15,7 @@ EDGE = 1e-6
 _BENT = 1e-5
 #: Places of turns, in parts of the distance of two points of the scan: a turn is flat, and errs by the square of this.
 _TURN = 1e-3
-#: Beside each bound is a point more, at this part of the distance of two: so a turn in the first or last interval shows.
+#: Beside each bound is a further point, at this part of the distance of two: a turn in the last interval shows too.
 _BESIDE = 0.01
 _HALVINGS = 12  # of the interval in which contacts cease to have a solution
 _NEAR = 1e-12  # of two ends of a bracket, in ln of the input
@@ -127,7 +127,8 @@ def crossings(evaluate: Evaluate, curves: Curves, rows: np.ndarray, level: np.nd
         bracket = curves.t[place, left], curves.t[place, left + 1]
         tolerances = {"xatol": _NEAR, "xrtol": 0.0, "fatol": 0.1 * rtol, "frtol": 0.0}
         args = rows[place], level[place]
-        t = elementwise.find_root(distance, bracket, args=args, tolerances=tolerances).x
+        root = elementwise.find_root(distance, bracket, args=args, tolerances=tolerances)
+        t = np.where(np.abs(root.f_x) <= rtol, root.x, np.nan)  # else it jumps there: base = "auto" changes its model
     last = np.isfinite(curves.t).sum(axis=1) - 1
     for column, beside in ((np.zeros_like(last), np.zeros_like(last)), (last, last - 1)):
         numbers = np.arange(len(level))

@@ -11,6 +11,8 @@ from ..specimen.quantities import readable
 from .design_answer import Answer, solved
 from .design_cases import Wanted
 
+#: Behind a target that lies within the range that is reached.
+_JUMPS = 'contacts have no solution, or it jumps, as where base = "auto" changes its model'
 _MOST = 0.99  # an input that makes more of the variance makes "nearly all" of it
 
 
@@ -82,7 +84,7 @@ def _none(want: Wanted, answer: Answer, row: int) -> str:
     at = [_value(want, want.name, float(want.x_of(t))) for t in (t_least, t_largest)]
     reached = f"{_text(want, want.target, least)} (at {at[0]}) to {_text(want, want.target, largest)} (at {at[1]})"
     if answer.status[row] == 5:
-        return f"no {wish}: with {span} it is {reached}, and where it would be as wanted contacts have no solution"
+        return f"no {wish}: with {span} it is {reached}, and where it would be as wanted {_JUMPS}"
     return f"no {wish}: with {span} it is {reached}"
 
 

@@ -118,6 +118,18 @@ def test_near_a_bound():
         assert designed.design_status == status and designed.sizes["solution"] == 1
 
 
+def test_a_target_in_a_jump_is_no_solution():
+    """Where base = "auto" goes over to another model p_max jumps by what it may err. No h has what lies between."""
+    given = {"n": 0.3, "P": 1e-5, "bonding": "bonded", "base": "auto", "accuracy": 0.3, "Nbar": 1e7, "Ra": 0.0005}
+    h = np.geomspace(0.0715, 0.0722, 30)
+    p_max = study.solve(**given, h=h.tolist(), profiles=False).p_max.values
+    jump = np.argmin(np.diff(p_max))
+    assert p_max[jump + 1] < 0.996 * p_max[jump]
+    level = float(np.sqrt(p_max[jump] * p_max[jump + 1]))
+    designed = study.design({"p_max": level}, by={"h": (h[0], h[-1])}, **given)
+    assert designed.design_status == UNSOLVED and 'as where base = "auto" changes its model' in designed.message.item()
+
+
 def test_contacts_that_are_not_solved_are_no_solution():
     """Their last numbers may be anything."""
     given = {key: value for key, value in ROUGH.items() if key != "h"} | {"max_iterations": 1}

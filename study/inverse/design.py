@@ -65,7 +65,7 @@ def design(
     >>> layer = {"n": 0.5, "bonding": "bonded", "micro": "smooth"}
     >>> designed = study.design({"p0": 0.01}, by={"h": (1e-3, 0.1)}, P=1e-5, **layer)
     >>> round(designed.h.item(), 5), study.decode(designed.design_status).item()
-    (0.00989, 'found')
+    (0.01012, 'found')
     """
     begun, stream = time.monotonic(), screen_of(plain(progress))
     if cases is not None and not (isinstance(cases, list) and cases and all(isinstance(row, dict) for row in cases)):

@@ -77,9 +77,9 @@ def front(contacts: xr.Dataset, least: Sequence[str] = (), most: Sequence[str] =
     Examples
     --------
     >>> import study
-    >>> contacts = study.solve(P=1e-5, h=[0.01, 0.02, 0.04], n=[0.1, 1.0], bonding="bonded", micro="smooth")
-    >>> study.front(contacts, least=["p0", "D"]).on_front.sum().item()
-    4
+    >>> contacts = study.solve(P=[1e-5, 2e-5], h=[0.01, 0.04], n=0.1, bonding="bonded", micro="smooth")
+    >>> study.front(contacts, least=["p0", "D"]).on_front.values.tolist()
+    [[True, True], [False, False]]
     """
     wrong = [f"{key} = {shown(names)}: must be a list of names" for key, names in (("least", least), ("most", most))
              if isinstance(names, str)]  # fmt: skip

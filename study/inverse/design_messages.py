@@ -13,6 +13,7 @@ from .design_cases import Wanted
 
 #: Behind a target that lies within the range that is reached.
 _JUMPS = 'contacts have no solution, or it jumps, as where base = "auto" changes its model'
+_FLAT = 1e-9  # a result that changes by less of itself does not depend on the input
 _MOST = 0.99  # an input that makes more of the variance makes "nearly all" of it
 
 
@@ -81,6 +82,8 @@ def _none(want: Wanted, answer: Answer, row: int) -> str:
     wish = _value(want, want.target, want.level)
     if not np.isfinite(least):
         return f"no {wish}: with {span} no contact has a solution"
+    if largest - least <= _FLAT * abs(least):
+        return f"no {wish}: it is {_text(want, want.target, least)}, whatever {span}"
     at = [_value(want, want.name, float(want.x_of(t))) for t in (t_least, t_largest)]
     reached = f"{_text(want, want.target, least)} (at {at[0]}) to {_text(want, want.target, largest)} (at {at[1]})"
     if answer.status[row] == 5:
@@ -102,8 +105,8 @@ def _helps(want: Wanted, answer: Answer) -> dict[int, str]:
     for column, name in enumerate(names):
         if name in RATIOS:  # whose derivatives are not by the logarithm
             slopes[:, column] *= contacts[name].broadcast_like(contacts["status"]).values.ravel()
-    texts = {}
-    for row in np.flatnonzero(lacking & np.isfinite(slopes).all(axis=1)).tolist():
+    slopes, texts = np.nan_to_num(slopes), {}  # NaN: by what a case does not have
+    for row in np.flatnonzero(lacking).tolist():
         best = int(np.argmax(np.abs(slopes[row])))
         slope = float(slopes[row, best])
         if slope:

@@ -149,6 +149,16 @@ def test_a_poisson_ratio_may_help_most():
     assert f"nu1 would move it most: 1 % {way} makes it {abs(by_input['nu1']):.2g} % larger" in designed.message.item()
 
 
+def test_an_input_that_does_not_act():
+    """Of a bare body h is said not to act; the contact beside it, with a layer, is designed."""
+    rows = [{"base": "half_space", "P": "1 N"}, {"layer": "PTFE", "P": "1 N"}]
+    given = {key: value for key, value in LINING.items() if key != "layer"}
+    designed = study.design({"p_max": "180 MPa"}, by={"h": ("1 um", "1 mm")}, cases=rows, **given)
+    assert designed.design_status.values.tolist() == [NONE_BELOW, FOUND]
+    first = designed.message.values[0]
+    assert "it is 13.415 GPa, whatever h from 1 µm to 1 mm. " in first and " would move it most: 1 % less" in first
+
+
 def test_where_contacts_have_no_solution():
     """The thin layer ends at some n. A target on the near side is found, one beyond is out of what is reached."""
     thin = {"base": "thin_layer", "micro": "smooth", "bonding": "bonded", "P": 1e-5, "h": 0.005}

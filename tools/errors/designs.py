@@ -7,7 +7,9 @@ logarithm beyond these. Printed are for each input:
 
 - targets, and how many have no, one, several solutions;
 - differ: those where the number of solutions is not that of the crossings of the 400 points;
-- worst: the largest relative distance of the result, solved again, from the wanted value, over rtol.
+- worst: the largest relative distance of the result, solved again, from the wanted value, over rtol;
+
+and the processor time of a design of docs/design.md.
 """
 
 import sys
@@ -15,6 +17,7 @@ import time
 
 import numpy as np
 
+import study
 from solver import Problem, solve
 from study.inverse.design_curves import crossings, scanned
 
@@ -90,6 +93,23 @@ def main(total: int = 10_000, seed: int = 1) -> None:
         print(line(name, *everything[-1]), flush=True)
     print(line("all", *(np.concatenate(part) for part in zip(*everything, strict=True))))
     print(f"{time.process_time() - begun:.0f} s of processor time, rtol {RTOL:g}")
+    speed()
+
+
+def speed() -> None:
+    """Print the processor time of a design of docs/design.md, of many loads at once and alone."""
+    bodies = {"R": "5 mm", "bonding": "bonded", "Nbar": "1e5 1/mm^2", "Ra": "2 um"}
+    kinds = {
+        "without spreads": bodies | {"E1": "490 MPa", "nu1": 0.46, "E2": "207 GPa"},
+        "with spreads": bodies | dict.fromkeys(("punch", "body"), "steel 52100") | {"layer": "PTFE"},
+    }
+    for words, scene in kinds.items():
+        for count in (300, 1):
+            loads = [f"{load!r} N" for load in np.linspace(0.5, 4, count).tolist()]
+            begun = time.process_time()
+            study.design({"p_max": "180 MPa"}, by={"h": ("1 um", "1 mm")}, P=loads, **scene)
+            each = (time.process_time() - begun) / count
+            print(f"{count:3d} at once, {words}: {1e3 * each:.0f} ms each")
 
 
 def line(name: str, counts: np.ndarray, fine: np.ndarray, misses: np.ndarray) -> str:

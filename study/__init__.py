@@ -31,6 +31,8 @@ if TYPE_CHECKING:
     from .inputs import vocabulary
     from .inputs.definition import StudyError
     from .inverse.curves import curves
+    from .inverse.design import design
+    from .inverse.design_choice import feasible, front
     from .inverse.fit import fit
     from .solving import solve
     from .specimen import materials, roughness
@@ -46,12 +48,15 @@ __all__ = [
     "curves",
     "decode",
     "derived",
+    "design",
     "drawing",
     "extremes",
+    "feasible",
     "figure",
     "first_yield",
     "fit",
     "from_physical",
+    "front",
     "h_protect",
     "load",
     "materials",
@@ -74,6 +79,9 @@ _HOME = {
     "solve": "solving",
     "sensitivities": "derivatives",
     "extremes": "fields",
+    "design": "inverse.design",
+    "feasible": "inverse.design_choice",
+    "front": "inverse.design_choice",
     "first_yield": "yields.first",
     "h_protect": "yields.protect",
     "fit": "inverse.fit",

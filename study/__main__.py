@@ -1,11 +1,11 @@
 """Command line of roughcoat: `roughcoat COMMAND`, or `python -m study COMMAND`, which is the same; one of
 
-point | fit | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot | table |
-tradeoff.
+point | fit | design | explore | scan | materials | docs | list | check | run | retry | status | verify | clean | plot |
+table | tradeoff.
 
 Exit codes: 0 all right, 1 something could not be computed or written, 2 bad input, 130 interrupted. A command goes on
 when its terminal is gone or its reader has left. That its answer finds a full disk is an error, 1, only of the commands
-that do nothing but answer (point, fit, scan, materials, docs, list, check, status, --dry-run).
+that do nothing but answer (point, fit, design, scan, materials, docs, list, check, status, --dry-run).
 """
 
 import argparse
@@ -44,7 +44,7 @@ def parser() -> argparse.ArgumentParser:
         if items:
             argument = sub.add_argument("items", nargs=least, metavar=items, default=[])
             argument.completer = partial(proposed, name)
-        if module not in ("point", "fitting", "exploring", "reading"):
+        if module not in ("point", "fitting", "design", "exploring", "reading"):
             sub.add_argument("--results", default="results", **DIR, help="folder of the results (default: results)")
         return sub
 
@@ -61,6 +61,13 @@ def parser() -> argparse.ArgumentParser:
     sub.epilog = (
         'such as roughcoat fit curve.csv R="5 um" punch=rigid nu1=0.49 h="1.5 ± 0.1 um" bonding=bonded '
         'body="glass soda-lime" micro=smooth free=E1, of columns "D [nm]" and "P [nN]"'
+    )
+    text = "find the input that makes a wanted result, with its ±"
+    sub = command("design", "design", text, "NAME=VALUE")
+    sub.add_argument("--json", action="store_true", help="as numbers, for a program")
+    sub.epilog = (
+        'such as p_max="180 MPa" h="1 um .. 1 mm" R="5 mm" punch="steel 52100" layer=PTFE bonding=bonded '
+        'body="steel 52100" P="5 N" Nbar="1e5 1/mm^2" Ra="2 um"'
     )
     sub = command("exploring", "explore", "write a page that solves contacts in a browser, without a network")
     sub.add_argument("--out", type=folder, default="contact.html", metavar="FILE", help="default: contact.html")

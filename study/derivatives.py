@@ -120,7 +120,7 @@ def spread_of_formula(case: xr.Dataset, formula: Callable[[xr.Dataset], Any]) ->
 
 def relative_spreads(case: xr.Dataset, names: Iterable[str]) -> dict[str, float]:
     """Input of one contact with a spread -> spread over value; of a Poisson ratio the spread."""
-    spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case}
+    spreads = {name: float(case[f"{name}_spread"]) for name in names if f"{name}_spread" in case.coords}
     return {name: spread if name in RATIOS else spread / float(case[name]) for name, spread in spreads.items()}
 
 

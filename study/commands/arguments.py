@@ -68,7 +68,7 @@ def assignment(text: str) -> tuple[str, float | str]:
 
 def proposed(command: str, prefix: str, **_) -> list[str]:
     """Completions of a word of a command or option: names of studies, figures ... that begin with `prefix`."""
-    if command == "point":
+    if command in ("point", "design"):
         from ..inputs.vocabulary import BODIES, CONTROLS, SCENE, names
 
         words = [f"{name}=" for name in (*SCENE, *BODIES, *CONTROLS, *names("material", "roughness"), "same_piece")]

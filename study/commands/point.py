@@ -101,15 +101,15 @@ def listed(value: float | str | bool) -> float | str | bool | list[str | float]:
     """The values of a list: "1 N, 2 N" has two. Without a blank behind it a comma may be that of a decimal, "1,5 N"."""
     if not isinstance(value, str) or not _LIST.search(value):
         return value
-    return [float(part) if _is_number(part) else part for part in map(str.strip, value.split(","))]
+    return [number_or_text(part.strip()) for part in value.split(",")]
 
 
-def _is_number(text: str) -> bool:
+def number_or_text(text: str) -> float | str:
+    """The number that a text is, else the text."""
     try:
-        float(text)
+        return float(text)
     except ValueError:
-        return False
-    return True
+        return text
 
 
 def as_numbers(contact: xr.Dataset) -> dict:

@@ -4,7 +4,7 @@ import numpy as np
 import xarray as xr
 
 from ..inputs.laws import smooth_laws
-from ..inputs.vocabulary import VOCABULARY
+from ..inputs.vocabulary import NOT_RUN, VOCABULARY
 from ..specimen.pictures import curve, with_picture
 from .fits import of_fit
 from .inputs import given, is_rigid
@@ -53,8 +53,9 @@ def summary(contact: xr.Dataset) -> Summary:
 
     Parameters
     ----------
-    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Or
-        of `study.fit`: what was fitted to each curve, and what a curve could not tell
+    contact : of `study.solve`, in physical units or dimensionless; of a grid the first 20 cases are written out. Of
+        `study.fit` the text has what was fitted to each curve, and what a curve could not tell; of `study.design` what
+        was found for each contact, and of a single one each solution
 
     Returns
     -------
@@ -71,9 +72,11 @@ def summary(contact: xr.Dataset) -> Summary:
     'Given: a rigid punch'
     """
     if not isinstance(contact, xr.Dataset):
-        raise ValueError(f"summary takes a dataset of study.solve or study.fit, not {type(contact).__name__}")
+        raise ValueError(f"summary takes what study.solve, fit or design gives, not {type(contact).__name__}")
     if "fit_status" in contact:
         return Summary(of_fit(contact))
+    if "design_status" in contact and "solution" in contact.dims:
+        return _of_design(contact)
     missing = [name for name in ("status", "model_used", "validity", "base", "micro", *SHOWN) if name not in contact]
     if missing:
         raise ValueError(f"this dataset is not one of contacts: it has no {missing[0]}")
@@ -93,6 +96,23 @@ def summary(contact: xr.Dataset) -> Summary:
     if cases.sizes["one"] > MOST_CASES:
         texts.append(f"--- and {cases.sizes['one'] - MOST_CASES} more cases: choose some with sel() or isel()")
     return Summary("\n\n".join(texts))
+
+
+def _of_design(designed: xr.Dataset) -> Summary:
+    """What `study.design` found for each contact that was asked for; of a single one each solution in words."""
+    dims = [str(dim) for dim in designed["design_status"].dims]
+    if not dims:
+        solutions = [designed.isel(solution=number) for number in range(designed.sizes["solution"])]
+        solutions = [one for one in solutions if one["status"] != NOT_RUN]
+        text = "\n\n".join([str(designed["message"].values) + ".", *map(_summary_of_case, solutions)])
+        return Summary.of(text, solutions[0]) if len(solutions) == 1 else Summary(text)
+    cases, texts = designed.stack({"one": dims}, create_index=False), []
+    for i in range(min(cases.sizes["one"], MOST_CASES)):
+        case = cases.isel(one=i)
+        where = str(case["label"].values) if "label" in case else ", ".join(given_text(case, dim) for dim in dims)
+        texts.append(f"--- {where}\n{case['message'].values}.")
+    more = cases.sizes["one"] - MOST_CASES
+    return Summary("\n".join([*texts, *[f"--- and {more} more: choose some with sel() or isel()"] * (more > 0)]))
 
 
 def _summary_of_case(case: xr.Dataset, dims=()) -> str:

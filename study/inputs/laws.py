@@ -103,16 +103,21 @@ def fitted(grid: Grid) -> tuple[dict, list[str]]:
         few = f"at most {MOST_FITS} values of Nbar Ra^2 are fitted, not {len(different)}"
         return {}, [f"B and beta are missing: {few}"]
     dims = tuple(dim for dim in grid.sizes if dim in {*grid.values["Nbar"][0], *grid.values["Ra"][0]})
-    fitted_laws, values, errors = {product: fit_power_law(product) for product in different}, {}, []
-    for name in ("B", "beta"):
+    values, errors = {}, []
+    for name, fits in fits_to(different).items():
         parameter = VOCABULARY[name].parameter
-        fits = {product: getattr(law, name) for product, law in fitted_laws.items()}
         rounded = {product: float(f"{fit:.{DIGITS}g}") for product, fit in fits.items()}
         array = np.array([rounded.get(product, np.nan) for product in products.ravel().tolist()])
         values[name] = dims, array.reshape([grid.sizes[dim] for dim in dims])
         wrong = [f"{product:g} is {fit:g}" for product, fit in fits.items() if not allowed(parameter, fit)][:1]
         errors += [f"{name} fitted to Nbar Ra^2 = {fit}: must be in {parameter.interval}" for fit in wrong]
     return values, errors
+
+
+def fits_to(products: list[float]) -> dict[str, dict[float, float]]:
+    """B and beta -> Nbar Ra² -> value of the law that is fitted to it, in full digits."""
+    power_laws = {product: fit_power_law(product) for product in products}
+    return {name: {product: getattr(law, name) for product, law in power_laws.items()} for name in ("B", "beta")}
 
 
 #: Nbar Ra^2 is moved by this part of itself. Fits are good to some 1e-12 (their root is sought to 1e-15), so that

@@ -209,8 +209,8 @@ def no_parameter(name: str, words, place: str = "") -> str:
     """
     words, hint = list(words), absent(name)
     if hint == _RESULT:
-        search = "solve for several P, which become an axis, and interpolate in it, or find P by scipy.optimize.brentq"
-        hint += f"\n    to reach a wanted {name}: {search} (docs/studies.md, One contact)"
+        search = "solve for P, or another input, by study.design or roughcoat design (docs/design.md)"
+        hint += f"\n    to reach a wanted {name}: {search}"
     like = [other for other in words if other[0].lower() == str(name)[:1].lower()]  # Er, say, is no R
     near = suggest(name, like, words)
     return f"{place}{shown(str(name))} is not a parameter{f'; {hint}' if hint else near}"

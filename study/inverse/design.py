@@ -1,0 +1,114 @@
+"""The public function `design`: the value of one input that makes a wanted result, with its ±."""
+
+import time
+import warnings
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from ..carried import with_coordinates
+from ..in_words import doubts, falling
+from ..inputs.definition import StudyError
+from ..inputs.vocabulary import NOT_RUN, ROWS
+from ..specimen.foreign import plain
+from ..work.screen import screen_of
+from .design_answer import STATUSES, Answer, answered, searched, solutions, solved
+from .design_asked import wanted
+from .design_cases import Wanted
+from .design_messages import messages
+
+
+def design(
+    targets: dict[str, Any],
+    by: dict[str, tuple],
+    *,
+    progress: bool | None = None,
+    cases: list[dict] | None = None,
+    same_piece: bool = False,
+    correlations: dict[tuple[str, str], float] | None = None,
+    **parameters: Any,
+) -> xr.Dataset:
+    """The value of one input at which a result is as wanted: docs/design.md.
+
+    Every solution within the bounds is found: the result is scanned over the input, its turns are looked for, and each
+    crossing of the wanted value is a solution.
+
+    Parameters
+    ----------
+    targets : one wanted result and its value, {"p_max": "180 MPa"}: a, P, D, p0, p_max, Ar_An or dP_dD
+    by : one input that is a number, and two bounds, {"h": ("1 um", "1 mm")}; also P, a or D, which controls then
+    progress : whether a call of more than two seconds says how far it is; None: in a notebook or on a terminal
+    cases, same_piece, correlations, parameters : as of `study.solve`, without the target and the input of `by`
+
+    Returns
+    -------
+    xarray.Dataset : contacts as of `study.solve` over the dimensions of the parameters and `solution`, with NaN and
+        the status "not_run" where there are fewer solutions. The input, say `h`, is a coordinate over the same
+        dimensions; `h_spread` its standard deviation, to first order, of the spreads of the other inputs; `h_low`,
+        `h_high` where the result is one standard deviation off, NaN if it is nowhere on that side. Without spreads
+        `h_spread` is 0. Over the dimensions of the parameters: `design_status` (found; several; none_below, none_above:
+        the target is below, or above, all that is reached; at_edge: a solution within 1e-6 of a bound, in ln; unsolved:
+        where it would be, contacts have no solution, or the result jumps) and `message`, what was found in words
+
+    Raises
+    ------
+    StudyError : input that cannot be used
+
+    Notes
+    -----
+    An interrupt ends the search; what was searched until then is returned, the rest is "not_run".
+
+    Examples
+    --------
+    >>> import study
+    >>> layer = {"n": 0.5, "bonding": "bonded", "micro": "smooth"}
+    >>> designed = study.design({"p0": 0.01}, by={"h": (1e-3, 0.1)}, P=1e-5, **layer)
+    >>> round(designed.h.item(), 5), study.decode(designed.design_status).item()
+    (0.01012, 'found')
+    """
+    begun, stream = time.monotonic(), screen_of(plain(progress))
+    if cases is not None and not (isinstance(cases, list) and cases and all(isinstance(row, dict) for row in cases)):
+        raise StudyError(["design: cases must be a list of dictionaries, at least one"])
+    want = wanted(targets, by, parameters, cases or [], same_piece, correlations)
+    pieces = searched(want, stream, begun)
+    t = solutions(want, pieces)
+    contacts, change = solved(want, t, stream)
+    answer = answered(want, pieces, t, change, stream)
+    designed = contacts.assign(_variables(want, answer, contacts))
+    designed, left_out = with_coordinates(designed, parameters)
+    beyond = doubts(designed) if want.definition.scene else falling(designed)
+    left_out += ["\n".join(["a contact found is beyond what the model describes:", *beyond])] * bool(beyond)
+    for text in left_out:
+        warnings.warn(text, stacklevel=2)
+    return designed
+
+
+def _variables(want: Wanted, answer: Answer, contacts: xr.Dataset) -> dict[str, xr.Variable]:
+    """What a design has beside its contacts."""
+    name, dims = want.name, contacts["status"].dims
+    unit = ROWS[name].unit if want.definition.scene else ""
+    about = {"units": unit} if unit not in ("", "1") else {}
+    about |= {key: contacts[name].attrs[key] for key in ("scale",) if key in contacts[name].attrs}
+    x, change = want.x_of(answer.t), answer.change
+    with np.errstate(divide="ignore", invalid="ignore"):
+        relative = np.where(change.spread == 0, 0.0, change.spread / want.level / change.by_input)
+    numbers = {
+        f"{name}_spread": (np.abs(x) * relative, f"standard deviation of {name}, from the spreads of other inputs"),
+        f"{name}_low": (want.x_of(answer.low), f"{name} below, where {want.target} is one standard deviation off"),
+        f"{name}_high": (want.x_of(answer.high), f"{name} above, where {want.target} is one standard deviation off"),
+    }
+    shape = contacts["status"].shape
+    variables = {
+        key: xr.Variable(dims, values.reshape(shape), {"long_name": words} | about)
+        for key, (values, words) in numbers.items()
+    }
+    flags = {
+        "long_name": f"whether {want.target} is as wanted for some {name} within its bounds",
+        "flag_values": np.array([*range(len(STATUSES)), NOT_RUN], dtype=np.int8),
+        "flag_meanings": " ".join((*STATUSES, "not_run")),
+    }
+    texts = np.array(messages(want, answer, contacts.assign(variables)), dtype=object).reshape(shape[:-1])
+    variables["design_status"] = xr.Variable(dims[:-1], answer.status.reshape(shape[:-1]), flags)
+    variables["message"] = xr.Variable(dims[:-1], texts.astype(str), {"long_name": "what was found"})
+    return variables

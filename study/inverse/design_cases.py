@@ -1,0 +1,135 @@
+"""The contacts of a design: a grid in which one input is looked for, solved at any values of it."""
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from solver import Problem, solve
+from solver.laws.trial import going_on
+
+from ..data.units import with_unit
+from ..inputs.definition import Definition
+from ..inputs.grid import along, columns
+from ..inputs.laws import DIGITS, fits_to
+from ..inputs.scene.changes import inputs_of
+from ..inputs.scene.scales import make_dimensionless
+from ..inputs.scene.scene import Scene, over
+from ..inputs.vocabulary import PARAMETERS, VOCABULARY
+from ..work.cases import compute, parcel
+
+BLOCK = 8000  # cases that are solved at a time, at most
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What is looked for.
+
+    definition : of the grid, in which the input has its lower bound
+    target, level : name and value of the wanted result, in SI or dimensionless
+    name, low, high : of the input that is looked for, and its bounds, likewise
+    """
+
+    definition: Definition
+    target: str
+    level: float
+    name: str
+    low: float
+    high: float
+
+    @property
+    def size(self) -> int:
+        return self.definition.grid.size
+
+    def t_of(self, x: Any) -> Any:
+        """ln of values of the input; themselves where a bound is not positive."""
+        return np.log(x) if self.low > 0 else x
+
+    def x_of(self, t: Any) -> Any:
+        """Values of the input, within its bounds."""
+        return np.clip(np.exp(t) if self.low > 0 else t, self.low, self.high)
+
+    @property
+    def width(self) -> float:
+        """What counts as 1 of t: of what has a logarithm 1, else the whole range."""
+        return 1.0 if self.low > 0 else self.high - self.low
+
+    @property
+    def _refits(self) -> bool:
+        """Whether the power law changes with the input."""
+        return self.definition.grid.fitted and self.name in ("Nbar", "Ra")
+
+    @cached_property
+    def _inputs(self) -> tuple[dict, dict]:
+        """SI values of the scene, {} without units, and all else: name -> (B,)."""
+        grid, scene = self.definition.grid, self.definition.scene
+        others = columns(grid, np.arange(grid.size))
+        dims = tuple(grid.sizes)
+        values = scene.values if scene else {}
+        return {key: np.broadcast_to(over(value, dims), grid.shape).ravel() for key, value in values.items()}, others
+
+    def results(self, t: np.ndarray, index: np.ndarray) -> np.ndarray:
+        """The wanted result (b,) of the cases `index` at t (b,); NaN where the contact has no solution."""
+        pieces = [slice(start, start + BLOCK) for start in range(0, len(t), BLOCK)]
+        return np.concatenate([self._results(t[piece], index[piece]) for piece in pieces])
+
+    def _results(self, t: np.ndarray, index: np.ndarray) -> np.ndarray:
+        values, others = ({key: column[index] for key, column in table.items()} for table in self._inputs)
+        unit = R = 1.0
+        if values:
+            scene = Scene(values=values | {self.name: self.x_of(t)}, parameters=others)
+            make_dimensionless(scene)
+            others, unit, R = scene.parameters, scene.unit, scene.R
+        else:
+            others |= {self.name: self.x_of(t)}
+        if self._refits:
+            others |= _fits(others["Nbar"], others["Ra"])
+        with going_on():
+            solution = solve(Problem.of(**{key: others[key] for key in PARAMETERS if key in others}))
+        numbers = np.where(solution.status == 0, getattr(solution, self.target), np.nan)
+        return with_unit(numbers, VOCABULARY[self.target].powers, unit, R)
+
+    def at(self, t: np.ndarray) -> Definition:
+        """The definition of the contacts at t (B, n): the grid with the dimension `solution` behind the others.
+
+        It has the inputs by which a change of the looked-for input is felt, beside those with spreads.
+        """
+        definition, scene = self.definition, self.definition.scene
+        grid, dims = definition.grid, (*definition.grid.sizes, "solution")
+        x = self.x_of(t).reshape(*grid.shape, -1)
+        if not scene:
+            values = grid.values | {self.name: (dims, x)}
+        else:
+            scene = replace(scene, values=scene.values | {self.name: xr.DataArray(x, dims=dims)})
+            scene.parameters = dict(scene.parameters)
+            make_dimensionless(scene)
+            arrays = {key: (getattr(v, "dims", ()), np.asarray(v)) for key, v in scene.parameters.items()}
+            values = grid.values | {key: pair for key, pair in arrays.items() if key in PARAMETERS}
+        grid = replace(grid, sizes=grid.sizes | {"solution": x.shape[-1]}, values=values)
+        if self._refits:
+            products = np.broadcast_arrays(along(grid, "Nbar"), along(grid, "Ra"), x)[:2]
+            grid = replace(grid, values=grid.values | {key: (dims, v) for key, v in _fits(*products).items()})
+        inputs: tuple[str, ...] = ()
+        if scene and scene.spreads:
+            moving = replace(scene, spreads=scene.spreads | {self.name: scene.values[self.name]})
+            inputs = inputs_of(moving, grid)
+        return replace(definition, grid=grid, scene=scene, inputs=inputs)
+
+
+def solve_into(arrays: dict[str, np.ndarray], definition: Definition, index: np.ndarray) -> None:
+    """Solve the cases `index` and put their columns into those of all."""
+    for name, values in compute(parcel(definition, index)).items():
+        arrays[name][index] = values
+
+
+def _fits(Nbar: Any, Ra: Any) -> dict[str, np.ndarray]:
+    """B and beta of the power laws that are fitted to Nbar and Ra."""
+    products = np.asarray(Nbar * Ra**2)
+    different = np.unique(products[np.isfinite(products)]).tolist()
+    values = {}
+    for name, fits in fits_to(different).items():
+        numbers = [float(f"{fits[product]:.{DIGITS}g}") if product in fits else np.nan for product in products.flat]
+        values[name] = np.reshape(numbers, products.shape)
+    return values

@@ -133,7 +133,7 @@ def test_the_table_of_real_systems_has_their_numbers_of_cases():
         assert read(ROOT / f"studies/systems/{name}.toml").grid.size == int(cases)
 
 
-@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md", "docs/python.md"])
+@pytest.mark.parametrize("page", ["README.md", "docs/accuracy.md", "docs/python.md", "docs/fit.md", "docs/afm.md"])
 def test_python_prints_what_stands_there(page, tmp_path):
     pages.check_examples(page, tmp_path)
 

@@ -1,0 +1,33 @@
+"""
+How deep to press, before measuring
+===================================
+
+A plan: how sure the modulus of a film would be, over how deep one presses, if its thickness is known and if it is not.
+"""
+
+import matplotlib.pyplot as plt
+import numpy as np
+
+import roughcoat as rc
+
+film = {"R": "5 um", "punch": "rigid", "nu1": 0.45, "bonding": "bonded", "body": "glass soda-lime", "micro": "smooth"}
+deepest = np.array([50, 100, 200, 400, 800])  # nm
+depths = np.linspace(-0.2, 1, 200) * deepest[:, None]
+
+# %%
+# Points of 10 pN of noise, of a film of 20 kPa and 2 µm. Three things may be known of its thickness.
+spread = {}
+for words, h, free in (
+    ("h known", "2 um", ["E1"]),
+    ("h ± 5 %", "2.0 ± 0.1 um", ["E1"]),
+    ("h not known", "2 um", ["E1", "h"]),
+):
+    plan = rc.fit({"D": (depths, "nm")}, **film, E1="20 kPa", h=h, free=free, sigma="10 pN", plan=True)
+    spread[words] = plan.E1_spread / 20e3
+assert (spread["h not known"] > spread["h ± 5 %"]).all() and (spread["h ± 5 %"] > spread["h known"]).all()
+
+figure, axes = plt.subplots(figsize=(6, 4))
+for (words, relative), line in zip(spread.items(), ("-", "--", ":"), strict=True):
+    axes.loglog(deepest, 100 * relative, line, marker="o", label=words)
+axes.set(xlabel="deepest point, nm", ylabel="± of E1, %")
+axes.legend()

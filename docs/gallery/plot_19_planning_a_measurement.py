@@ -30,4 +30,6 @@ figure, axes = plt.subplots(figsize=(6, 4))
 for (words, relative), line in zip(spread.items(), ("-", "--", ":"), strict=True):
     axes.loglog(deepest, 100 * relative, line, marker="o", label=words)
 axes.set(xlabel="deepest point, nm", ylabel="± of E1, %")
+axes.set_xticks(deepest, [f"{x}" for x in deepest])
+axes.xaxis.set_minor_formatter("")
 axes.legend()

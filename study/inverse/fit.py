@@ -13,7 +13,7 @@ from ..specimen.quantities import quantity
 from ..terminal import shown
 from ..work.progress import Progress
 from ..work.screen import screen_of
-from .curves import curves as read_curves
+from .curves import measured
 from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
@@ -120,11 +120,15 @@ def fit(
 
 
 def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
-    data = _abscissa(source, model.x) if plan else read_curves(source)
-    lacking = [name for name in (model.x, *([] if plan else [model.y])) if name not in data]
+    """The curves; of a plan x alone."""
+    names = [model.x] if plan else [model.x, model.y]
+    data = measured(source, len(names))
+    lacking = [name for name in names if name not in data]
     if lacking:
-        raise StudyError([f"curves: {lacking[0]} is not there; x = {model.x}, y = {model.y} are to be fitted"])
-    return data
+        there = ", ".join(map(str, data.data_vars))
+        asks = f"x = {model.x}, y = {model.y} are to be fitted"
+        raise StudyError([f"curves: {lacking[0]} is not there, {there} is; {asks}"])
+    return data[names]
 
 
 def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
@@ -145,19 +149,6 @@ def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
     if isinstance(sigma, (bool, np.bool_)) or not np.all(np.isfinite(S[there := np.isfinite(X)]) & (S[there] > 0)):
         raise StudyError([f"sigma = {shown(sigma)}: must be above 0, in {unit} or with a unit"])
     return X, Y, S
-
-
-def _abscissa(source: Any, x: str) -> xr.Dataset:
-    """The abscissa of a plan."""
-    if isinstance(source, dict) and set(source) == {x}:
-        values, unit = source[x]
-        same = read_curves(
-            {x: (values, unit), "P" if x != "P" else "a": (np.zeros(np.shape(values)), "N" if x != "P" else "m")}
-        )
-        return same[[x]]
-    if isinstance(source, xr.Dataset):
-        return read_curves(source.assign(D=source[x], P=xr.zeros_like(source[x]).assign_attrs(units="N")))[[x]]
-    return read_curves(source)
 
 
 def _planned(question: Asked, X: np.ndarray) -> np.ndarray:

@@ -59,9 +59,9 @@ def fit(options, texts: list[str]) -> int:
 
 def asked(words: list[str]) -> tuple[Any, dict, dict]:
     """What is free, options of the fit, and inputs. An input "LOW .. HIGH" is free within these bounds. StudyError."""
-    own = {word.partition("=")[0].strip(): word.partition("=")[2].strip() for word in words}
-    settings: dict[str, Any] = {name: text for name, text in own.items() if name in _OPTIONS}
-    errors = [message for name in dict.fromkeys(own) if (message := _no_option(name))]
+    texts = {word.partition("=")[0].strip(): word.partition("=")[2].strip() for word in words}
+    settings: dict[str, Any] = {name: text for name, text in texts.items() if name in _OPTIONS}
+    errors = [message for name in dict.fromkeys(texts) if (message := _no_option(name))]
     if errors:
         raise StudyError(errors)
     parameters = parameters_of([word for word in words if word.partition("=")[0].strip() not in _OPTIONS])

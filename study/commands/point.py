@@ -19,6 +19,7 @@ from ..derivatives import spread_of_formula
 from ..in_words import SHOWN, FarOutside, doubts, summary
 from ..in_words.columns import columns
 from ..in_words.inputs import all_inputs
+from ..in_words.sentences import assumed
 from ..inputs.definition import StudyError
 from ..inputs.scene.names import INFINITE
 from ..solving import solve
@@ -52,6 +53,9 @@ def point(options, texts: list[str]) -> int:
             raise StudyError(message.removeprefix("solve: ") for message in error.messages) from None
     text = _as_json(contact) if options.json else columns(contact) if contact["status"].dims else summary(contact)
     code = answer(text) or int((contact["status"] != 0).any())
+    if contact["status"].dims and not options.json:  # a table has no sentences
+        for sentence in dict.fromkeys(text for case in _cases(contact) for text in assumed(case)):
+            say(f"assumed: {sentence}", sys.stderr)
     return code or (_draw_stresses(contact, Path(picture)) if picture else 0)
 
 
@@ -71,9 +75,13 @@ def _as_json(contacts: xr.Dataset) -> str:
     if not contacts["status"].dims:
         numbers: dict | list = as_numbers(contacts)
     else:
-        cases = contacts.stack({"case": contacts["status"].dims}, create_index=False)
-        numbers = [as_numbers(cases.isel(case=i)) for i in range(cases.sizes["case"])]
+        numbers = [as_numbers(case) for case in _cases(contacts)]
     return json.dumps(numbers, indent=2, ensure_ascii=False)
+
+
+def _cases(contacts: xr.Dataset) -> list[xr.Dataset]:
+    cases = contacts.stack({"case": contacts["status"].dims}, create_index=False)
+    return [cases.isel(case=i) for i in range(cases.sizes["case"])]
 
 
 def parameters_of(texts: list[str]) -> dict[str, Any]:

@@ -96,7 +96,15 @@ def _text(curve: xr.Dataset, name: str) -> str:
     text = readable(float(curve[name]), unit, spread)
     if f"{name}_low" not in curve:
         return text
-    return f"{text}  ({readable(float(curve[f'{name}_low']), unit)} to {readable(float(curve[f'{name}_high']), unit)})"
+    low, high = (readable(_rounded(float(curve[f"{name}_{end}"]), spread), unit) for end in ("low", "high"))
+    return f"{text}  ({low} to {high})"
+
+
+def _rounded(end: float, spread: float) -> float:
+    """The end of an interval with as many decimals as two digits of the spread have."""
+    if not (np.isfinite(end) and np.isfinite(spread) and spread > 0):
+        return end
+    return round(end, 1 - int(np.floor(np.log10(spread)))) + 0.0
 
 
 def _known(curve: xr.Dataset, inputs: list[str]) -> list[str]:

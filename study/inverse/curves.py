@@ -48,23 +48,29 @@ def curves(source: Any) -> xr.Dataset:
     >>> study.curves({"D": ([0.0, 10.0], "nm"), "P": ([0.0, 2.0], "nN")}).P.values.tolist()
     [[0.0, 2e-09]]
     """
+    return measured(source)
+
+
+def measured(source: Any, least: int = 2) -> xr.Dataset:
+    """What `curves` returns, of `least` columns or more: a plan needs one."""
     if isinstance(source, (str, Path)) and is_of_instrument(Path(source)):
-        return _of_columns(of_instrument(Path(source)))
+        return _of_columns(of_instrument(Path(source)), least=least)
     if isinstance(source, (str, Path)):
-        return _of_columns(*_read(Path(source)))
+        return _of_columns(*_read(Path(source)), least=least)
     if isinstance(source, dict):
-        return _of_columns({name: _pair(name, value) for name, value in source.items()})
+        return _of_columns({name: _pair(name, value) for name, value in source.items()}, least=least)
     if isinstance(source, xr.Dataset):
         names = [name for name in COLUMNS if name in source]
         strange = [dim for name in names for dim in source[name].dims if dim not in ("curve", "point")]
         if strange:
-            raise StudyError([f"curves: the dimension {strange[0]}: a dataset of curves has curve and point alone"])
+            raise StudyError([f"curves: the dimension {strange[0]} must be called point, or curve"])
         columns = {}
         for name in names:
             array = source[name]
             ordered = array.transpose(*(dim for dim in ("curve", "point") if dim in array.dims))
             columns[name] = (ordered.values, str(array.attrs.get("units", "")))
-        return _of_columns(columns).assign_coords({"curve": source["curve"]} if "curve" in source.coords else {})
+        named = {"curve": source["curve"]} if "curve" in source.coords else {}
+        return _of_columns(columns, least=least).assign_coords(named)
     what = shown(source) if source is None or isinstance(source, (int, float)) else f"a {type(source).__name__}"
     raise StudyError([f'curves: must be a file, {{"D": (array, "nm"), "P": (array, "nN")}}, or a Dataset, not {what}'])
 
@@ -78,17 +84,18 @@ def _pair(name: str, value: Any) -> tuple[Any, str]:
 
 
 def _of_columns(
-    columns: dict[str, tuple[Any, str]], curve: list[str] | None = None, where: str = "curves"
+    columns: dict[str, tuple[Any, str]], curve: list[str] | None = None, where: str = "curves", least: int = 2
 ) -> xr.Dataset:
     errors = [
         f"{where}: {shown(name)} is no column of curves: call it {_CALLED}, or leave it out"
         for name in columns
         if name not in COLUMNS
     ]
-    if len(columns) < 2:
-        errors.append(
-            f"{where}: two columns are needed, such as D [nm] and P [nN]; there is {', '.join(columns) or 'none'}"
+    if len(columns) < least:
+        wanted = (
+            "two columns are needed, such as D [nm] and P [nN]" if least == 2 else "a column is needed, such as D [nm]"
         )
+        errors.append(f"{where}: {wanted}; there is {', '.join(columns) or 'none'}")
     arrays: dict[str, np.ndarray] = {}
     for name in (name for name in columns if name in COLUMNS):
         values, unit = columns[name]

@@ -13,7 +13,7 @@ from ..specimen.quantities import quantity
 from ..terminal import shown
 from ..work.progress import Progress
 from ..work.screen import screen_of
-from .curves import curves as read_curves
+from .curves import measured
 from .fits.answer import answered
 from .fits.asked import Asked, asked
 from .fits.block import FitStatus, fit_block
@@ -44,40 +44,42 @@ def fit(
 ) -> xr.Dataset:
     """Fit inputs of a contact to measured curves: y = F(x - D0) + P0 + tilt x, F the solved contact (docs/fit.md).
 
-    Inputs without ± are exact. Those in `free` are fitted. An input with ± in the call ("1.5 ± 0.1 um") is unknown
-    with a Gaussian prior, of its logarithm. The spreads of R, of Poisson ratios and of named materials are taken over
-    into the answer. At most three inputs are unknown.
+    Inputs without ± are exact. Those in `free` are fitted. So is an input with ± in the call ("1.5 ± 0.1 um"): its
+    logarithm has this as a Gaussian prior. The spreads of R, of Poisson ratios and of named materials make the answer
+    less sure. At most three inputs are unknown.
 
     Parameters
     ----------
     curves : what `curves` takes
     free : names of inputs, or {name: (low, high)}. Without bounds a modulus lies between 1e-3 and 1e3 times what
         Hertz's formula gives for the deepest point, another input up to a decade from its value in the call
-    contact_point, baseline, tilt : whether D0, P0, and a slope of the baseline are fitted; of y over D alone
-    x, y : "D", "P"; or "P", "a"; or "a", "dP_dD"
-    sigma : standard deviation of a point of y, SI or a text with unit, or an array; None: from the residuals
-    loss : "huber": points far off count less
+    contact_point, baseline, tilt : whether D0, P0, and a slope of the baseline are fitted, if x is the depth
+    x, y : what is fitted over what: "D", "P"; or "P", "a"; or "a", "dP_dD"
+    sigma : standard deviation of a point of y: a number or an array in SI, or a text with its unit; None: from the
+        residuals
+    loss : "linear", least squares; "huber", under which points that are far off count less
     intervals : "profile" of the likelihood; "fisher", from the curvature at the minimum; None: no NAME_low, NAME_high.
         Under "huber" they are from the curvature
     level : of the intervals
-    plan : `curves` holds x alone, and the call the assumed values: how sure a fit would be
+    plan : whether to say only how sure a fit would be: of `curves` x is taken alone, the call has the assumed values
     progress : whether to show how far it is; None: where the terminal or a notebook can
     parameters : those of `study.solve` with units, without P, a and D
 
     Returns
     -------
-    xarray.Dataset : over `curve`: NAME, NAME_low, NAME_high and NAME_spread (that of ln NAME times NAME) of the unknown
-        inputs and of D0, P0, tilt, in SI; `covariance` (curve, cov_i, cov_j); y_fit and `residual` = y - fit over
-        (curve, point); `fit_status`; `validity` of the contact at the deepest point, and x_valid, up to which no
-        assumption is violated. A curve that cannot be fitted has a status and NaN
+    xarray.Dataset : over `curve`: NAME, NAME_low, NAME_high and NAME_spread of the unknown inputs and of D0, P0, tilt,
+        in SI (the spread of an input is that of its logarithm, times the input); their `covariance` over (curve, cov_i,
+        cov_j); the fit of y (P_fit, say) and `residual` = y - fit over (curve, point); `fit_status`; `validity` of the
+        contact at the deepest point, and D_valid (or P_valid, a_valid), up to which no assumption is violated. A curve
+        that cannot be fitted has a status and NaN. The attributes `given` and `assumed` say what the call has
 
     Raises
     ------
-    StudyError : a call that cannot be used, before a curve is read; no curve is an error
+    StudyError : a call that cannot be used, before a curve is read; a file or array that holds no curve
 
     Notes
     -----
-    An interrupt ends it; curves that are fitted are returned, the others have the status 127, `not_run`.
+    An interrupt ends the fit. Curves that are fitted are returned; the others have the status 127, `not_run`.
 
     Examples
     --------
@@ -120,11 +122,15 @@ def fit(
 
 
 def _columns(source: Any, model: Model, plan: bool) -> xr.Dataset:
-    data = _abscissa(source, model.x) if plan else read_curves(source)
-    lacking = [name for name in (model.x, *([] if plan else [model.y])) if name not in data]
+    """The curves; of a plan x alone."""
+    names = [model.x] if plan else [model.x, model.y]
+    data = measured(source, len(names))
+    lacking = [name for name in names if name not in data]
     if lacking:
-        raise StudyError([f"curves: {lacking[0]} is not there; x = {model.x}, y = {model.y} are to be fitted"])
-    return data
+        there = ", ".join(map(str, data.data_vars))
+        asks = f"x = {model.x}, y = {model.y} are to be fitted"
+        raise StudyError([f"curves: {lacking[0]} is not there, {there} is; {asks}"])
+    return data[names]
 
 
 def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
@@ -147,19 +153,6 @@ def _arrays(data: xr.Dataset, model: Model, sigma: Any) -> tuple:
     return X, Y, S
 
 
-def _abscissa(source: Any, x: str) -> xr.Dataset:
-    """The abscissa of a plan."""
-    if isinstance(source, dict) and set(source) == {x}:
-        values, unit = source[x]
-        same = read_curves(
-            {x: (values, unit), "P" if x != "P" else "a": (np.zeros(np.shape(values)), "N" if x != "P" else "m")}
-        )
-        return same[[x]]
-    if isinstance(source, xr.Dataset):
-        return read_curves(source.assign(D=source[x], P=xr.zeros_like(source[x]).assign_attrs(units="N")))[[x]]
-    return read_curves(source)
-
-
 def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
     """The curve of the assumed values."""
     model = question.model
@@ -173,8 +166,8 @@ def _planned(question: Asked, X: np.ndarray) -> np.ndarray:
 
 
 def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anywhere: bool) -> np.ndarray:
-    """Which curves have more points than unknowns, at more than one x, and more than one y; without a contact point one
-    above 0, which is else where the contact begins."""
+    """Which curves can be fitted: more points than unknowns, not all at one x, not all of one y. Without a contact
+    point the contact begins at 0, and some x must be above it (`anywhere`: it need not)."""
     enough = there.sum(axis=1) > unknowns
     ends = [[limit(np.where(there, A, out), axis=1, initial=out) for limit, out in _ENDS] for A in (X, Y)]
     spread = [high - low > 0 for low, high in ends]
@@ -182,7 +175,7 @@ def _usable(X: np.ndarray, Y: np.ndarray, there: np.ndarray, unknowns: int, anyw
 
 
 def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
-    """About the modulus of each curve, in any unit: like curves share the tiles of a table."""
+    """A rough modulus of each curve, in any unit: curves that are alike in it share the tiles of a table."""
     q, e, _ = HERTZ[question.model.x, question.model.y][0]
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # of curves without points
@@ -190,8 +183,8 @@ def _stiffness(X: np.ndarray, Y: np.ndarray, question: Asked) -> np.ndarray:
 
 
 def _blocks(there: np.ndarray, usable: np.ndarray, stiffness: np.ndarray) -> Iterator[tuple]:
-    """Curves of each block, those by which it is filled up to _BLOCK, and the number of its points. Curves that are
-    alike come together: they share tiles."""
+    """For each block its curves, the same filled up to _BLOCK by the last one, and its number of points. Curves that
+    are alike come together: they share tiles."""
     size = -(-there.sum(axis=1) // _PART) * _PART
     for points in np.unique(size[usable]):
         same = np.flatnonzero((size == points) & usable)

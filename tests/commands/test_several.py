@@ -33,6 +33,16 @@ def test_a_list_is_a_table_of_the_contacts(capsys):
         assert all(f"= {text.strip()}\n" in alone for text in found) and status.strip() == "converged"
 
 
+def test_what_a_table_assumes_is_said_beside_it(capsys):
+    """Once, however many contacts there are, and nothing of a table that assumes nothing."""
+    ball = ["R=5 mm", "E1=2 MPa", "h=0.5 mm", "E2=70 GPa", "micro=smooth", "P=1 mN, 2 mN"]
+    assert main(["point", *ball]) == 0
+    sliding, ratio = capsys.readouterr().err.splitlines()
+    assert sliding.startswith("assumed: The layer slides on the body") and ratio.startswith("assumed: nu1 = 0.3.")
+    assert main(["point", *ball, "bonding=bonded", "nu1=0.49"]) == 0
+    assert capsys.readouterr().err == ""
+
+
 def test_two_lists_are_all_their_contacts(capsys):
     given = [word for word in WORDS if not word.startswith("E2")]
     assert main(["point", *given, "E2=70 GPa, 210 GPa", "P=1 N, 2 N"]) == 0

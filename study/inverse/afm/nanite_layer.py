@@ -6,7 +6,6 @@ contact_point - tip position. g is a table that is made when a Poisson ratio is 
 
 from functools import lru_cache
 
-import lmfit
 import numpy as np
 from numpy.polynomial import Chebyshev
 
@@ -31,7 +30,9 @@ def _table(nu):
 
 def get_parameter_defaults():
     """Parameters of lmfit, in the order of `parameter_keys`."""
-    params = lmfit.Parameters()
+    from lmfit import Parameters  # nanite brings it
+
+    params = Parameters()
     params.add("E", value=3e3, min=0)
     params.add("R", value=5e-6, min=0, vary=False)
     params.add("nu", value=0.49, min=0, max=0.5, vary=False)

@@ -13,7 +13,7 @@ from .asked import Asked
 from .block import FitStatus
 from .model import is_ratio
 
-_HALVINGS = 4  # so that it is known to 1/16 of the depth from where on an assumption fails
+_HALVINGS = 4  # of the depth, to the place where the first assumption fails: it is right to 1/16
 
 
 def answered(
@@ -41,13 +41,13 @@ def answered(
         drawn[curve, there[curve]] = answer["fit"][i][: there[curve].sum()]
     variables: dict[str, Any] = {}
     for j, name in enumerate(names):
-        own = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
+        si = ROWS[name].unit if name in ROWS else {"D0": "m", "P0": unit, "tilt": "N/m"}[name]
         words = ROWS[name].long_name if name in ROWS else NAMES_OF_SHIFTS[name]
         if not plan:
-            variables[name] = ("curve", value[:, j], {"units": own, "long_name": words})
+            variables[name] = ("curve", value[:, j], {"units": si, "long_name": words})
         ends_of = (("low", low), ("high", high)) if question.intervals and not plan else ()
         variables |= {
-            f"{name}_{end}": ("curve", array[:, j], {"units": own}) for end, array in (*ends_of, ("spread", spread))
+            f"{name}_{end}": ("curve", array[:, j], {"units": si}) for end, array in (*ends_of, ("spread", spread))
         }
     coordinates = {"cov_i": list(names), "cov_j": list(names)}
     variables["covariance"] = (("curve", "cov_i", "cov_j"), covariance)

@@ -32,7 +32,7 @@ class Asked:
     """A checked call.
 
     model : the curve, with its unknown inputs: free ones, then those with a prior
-    bounds : free input -> (low, high) in SI; what is not here has bounds of its own for each curve
+    bounds : free input -> (low, high) in SI; other free inputs have bounds that follow from each curve
     priors : input with ± in the call -> (coordinate, its spread), as the unknowns of `Model`
     spreads : other input -> its spread in its coordinate
     shifts : unknowns after the inputs
@@ -55,10 +55,10 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     """Check a call. Raises StudyError before any curve is read."""
     errors = _choices(x, y, options)
     names, texts = _listed(free, errors), dict(free) if isinstance(free, dict) else {}
-    known = _numbers()
+    numbers = _numbers()
     for name in names:
-        if name not in known:
-            near = suggest(name, known, ["such as E1, h or Ra"]).replace("; known: ", ", ")
+        if name not in numbers:
+            near = suggest(name, numbers, ["such as E1, h or Ra"]).replace("; known: ", ", ")
             errors.append(f"free: {shown(name)} is no input that can be fitted{near}")
     errors += [f"free: {name} stands twice" for name in dict.fromkeys(names) if names.count(name) > 1]
     errors += [f"fit: leave out {name}: curves have it" for name in CONTROLS if parameters.get(name) is not None]
@@ -72,7 +72,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
             f"fit: at most {MOST} inputs can be unknown, here are {', '.join(unknowns)}: leave out a ±, or fix one"
         )
     bounds: dict[str, tuple[float, float]] = {}
-    for name in (name for name in texts if name in known):
+    for name in (name for name in texts if name in numbers):
         bounds |= _bounds(name, texts[name], errors)
     if errors:
         raise StudyError(errors)
@@ -84,9 +84,9 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
         wanted = "give the value that is assumed" if options["plan"] else "give bounds, or a value to begin with"
         way = ', free={{"{0}": (low, high)}}, or {0}=...' if not options["plan"] else ", {0}=..."
         raise StudyError([f"free: {name} has no value: {wanted}{way.format(name)}" for name in lacking or open_])
-    given = parameters | stand_in | {x: _ABSCISSA[x]}
-    _check_ends(given, {name: pair for name, pair in bounds.items() if name not in from_material})
-    definition = _definition(given, "fit")
+    call = parameters | stand_in | {x: _ABSCISSA[x]}
+    _check_ends(call, {name: pair for name, pair in bounds.items() if name not in from_material})
+    definition = _definition(call, "fit")
     scene = definition.scene
     if scene is None:
         raise StudyError(["fit: curves have units, so that R and the moduli must have some too"])
@@ -108,7 +108,7 @@ def asked(free: Any, parameters: dict, x: str, y: str, options: dict) -> Asked:
     ]
     shifts = shifts if x == "D" else []
     about = (options["loss"], options["intervals"], float(options["level"]))
-    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, given)
+    return Asked(model, names, bounds, prior, spread, tuple(shifts), *about, call)
 
 
 def _choices(x: str, y: str, options: dict) -> list[str]:

@@ -14,9 +14,11 @@ from .least_squares import SURE, Data, Fit, minimise
 from .model import HERTZ, is_ratio
 from .tables import Table
 
-_ROUGHLY = 1e-4  # of several starts only the best goes on to the end; the others end within some 0.03 of a spread
+_ROUGHLY = (
+    1e-4  # how sure a search from one of several starts is, some 0.03 of a spread; the best one goes on to the end
+)
 _STARTS = 6  # across the bounds of a second unknown input
-_SURE = 0.999  # of Fisher's F that a contact is there
+_SURE = 0.999  # level of the F test that there is a contact
 #: y = _HERTZ x^q E^e R^r of a rigid ball on a half-space.
 _HERTZ = {("D", "P"): 4 / 3, ("P", "a"): 0.75 ** (1 / 3), ("a", "dP_dD"): 2.0}
 _SAME = 1e-3  # minima whose unknowns differ by less than this part of a spread are one
@@ -35,9 +37,13 @@ class FitStatus(IntEnum):
 
 
 def fit_block(asked: Asked, table: Table, x: np.ndarray, y: np.ndarray, sigma: np.ndarray | None) -> dict[str, Any]:
-    """Fits of curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
+    """Fit curves (B, n), NaN where there is no point. Every curve has more points than unknowns.
 
     sigma : (B, n) standard deviations of y; None: from the residuals
+
+    Returns the unknowns p (B, k), the ends low and high of their intervals, their covariance (B, k, k) and what the
+    spreads of other inputs add to it (`propagated`), Student's t (B,), status (B,), the fit of y (B, n), and the units
+    of x and y (wide and top, (B,)) in which D0, P0 and tilt are.
     """
     model, there = asked.model, np.isfinite(x) & np.isfinite(y)
     top = np.where(there, y, -np.inf).max(axis=1) - np.where(there, y, np.inf).min(axis=1)
@@ -114,7 +120,7 @@ def _no_prior(low: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _starts(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: np.ndarray, least: np.ndarray) -> tuple:
-    """Unknowns where the search begins, a list of (B, k), and their bounds."""
+    """A list of unknowns (B, k), at each of which a search begins, and their bounds (B, k)."""
     model, names, B = asked.model, curve.names, len(y)
     power = HERTZ[model.x, model.y][0]
     D0, P0, depth, load = _contact_points(asked, curve, there, y, power[0])
@@ -152,7 +158,8 @@ def _starts(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, top: n
 
 
 def _with_modulus(asked, curve, p, low, high, x, load):
-    """The modulus, if it is unknown, with which the deepest point is on the curve: Newton's steps in logarithms."""
+    """The unknowns p with that modulus, if it is unknown, which brings the curve through the deepest point: by Newton's
+    steps in logarithms."""
     model = asked.model
     if model.modulus not in model.unknowns:
         return p
@@ -171,8 +178,11 @@ def _with_modulus(asked, curve, p, low, high, x, load):
 
 
 def _contact_points(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray, q: float) -> tuple:
-    """D0, P0, and the depth and load (B,) of the deepest point above them: from the depths at 10 and 50 % of the
-    load."""
+    """First values (B,) of D0 and P0, and the depth and load of the deepest point above them.
+
+    P0 is the mean of the first tenth of the points. D0 follows from the depths at 10 and 50 % of the load, as if the
+    load rose with the power q of the depth.
+    """
     B = len(y)
     D0, P0, deepest, load = np.zeros(B), np.zeros(B), np.zeros(B), np.zeros(B)
     part = 0.2 ** (1 / q)
@@ -190,7 +200,8 @@ def _contact_points(asked: Asked, curve: Curve, there: np.ndarray, y: np.ndarray
 
 
 def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) -> np.ndarray:
-    """Whether the model does not lower the squares of a straight line by what chance does in one of a thousand."""
+    """Whether a straight line fits as well: the model lowers its sum of squares by no more than chance would, in all
+    but one of a thousand curves."""
     w2 = data.w**2
     x = curve.x / curve.wide[:, None]
     total = w2.sum(axis=1)
@@ -206,8 +217,7 @@ def _no_contact(curve: Curve, data: Data, best: Fit, count: np.ndarray, k: int) 
 
 
 def _propagated(asked: Asked, curve: Curve, data: Data, best: Fit) -> np.ndarray:
-    """Covariance (B, k, k) of the unknowns from the spreads of inputs that are not unknown: of each, by how much the
-    unknowns follow it."""
+    """The covariance (B, k, k) that the spreads of other inputs make: the unknowns follow each of them."""
     k = best.p.shape[1]
     whole = np.zeros((len(best.p), k, k))
     if not asked.model.moved:

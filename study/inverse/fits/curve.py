@@ -8,17 +8,17 @@ from .model import HERTZ
 from .tables import STEP, WIDE, Places, Table
 
 _TILES = 4  # along ln u: from the largest depth down, more than _REACH
-_REACH = np.log(800.0)  # below this part of twice the range of x the last exponent of y(x) goes on
+_REACH = np.log(800.0)  # below 1/800 of twice the range of x the curve goes on as a power of x
 
 
 @dataclass
 class Curve:
-    """B curves of n points.
+    """B curves of n points. Their unknowns are the inputs of the model, then D0/wide, P0/high and tilt wide/high.
 
     table : of the model
     x : (B, n), SI
-    wide, high : (B,) units of x and y of each curve; unknowns are D0/wide, P0/high and tilt wide/high, after the inputs
-    shifts : names of the unknowns after the inputs, of "D0", "P0", "tilt"
+    wide, high : (B,) the units of x and y of each curve
+    shifts : which of "D0", "P0", "tilt" are unknown
     """
 
     table: Table
@@ -60,8 +60,10 @@ class Curve:
         return total, J
 
     def contact(self, p: np.ndarray, moved: bool = False) -> tuple[np.ndarray, dict, np.ndarray]:
-        """F/high (B, n), its derivatives by x and the inputs, and if wanted by the inputs `moved` of the model,
-        (moved, B, n). 0 outside the contact."""
+        """F/high (B, n), 0 outside the contact, and its derivatives by x and the unknown inputs (name -> (B, n)).
+
+        The third value has its derivatives by the inputs `moved` of the model, (moved, B, n), if `moved` is true.
+        """
         model, values = self.table.model, self.values(p)
         depth = self.x - (p[:, [self.names.index("D0")]] * self.wide[:, None] if "D0" in self.shifts else 0.0)
         inside = depth > 0

@@ -1,6 +1,6 @@
 """How sure a fit is: covariances, and intervals by profiles of the likelihood."""
 
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -11,17 +11,9 @@ _OUTWARD, _BETWEEN = 24, 8  # steps of the walk to the limit, and between its la
 _PRECISE = 2e-3  # of the width of an interval
 
 
-class Sure(NamedTuple):
-    """covariance (B, k, k) of the unknowns; low, high (B, k); open (B, k, 2): ends that are bounds."""
-
-    covariance: np.ndarray
-    low: np.ndarray
-    high: np.ndarray
-    open: np.ndarray
-
-
 def covariance_of(data: Data, fit: Fit, variance: np.ndarray) -> np.ndarray:
-    """(B, k, k) from the curvature at the minimum; of Huber's loss the sandwich.
+    """The covariance (B, k, k) of the unknowns, from the curvature at the minimum. Under Huber's loss it is the
+    "sandwich" of two curvatures, which holds for errors that are not normal too.
 
     variance : (B,) of a point of weight 1
     """
@@ -47,14 +39,14 @@ def profiles(
     limit: np.ndarray,
     first: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where the profiles of the first unknowns reach `limit`, their low and high ends: places (B, unknowns, 2), and
-    whether these are bounds.
+    """The low and high ends (B, unknowns, 2) of the intervals of the first unknowns, and whether an end is a bound.
 
-    ends : of each unknown for its low and its high end the unknowns (B, k) and costs (B,) where the walk begins: of the
-        minima within the limit the farthest on this side
+    The profile of an unknown is the least cost for each of its values. Its interval ends where the profile reaches
+    `limit`. The walk goes outward from the minima, all ends at once: a row is a curve, an unknown and a side.
+
+    ends : where each walk begins, the low and the high end of the first unknown, then of the next: unknowns (B, k) and
+        costs (B,) of that minimum within the limit which lies farthest on this side
     first : (B, k) first steps
-
-    All are walked at once: a row is a curve, an unknown and a side.
     """
     B, walks = len(best.p), len(ends)
     rows, walk = np.tile(np.arange(B), walks), np.repeat(np.arange(walks), B)
@@ -76,8 +68,11 @@ def _walk(
     which: np.ndarray,
     side: np.ndarray,
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Where the profile of unknown `which` (B,) reaches `limit` on its side (B,), -1 or 1: its place (B,), and whether
-    it is a bound."""
+    """The value (B,) of unknown `which` (B,) at which its profile reaches `limit`, and whether that is a bound.
+
+    side : (B,) -1 or 1, to which the walk goes. Its steps grow until one is beyond the limit; then the place between
+    the last two is looked for
+    """
     every, data, start = np.arange(len(which)), of[1], best.cost
     bound = np.where(side > 0, data.high[every, which], data.low[every, which])
     p, inside = begin[0].copy(), begin[0][every, which]
@@ -100,10 +95,10 @@ def _walk(
         done = done | out | at_bound
         step = step * 1.7
     place = np.where(open_, bound, inside)
-    found = np.isfinite(outside)
+    crossed = np.isfinite(outside)
     for _ in range(_BETWEEN):
         width = np.abs(outside - inside)
-        left = found & (width > _PRECISE * np.abs(outside - best.p[every, which]))
+        left = crossed & (width > _PRECISE * np.abs(outside - best.p[every, which]))
         if not left.any():
             break
         share = np.clip(_share(top, height, beyond), 0.05, 0.95)
@@ -113,7 +108,7 @@ def _walk(
         outside, beyond = np.where(out, trial, outside), np.where(out, h, beyond)
         inside, height = np.where(left & ~out, trial, inside), np.where(left & ~out, h, height)
     share = np.clip(_share(top, height, beyond), 0.0, 1.0)
-    return np.where(found, inside + share * (outside - inside), place), open_
+    return np.where(crossed, inside + share * (outside - inside), place), open_
 
 
 def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarray:
@@ -126,8 +121,10 @@ def _share(top: np.ndarray, height: np.ndarray, beyond: np.ndarray) -> np.ndarra
 def _inner(
     of: tuple[Any, Data], p: np.ndarray, which: np.ndarray, value: np.ndarray, start: np.ndarray, wanted: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """The other unknowns where unknown `which` has a value, and the root of what the cost is above that of the best
-    fit; of the rows that are `wanted`. Others stay: what a curve gets must not depend on how far its company walks."""
+    """Fits with unknown `which` held at a value: the unknowns, and the root of how far the cost is above the best one.
+
+    Rows that are not `wanted` stay as they are: what a curve gets must not depend on how far others walk.
+    """
     rows, p, height = np.flatnonzero(wanted), p.copy(), np.full(len(p), np.nan)
     p[rows, which[rows]] = value[rows]
     held = np.zeros((len(rows), p.shape[1]), bool)

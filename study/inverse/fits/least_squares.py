@@ -11,7 +11,7 @@ STEPS = 100  # at most
 _CLOSE = 1e-9  # steps of all unknowns below this end the search; all unknowns are of order 1
 #: Unknowns are then within 1e-4 of their spreads.
 SURE = 1e-8
-_AT_LEAST = 8  # curves that are taken together
+_AT_LEAST = 8  # a batch is filled up to a multiple of so many curves
 #: So many steps with hardly a gain end the search: where a point lies at the beginning of the contact, the cost has a
 #: crease, along which steps are short. Unknowns are then within some 1e-3 of their spreads.
 _IDLE = 30
@@ -61,7 +61,7 @@ class Fit(NamedTuple):
 def minimise(
     curve: Any, data: Data, p: np.ndarray, held: np.ndarray | None = None, steps: int = STEPS, sure: float = SURE
 ) -> Fit:
-    """The least squares of w (y - curve(p)), from p, without leaving the bounds.
+    """Minimise the sum of the squares of w (y - curve(p)), from p on, within the bounds.
 
     curve : p -> values (B, n) and derivatives (B, n, k), NaN where there is none; `take(index)` has some of the curves
     held : (B, k) bool, unknowns that stay
@@ -78,13 +78,14 @@ def minimise(
     for _ in range(steps):
         if not len(left):
             break
-        # what is done stands aside; the number of curves is one of few, so that sums are made in one of few ways
+        # Curves that are done leave the batch, which stays a multiple of _AT_LEAST: the order of a sum, and with it
+        # the last digit, may depend on the size of the batch
         rows = left if len(left) % _AT_LEAST == 0 else np.resize(left, -(-len(left) // _AT_LEAST) * _AT_LEAST)
         new, decrease = _step(data.take(rows), fit.take(rows), held[rows], damping[rows])
         part = curve.take(rows)
         new_model, new_J = part(new)
-        # Huber's limit is that of the residuals from which the step goes: both costs count alike. Cost by the limit of
-        # each would fall with the limit too, away from where the sum of the bounded residuals is 0
+        # The new cost is by Huber's limit of the old residuals, so that the two can be compared. By a limit of its own
+        # it could fall merely because the limit does
         limit = huber_limit(data.take(rows), fit.model[rows])
         weights, cost = _weighed(data.take(rows), new, new_model, limit)
         once = slice(0, len(left))

@@ -14,8 +14,9 @@ from ...inputs.scene.scales import make_dimensionless, with_unit
 from ...inputs.scene.scene import Scene
 from ...inputs.vocabulary import PARAMETERS, VOCABULARY
 
-#: Exponents of Hertz's contact: y = x^q E^e R^r on a half-space of the layer, and of x, h, R, E in the number u of
-#: which alone, beside ratios of moduli, y over that depends: the contact of a smooth paraboloid has no length but h²/R.
+#: Two rows of exponents for each pair (x, y). The first has q, e, r of Hertz's contact on a half-space of the layer's
+#: material, y = x^q E^e R^r. The second has those of x, h, R, E in a number u without unit. The only length in the
+#: contact of a smooth paraboloid is h²/R: so y over Hertz's y depends on u and on ratios of moduli alone.
 HERTZ = {
     ("D", "P"): ((1.5, 1.0, 0.5), (1.0, -2.0, 1.0, 0.0)),
     ("P", "a"): ((1 / 3, -1 / 3, 1 / 3), (1.0, -3.0, 1.0, -1.0)),
@@ -49,7 +50,7 @@ class Model:
 
     @classmethod
     def of(cls, definition: Definition, x: str, y: str, unknowns: tuple[str, ...], moved: tuple[str, ...]) -> "Model":
-        """Of a checked call. Raises StudyError for inputs of several values."""
+        """The model of a checked call. Raises StudyError for an input with several values."""
         several = [*definition.grid.sizes]
         if several:
             raise StudyError([f"fit: {name} has several values: one for all curves is allowed" for name in several])
@@ -63,13 +64,13 @@ class Model:
 
     @property
     def is_similar(self) -> bool:
-        """Whether h and R count by u alone: of a smooth paraboloid on the exact layer or a half-space."""
+        """Whether h and R act through u alone: under a smooth paraboloid on the exact layer or a half-space."""
         numbers = self.scene.parameters
         return numbers.get("micro") == "smooth" and numbers.get("base", "layered") in _SMOOTH
 
     @property
     def scales_only(self) -> bool:
-        """Whether the modulus of what is touched is the only finite one, so that it is a factor alone."""
+        """Whether the modulus of what is touched is the only finite one: then it is a mere factor of y."""
         values = self.scene.values
         others = {"E1", "E2", "E_punch"} - {self.modulus}
         return self.is_similar and all(np.isinf(values.get(name, np.inf)) for name in others)
@@ -94,14 +95,14 @@ class Model:
             return np.asarray(coordinate) if is_ratio(name) else np.exp(coordinate)
 
     def within(self, values: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Values (M,) within what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval, beyond which
-        y over its Hertzian part does not change any more."""
+        """Values (M,) moved to what the solver takes: ratios up to 0.5, and n = E1*/E2* within its interval. Beyond
+        this interval y over Hertz's y does not change any more."""
         values = values | {name: np.minimum(values[name], 0.5) for name in ("nu1", "nu2") if name in values}
-        own = self.scene.values | values
-        if {"E1", "E2"} <= {*own} and np.isfinite(own["E2"]).all() and {"E1", "E2"} & {*values}:
+        every = self.scene.values | values
+        if {"E1", "E2"} <= {*every} and np.isfinite(every["E2"]).all() and {"E1", "E2"} & {*values}:
             low, high, *_ = ends(LIMITS["n"].interval)
-            nu1, nu2 = (own.get(name, 0.3) for name in ("nu1", "nu2"))
-            n = own["E1"] / (1 - nu1**2) / own["E2"] * (1 - nu2**2)
+            nu1, nu2 = (every.get(name, 0.3) for name in ("nu1", "nu2"))
+            n = every["E1"] / (1 - nu1**2) / every["E2"] * (1 - nu2**2)
             factor = np.clip(n, 2 * low, high / 2) / n  # not at its very ends, for what is then moved
             values = values | ({"E1": values["E1"] * factor} if "E1" in values else {"E2": values["E2"] / factor})
         return values
@@ -128,8 +129,7 @@ class Model:
         if not self.is_similar:
             return 0.0
         _, (_, h, R, E) = HERTZ[self.x, self.y]
-        own = self.scene.values
-        thickness = values.get("h", own.get("h", 1.0))
+        thickness = values.get("h", self.scene.values.get("h", 1.0))
         return h * np.log(thickness) + R * np.log(values.get("R", self.scene.R)) + E * np.log(self._touched(values))
 
     def solved(self, values: dict[str, np.ndarray], x: np.ndarray) -> np.ndarray:

@@ -13,15 +13,15 @@ WIDE = np.log(16.0)  # of a tile, of a logarithm; of a Poisson ratio:
 _WIDE_RATIO = 0.25
 _LATTICE = 32
 STEP = WIDE / _LATTICE
-#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 1e-7 of
-#: solutions, with three 1e-5 (tests/inverse/test_tables.py).
+#: Chebyshev points of a tile along each coordinate, of tables with one, two and more coordinates: g is within 5e-6 of
+#: solutions, with three 1e-3, which its steepest tiles have (tests/inverse/fits/test_tables.py).
 _POINTS = {1: 16, 2: 14, 3: 8, 4: 6}
 _MARGIN = 2.5 * STEP  # beyond the ends of a tile: the cubic takes points on both sides
 _MOVE = 1e-4  # of inputs by which derivatives are wanted
 
 
 def width(name: str) -> float:
-    """Of a tile along the coordinate of an input."""
+    """The width of a tile along the coordinate of an input."""
     return _WIDE_RATIO if is_ratio(name) else WIDE
 
 
@@ -49,8 +49,8 @@ class Table:
         return values, slopes
 
     def make(self, place: tuple[int, ...]) -> None:
-        """Solve what a tile needs that is not there yet. It holds g, (1 + moved, _LATTICE, points of the other
-        coordinates): itself, and its derivatives by the inputs `moved`; NaN where a contact has no solution.
+        """Solve the contacts of a tile. It holds g and its derivatives by the inputs `moved` of the model, (1 + moved,
+        _LATTICE, points of the other coordinates), NaN where a contact has no solution.
 
         Each tile is a batch of its own: the last digits of a solution depend on what is solved with it.
         """
@@ -88,18 +88,22 @@ class Table:
     def rows(
         self, coordinates: np.ndarray, first: np.ndarray, count: int, moved: bool = False
     ) -> tuple[np.ndarray, np.ndarray]:
-        """g along ln u for B curves: (1 + moved, B, count * _LATTICE), and the derivatives of g itself by each
-        coordinate, (axes, B, ...). The derivatives by the inputs `moved` of the model are there if wanted.
+        """g along ln u for B curves, and its derivatives by each coordinate, (axes, B, count * _LATTICE).
 
-        coordinates : (B, axes); first : (B,) the first tile of each along ln u; count : how many
+        The first array is (1 + moved, B, count * _LATTICE): g, and its derivatives by the inputs `moved` of the model,
+        which are numbers only if `moved` is true.
+
+        coordinates : (B, axes)
+        first : (B,) the first tile of each curve along ln u
+        count : of tiles
         """
         B, names = len(coordinates), self.model.axes
         wide = np.array([width(name) for name in names])
         places = np.floor(coordinates / wide).astype(int)
-        own, slopes = self.lagrange((2 * (coordinates / wide - places) - 1).ravel())
-        own, slopes = (part.reshape(B, len(names), self.points) for part in (own, slopes))
+        values, slopes = self.lagrange((2 * (coordinates / wide - places) - 1).ravel())
+        values, slopes = (part.reshape(B, len(names), self.points) for part in (values, slopes))
         factors = [
-            [slopes[:, i] * 2 / wide[i] if i == j else own[:, i] for i in range(len(names))]
+            [slopes[:, i] * 2 / wide[i] if i == j else values[:, i] for i in range(len(names))]
             for j in range(-1, len(names))
         ]
         weights = np.array([_products(factor, B) for factor in factors])  # of g itself, and of its derivatives
@@ -119,7 +123,7 @@ class Table:
 
 
 def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
-    """All products of one number of each factor (B, n): (B, n1 n2 ...)."""
+    """The outer product of factors (B, n1), (B, n2) ... of each row: (B, n1 n2 ...)."""
     whole = np.ones((B, 1))
     for factor in factors:
         whole = (whole[:, :, None] * factor[:, None, :]).reshape(B, -1)
@@ -127,8 +131,8 @@ def _products(factors: list[np.ndarray], B: int) -> np.ndarray:
 
 
 class Places:
-    """Places (B, n) in rows of L points, where cubics through four points are read: counted in points, from 1 to L -
-    3."""
+    """Places (B, n) between the L points of B rows, counted in points. A cubic through four points is read there; from
+    1 to L - 3 it is the middle one."""
 
     def __init__(self, place: np.ndarray, length: int):
         i = np.clip(place.astype(int), 1, length - 3)  # truncation is the floor, as none is below 0

@@ -188,11 +188,31 @@ def test_a_named_layer_gives_its_ratio_and_its_modulus_is_fitted():
     assert named.E1_spread > by_hand.E1_spread
 
 
+def _plan(D, P, sigma):
+    """Of a dataset that has the loads too: they say nothing of a plan."""
+    both = xr.Dataset({"D": ("point", D, {"units": "m"}), "P": ("point", 7 * P, {"units": "N"})})
+    return study.fit(both, free=["E1"], plan=True, sigma=sigma, E1="5 kPa", progress=False, **GEL)
+
+
+def test_a_plan_takes_a_file_or_a_dataset_of_loads(tmp_path):
+    """One column is enough, whichever x is."""
+    loads = np.linspace(0.1, 2, 40)
+    (tmp_path / "loads.csv").write_text("P [nN]\n" + "\n".join(map(repr, loads.tolist())), encoding="utf-8")
+    dataset = xr.Dataset({"P": ("point", loads, {"units": "nN"})})
+    sources = (tmp_path / "loads.csv", dataset, {"P": (loads, "nN")})
+    options = {"x": "P", "y": "a", "free": ["E1"], "sigma": "5 nm", "plan": True, "E1": "5 kPa", "progress": False}
+    planned = [study.fit(source, **options, **GEL).E1_spread.item() for source in sources]
+    assert 1 < planned[0] < 1e3 and len({*planned}) == 1
+    with pytest.raises(study.StudyError, match="D is not there, P is; x = D, y = P are to be fitted"):
+        study.fit(dataset, **options | {"x": "D", "y": "P", "sigma": "1 pN"}, **GEL)
+
+
 def test_plan_says_how_sure_a_fit_would_be():
     """The spreads of a plan are those of fits of curves with that noise."""
     P, sigma = gel()
     planned = study.fit({"D": (DEPTHS, "m")}, free=["E1"], plan=True, sigma=sigma, E1="5 kPa", progress=False, **GEL)
     np.testing.assert_allclose(planned.E1_spread, fit(DEPTHS, P, sigma=sigma).E1_spread, rtol=0.05)
+    np.testing.assert_array_equal(planned.E1_spread, _plan(DEPTHS, P, sigma).E1_spread)
     assert "residual" not in planned and "P_fit" not in planned and status(planned) == ["converged"]
     text = str(study.summary(planned))
     assert "nu1 = 0.49, E1 = 5 kPa, " in text or "E1 = 5 kPa, nu1 = 0.49, " in text

@@ -1,0 +1,45 @@
+/* What Python and the core share: the fields of solver/compiled/tables.py, in the same order. */
+#ifndef BATCH_H
+#define BATCH_H
+#include <stdint.h>
+
+enum { LOAD, RADIUS, DEPTH };               /* the control of a batch */
+enum { DISC_CELL, POWER_LAW, SMOOTH };      /* its micro law */
+enum { a_, P_, D_, p0_, p_max_, Ar_An_, A0_, dP_dD_, residual_, error_, profile_error_, SCALARS };
+#define JUDGED 6                            /* the first of these are judged by their relative error */
+
+/* Points between the nodes of a mesh: s, weights of 2 s ds, kappa, and as columns for each node the m values of its
+   polynomial and of the displacement of the half-space (solver/contact/results.py). */
+typedef struct { int64_t m; const double *s, *w, *kappa, *basis, *half_space; } Points;
+
+/* A mesh of n nodes and the next finer one, `fine`. K is by columns, its last row that of the edge: n x (n + 1). */
+typedef struct {
+    int64_t n;
+    const double *s, *w, *K, *kappa, *at_edge;
+    const double *fine_s, *fine_w, *fine_K;
+    Points fine, more, between, profile;
+} Mesh;
+
+/* The operator of a layer on a mesh: `product` (M, (n + 1) n), or NULL and the matrix is formed of J (G, n + 1) and phi
+   (G, n); phi_columns (n, G) (solver/body/tables.py). */
+typedef struct { const double *product, *J, *phi, *phi_columns; } Rows;
+
+/* One octave of h/a and class of stiffness on a mesh: k (M,), spread (M, G), and J at the points between (G, m). */
+typedef struct { int64_t few, all; const double *k, *spread; Rows own, fine; const double *J_fine, *J_more, *J_profile; }
+Table;
+
+typedef struct {
+    int64_t size, stride, points, rungs;   /* stride: between the scalars of a case */
+    int32_t control, law, layered, octaves, first_octave, steps;
+    const int64_t *ladder;
+    const double *value, *rtol, *p_star, *A_star, *beta, *ratio, *E, *C, *h, *m, *n, *nu1, *nu2, *bonded;
+    const double *shrink;                   /* (points,), s at a profile's radius over the s that is solved there */
+    const int64_t *place;                   /* (points,), the column of p and lam of each of these */
+    int64_t columns;                        /* of p and lam */
+    double *scalars;                        /* (SCALARS, stride) */
+    double *p, *lam;                        /* (size, columns) */
+    int32_t *nodes, *iterations;            /* (size,); nodes 0: the case is handed back */
+    const Mesh *(*mesh)(int64_t n);
+    const Table *(*table)(int64_t n, int64_t octave, int64_t stiffness);
+} Batch;
+#endif

@@ -1,0 +1,18 @@
+/* The compiled core: Newton's method for many cases at once. The numpy path (solver/contact) is its reference, and says
+   what is computed and why. Here each case has a lane of a vector and meets no number of another case: so a case has the
+   same bits in any company. The files sse2.c, avx2.c and avx512.c compile this for their vectors of W numbers; Python
+   takes the widest that the processor has (solver/compiled/library.py). */
+#include "batch.h"
+#include <stdlib.h>
+#if defined(__x86_64__)
+#include <immintrin.h>
+#endif
+#include "lanes.h"
+#include "laws.h"
+#include "newton.h"
+#include "cases.h"
+#include "run.h"
+
+#define SOLVE_(name) roughcoat_##name
+#define SOLVE(name) SOLVE_(name)
+int SOLVE(NAME)(const Batch *b, int64_t most_points, int64_t most_waves) { return solve(b, most_points, most_waves); }

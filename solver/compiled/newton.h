@@ -1,0 +1,315 @@
+/* Newton's method on the meshes of the ladder: solver/contact of numpy, a case in each lane. */
+#define EPS 2.220446049250313e-16
+#define MOST_NODES 96
+
+/* The equation on one mesh at a state: arrays over the nodes; Kq and its slope by ln a have the edge last. */
+typedef struct {
+    int64_t n;
+    const double *s, *w, *half_space;
+    const Rows *rows;
+    V eta, a, X, Y, Z, load;
+    V *y, *q, *g, *dq, *dg, *Kq, *slope, *F;
+} Equation;
+
+/* Cases in the lanes, and room to compute them. */
+typedef struct {
+    const Batch *b;
+    const Mesh *mesh;
+    const Table *table;
+    int64_t index[W];
+    int count;
+    Law law;
+    Layer layer;
+    V value, E, C, rtol;
+    Equation on, fine;
+    V *K, *A, *L1, *uL, *weights, *slopes, *waves, *d_eta, *step, *missed, *points, *pressures, *room;
+} Group;
+
+/* What each case has come to. `rung` -1: it is no longer here. */
+typedef struct {
+    int64_t *list, *sorted, *rung;
+    int32_t *count, *fresh;
+    double *y, *eta, *a, *soft, *residual, *before, *edge_q, *scalars;
+} States;
+
+static inline V of_cases(const double *values, const int64_t *index) {
+    V v;
+    EACH(l) v[l] = values[index[l]];
+    return v;
+}
+static inline void load_cases(Group *c, const int64_t *index, int count) {
+    const Batch *b = c->b;
+    c->count = count;
+    EACH(l) c->index[l] = index[l < count ? l : count - 1];
+    c->value = of_cases(b->value, c->index);
+    c->rtol = of_cases(b->rtol, c->index);
+    c->E = of_cases(b->E, c->index);
+    c->C = of_cases(b->C, c->index);
+    c->law = (Law){b->law, of_cases(b->p_star, c->index), of_cases(b->A_star, c->index), all(1.0), all(1.0)};
+    if (b->law == POWER_LAW) {
+        c->law.beta = of_cases(b->beta, c->index);
+        c->law.ratio = of_cases(b->ratio, c->index);
+    }
+    if (!b->layered) return;
+    c->layer.n = of_cases(b->n, c->index);
+    c->layer.m = of_cases(b->m, c->index);
+    c->layer.h = of_cases(b->h, c->index);
+    c->layer.bonded = b->bonded[c->index[0]] != 0;
+    c->layer.stiff = b->n[c->index[0]] > 2;
+    if (c->layer.bonded) bond(&c->layer, of_cases(b->nu1, c->index), of_cases(b->nu2, c->index));
+}
+static inline V softness(const Group *c, V a) {
+    return c->b->layered ? whole(&c->layer, 1.5 * c->layer.h / a) : all(1.0);
+}
+/* Sums (rows) of the columns, each times one x. */
+static inline void combine(const double *columns, int64_t count, int64_t rows, const V *x, V *out) {
+    int64_t i = 0;
+    for (; i + 8 <= rows; i += 8) {
+        V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
+        for (int64_t j = 0; j < count; j++) {
+            const double *k = columns + j * rows + i;
+            V v = x[j];
+            s0 += k[0] * v; s1 += k[1] * v; s2 += k[2] * v; s3 += k[3] * v;
+            s4 += k[4] * v; s5 += k[5] * v; s6 += k[6] * v; s7 += k[7] * v;
+        }
+        out[i] = s0; out[i + 1] = s1; out[i + 2] = s2; out[i + 3] = s3;
+        out[i + 4] = s4; out[i + 5] = s5; out[i + 6] = s6; out[i + 7] = s7;
+    }
+    for (; i < rows; i++) {
+        V sum = all(0);
+        for (int64_t j = 0; j < count; j++) sum += columns[j * rows + i] * x[j];
+        out[i] = sum;
+    }
+}
+static inline V against(const double *w, const V *x, int64_t n) {
+    V sum = all(0);
+    for (int64_t i = 0; i < n; i++) sum += w[i] * x[i];
+    return sum;
+}
+/* L - 1 and its slope at the few nodes k; their weights at all nodes. */
+static inline void kernel_at(Group *c, V a) {
+    const Table *t = c->table;
+    V h_a = c->layer.h / a;
+    for (int64_t i = 0; i < t->few; i++) c->L1[i] = decaying(&c->layer, t->k[i] * h_a, c->uL + i);
+}
+/* The operator of a layer on a mesh, K (n + 1, n), and the slope of K q. */
+static void form(Group *c, Equation *e) {
+    int64_t n = e->n, size = n * (n + 1), few = c->table->few, G = c->table->all, i = 0;
+    V *K = c->K, *S = c->A;
+    const double *p = e->rows->product, *J = e->rows->J, *phi = e->rows->phi;
+    if (p) {
+        for (; i + 6 <= size; i += 6) {
+            V k0 = all(0), k1 = k0, k2 = k0, k3 = k0, k4 = k0, k5 = k0, u0 = k0, u1 = k0, u2 = k0, u3 = k0, u4 = k0, u5 = k0;
+            for (int64_t m = 0; m < few; m++) {
+                const double *t = p + m * size + i;
+                V x = c->L1[m], u = c->uL[m];
+                k0 += t[0] * x; k1 += t[1] * x; k2 += t[2] * x; k3 += t[3] * x; k4 += t[4] * x; k5 += t[5] * x;
+                u0 += t[0] * u; u1 += t[1] * u; u2 += t[2] * u; u3 += t[3] * u; u4 += t[4] * u; u5 += t[5] * u;
+            }
+            K[i] = k0; K[i + 1] = k1; K[i + 2] = k2; K[i + 3] = k3; K[i + 4] = k4; K[i + 5] = k5;
+            S[i] = u0; S[i + 1] = u1; S[i + 2] = u2; S[i + 3] = u3; S[i + 4] = u4; S[i + 5] = u5;
+        }
+        for (; i < size; i++) {
+            K[i] = S[i] = all(0);
+            for (int64_t m = 0; m < few; m++) K[i] += p[m * size + i] * c->L1[m], S[i] += p[m * size + i] * c->uL[m];
+        }
+        for (i = 0; i <= n; i++) {
+            e->slope[i] = all(0);
+            for (int64_t j = 0; j < n; j++) e->slope[i] += S[i * n + j] * e->q[j];
+        }
+    } else {
+        combine(c->table->spread, few, G, c->L1, c->weights);
+        combine(c->table->spread, few, G, c->uL, c->slopes);
+        for (i = 0; i <= n; i += 3)
+            for (int64_t j = 0; j < n; j += 4) {
+                V sum[3][4];
+                int64_t rows = n + 1 - i < 3 ? n + 1 - i : 3, r1 = rows > 1 ? 1 : 0, r2 = rows > 2 ? 2 : 0;
+                for (int r = 0; r < 3; r++) for (int k = 0; k < 4; k++) sum[r][k] = all(0);
+                for (int64_t g = 0; g < G; g++) {
+                    const double *at = J + g * (n + 1) + i, *f = phi + g * n + j;
+                    V w = c->weights[g], x0 = at[0] * w, x1 = at[r1] * w, x2 = at[r2] * w;
+                    for (int k = 0; k < 4; k++) sum[0][k] += f[k] * x0, sum[1][k] += f[k] * x1, sum[2][k] += f[k] * x2;
+                }
+                for (int r = 0; r < rows; r++) for (int k = 0; k < 4; k++) K[(i + r) * n + j + k] = sum[r][k];
+            }
+        combine(e->rows->phi_columns, n, G, e->q, c->room);
+        for (int64_t g = 0; g < G; g++) c->room[g] *= c->slopes[g];
+        combine(J, G, n + 1, c->room, e->slope);
+    }
+    for (i = 0; i <= n; i++) {
+        V sum = all(0);
+        for (int64_t j = 0; j < n; j++) {
+            K[i * n + j] += e->half_space[j * (n + 1) + i];
+            sum += K[i * n + j] * e->q[j];
+        }
+        e->Kq[i] = sum;
+    }
+}
+static inline void curves(const Group *c, Equation *e) {
+    V a = e->a;
+    e->X = 8 / PI * c->law.p_star / (a * c->E);
+    e->Y = 2 * c->C * c->law.p_star / (a * a);
+    e->Z = 2 * c->law.A_star / (a * a);
+    for (int64_t i = 0; i < e->n; i++) {
+        Curve curve = curve_of(&c->law, e->y[i]);
+        e->q[i] = curve.q; e->g[i] = curve.g; e->dq[i] = curve.dq; e->dg[i] = curve.dg;
+    }
+    e->load = against(e->w, e->q, e->n);
+}
+static void evaluate(Group *c, Equation *e) {
+    int64_t n = e->n;
+    curves(c, e);
+    if (c->b->layered) form(c, e);
+    else {
+        combine(e->half_space, n, n + 1, e->q, e->Kq);
+        for (int64_t i = 0; i <= n; i++) e->slope[i] = all(0);
+    }
+    for (int64_t i = 0; i < n; i++) e->F[i] = e->X * e->Kq[i] + e->Y * e->q[i] + e->Z * e->g[i] - e->s[i] * e->s[i];
+}
+/* The residual of a control, ln of its quantity over its value; X and the displacement of the edge may be others. */
+static inline V control_residual(const Group *c, const Equation *e) {
+    if (c->b->control == RADIUS) return e->eta - vlog(c->value);
+    if (c->b->control == LOAD) return vlog(2 * PI * c->law.p_star * e->load / c->value) + 2 * e->eta;
+    return vlog((1 + e->X * e->Kq[e->n]) / (2 * c->value)) + 2 * e->eta;
+}
+/* The derivative of ln of a control along t, dq at the nodes, and by ln a. */
+static inline V along(const Group *c, const Equation *e, int control, const V *t, V *by_eta) {
+    int64_t n = e->n;
+    *by_eta = all(control == RADIUS ? 1.0 : 2.0);
+    if (control == RADIUS) return all(0);
+    if (control == LOAD) return against(e->w, t, n) / e->load;
+    V edge = e->X * e->Kq[n], depth = 1 + edge, sum = all(0);
+    for (int64_t j = 0; j < n; j++) sum += (c->b->layered ? c->K[n * n + j] : all(e->half_space[j * (n + 1) + n])) * t[j];
+    *by_eta += (e->X * e->slope[n] - edge) / depth;
+    return e->X * sum / depth;
+}
+/* Elimination of A (n, n) for two right-hand sides, without exchange of rows; the lanes whose pivots are positive. */
+static I eliminate(V *A, V *r, V *t, int64_t n) {
+    I sound = all(1.0) == 1.0;
+    for (int64_t k = 0; k < n; k++) {
+        V *top = A + k * n, inverse = 1 / top[k];
+        sound &= top[k] > 0;
+        top[k] = inverse;
+        int64_t i = k + 1;
+        for (; i + 2 <= n; i += 2) {
+            V *one = A + i * n, *two = one + n, f = one[k] * inverse, h = two[k] * inverse;
+            for (int64_t j = k + 1; j < n; j++) {
+                V x = top[j];
+                one[j] -= f * x;
+                two[j] -= h * x;
+            }
+            r[i] -= f * r[k]; r[i + 1] -= h * r[k];
+            t[i] -= f * t[k]; t[i + 1] -= h * t[k];
+        }
+        for (; i < n; i++) {
+            V *one = A + i * n, f = one[k] * inverse;
+            for (int64_t j = k + 1; j < n; j++) one[j] -= f * top[j];
+            r[i] -= f * r[k];
+            t[i] -= f * t[k];
+        }
+    }
+    for (int64_t k = n - 1; k >= 0; k--) {
+        V x = r[k], z = t[k];
+        for (int64_t j = k + 1; j < n; j++) x -= A[k * n + j] * r[j], z -= A[k * n + j] * t[j];
+        r[k] = x * A[k * n + k];
+        t[k] = z * A[k * n + k];
+    }
+    return sound;
+}
+/* One step: c->step has the new y less the old, c->d_eta dq/d eta; returns the change of eta, NaN where it failed. */
+static V advance(Group *c, Equation *e) {
+    int64_t n = e->n;
+    V *t = c->step, *r = c->d_eta, inverse = 1 / e->X;
+    for (int64_t i = 0; i < n; i++) {
+        for (int64_t j = 0; j < n; j++) c->A[i * n + j] = c->b->layered ? c->K[i * n + j] : all(e->half_space[j * (n + 1) + i]);
+        c->A[i * n + i] += (e->Y + e->Z * (e->dg[i] / e->dq[i])) * inverse;
+        r[i] = e->Kq[i] - e->slope[i] + 2 * (e->Y * e->q[i] + e->Z * e->g[i]) * inverse;
+        t[i] = -e->F[i] * inverse;
+    }
+    I sound = eliminate(c->A, r, t, n);
+    V by_eta, unused, of_t = along(c, e, c->b->control, t, &unused), of_r = along(c, e, c->b->control, r, &by_eta);
+    V d_eta = clip(-(control_residual(c, e) + of_t) / (by_eta + of_r), all(-1.0), all(1.0));
+    d_eta = pick(sound, d_eta, all(__builtin_nan("")));
+    for (int64_t i = 0; i < n; i++) {
+        V old = e->y[i], new = old + (t[i] + r[i] * d_eta) / e->dq[i];
+        if (c->b->law != SMOOTH) new = clip(new, 0.2 * old, 5.0 * old);
+        t[i] = new - old;
+    }
+    return d_eta;
+}
+/* The part that rounding and the operator itself have in an error. */
+static inline V of_operator(const Group *c, V a, int64_t n) {
+    V floor = all(4 * n * EPS);
+    if (!c->b->layered) return floor;
+    return most(floor, 1e-14 * n / least(whole(&c->layer, 4.0 * c->layer.h / a), all(1.0)));
+}
+/* Residual of the cases; the lanes that have closed; the lanes with a gap that is real. */
+static I closed(const Group *c, const Equation *e, V *residual, I *apart) {
+    V top = all(0), high = all(0), largest = all(0), sum = all(0);
+    for (int64_t i = 0; i < e->n; i++) largest = most(e->q[i], largest);
+    for (int64_t i = 0; i < e->n; i++) {
+        I bare = (e->q[i] >= 0) & (e->q[i] < 1e-16 * largest);
+        V gap = pick(bare, most(e->F[i] - e->Z * e->g[i], all(0)), all(0)), F = pick(gap > 0, all(0), size_of(e->F[i]));
+        high = most(gap, high);
+        top = most(F, top);
+        sum += F;
+    }
+    V G = size_of(control_residual(c, e));
+    *residual = pick(is_finite(sum + G), most(top, G), all(__builtin_nan("")));
+    *apart = high > 1e-9;
+    I done = *residual < 1e-13, near = ~done & (*residual < 1e-5);
+    if (any(near)) done |= near & (*residual < most(1e-2 * of_operator(c, e->a, e->n), 20 * EPS / softness(c, e->a)));
+    return done;
+}
+/* The unknown y at points between the nodes: interpolate of solver/contact/results.py. */
+static void interpolate(Group *c, const Points *p, const double *J, double tolerance, V *y) {
+    const Equation *e = &c->on;
+    const Law *law = &c->law;
+    int64_t n = e->n, m = p->m;
+    V *kq = c->room, *at_layer = kq + m, *right = at_layer + m, *linear = right + m, *factor = linear + m;
+    combine(p->half_space, n, m, e->q, kq);
+    if (c->b->layered) {
+        combine(J, c->table->all, m, c->waves, at_layer);
+        for (int64_t i = 0; i < m; i++) kq[i] += at_layer[i];
+    }
+    combine(p->basis, n, m, e->q, c->pressures);
+    combine(p->basis, n, m, c->missed, factor);
+    for (int64_t i = 0; i < m; i++) {
+        V drop = all(p->s[i] * p->s[i]), stiff = e->X * p->kappa[i], floor = 1e-3 * stiff * size_of(c->pressures[i]);
+        linear[i] = stiff + e->Y;
+        right[i] = most(drop - e->X * kq[i] + stiff * c->pressures[i], clip(floor, 1e-16 * drop, 1e-9 * drop));
+        if (law->name == SMOOTH) y[i] = right[i] / linear[i];
+        else y[i] = guess_of(law, 1 / (linear[i] / right[i] + 1 / sparse_of(law, right[i] / e->Z)))
+                    * clip(factor[i], all(0.7), all(1.4));
+    }
+    I going = all(1.0) == 1.0;
+    for (int k = 0; k < 40 && law->name != SMOOTH && any(going); k++) {
+        I far = going ^ going;
+        for (int64_t i = 0; i < m; i++) {
+            V old = y[i];
+            Curve v = curve_of(law, old);
+            V f = linear[i] * v.q + e->Z * v.g - right[i];
+            V new = clip(old - f / (linear[i] * v.dq + e->Z * v.dg), 0.2 * old, 5.0 * old), change = new - old;
+            y[i] = pick(going, new, old);
+            far |= change * change > tolerance * new * new;
+        }
+        going &= far;
+    }
+}
+/* What `interpolate` needs beside the curves: c->missed, and of layers c->waves; the kernel is that at the radius. */
+static void before_points(Group *c) {
+    const Equation *e = &c->on;
+    const Table *t = c->table;
+    if (c->b->layered) {
+        combine(t->spread, t->few, t->all, c->L1, c->weights);
+        combine(t->own.phi_columns, e->n, t->all, e->q, c->waves);
+        for (int64_t g = 0; g < t->all; g++) c->waves[g] *= c->weights[g];
+    }
+    for (int64_t i = 0; i < e->n; i++) {
+        V linear = e->X * c->mesh->kappa[i] + e->Y, right = linear * e->q[i] + e->Z * e->g[i];
+        c->missed[i] = all(1.0);
+        if (c->b->law == SMOOTH) continue;
+        V ratio = e->y[i] / guess_of(&c->law, 1 / (linear / right + 1 / sparse_of(&c->law, right / e->Z)));
+        c->missed[i] = pick(ratio == ratio, clip(ratio, all(0.5), all(2.0)), all(1.0));
+    }
+}

@@ -1,0 +1,109 @@
+"""Newton's method by the compiled core: the cases that it takes, and numpy for the rest."""
+
+from ctypes import byref
+
+import numpy as np
+
+from ..body.half_space import HalfSpace
+from ..body.hankel import Hankel
+from ..body.wave_rule import OCTAVES, STIFFEST
+from ..contact import adaptive
+from ..contact.error import STEEP
+from ..contact.newton import LIMIT
+from ..contact.results import apart
+from ..edges import FREE
+from ..kernels.two_layers import TwoLayers
+from ..laws import LAWS
+from ..numerics.ladder import LADDER
+from ..punches import PARABOLOID
+from ..solution import Solution
+from .library import OF_MESH, OF_TABLE, Batch, core, pointer
+from .tables import MOST_WAVES, mesh_for, table_for
+
+#: The laws and controls of the core, in the order of batch.h.
+_LAWS, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
+_SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "profile_error")
+#: Most cases of one call of the core. Its memory is 4 MB, and groups of like cases are full.
+_CHUNK = 4096
+#: Finest mesh of the core. What needs more is left to numpy: the estimate of its error needs finer ones and panels.
+_FINEST = 64
+
+
+def solve_newton(cases, rtol, nodes, limit, x):
+    """As :func:`~solver.contact.adaptive.solve_newton`, which solves the cases that the core hands back."""
+    function = core()
+    index = np.flatnonzero(_taken(cases, nodes)) if function and not limit else ()
+    if not len(index):
+        return adaptive.solve_newton(cases, rtol, nodes, limit, x)
+    whole = len(index) == len(rtol)
+    solution = _solved(function, cases if whole else cases.take(index), rtol if whole else rtol[index], x)
+    solved = np.flatnonzero(solution.nodes)
+    if len(solved) == len(rtol):
+        return solution
+    rest = np.delete(np.arange(len(rtol)), index[solved])
+    pieces = [(index[solved], solution.take(solved))]
+    pieces.append((rest, adaptive.solve_newton(cases.take(rest), rtol[rest], nodes[rest], limit, x)))
+    return Solution.join(len(rtol), len(x), pieces)
+
+
+def _taken(cases, nodes):
+    """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
+    law, body = cases.law.law, cases.body
+    taken = nodes == 0
+    if law not in [LAWS[name] for name in _LAWS] or cases.punch is not PARABOLOID or cases.edge is not FREE:
+        return np.zeros_like(taken)
+    if law.name == "power_law":
+        taken = taken & (cases.law.own[0][:, 0] >= STEEP)
+    if isinstance(body, HalfSpace):
+        return taken & law.rough
+    if isinstance(body, Hankel) and isinstance(body.kernel, TwoLayers):
+        return taken & (body.kernel.n <= STIFFEST[1])
+    return np.zeros_like(taken)
+
+
+def _solved(function, cases, rtol, x):
+    """:class:`~solver.solution.Solution` by the core; `nodes` is 0 of the cases that are handed back."""
+    size, points, law, body = len(rtol), len(x), cases.law, cases.body
+    s = np.sqrt((1 - x) * (1 + x))
+    inner = np.flatnonzero(s > 0)
+    solved_at = apart(s[inner], law.rough)
+    inputs = {"value": cases.value, "rtol": rtol, "p_star": law.p_star, "A_star": law.A_star, "E": body.E, "C": body.C}
+    if law.law.name == "power_law":
+        inputs |= dict(zip(("beta", "ratio"), (own[:, 0] for own in law.own), strict=True))
+    layered = isinstance(body, Hankel)
+    if layered:
+        inputs |= {"h": body.h, "m": body.m} | body.kernel._asdict()
+    inputs = {name: np.ascontiguousarray(values, dtype=float) for name, values in inputs.items()}
+    scalars, (p, lam) = np.empty((len(_SCALARS), size)), np.zeros((2, size, points))
+    nodes, iterations = np.zeros((2, size), dtype=np.int32)
+    place, shrink = inner.astype(np.int64), s[inner] / solved_at
+    ladder = np.array([n for n in LADDER if n <= _FINEST] + [LADDER[LADDER.index(_FINEST) + 1]], dtype=np.int64)
+    s_bytes, held = solved_at.tobytes(), []
+
+    def address(make):
+        """The address of what `make` returns, or 0. Python prints what a callback of C raises, and C goes on."""
+
+        def of(*key):
+            if (made := make(*key, s_bytes)) is None:
+                return 0
+            held.append(made)
+            return made.address
+
+        return of
+
+    shared = {"stride": size, "points": len(inner), "rungs": len(ladder), "control": _CONTROLS.index(cases.control)}
+    shared |= {"law": _LAWS.index(law.law.name), "layered": layered, "first_octave": OCTAVES[0], "steps": LIMIT}
+    shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "columns": points, "ladder": pointer(ladder)}
+    shared |= {"shrink": pointer(shrink), "place": pointer(place)}
+    shared |= {"mesh": OF_MESH(address(mesh_for)), "table": OF_TABLE(address(table_for))}
+    most_points = max(3 * _FINEST, 2 * _FINEST + 4, len(inner), LADDER[-1])
+    rows = inputs | {"p": p, "lam": lam, "nodes": nodes, "iterations": iterations}
+    for low in range(0, size, _CHUNK):
+        own = {name: pointer(values, low) for name, values in rows.items()}
+        own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
+        if not function(byref(Batch(**shared, **own)), most_points, MOST_WAVES):
+            raise MemoryError("no memory for the compiled core")
+    values = dict(zip(_SCALARS, scalars, strict=True))
+    integers = {name: np.zeros(size, dtype=np.int8) for name in ("status", "model_used")}
+    rest = {name: np.full(size, np.nan) for name in ("plastic_share", "model_error")}
+    return Solution(**values, **integers, **rest, nodes=nodes, iterations=iterations, p=p, lam=lam)

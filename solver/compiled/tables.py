@@ -1,0 +1,88 @@
+"""What the core needs beside the cases: meshes, points between their nodes, and the tables of layers, as C has them."""
+
+from ctypes import addressof
+
+import numpy as np
+
+from ..body.tables import between, table
+from ..body.wave_rule import few
+from ..contact.answer import denser_rule
+from ..contact.error import another_rule
+from ..contact.results import stiffness_between
+from ..kernels.two_layers import SAMPLER
+from ..numerics.kept import Kept
+from ..numerics.ladder import finer_mesh
+from ..numerics.mesh import mesh_of
+from .library import Mesh, Points, Rows, Table, pointer
+
+#: Most numbers k of a quadrature for which there is room in the core. The thinnest layer that is no film has 2,180.
+MOST_WAVES = 4096
+#: All that is kept for later calls takes at most this many bytes.
+_kept = Kept(2e8)
+
+
+class Made(tuple):
+    """A structure of C and the arrays to which it points: ``(structure, [arrays])``."""
+
+    @property
+    def address(self):
+        return addressof(self[0])
+
+
+def mesh_for(n, s_bytes):
+    """:class:`Made` of the :class:`.library.Mesh` of n nodes, with the points of profiles."""
+    return _kept.get(("mesh", n, s_bytes), lambda: _mesh(mesh_of(n), np.frombuffer(s_bytes)))
+
+
+def table_for(n, octave, stiffness, s_bytes):
+    """:class:`Made` of the :class:`.library.Table` of an octave of h/a and a class of stiffness on n nodes; None if the
+    core has no room for it."""
+    key = "table", n, octave, stiffness, s_bytes
+    return _kept.get(key, lambda: _table(mesh_of(n), octave, stiffness, np.frombuffer(s_bytes)))
+
+
+def _mesh(mesh, profile):
+    arrays, fine = [], finer_mesh(mesh)
+
+    def at(array):
+        arrays.append(np.ascontiguousarray(array, dtype=float))
+        return pointer(arrays[-1])
+
+    def points(s, w=None):
+        s = np.ascontiguousarray(s)
+        w = s if w is None else w
+        return Points(len(s), at(s), at(w), at(stiffness_between(mesh, s)), at(mesh.basis(s).T), at(mesh.rows(s).T))
+
+    def operator(mesh):
+        return at(np.vstack([mesh.K, mesh.edge]).T)
+
+    (s, w), (dense, dense_w) = another_rule(mesh), denser_rule(mesh)
+    made = Mesh(
+        *(mesh.n, at(mesh.s), at(mesh.w), operator(mesh), at(stiffness_between(mesh, mesh.s))),
+        *(at(mesh.basis(np.zeros(1))[0]), at(fine.s), at(fine.w), operator(fine)),
+        *(points(fine.s), points(s, 2 * w * s), points(dense, dense_w * dense), points(profile)),
+    )
+    return Made((made, arrays))
+
+
+def _table(mesh, octave, stiffness, profile):
+    arrays = []
+
+    def at(array):
+        arrays.append(np.ascontiguousarray(array, dtype=float))
+        return pointer(arrays[-1])
+
+    def rows(mesh):
+        """Whether the product is there does not depend on the number of cases: nor do their bits."""
+        of_mesh = table(mesh, SAMPLER, octave, stiffness, False)
+        product = of_mesh.product if of_mesh.product is None else at(of_mesh.product)
+        return of_mesh, Rows(product, at(of_mesh.J), at(of_mesh.phi), at(of_mesh.phi.T))
+
+    (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
+    if of_mesh.spread.shape[1] > MOST_WAVES:
+        return None
+    s, _ = another_rule(mesh)
+    points = (between(octave, stiffness, np.ascontiguousarray(v)) for v in (finer_mesh(mesh).s, s, profile))
+    k = at(few(SAMPLER, octave, stiffness).k)
+    made = Table(*of_mesh.spread.shape, k, at(of_mesh.spread), own, fine, *map(at, points))
+    return Made((made, arrays))

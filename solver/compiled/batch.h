@@ -20,9 +20,9 @@ typedef struct {
     Points fine, more, between, profile;
 } Mesh;
 
-/* The operator of a layer on a mesh: `product` (M, (n + 1) n), or NULL and the matrix is formed of J (G, n + 1) and phi
-   (G, n); phi_columns (n, G) (solver/body/tables.py). */
-typedef struct { const double *product, *J, *phi, *phi_columns; } Rows;
+/* The operator of a layer on a mesh (solver/body/tables.py): `product` (M, (n + 1) n) in blocks of 12 columns, or NULL, and
+   the matrix is formed of J (G, n + 1) and phi (G, n) in blocks of 3 and 4 columns; phi_columns (n, G). */
+typedef struct { const double *product, *J, *J_blocks, *phi_blocks, *phi_columns; } Rows;
 
 /* One octave of h/a and class of stiffness on a mesh: k (M,), spread (M, G), and J at the points between (G, m). */
 typedef struct { int64_t few, all; const double *k, *spread; Rows own, fine; const double *J_fine, *J_more, *J_profile; }

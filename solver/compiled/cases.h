@@ -161,6 +161,27 @@ static V of_profiles(const Group *c, const V *y_start, const V *q_start, V margi
     if (c->b->law == SMOOTH) other = size_of(against(c->mesh->at_edge, c->on.q, c->on.n)), most_area = largest;
     return margin * most(change / largest, other / most_area);
 }
+/* The profiles of the cases of a group that are `shown`. */
+static void profiles(Group *c, I shown) {
+    const Batch *b = c->b;
+    const Points *p = &c->mesh->profile;
+    interpolate(c, p, b->layered ? c->table->J_profile : 0, 1e-13, c->points);
+    for (int64_t i = 0; i < p->m; i++) {
+        V y = c->points[i], q = curve_of(&c->law, y).q * b->shrink[i], lam = area_of(&c->law, y, q);
+        for (int l = 0; l < c->count; l++) {
+            if (!shown[l]) continue;
+            int64_t to = c->index[l] * b->columns + b->place[i];
+            b->p[to] = c->law.p_star[l] * q[l];
+            b->lam[to] = lam[l];
+        }
+    }
+}
+static void profile(Group *c, States *s) {
+    load_state(c, s);
+    curves(c, &c->on);
+    before_points(c);
+    profiles(c, all(1.0) == 1.0);
+}
 /* What becomes of a group of cases that have closed: each is solved, goes on to the finer mesh, or is handed back. */
 static void finish(Group *c, States *s) {
     const Batch *b = c->b;
@@ -211,7 +232,9 @@ static void finish(Group *c, States *s) {
     bad |= ~is_finite(error) | (wanting & (floor > c->rtol) & (error <= pick(slow, 30 * floor, floor)));
     bad |= wanting & slow & (error > 100 * c->rtol) & (all(n) >= 48);
     for (int i = 0; i < 7; i++) bad |= ~is_finite(coarse.value[i]);
-    V profile = any(~bad & ~wanting) ? most(error, of_profiles(c, y_start, q_start, margin)) : error;
+    I solved = ~bad & ~wanting;
+    V profile = any(solved) ? most(error, of_profiles(c, y_start, q_start, margin)) : error;
+    if (b->layered && b->points && any(solved)) profiles(c, solved);           /* its tables are at hand */
     for (int l = 0; l < c->count; l++) {
         int64_t k = c->index[l];
         if (s->rung[k] < 0 || bad[l]) {
@@ -236,23 +259,6 @@ static void finish(Group *c, States *s) {
         b->nodes[k] = (int32_t)n;
         b->iterations[k] = s->count[k];
         s->fresh[k] = 3;
-    }
-}
-static void profiles(Group *c, const States *s) {
-    const Batch *b = c->b;
-    const Points *p = &c->mesh->profile;
-    load_state(c, s);
-    if (b->layered) kernel_at(c, c->on.a);
-    curves(c, &c->on);
-    before_points(c);
-    interpolate(c, p, b->layered ? c->table->J_profile : 0, 1e-13, c->points);
-    for (int64_t i = 0; i < p->m; i++) {
-        V y = c->points[i], q = curve_of(&c->law, y).q * b->shrink[i], lam = area_of(&c->law, y, q);
-        for (int l = 0; l < c->count; l++) {
-            int64_t to = c->index[l] * b->columns + b->place[i];
-            b->p[to] = c->law.p_star[l] * q[l];
-            b->lam[to] = lam[l];
-        }
     }
 }
 /* Radius, softness and first mesh of a group of cases. */

@@ -39,7 +39,7 @@ class Mesh(Structure):
 class Rows(Structure):
     """As in batch.h."""
 
-    _fields_ = [(name, c_void_p) for name in ("product", "J", "phi", "phi_columns")]
+    _fields_ = [(name, c_void_p) for name in ("product", "J", "J_blocks", "phi_blocks", "phi_columns")]
 
 
 class Table(Structure):

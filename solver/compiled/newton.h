@@ -1,6 +1,7 @@
 /* Newton's method on the meshes of the ladder: solver/contact of numpy, a case in each lane. */
 #define EPS 2.220446049250313e-16
 #define MOST_NODES 96
+#define ALONE __attribute__((noinline))        /* compiled once: the same bits wherever it is called */
 
 /* The equation on one mesh at a state: arrays over the nodes; Kq and its slope by ln a have the edge last. */
 typedef struct {
@@ -62,7 +63,7 @@ static inline V softness(const Group *c, V a) {
     return c->b->layered ? whole(&c->layer, 1.5 * c->layer.h / a) : all(1.0);
 }
 /* Sums (rows) of the columns, each times one x. */
-static inline void combine(const double *columns, int64_t count, int64_t rows, const V *x, V *out) {
+static ALONE void combine(const double *columns, int64_t count, int64_t rows, const V *x, V *out) {
     int64_t i = 0;
     for (; i + 8 <= rows; i += 8) {
         V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
@@ -87,56 +88,57 @@ static inline V against(const double *w, const V *x, int64_t n) {
     return sum;
 }
 /* L - 1 and its slope at the few nodes k; their weights at all nodes. */
-static inline void kernel_at(Group *c, V a) {
+static ALONE void kernel_at(Group *c, V a) {
     const Table *t = c->table;
     V h_a = c->layer.h / a;
     for (int64_t i = 0; i < t->few; i++) c->L1[i] = decaying(&c->layer, t->k[i] * h_a, c->uL + i);
 }
-/* The operator of a layer on a mesh, K (n + 1, n), and the slope of K q. */
-static void form(Group *c, Equation *e) {
-    int64_t n = e->n, size = n * (n + 1), few = c->table->few, G = c->table->all, i = 0;
-    V *K = c->K, *S = c->A;
-    const double *p = e->rows->product, *J = e->rows->J, *phi = e->rows->phi;
-    if (p) {
-        for (; i + 6 <= size; i += 6) {
-            V k0 = all(0), k1 = k0, k2 = k0, k3 = k0, k4 = k0, k5 = k0, u0 = k0, u1 = k0, u2 = k0, u3 = k0, u4 = k0, u5 = k0;
-            for (int64_t m = 0; m < few; m++) {
-                const double *t = p + m * size + i;
-                V x = c->L1[m], u = c->uL[m];
-                k0 += t[0] * x; k1 += t[1] * x; k2 += t[2] * x; k3 += t[3] * x; k4 += t[4] * x; k5 += t[5] * x;
-                u0 += t[0] * u; u1 += t[1] * u; u2 += t[2] * u; u3 += t[3] * u; u4 += t[4] * u; u5 += t[5] * u;
-            }
-            K[i] = k0; K[i + 1] = k1; K[i + 2] = k2; K[i + 3] = k3; K[i + 4] = k4; K[i + 5] = k5;
-            S[i] = u0; S[i + 1] = u1; S[i + 2] = u2; S[i + 3] = u3; S[i + 4] = u4; S[i + 5] = u5;
+/* The operator of a layer on a mesh, K (n + 1, n), from L - 1; or its slope by ln a. */
+static ALONE void product(const Group *c, const Equation *e, const V *L, V *K) {
+    int64_t n = e->n, few = c->table->few;
+    const double *t = e->rows->product;
+    for (int64_t i = 0; i < n * (n + 1); i += 12) {
+        V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0, s9 = s0, sa = s0, sb = s0;
+        for (int64_t m = 0; m < few; m++, t += 12) {
+            V x = L[m];
+            s0 += t[0] * x; s1 += t[1] * x; s2 += t[2] * x; s3 += t[3] * x; s4 += t[4] * x; s5 += t[5] * x;
+            s6 += t[6] * x; s7 += t[7] * x; s8 += t[8] * x; s9 += t[9] * x; sa += t[10] * x; sb += t[11] * x;
         }
-        for (; i < size; i++) {
-            K[i] = S[i] = all(0);
-            for (int64_t m = 0; m < few; m++) K[i] += p[m * size + i] * c->L1[m], S[i] += p[m * size + i] * c->uL[m];
-        }
-        for (i = 0; i <= n; i++) {
-            e->slope[i] = all(0);
-            for (int64_t j = 0; j < n; j++) e->slope[i] += S[i * n + j] * e->q[j];
-        }
-    } else {
-        combine(c->table->spread, few, G, c->L1, c->weights);
-        combine(c->table->spread, few, G, c->uL, c->slopes);
-        for (i = 0; i <= n; i += 3)
-            for (int64_t j = 0; j < n; j += 4) {
-                V sum[3][4];
-                int64_t rows = n + 1 - i < 3 ? n + 1 - i : 3, r1 = rows > 1 ? 1 : 0, r2 = rows > 2 ? 2 : 0;
-                for (int r = 0; r < 3; r++) for (int k = 0; k < 4; k++) sum[r][k] = all(0);
-                for (int64_t g = 0; g < G; g++) {
-                    const double *at = J + g * (n + 1) + i, *f = phi + g * n + j;
-                    V w = c->weights[g], x0 = at[0] * w, x1 = at[r1] * w, x2 = at[r2] * w;
-                    for (int k = 0; k < 4; k++) sum[0][k] += f[k] * x0, sum[1][k] += f[k] * x1, sum[2][k] += f[k] * x2;
-                }
-                for (int r = 0; r < rows; r++) for (int k = 0; k < 4; k++) K[(i + r) * n + j + k] = sum[r][k];
-            }
-        combine(e->rows->phi_columns, n, G, e->q, c->room);
-        for (int64_t g = 0; g < G; g++) c->room[g] *= c->slopes[g];
-        combine(J, G, n + 1, c->room, e->slope);
+        K[i] = s0; K[i + 1] = s1; K[i + 2] = s2; K[i + 3] = s3; K[i + 4] = s4; K[i + 5] = s5;
+        K[i + 6] = s6; K[i + 7] = s7; K[i + 8] = s8; K[i + 9] = s9; K[i + 10] = sa; K[i + 11] = sb;
     }
-    for (i = 0; i <= n; i++) {
+}
+/* The same on a fine mesh, where there is no table of products. */
+static ALONE void summed(const Group *c, const Equation *e, const V *weights, V *K) {
+    int64_t n = e->n, G = c->table->all;
+    const double *J = e->rows->J_blocks;
+    for (int64_t i = 0; i <= n; i += 3, J += 3 * G) {
+        const double *f = e->rows->phi_blocks;
+        for (int64_t j = 0; j < n; j += 4) {
+            V a0 = all(0), a1 = a0, a2 = a0, a3 = a0, b0 = a0, b1 = a0, b2 = a0, b3 = a0, d0 = a0, d1 = a0, d2 = a0, d3 = a0;
+            for (int64_t g = 0; g < G; g++, f += 4) {
+                V w = weights[g], x = J[3 * g] * w, y = J[3 * g + 1] * w, z = J[3 * g + 2] * w;
+                a0 += f[0] * x; a1 += f[1] * x; a2 += f[2] * x; a3 += f[3] * x;
+                b0 += f[0] * y; b1 += f[1] * y; b2 += f[2] * y; b3 += f[3] * y;
+                d0 += f[0] * z; d1 += f[1] * z; d2 += f[2] * z; d3 += f[3] * z;
+            }
+            V *one = K + i * n + j, *two = one + n, *three = two + n;
+            one[0] = a0; one[1] = a1; one[2] = a2; one[3] = a3;
+            two[0] = b0; two[1] = b1; two[2] = b2; two[3] = b3;
+            three[0] = d0; three[1] = d1; three[2] = d2; three[3] = d3;
+        }
+    }
+}
+/* K of a layer, and K q. */
+static void form(Group *c, Equation *e) {
+    int64_t n = e->n;
+    V *K = c->K;
+    if (e->rows->product) product(c, e, c->L1, K);
+    else {
+        combine(c->table->spread, c->table->few, c->table->all, c->L1, c->weights);
+        summed(c, e, c->weights, K);
+    }
+    for (int64_t i = 0; i <= n; i++) {
         V sum = all(0);
         for (int64_t j = 0; j < n; j++) {
             K[i * n + j] += e->half_space[j * (n + 1) + i];
@@ -145,7 +147,24 @@ static void form(Group *c, Equation *e) {
         e->Kq[i] = sum;
     }
 }
-static inline void curves(const Group *c, Equation *e) {
+/* The slope of K q by ln a; 0 on a half-space. */
+static void slopes(Group *c, Equation *e) {
+    int64_t n = e->n, G;
+    for (int64_t i = 0; i <= n; i++) e->slope[i] = all(0);
+    if (!c->b->layered) return;
+    if (e->rows->product) {
+        product(c, e, c->uL, c->A);
+        for (int64_t i = 0; i <= n; i++)
+            for (int64_t j = 0; j < n; j++) e->slope[i] += c->A[i * n + j] * e->q[j];
+        return;
+    }
+    G = c->table->all;
+    combine(c->table->spread, c->table->few, G, c->uL, c->slopes);
+    combine(e->rows->phi_columns, n, G, e->q, c->room);
+    for (int64_t g = 0; g < G; g++) c->room[g] *= c->slopes[g];
+    combine(e->rows->J, G, n + 1, c->room, e->slope);
+}
+static ALONE void curves(const Group *c, Equation *e) {
     V a = e->a;
     e->X = 8 / PI * c->law.p_star / (a * c->E);
     e->Y = 2 * c->C * c->law.p_star / (a * a);
@@ -156,14 +175,11 @@ static inline void curves(const Group *c, Equation *e) {
     }
     e->load = against(e->w, e->q, e->n);
 }
-static void evaluate(Group *c, Equation *e) {
+static ALONE void evaluate(Group *c, Equation *e) {
     int64_t n = e->n;
     curves(c, e);
     if (c->b->layered) form(c, e);
-    else {
-        combine(e->half_space, n, n + 1, e->q, e->Kq);
-        for (int64_t i = 0; i <= n; i++) e->slope[i] = all(0);
-    }
+    else combine(e->half_space, n, n + 1, e->q, e->Kq);
     for (int64_t i = 0; i < n; i++) e->F[i] = e->X * e->Kq[i] + e->Y * e->q[i] + e->Z * e->g[i] - e->s[i] * e->s[i];
 }
 /* The residual of a control, ln of its quantity over its value; X and the displacement of the edge may be others. */
@@ -217,9 +233,10 @@ static I eliminate(V *A, V *r, V *t, int64_t n) {
     return sound;
 }
 /* One step: c->step has the new y less the old, c->d_eta dq/d eta; returns the change of eta, NaN where it failed. */
-static V advance(Group *c, Equation *e) {
+static ALONE V advance(Group *c, Equation *e) {
     int64_t n = e->n;
     V *t = c->step, *r = c->d_eta, inverse = 1 / e->X;
+    slopes(c, e);
     for (int64_t i = 0; i < n; i++) {
         for (int64_t j = 0; j < n; j++) c->A[i * n + j] = c->b->layered ? c->K[i * n + j] : all(e->half_space[j * (n + 1) + i]);
         c->A[i * n + i] += (e->Y + e->Z * (e->dg[i] / e->dq[i])) * inverse;
@@ -244,7 +261,7 @@ static inline V of_operator(const Group *c, V a, int64_t n) {
     return most(floor, 1e-14 * n / least(whole(&c->layer, 4.0 * c->layer.h / a), all(1.0)));
 }
 /* Residual of the cases; the lanes that have closed; the lanes with a gap that is real. */
-static I closed(const Group *c, const Equation *e, V *residual, I *apart) {
+static ALONE I closed(const Group *c, const Equation *e, V *residual, I *apart) {
     V top = all(0), high = all(0), largest = all(0), sum = all(0);
     for (int64_t i = 0; i < e->n; i++) largest = most(e->q[i], largest);
     for (int64_t i = 0; i < e->n; i++) {
@@ -262,7 +279,7 @@ static I closed(const Group *c, const Equation *e, V *residual, I *apart) {
     return done;
 }
 /* The unknown y at points between the nodes: interpolate of solver/contact/results.py. */
-static void interpolate(Group *c, const Points *p, const double *J, double tolerance, V *y) {
+static ALONE void interpolate(Group *c, const Points *p, const double *J, double tolerance, V *y) {
     const Equation *e = &c->on;
     const Law *law = &c->law;
     int64_t n = e->n, m = p->m;
@@ -297,7 +314,7 @@ static void interpolate(Group *c, const Points *p, const double *J, double toler
     }
 }
 /* What `interpolate` needs beside the curves: c->missed, and of layers c->waves; the kernel is that at the radius. */
-static void before_points(Group *c) {
+static ALONE void before_points(Group *c) {
     const Equation *e = &c->on;
     const Table *t = c->table;
     if (c->b->layered) {

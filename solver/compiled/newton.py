@@ -23,8 +23,8 @@ from .tables import MOST_WAVES, mesh_for, table_for
 #: The laws and controls of the core, in the order of batch.h.
 _LAWS, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
 _SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "profile_error")
-#: Most cases of one call of the core. Its memory is 4 MB, and groups of like cases are full.
-_CHUNK = 4096
+#: Most cases of one call of the core. Its memory is 14 MB, and groups of like cases are full.
+_CHUNK = 16_384
 #: Finest mesh of the core. What needs more is left to numpy: the estimate of its error needs finer ones and panels.
 _FINEST = 64
 

@@ -44,7 +44,6 @@ static int64_t those(const Batch *b, States *s, int64_t rung, int fresh) {
 }
 static void step(Group *c, States *s) { sweep(c, s, 0); }
 static void last_step(Group *c, States *s) { sweep(c, s, 1); }
-static void profile(Group *c, States *s) { profiles(c, s); }
 
 static void on_rung(Group *c, States *s, int64_t r) {
     const Batch *b = c->b;
@@ -57,7 +56,7 @@ static void on_rung(Group *c, States *s, int64_t r) {
     for (int done = 0; done <= b->steps && (count = those(b, s, r, 0)); done++)
         by_kinds(c, s, s->list, count, 1, done < b->steps ? step : last_step);
     if ((count = those(b, s, r, 2))) by_kinds(c, s, s->list, count, 1, finish);
-    if (b->points && (count = those(b, s, r, 3))) by_kinds(c, s, s->list, count, 1, profile);
+    if (b->points && !b->layered && (count = those(b, s, r, 3))) by_kinds(c, s, s->list, count, 1, profile);
 }
 static V *room_of(V **room, int64_t count) { V *at = *room; *room += count; return at; }
 
@@ -68,7 +67,7 @@ static void equation_in(Equation *e, V **room) {
 /* Solve the cases; 0 if there is no memory. `most_points` and `most_waves`: the largest numbers of points and k. */
 static int solve(const Batch *b, int64_t most_points, int64_t most_waves) {
     int64_t n = MOST_NODES + 4, size = b->size, large = most_points > n ? most_points : n;
-    int64_t vectors = 20 * n + 2 * n * n + 5 * most_waves + 8 * large + 256;
+    int64_t vectors = 20 * n + 2 * (n + 2) * n + 5 * most_waves + 8 * large + 256;
     if (5 * large > most_waves) vectors += 5 * large;
     char *block = malloc((size_t)vectors * sizeof(V) + 64 + (size_t)size * (MOST_NODES * 8 + 11 * 8));
     if (!block) return 0;
@@ -76,7 +75,7 @@ static int solve(const Batch *b, int64_t most_points, int64_t most_waves) {
     Group c = {.b = b};
     equation_in(&c.on, &room);
     equation_in(&c.fine, &room);
-    c.K = room_of(&room, n * n); c.A = room_of(&room, n * n);
+    c.K = room_of(&room, (n + 2) * n); c.A = room_of(&room, (n + 2) * n);
     c.L1 = room_of(&room, 128); c.uL = room_of(&room, 128);
     c.weights = room_of(&room, most_waves); c.slopes = room_of(&room, most_waves); c.waves = room_of(&room, most_waves);
     c.d_eta = room_of(&room, n); c.step = room_of(&room, n); c.missed = room_of(&room, n);

@@ -17,6 +17,8 @@ from .library import Mesh, Points, Rows, Table, pointer
 
 #: Most numbers k of a quadrature for which there is room in the core. The thinnest layer that is no film has 2,180.
 MOST_WAVES = 4096
+#: On meshes of up to this many nodes the matrices are products with one table. On finer ones that takes long to make.
+_PRODUCT = 32
 #: All that is kept for later calls takes at most this many bytes.
 _kept = Kept(2e8)
 
@@ -65,6 +67,12 @@ def _mesh(mesh, profile):
     return Made((made, arrays))
 
 
+def _blocks(columns, width):
+    """The columns of an array (r, c), as many as `width` together and zeros behind the last: (blocks, r, width)."""
+    padded = np.pad(columns, ((0, 0), (0, -columns.shape[1] % width)))
+    return padded.reshape(len(columns), -1, width).transpose(1, 0, 2)
+
+
 def _table(mesh, octave, stiffness, profile):
     arrays = []
 
@@ -74,9 +82,11 @@ def _table(mesh, octave, stiffness, profile):
 
     def rows(mesh):
         """Whether the product is there does not depend on the number of cases: nor do their bits."""
-        of_mesh = table(mesh, SAMPLER, octave, stiffness, False)
-        product = of_mesh.product if of_mesh.product is None else at(of_mesh.product)
-        return of_mesh, Rows(product, at(of_mesh.J), at(of_mesh.phi), at(of_mesh.phi.T))
+        of_mesh = table(mesh, SAMPLER, octave, stiffness, mesh.n <= _PRODUCT)
+        J, phi, columns = of_mesh.J, of_mesh.phi, at(of_mesh.phi.T)
+        if mesh.n <= _PRODUCT:
+            return of_mesh, Rows(at(_blocks(of_mesh.product, 12)), None, None, None, columns)
+        return of_mesh, Rows(None, at(J), at(_blocks(J, 3)), at(_blocks(phi, 4)), columns)
 
     (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
     if of_mesh.spread.shape[1] > MOST_WAVES:

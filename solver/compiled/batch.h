@@ -20,7 +20,7 @@ typedef struct {
     Points fine, more, between, profile;
 } Mesh;
 
-/* The operator of a layer on a mesh (solver/body/tables.py): `product` (M, (n + 1) n) in blocks of 12 columns, or NULL, and
+/* The operator of a layer on a mesh (solver/body/tables.py): `product` (M, (n + 1) n) in blocks of 12 columns, four and four, or NULL, and
    the matrix is formed of J (G, n + 1) and phi (G, n) in blocks of 3 and 4 columns; phi_columns (n, G). */
 typedef struct { const double *product, *J, *J_blocks, *phi_blocks, *phi_columns; } Rows;
 

@@ -114,7 +114,7 @@ static void sweep(Group *c, States *s, int last) {
 static V tension(Group *c) {
     const Points *p = &c->mesh->between;
     V below = all(0), load = all(0);
-    combine(p->basis, c->on.n, p->m, c->on.q, c->points);
+    combine(c, p->basis, c->on.n, p->m, c->on.q, c->points);
     for (int64_t i = 0; i < p->m; i++) {
         below += p->w[i] * most(-c->points[i], all(0.0));
         load += p->w[i] * c->points[i];

@@ -106,7 +106,7 @@ static inline V bonded_below(const Layer *b, V u, V e, V rest, V *excess, V *slo
     return pick(hard, stiff, soft);
 }
 /* L - 1 and -u dL/du of layer and punch together, at u > 0. */
-static inline V decaying(const Layer *b, V u, V *falling) {
+ALONE static V decaying(const Layer *b, V u, V *falling) {
     V less, e = exponential(-2 * u, &less), rest = -less, L1, uL;
     if (b->bonded) {
         V excess, d_below, c1 = b->c1, c2 = b->c2, below = bonded_below(b, u, e, rest, &excess, &d_below);

@@ -1,7 +1,7 @@
 /* Newton's method on the meshes of the ladder: solver/contact of numpy, a case in each lane. */
 #define EPS 2.220446049250313e-16
 #define MOST_NODES 96
-#define ALONE __attribute__((noinline))        /* compiled once: the same bits wherever it is called */
+#define KINDS 512                               /* more than there are octaves, two classes, two interfaces */
 
 /* The equation on one mesh at a state: arrays over the nodes; Kq and its slope by ln a have the edge last. */
 typedef struct {
@@ -16,7 +16,7 @@ typedef struct {
 typedef struct {
     const Batch *b;
     const Mesh *mesh;
-    const Table *table;
+    const Table *table, *tables[KINDS / 2];        /* that of the group; those of the mesh */
     int64_t index[W];
     int count;
     Law law;
@@ -62,9 +62,31 @@ static inline void load_cases(Group *c, const int64_t *index, int count) {
 static inline V softness(const Group *c, V a) {
     return c->b->layered ? whole(&c->layer, 1.5 * c->layer.h / a) : all(1.0);
 }
+/* For few cases the same sums with other numbers in the lanes: F has F_ neighbours of a table. The order of each sum is
+   that of many cases, and so are its bits. */
+typedef double F __attribute__((vector_size(32), aligned(8)));
+#define F_ 4
+static inline int are_few(const Group *c) { return 4 * c->count <= W; }
+static inline void spread(V *out, int64_t count, const double *sums, const Group *c, int lane) {
+    for (int64_t i = 0; i < count; i++) EACH(l) if (l == lane || (l > lane && lane == c->count - 1)) out[i][l] = sums[i];
+}
 /* Sums (rows) of the columns, each times one x. */
-static ALONE void combine(const double *columns, int64_t count, int64_t rows, const V *x, V *out) {
+ALONE static void combine(const Group *c, const double *columns, int64_t count, int64_t rows, const V *x, V *out) {
     int64_t i = 0;
+    if (are_few(c)) {
+        for (; i + 8 * F_ <= rows; i += 8 * F_)
+            for (int l = 0; l < c->count; l++) {
+                F s[8] = {{0}}, s0 = s[0], s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
+                for (int64_t j = 0; j < count; j++) {
+                    const F *k = (const F *)(columns + j * rows + i);
+                    double v = x[j][l];
+                    s0 += k[0] * v; s1 += k[1] * v; s2 += k[2] * v; s3 += k[3] * v;
+                    s4 += k[4] * v; s5 += k[5] * v; s6 += k[6] * v; s7 += k[7] * v;
+                }
+                s[0] = s0; s[1] = s1; s[2] = s2; s[3] = s3; s[4] = s4; s[5] = s5; s[6] = s6; s[7] = s7;
+                spread(out + i, 8 * F_, (double *)s, c, l);
+            }
+    }
     for (; i + 8 <= rows; i += 8) {
         V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
         for (int64_t j = 0; j < count; j++) {
@@ -87,17 +109,45 @@ static inline V against(const double *w, const V *x, int64_t n) {
     for (int64_t i = 0; i < n; i++) sum += w[i] * x[i];
     return sum;
 }
-/* L - 1 and its slope at the few nodes k; their weights at all nodes. */
-static ALONE void kernel_at(Group *c, V a) {
+/* L - 1 and its slope at the few nodes k. */
+ALONE static void kernel_at(Group *c, V a) {
     const Table *t = c->table;
     V h_a = c->layer.h / a;
-    for (int64_t i = 0; i < t->few; i++) c->L1[i] = decaying(&c->layer, t->k[i] * h_a, c->uL + i);
+    if (!are_few(c)) {
+        for (int64_t i = 0; i < t->few; i++) c->L1[i] = decaying(&c->layer, t->k[i] * h_a, c->uL + i);
+        return;
+    }
+    for (int l = 0; l < c->count; l++) {
+        Layer one = c->layer;
+        V *of[] = {&one.n, &one.m, &one.c1, &one.c2, &one.one_c1, &one.one_c2, &one.plus_c1, &one.one_c1c2}, k = h_a, L1, uL;
+        for (int i = 0; i < 8; i++) *of[i] = all((*of[i])[l]);
+        for (int64_t i = 0; i < t->few; i += W) {
+            int64_t count = t->few - i < W ? t->few - i : W;
+            EACH(at) k[at] = t->k[i + (at < count ? at : 0)];
+            L1 = decaying(&one, k * h_a[l], &uL);
+            spread(c->L1 + i, count, (double *)&L1, c, l);
+            spread(c->uL + i, count, (double *)&uL, c, l);
+        }
+    }
 }
 /* The operator of a layer on a mesh, K (n + 1, n), from L - 1; or its slope by ln a. */
 static ALONE void product(const Group *c, const Equation *e, const V *L, V *K) {
-    int64_t n = e->n, few = c->table->few;
+    int64_t size = e->n * (e->n + 1), few = c->table->few, i = 0;
     const double *t = e->rows->product;
-    for (int64_t i = 0; i < n * (n + 1); i += 12) {
+    for (; are_few(c) && i < size; i += 48, t += 48 * few)
+        for (int l = 0; l < c->count; l++) {
+            F s[12] = {{0}}, s0 = s[0], s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0, s9 = s0, sa = s0, sb = s0;
+            for (int64_t m = 0; m < few; m++) {
+                const F *p = (const F *)(t + 12 * m), *q = p + 3 * few, *r = q + 3 * few, *w = r + 3 * few;
+                double x = L[m][l];
+                s0 += p[0] * x; s1 += p[1] * x; s2 += p[2] * x; s3 += q[0] * x; s4 += q[1] * x; s5 += q[2] * x;
+                s6 += r[0] * x; s7 += r[1] * x; s8 += r[2] * x; s9 += w[0] * x; sa += w[1] * x; sb += w[2] * x;
+            }
+            s[0] = s0; s[1] = s1; s[2] = s2; s[3] = s3; s[4] = s4; s[5] = s5;
+            s[6] = s6; s[7] = s7; s[8] = s8; s[9] = s9; s[10] = sa; s[11] = sb;
+            spread(K + i, 48, (double *)s, c, l);
+        }
+    for (; i < size; i += 12) {
         V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0, s9 = s0, sa = s0, sb = s0;
         for (int64_t m = 0; m < few; m++, t += 12) {
             V x = L[m];
@@ -135,7 +185,7 @@ static void form(Group *c, Equation *e) {
     V *K = c->K;
     if (e->rows->product) product(c, e, c->L1, K);
     else {
-        combine(c->table->spread, c->table->few, c->table->all, c->L1, c->weights);
+        combine(c, c->table->spread, c->table->few, c->table->all, c->L1, c->weights);
         summed(c, e, c->weights, K);
     }
     for (int64_t i = 0; i <= n; i++) {
@@ -159,10 +209,10 @@ static void slopes(Group *c, Equation *e) {
         return;
     }
     G = c->table->all;
-    combine(c->table->spread, c->table->few, G, c->uL, c->slopes);
-    combine(e->rows->phi_columns, n, G, e->q, c->room);
+    combine(c, c->table->spread, c->table->few, G, c->uL, c->slopes);
+    combine(c, e->rows->phi_columns, n, G, e->q, c->room);
     for (int64_t g = 0; g < G; g++) c->room[g] *= c->slopes[g];
-    combine(e->rows->J, G, n + 1, c->room, e->slope);
+    combine(c, e->rows->J, G, n + 1, c->room, e->slope);
 }
 static ALONE void curves(const Group *c, Equation *e) {
     V a = e->a;
@@ -179,7 +229,7 @@ static ALONE void evaluate(Group *c, Equation *e) {
     int64_t n = e->n;
     curves(c, e);
     if (c->b->layered) form(c, e);
-    else combine(e->half_space, n, n + 1, e->q, e->Kq);
+    else combine(c, e->half_space, n, n + 1, e->q, e->Kq);
     for (int64_t i = 0; i < n; i++) e->F[i] = e->X * e->Kq[i] + e->Y * e->q[i] + e->Z * e->g[i] - e->s[i] * e->s[i];
 }
 /* The residual of a control, ln of its quantity over its value; X and the displacement of the edge may be others. */
@@ -284,13 +334,13 @@ static ALONE void interpolate(Group *c, const Points *p, const double *J, double
     const Law *law = &c->law;
     int64_t n = e->n, m = p->m;
     V *kq = c->room, *at_layer = kq + m, *right = at_layer + m, *linear = right + m, *factor = linear + m;
-    combine(p->half_space, n, m, e->q, kq);
+    combine(c, p->half_space, n, m, e->q, kq);
     if (c->b->layered) {
-        combine(J, c->table->all, m, c->waves, at_layer);
+        combine(c, J, c->table->all, m, c->waves, at_layer);
         for (int64_t i = 0; i < m; i++) kq[i] += at_layer[i];
     }
-    combine(p->basis, n, m, e->q, c->pressures);
-    combine(p->basis, n, m, c->missed, factor);
+    combine(c, p->basis, n, m, e->q, c->pressures);
+    combine(c, p->basis, n, m, c->missed, factor);
     for (int64_t i = 0; i < m; i++) {
         V drop = all(p->s[i] * p->s[i]), stiff = e->X * p->kappa[i], floor = 1e-3 * stiff * size_of(c->pressures[i]);
         linear[i] = stiff + e->Y;
@@ -318,8 +368,8 @@ static ALONE void before_points(Group *c) {
     const Equation *e = &c->on;
     const Table *t = c->table;
     if (c->b->layered) {
-        combine(t->spread, t->few, t->all, c->L1, c->weights);
-        combine(t->own.phi_columns, e->n, t->all, e->q, c->waves);
+        combine(c, t->spread, t->few, t->all, c->L1, c->weights);
+        combine(c, t->own.phi_columns, e->n, t->all, e->q, c->waves);
         for (int64_t g = 0; g < t->all; g++) c->waves[g] *= c->weights[g];
     }
     for (int64_t i = 0; i < e->n; i++) {

@@ -78,16 +78,19 @@ def _solved(function, cases, rtol, x):
     nodes, iterations = np.zeros((2, size), dtype=np.int32)
     place, shrink = inner.astype(np.int64), s[inner] / solved_at
     ladder = np.array([n for n in LADDER if n <= _FINEST] + [LADDER[LADDER.index(_FINEST) + 1]], dtype=np.int64)
-    s_bytes, held = solved_at.tobytes(), []
+    s_bytes, held, raised = solved_at.tobytes(), [], []
 
     def address(make):
-        """The address of what `make` returns, or 0. Python prints what a callback of C raises, and C goes on."""
+        """A callback: the address of what `make` returns, or 0. What it raises would be lost in C, and is raised later."""
 
         def of(*key):
-            if (made := make(*key, s_bytes)) is None:
+            try:
+                made = None if raised else make(*key, s_bytes)
+            except BaseException as error:  # Ctrl-C too
+                raised.append(error)
                 return 0
             held.append(made)
-            return made.address
+            return made.address if made else 0
 
         return of
 
@@ -103,6 +106,8 @@ def _solved(function, cases, rtol, x):
         own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
         if not function(byref(Batch(**shared, **own)), most_points, MOST_WAVES):
             raise MemoryError("no memory for the compiled core")
+        if raised:
+            raise raised[0]
     values = dict(zip(_SCALARS, scalars, strict=True))
     integers = {name: np.zeros(size, dtype=np.int8) for name in ("status", "model_used")}
     rest = {name: np.full(size, np.nan) for name in ("plastic_share", "model_error")}

@@ -1,6 +1,4 @@
 /* The cases of a batch, in groups that share a mesh, a table and the interface of the layer. */
-#define KINDS 512
-
 static int kind_of(const Batch *b, const States *s, int64_t i, int by_octave) {
     if (!b->layered) return 0;
     int kind = (b->n[i] > 2 ? 2 : 0) + (b->bonded[i] != 0);
@@ -24,7 +22,12 @@ static void by_kinds(Group *c, States *s, const int64_t *list, int64_t count, in
         if (s->rung[list[j]] >= 0) order[ends[kind_of(b, s, list[j], by_octave)]++] = list[j];
     for (int k = 0; k < KINDS && from < total; from = ends[k++]) {
         if (ends[k] == from) continue;
-        c->table = b->layered && by_octave ? b->table(c->on.n, k / 4 + b->first_octave, (k & 2) != 0) : 0;
+        c->table = 0;
+        if (b->layered && by_octave) {
+            const Table **of_kind = c->tables + k / 2;
+            if (!*of_kind) *of_kind = b->table(c->on.n, k / 4 + b->first_octave, (k & 2) != 0);
+            c->table = *of_kind;
+        }
         if (b->layered && by_octave && !c->table) {
             for (int64_t j = from; j < ends[k]; j++) s->rung[order[j]] = -1;
             continue;
@@ -50,6 +53,7 @@ static void on_rung(Group *c, States *s, int64_t r) {
     int64_t count;
     const Mesh *m = c->mesh = b->mesh(b->ladder[r]);
     if (!m) return;
+    for (int k = 0; k < KINDS / 2; k++) c->tables[k] = 0;
     c->on.n = m->n, c->on.s = m->s, c->on.w = m->w, c->on.half_space = m->K;
     c->fine.n = b->ladder[r + 1], c->fine.s = m->fine_s, c->fine.w = m->fine_w, c->fine.half_space = m->fine_K;
     if ((count = those(b, s, r, 1))) by_kinds(c, s, s->list, count, 0, first_guess);

@@ -67,9 +67,10 @@ def _mesh(mesh, profile):
     return Made((made, arrays))
 
 
-def _blocks(columns, width):
-    """The columns of an array (r, c), as many as `width` together and zeros behind the last: (blocks, r, width)."""
-    padded = np.pad(columns, ((0, 0), (0, -columns.shape[1] % width)))
+def _blocks(columns, width, together=1):
+    """The columns of an array (r, c), as many as `width` together and zeros behind the last: (blocks, r, width), the
+    number of blocks a multiple of `together`."""
+    padded = np.pad(columns, ((0, 0), (0, -columns.shape[1] % (width * together))))
     return padded.reshape(len(columns), -1, width).transpose(1, 0, 2)
 
 
@@ -85,7 +86,7 @@ def _table(mesh, octave, stiffness, profile):
         of_mesh = table(mesh, SAMPLER, octave, stiffness, mesh.n <= _PRODUCT)
         J, phi, columns = of_mesh.J, of_mesh.phi, at(of_mesh.phi.T)
         if mesh.n <= _PRODUCT:
-            return of_mesh, Rows(at(_blocks(of_mesh.product, 12)), None, None, None, columns)
+            return of_mesh, Rows(at(_blocks(of_mesh.product, 12, 4)), None, None, None, columns)
         return of_mesh, Rows(None, at(J), at(_blocks(J, 3)), at(_blocks(phi, 4)), columns)
 
     (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))

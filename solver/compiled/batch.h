@@ -33,6 +33,7 @@ typedef struct {
     int32_t control, law, layered, octaves, first_octave, steps;
     const int64_t *ladder;
     const double *value, *rtol, *p_star, *A_star, *beta, *ratio, *E, *C, *h, *m, *n, *nu1, *nu2, *bonded;
+    const int64_t *fixed;                   /* (size,), number of nodes, or 0: chosen by rtol */
     const double *shrink;                   /* (points,), s at a profile's radius over the s that is solved there */
     const int64_t *place;                   /* (points,), the column of p and lam of each of these */
     int64_t columns;                        /* of p and lam */

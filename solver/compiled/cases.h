@@ -224,9 +224,11 @@ static void finish(Group *c, States *s) {
         error = most(most(error, moved), both);
     } else pulls = tension(c);
     I bad = ~is_finite(probe + c->fine.eta + error) | (pulls > 1e-9) | (centre < 0), wanting = error > c->rtol;
-    I judged = ~bad & ~wanting;
+    I fixed = all(0.0) != 0, judged;
+    EACH(l) if (b->fixed[c->index[l]]) fixed[l] = -1;
+    judged = ~bad & (~wanting | fixed);
     if (rough && any(judged)) error = pick(judged, completed(c, coarse.value[Ar_An_], error), error);
-    wanting |= error > c->rtol;
+    wanting = (wanting | (error > c->rtol)) & ~fixed;
     V before = of_cases(s->before, c->index);
     I slow = error > 0.5 * before;
     bad |= ~is_finite(error) | (wanting & (floor > c->rtol) & (error <= pick(slow, 30 * floor, floor)));
@@ -234,6 +236,13 @@ static void finish(Group *c, States *s) {
     for (int i = 0; i < 7; i++) bad |= ~is_finite(coarse.value[i]);
     I solved = ~bad & ~wanting;
     V profile = any(solved) ? most(error, of_profiles(c, y_start, q_start, margin)) : error;
+    if (any(solved & fixed)) {                                                 /* P'/D' of this mesh, as the other numbers */
+        V of_P, of_D;
+        evaluate(c, &c->on);
+        advance(c, &c->on);
+        V P = along(c, &c->on, LOAD, c->d_eta, &of_P), D = along(c, &c->on, DEPTH, c->d_eta, &of_D);
+        slope = pick(fixed, coarse.value[P_] / coarse.value[D_] * (P + of_P) / (D + of_D), slope);
+    }
     if (b->layered && b->points && any(solved)) profiles(c, solved);           /* its tables are at hand */
     for (int l = 0; l < c->count; l++) {
         int64_t k = c->index[l];
@@ -291,7 +300,7 @@ static void begin(Group *c, States *s) {
     if (!b->layered) wanted = most(wanted, pick(springs & (c->rtol < 3e-5), all(8.0), all(0.0)));
     for (int l = 0; l < c->count; l++) {
         int64_t i = c->index[l], r = 0;
-        while (b->ladder[r] < 32 && b->ladder[r] < wanted[l]) r++;
+        while (b->fixed[i] ? b->ladder[r] != b->fixed[i] : b->ladder[r] < 32 && b->ladder[r] < wanted[l]) r++;
         s->rung[i] = a[l] - a[l] == 0 && wanted[l] == wanted[l] ? r : -1;
         s->fresh[i] = 1;
         s->eta[i] = eta[l];

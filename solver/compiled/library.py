@@ -61,7 +61,7 @@ class Batch(Structure):
         *((name, c_int64) for name in ("size", "stride", "points", "rungs")),
         *((name, c_int32) for name in ("control", "law", "layered", "octaves", "first_octave", "steps")),
         *((name, c_void_p) for name in ("ladder", "value", "rtol", "p_star", "A_star", "beta", "ratio", "E", "C")),
-        *((name, c_void_p) for name in (*_LAYERED, "shrink", "place")),
+        *((name, c_void_p) for name in (*_LAYERED, "fixed", "shrink", "place")),
         *(("columns", c_int64), ("scalars", c_void_p), ("p", c_void_p), ("lam", c_void_p)),
         *(("nodes", c_void_p), ("iterations", c_void_p), ("mesh", OF_MESH), ("table", OF_TABLE)),
     ]

@@ -17,6 +17,7 @@ from ..laws import LAWS
 from ..numerics.ladder import LADDER
 from ..punches import PARABOLOID
 from ..solution import Solution
+from ..status import Status
 from .library import OF_MESH, OF_TABLE, Batch, core, pointer
 from .tables import MOST_WAVES, mesh_for, table_for
 
@@ -25,8 +26,8 @@ _LAWS, _CONTROLS = ("disc_cell", "power_law", "smooth"), ("P", "a", "D")
 _SCALARS = ("a", "P", "D", "p0", "p_max", "Ar_An", "A0", "dP_dD", "residual", "error", "profile_error")
 #: Most cases of one call of the core. Its memory is 14 MB, and groups of like cases are full.
 _CHUNK = 16_384
-#: Finest mesh of the core. What needs more is left to numpy: the estimate of its error needs finer ones and panels.
-_FINEST = 64
+#: Meshes of the core, and the finer one of the last. What needs more is left to numpy, which goes on to panels.
+_MESHES, _FINER = LADDER[:-1], LADDER[-1]
 
 
 def solve_newton(cases, rtol, nodes, limit, x):
@@ -35,8 +36,8 @@ def solve_newton(cases, rtol, nodes, limit, x):
     index = np.flatnonzero(_taken(cases, nodes)) if function and not limit else ()
     if not len(index):
         return adaptive.solve_newton(cases, rtol, nodes, limit, x)
-    whole = len(index) == len(rtol)
-    solution = _solved(function, cases if whole else cases.take(index), rtol if whole else rtol[index], x)
+    part = cases if len(index) == len(rtol) else cases.take(index)
+    solution = _solved(function, part, rtol[index], nodes[index], x)
     solved = np.flatnonzero(solution.nodes)
     if len(solved) == len(rtol):
         return solution
@@ -49,7 +50,7 @@ def solve_newton(cases, rtol, nodes, limit, x):
 def _taken(cases, nodes):
     """(B,) bool: the cases of which the core knows law, body and punch, and whose mesh is free."""
     law, body = cases.law.law, cases.body
-    taken = nodes == 0
+    taken = (nodes == 0) | np.isin(nodes, _MESHES)
     if law not in [LAWS[name] for name in _LAWS] or cases.punch is not PARABOLOID or cases.edge is not FREE:
         return np.zeros_like(taken)
     if law.name == "power_law":
@@ -61,7 +62,7 @@ def _taken(cases, nodes):
     return np.zeros_like(taken)
 
 
-def _solved(function, cases, rtol, x):
+def _solved(function, cases, rtol, nodes, x):
     """:class:`~solver.solution.Solution` by the core; `nodes` is 0 of the cases that are handed back."""
     size, points, law, body = len(rtol), len(x), cases.law, cases.body
     s = np.sqrt((1 - x) * (1 + x))
@@ -75,9 +76,9 @@ def _solved(function, cases, rtol, x):
         inputs |= {"h": body.h, "m": body.m} | body.kernel._asdict()
     inputs = {name: np.ascontiguousarray(values, dtype=float) for name, values in inputs.items()}
     scalars, (p, lam) = np.empty((len(_SCALARS), size)), np.zeros((2, size, points))
-    nodes, iterations = np.zeros((2, size), dtype=np.int32)
+    last_nodes, iterations = np.zeros((2, size), dtype=np.int32)
     place, shrink = inner.astype(np.int64), s[inner] / solved_at
-    ladder = np.array([n for n in LADDER if n <= _FINEST] + [LADDER[LADDER.index(_FINEST) + 1]], dtype=np.int64)
+    ladder = np.array([*_MESHES, _FINER], dtype=np.int64)
     s_bytes, held, raised = solved_at.tobytes(), [], []
 
     def address(make):
@@ -99,8 +100,9 @@ def _solved(function, cases, rtol, x):
     shared |= {"octaves": OCTAVES[1] - OCTAVES[0] + 1, "columns": points, "ladder": pointer(ladder)}
     shared |= {"shrink": pointer(shrink), "place": pointer(place)}
     shared |= {"mesh": OF_MESH(address(mesh_for)), "table": OF_TABLE(address(table_for))}
-    most_points = max(3 * _FINEST, 2 * _FINEST + 4, len(inner), LADDER[-1])
-    rows = inputs | {"p": p, "lam": lam, "nodes": nodes, "iterations": iterations}
+    most_points = max(3 * _MESHES[-1], len(inner))
+    rows = inputs | {"p": p, "lam": lam, "nodes": last_nodes, "iterations": iterations}
+    rows |= {"fixed": np.ascontiguousarray(nodes, dtype=np.int64)}
     for low in range(0, size, _CHUNK):
         own = {name: pointer(values, low) for name, values in rows.items()}
         own |= {"size": min(_CHUNK, size - low), "scalars": pointer(scalars.T, low)}
@@ -109,6 +111,8 @@ def _solved(function, cases, rtol, x):
         if raised:
             raise raised[0]
     values = dict(zip(_SCALARS, scalars, strict=True))
-    integers = {name: np.zeros(size, dtype=np.int8) for name in ("status", "model_used")}
+    missed = values["error"] > rtol  # on a mesh that the case asks for
+    integers = {"status": np.where(missed, Status.TOLERANCE_NOT_MET, Status.CONVERGED).astype(np.int8)}
+    integers |= {"model_used": np.zeros(size, dtype=np.int8), "nodes": last_nodes, "iterations": iterations}
     rest = {name: np.full(size, np.nan) for name in ("plastic_share", "model_error")}
-    return Solution(**values, **integers, **rest, nodes=nodes, iterations=iterations, p=p, lam=lam)
+    return Solution(**values, **integers, **rest, p=p, lam=lam)

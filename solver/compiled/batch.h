@@ -8,11 +8,13 @@ enum { DISC_CELL, POWER_LAW, SMOOTH };      /* its micro law */
 enum { a_, P_, D_, p0_, p_max_, Ar_An_, A0_, dP_dD_, residual_, error_, profile_error_, SCALARS };
 #define JUDGED 6                            /* the first of these are judged by their relative error */
 
-/* Points between the nodes of a mesh: s, weights of 2 s ds, kappa, and as columns for each node the m values of its
-   polynomial and of the displacement of the half-space (solver/contact/results.py). */
+/* Tables of numbers that are summed over their columns are in blocks of 8 rows: `_blocks` of tables.py. */
+
+/* Points between the nodes of a mesh: s, weights of 2 s ds, kappa, and tables (n columns, m rows) of the polynomials and
+   of the displacement of the half-space (solver/contact/results.py). */
 typedef struct { int64_t m; const double *s, *w, *kappa, *basis, *half_space; } Points;
 
-/* A mesh of n nodes and the next finer one, `fine`. K is by columns, its last row that of the edge: n x (n + 1). */
+/* A mesh of n nodes and the next finer one, `fine`. K (n + 1, n) has the row of the edge last. */
 typedef struct {
     int64_t n;
     const double *s, *w, *K, *kappa, *at_edge;
@@ -20,8 +22,8 @@ typedef struct {
     Points fine, more, between, profile;
 } Mesh;
 
-/* The operator of a layer on a mesh (solver/body/tables.py): `product` (M, (n + 1) n) in blocks of 12 columns, four and four, or NULL, and
-   the matrix is formed of J (G, n + 1) and phi (G, n) in blocks of 3 and 4 columns; phi_columns (n, G). */
+/* The operator of a layer on a mesh (solver/body/tables.py): a table `product` (M columns, (n + 1) n rows), or NULL, and
+   the matrix is formed of J (G, n + 1) and phi (G, n) in blocks of 3 and 4; besides tables J and phi_columns. */
 typedef struct { const double *product, *J, *J_blocks, *phi_blocks, *phi_columns; } Rows;
 
 /* One octave of h/a and class of stiffness on a mesh: k (M,), spread (M, G), and J at the points between (G, m). */

@@ -130,7 +130,7 @@ static V refine(Group *c, V *y_start, V *q_start, V *g_start) {
     interpolate(c, &c->mesh->fine, c->b->layered ? c->table->J_fine : 0, 1e-8, f->y);
     evaluate(c, f);
     V d_eta = advance(c, f), of_P, of_D;
-    V P = along(c, f, LOAD, c->d_eta, &of_P), D = along(c, f, DEPTH, c->d_eta, &of_D), edge_q = all(0);
+    V P = along(c, f, LOAD, c->d_eta, &of_P), D = along(c, f, DEPTH, c->d_eta, &of_D);
     for (int64_t i = 0; i < n; i++) {
         q_start[i] = f->q[i];
         g_start[i] = f->g[i];
@@ -138,9 +138,8 @@ static V refine(Group *c, V *y_start, V *q_start, V *g_start) {
         f->g[i] += f->dg[i] * c->step[i];
         y_start[i] = f->y[i];
         f->y[i] += c->step[i];
-        edge_q += (c->b->layered ? c->K[n * n + i] : all(f->half_space[i * (n + 1) + n])) * f->q[i];
     }
-    f->Kq[n] = edge_q + f->slope[n] * d_eta;
+    f->Kq[n] = dot(c->K + n * n, f->q, n) + f->slope[n] * d_eta;
     f->eta += d_eta;
     f->a = vexp(f->eta);
     f->X = 8 / PI * c->law.p_star / (f->a * c->E);

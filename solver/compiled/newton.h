@@ -62,47 +62,40 @@ static inline void load_cases(Group *c, const int64_t *index, int count) {
 static inline V softness(const Group *c, V a) {
     return c->b->layered ? whole(&c->layer, 1.5 * c->layer.h / a) : all(1.0);
 }
-/* For few cases the same sums with other numbers in the lanes: F has F_ neighbours of a table. The order of each sum is
-   that of many cases, and so are its bits. */
+/* For few cases the lanes hold neighbours of a table in place of cases: F has four. The order of each sum is that of many
+   cases, and so are its bits. */
 typedef double F __attribute__((vector_size(32), aligned(8)));
-#define F_ 4
-static inline int are_few(const Group *c) { return 4 * c->count <= W; }
-static inline void spread(V *out, int64_t count, const double *sums, const Group *c, int lane) {
-    for (int64_t i = 0; i < count; i++) EACH(l) if (l == lane || (l > lane && lane == c->count - 1)) out[i][l] = sums[i];
-}
-/* Sums (rows) of the columns, each times one x. */
-ALONE static void combine(const Group *c, const double *columns, int64_t count, int64_t rows, const V *x, V *out) {
+/* Sums (rows) of the columns (count) of a table, each times one x. The table has blocks of 8 rows, four together. */
+ALONE static void combine(const Group *c, const double *t, int64_t count, int64_t rows, const V *x, V *out) {
     int64_t i = 0;
-    if (are_few(c)) {
-        for (; i + 8 * F_ <= rows; i += 8 * F_)
-            for (int l = 0; l < c->count; l++) {
-                F s[8] = {{0}}, s0 = s[0], s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
-                for (int64_t j = 0; j < count; j++) {
-                    const F *k = (const F *)(columns + j * rows + i);
-                    double v = x[j][l];
-                    s0 += k[0] * v; s1 += k[1] * v; s2 += k[2] * v; s3 += k[3] * v;
-                    s4 += k[4] * v; s5 += k[5] * v; s6 += k[6] * v; s7 += k[7] * v;
-                }
-                s[0] = s0; s[1] = s1; s[2] = s2; s[3] = s3; s[4] = s4; s[5] = s5; s[6] = s6; s[7] = s7;
-                spread(out + i, 8 * F_, (double *)s, c, l);
+    for (; 4 * c->count <= W && i < rows; i += 32, t += 32 * count)
+        for (int lane = 0; lane < c->count; lane++) {
+            F s[8] = {{0}}, s0 = s[0], s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
+            for (int64_t j = 0; j < count; j++) {
+                const F *k = (const F *)(t + 8 * j), *l = k + 2 * count, *m = l + 2 * count, *n = m + 2 * count;
+                double v = x[j][lane];
+                s0 += k[0] * v; s1 += k[1] * v; s2 += l[0] * v; s3 += l[1] * v;
+                s4 += m[0] * v; s5 += m[1] * v; s6 += n[0] * v; s7 += n[1] * v;
             }
-    }
-    for (; i + 8 <= rows; i += 8) {
+            s[0] = s0; s[1] = s1; s[2] = s2; s[3] = s3; s[4] = s4; s[5] = s5; s[6] = s6; s[7] = s7;
+            for (int64_t k = 0; k < 32; k++)
+                EACH(l) if (l == lane || (l > lane && lane == c->count - 1)) out[i + k][l] = s[k / 4][k % 4];
+        }
+    for (; i < rows; i += 8) {
         V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0;
-        for (int64_t j = 0; j < count; j++) {
-            const double *k = columns + j * rows + i;
+        for (int64_t j = 0; j < count; j++, t += 8) {
             V v = x[j];
-            s0 += k[0] * v; s1 += k[1] * v; s2 += k[2] * v; s3 += k[3] * v;
-            s4 += k[4] * v; s5 += k[5] * v; s6 += k[6] * v; s7 += k[7] * v;
+            s0 += t[0] * v; s1 += t[1] * v; s2 += t[2] * v; s3 += t[3] * v;
+            s4 += t[4] * v; s5 += t[5] * v; s6 += t[6] * v; s7 += t[7] * v;
         }
         out[i] = s0; out[i + 1] = s1; out[i + 2] = s2; out[i + 3] = s3;
         out[i + 4] = s4; out[i + 5] = s5; out[i + 6] = s6; out[i + 7] = s7;
     }
-    for (; i < rows; i++) {
-        V sum = all(0);
-        for (int64_t j = 0; j < count; j++) sum += columns[j * rows + i] * x[j];
-        out[i] = sum;
-    }
+}
+static inline V dot(const V *x, const V *y, int64_t n) {
+    V sum = all(0);
+    for (int64_t i = 0; i < n; i++) sum += x[i] * y[i];
+    return sum;
 }
 static inline V against(const double *w, const V *x, int64_t n) {
     V sum = all(0);
@@ -111,54 +104,10 @@ static inline V against(const double *w, const V *x, int64_t n) {
 }
 /* L - 1 and its slope at the few nodes k. */
 ALONE static void kernel_at(Group *c, V a) {
-    const Table *t = c->table;
     V h_a = c->layer.h / a;
-    if (!are_few(c)) {
-        for (int64_t i = 0; i < t->few; i++) c->L1[i] = decaying(&c->layer, t->k[i] * h_a, c->uL + i);
-        return;
-    }
-    for (int l = 0; l < c->count; l++) {
-        Layer one = c->layer;
-        V *of[] = {&one.n, &one.m, &one.c1, &one.c2, &one.one_c1, &one.one_c2, &one.plus_c1, &one.one_c1c2}, k = h_a, L1, uL;
-        for (int i = 0; i < 8; i++) *of[i] = all((*of[i])[l]);
-        for (int64_t i = 0; i < t->few; i += W) {
-            int64_t count = t->few - i < W ? t->few - i : W;
-            EACH(at) k[at] = t->k[i + (at < count ? at : 0)];
-            L1 = decaying(&one, k * h_a[l], &uL);
-            spread(c->L1 + i, count, (double *)&L1, c, l);
-            spread(c->uL + i, count, (double *)&uL, c, l);
-        }
-    }
+    for (int64_t i = 0; i < c->table->few; i++) c->L1[i] = decaying(&c->layer, c->table->k[i] * h_a, c->uL + i);
 }
-/* The operator of a layer on a mesh, K (n + 1, n), from L - 1; or its slope by ln a. */
-static ALONE void product(const Group *c, const Equation *e, const V *L, V *K) {
-    int64_t size = e->n * (e->n + 1), few = c->table->few, i = 0;
-    const double *t = e->rows->product;
-    for (; are_few(c) && i < size; i += 48, t += 48 * few)
-        for (int l = 0; l < c->count; l++) {
-            F s[12] = {{0}}, s0 = s[0], s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0, s9 = s0, sa = s0, sb = s0;
-            for (int64_t m = 0; m < few; m++) {
-                const F *p = (const F *)(t + 12 * m), *q = p + 3 * few, *r = q + 3 * few, *w = r + 3 * few;
-                double x = L[m][l];
-                s0 += p[0] * x; s1 += p[1] * x; s2 += p[2] * x; s3 += q[0] * x; s4 += q[1] * x; s5 += q[2] * x;
-                s6 += r[0] * x; s7 += r[1] * x; s8 += r[2] * x; s9 += w[0] * x; sa += w[1] * x; sb += w[2] * x;
-            }
-            s[0] = s0; s[1] = s1; s[2] = s2; s[3] = s3; s[4] = s4; s[5] = s5;
-            s[6] = s6; s[7] = s7; s[8] = s8; s[9] = s9; s[10] = sa; s[11] = sb;
-            spread(K + i, 48, (double *)s, c, l);
-        }
-    for (; i < size; i += 12) {
-        V s0 = all(0), s1 = s0, s2 = s0, s3 = s0, s4 = s0, s5 = s0, s6 = s0, s7 = s0, s8 = s0, s9 = s0, sa = s0, sb = s0;
-        for (int64_t m = 0; m < few; m++, t += 12) {
-            V x = L[m];
-            s0 += t[0] * x; s1 += t[1] * x; s2 += t[2] * x; s3 += t[3] * x; s4 += t[4] * x; s5 += t[5] * x;
-            s6 += t[6] * x; s7 += t[7] * x; s8 += t[8] * x; s9 += t[9] * x; sa += t[10] * x; sb += t[11] * x;
-        }
-        K[i] = s0; K[i + 1] = s1; K[i + 2] = s2; K[i + 3] = s3; K[i + 4] = s4; K[i + 5] = s5;
-        K[i + 6] = s6; K[i + 7] = s7; K[i + 8] = s8; K[i + 9] = s9; K[i + 10] = sa; K[i + 11] = sb;
-    }
-}
-/* The same on a fine mesh, where there is no table of products. */
+/* What a layer adds to K on a fine mesh, for which there is no table of products. */
 static ALONE void summed(const Group *c, const Equation *e, const V *weights, V *K) {
     int64_t n = e->n, G = c->table->all;
     const double *J = e->rows->J_blocks;
@@ -179,23 +128,17 @@ static ALONE void summed(const Group *c, const Equation *e, const V *weights, V 
         }
     }
 }
-/* K of a layer, and K q. */
+/* K, the row of the edge under it, and K q. */
 static void form(Group *c, Equation *e) {
-    int64_t n = e->n;
+    int64_t n = e->n, size = n * (n + 1);
     V *K = c->K;
-    if (e->rows->product) product(c, e, c->L1, K);
-    else {
+    if (c->b->layered && e->rows->product) combine(c, e->rows->product, c->table->few, size, c->L1, K);
+    else if (c->b->layered) {
         combine(c, c->table->spread, c->table->few, c->table->all, c->L1, c->weights);
         summed(c, e, c->weights, K);
     }
-    for (int64_t i = 0; i <= n; i++) {
-        V sum = all(0);
-        for (int64_t j = 0; j < n; j++) {
-            K[i * n + j] += e->half_space[j * (n + 1) + i];
-            sum += K[i * n + j] * e->q[j];
-        }
-        e->Kq[i] = sum;
-    }
+    for (int64_t i = 0; i < size; i++) K[i] = c->b->layered ? K[i] + e->half_space[i] : all(e->half_space[i]);
+    for (int64_t i = 0; i <= n; i++) e->Kq[i] = dot(K + i * n, e->q, n);
 }
 /* The slope of K q by ln a; 0 on a half-space. */
 static void slopes(Group *c, Equation *e) {
@@ -203,9 +146,8 @@ static void slopes(Group *c, Equation *e) {
     for (int64_t i = 0; i <= n; i++) e->slope[i] = all(0);
     if (!c->b->layered) return;
     if (e->rows->product) {
-        product(c, e, c->uL, c->A);
-        for (int64_t i = 0; i <= n; i++)
-            for (int64_t j = 0; j < n; j++) e->slope[i] += c->A[i * n + j] * e->q[j];
+        combine(c, e->rows->product, c->table->few, n * (n + 1), c->uL, c->A);
+        for (int64_t i = 0; i <= n; i++) e->slope[i] = dot(c->A + i * n, e->q, n);
         return;
     }
     G = c->table->all;
@@ -228,8 +170,7 @@ static ALONE void curves(const Group *c, Equation *e) {
 static ALONE void evaluate(Group *c, Equation *e) {
     int64_t n = e->n;
     curves(c, e);
-    if (c->b->layered) form(c, e);
-    else combine(c, e->half_space, n, n + 1, e->q, e->Kq);
+    form(c, e);
     for (int64_t i = 0; i < n; i++) e->F[i] = e->X * e->Kq[i] + e->Y * e->q[i] + e->Z * e->g[i] - e->s[i] * e->s[i];
 }
 /* The residual of a control, ln of its quantity over its value; X and the displacement of the edge may be others. */
@@ -244,10 +185,9 @@ static inline V along(const Group *c, const Equation *e, int control, const V *t
     *by_eta = all(control == RADIUS ? 1.0 : 2.0);
     if (control == RADIUS) return all(0);
     if (control == LOAD) return against(e->w, t, n) / e->load;
-    V edge = e->X * e->Kq[n], depth = 1 + edge, sum = all(0);
-    for (int64_t j = 0; j < n; j++) sum += (c->b->layered ? c->K[n * n + j] : all(e->half_space[j * (n + 1) + n])) * t[j];
+    V edge = e->X * e->Kq[n], depth = 1 + edge;
     *by_eta += (e->X * e->slope[n] - edge) / depth;
-    return e->X * sum / depth;
+    return e->X * dot(c->K + n * n, t, n) / depth;
 }
 /* Elimination of A (n, n) for two right-hand sides, without exchange of rows; the lanes whose pivots are positive. */
 static I eliminate(V *A, V *r, V *t, int64_t n) {
@@ -288,7 +228,7 @@ static ALONE V advance(Group *c, Equation *e) {
     V *t = c->step, *r = c->d_eta, inverse = 1 / e->X;
     slopes(c, e);
     for (int64_t i = 0; i < n; i++) {
-        for (int64_t j = 0; j < n; j++) c->A[i * n + j] = c->b->layered ? c->K[i * n + j] : all(e->half_space[j * (n + 1) + i]);
+        for (int64_t j = 0; j < n; j++) c->A[i * n + j] = c->K[i * n + j];
         c->A[i * n + i] += (e->Y + e->Z * (e->dg[i] / e->dq[i])) * inverse;
         r[i] = e->Kq[i] - e->slope[i] + 2 * (e->Y * e->q[i] + e->Z * e->g[i]) * inverse;
         t[i] = -e->F[i] * inverse;
@@ -332,8 +272,8 @@ static ALONE I closed(const Group *c, const Equation *e, V *residual, I *apart) 
 static ALONE void interpolate(Group *c, const Points *p, const double *J, double tolerance, V *y) {
     const Equation *e = &c->on;
     const Law *law = &c->law;
-    int64_t n = e->n, m = p->m;
-    V *kq = c->room, *at_layer = kq + m, *right = at_layer + m, *linear = right + m, *factor = linear + m;
+    int64_t n = e->n, m = p->m, next = (m + 31) / 32 * 32;
+    V *kq = c->room, *at_layer = kq + next, *right = at_layer + next, *linear = right + next, *factor = linear + next;
     combine(c, p->half_space, n, m, e->q, kq);
     if (c->b->layered) {
         combine(c, J, c->table->all, m, c->waves, at_layer);

@@ -66,12 +66,12 @@ static V *room_of(V **room, int64_t count) { V *at = *room; *room += count; retu
 
 static void equation_in(Equation *e, V **room) {
     V **arrays[] = {&e->y, &e->q, &e->g, &e->dq, &e->dg, &e->Kq, &e->slope, &e->F};
-    for (int i = 0; i < 8; i++) *arrays[i] = room_of(room, MOST_NODES + 1);
+    for (int i = 0; i < 8; i++) *arrays[i] = room_of(room, MOST_NODES + 32);
 }
 /* Solve the cases; 0 if there is no memory. `most_points` and `most_waves`: the largest numbers of points and k. */
 static int solve(const Batch *b, int64_t most_points, int64_t most_waves) {
-    int64_t n = MOST_NODES + 4, size = b->size, large = most_points > n ? most_points : n;
-    int64_t vectors = 20 * n + 2 * (n + 2) * n + 5 * most_waves + 8 * large + 256;
+    int64_t n = MOST_NODES + 32, size = b->size, large = ((most_points > n ? most_points : n) + 31) / 32 * 32;
+    int64_t vectors = 20 * n + 2 * n * n + 5 * most_waves + 8 * large + 256;
     if (5 * large > most_waves) vectors += 5 * large;
     char *block = malloc((size_t)vectors * sizeof(V) + 64 + (size_t)size * (MOST_NODES * 8 + 11 * 8));
     if (!block) return 0;
@@ -79,7 +79,7 @@ static int solve(const Batch *b, int64_t most_points, int64_t most_waves) {
     Group c = {.b = b};
     equation_in(&c.on, &room);
     equation_in(&c.fine, &room);
-    c.K = room_of(&room, (n + 2) * n); c.A = room_of(&room, (n + 2) * n);
+    c.K = room_of(&room, n * n); c.A = room_of(&room, n * n);
     c.L1 = room_of(&room, 128); c.uL = room_of(&room, 128);
     c.weights = room_of(&room, most_waves); c.slopes = room_of(&room, most_waves); c.waves = room_of(&room, most_waves);
     c.d_eta = room_of(&room, n); c.step = room_of(&room, n); c.missed = room_of(&room, n);

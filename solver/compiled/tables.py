@@ -53,10 +53,11 @@ def _mesh(mesh, profile):
     def points(s, w=None):
         s = np.ascontiguousarray(s)
         w = s if w is None else w
-        return Points(len(s), at(s), at(w), at(stiffness_between(mesh, s)), at(mesh.basis(s).T), at(mesh.rows(s).T))
+        summed = (at(_blocks(values.T)) for values in (mesh.basis(s), mesh.rows(s)))
+        return Points(len(s), at(s), at(w), at(stiffness_between(mesh, s)), *summed)
 
     def operator(mesh):
-        return at(np.vstack([mesh.K, mesh.edge]).T)
+        return at(np.vstack([mesh.K, mesh.edge]))
 
     (s, w), (dense, dense_w) = another_rule(mesh), denser_rule(mesh)
     made = Mesh(
@@ -67,9 +68,9 @@ def _mesh(mesh, profile):
     return Made((made, arrays))
 
 
-def _blocks(columns, width, together=1):
-    """The columns of an array (r, c), as many as `width` together and zeros behind the last: (blocks, r, width), the
-    number of blocks a multiple of `together`."""
+def _blocks(columns, width=8, together=4):
+    """The numbers of an array (r, c), `width` of c together and zeros behind the last: (blocks, r, width), the number of
+    blocks a multiple of `together`."""
     padded = np.pad(columns, ((0, 0), (0, -columns.shape[1] % (width * together))))
     return padded.reshape(len(columns), -1, width).transpose(1, 0, 2)
 
@@ -84,16 +85,16 @@ def _table(mesh, octave, stiffness, profile):
     def rows(mesh):
         """Whether the product is there does not depend on the number of cases: nor do their bits."""
         of_mesh = table(mesh, SAMPLER, octave, stiffness, mesh.n <= _PRODUCT)
-        J, phi, columns = of_mesh.J, of_mesh.phi, at(of_mesh.phi.T)
+        J, phi, columns = of_mesh.J, of_mesh.phi, at(_blocks(of_mesh.phi.T))
         if mesh.n <= _PRODUCT:
-            return of_mesh, Rows(at(_blocks(of_mesh.product, 12, 4)), None, None, None, columns)
-        return of_mesh, Rows(None, at(J), at(_blocks(J, 3)), at(_blocks(phi, 4)), columns)
+            return of_mesh, Rows(at(_blocks(of_mesh.product)), None, None, None, columns)
+        return of_mesh, Rows(None, at(_blocks(J)), at(_blocks(J, 3, 1)), at(_blocks(phi, 4, 1)), columns)
 
     (of_mesh, own), (_, fine) = rows(mesh), rows(finer_mesh(mesh))
     if of_mesh.spread.shape[1] > MOST_WAVES:
         return None
     s, _ = another_rule(mesh)
-    points = (between(octave, stiffness, np.ascontiguousarray(v)) for v in (finer_mesh(mesh).s, s, profile))
+    points = (_blocks(between(octave, stiffness, np.ascontiguousarray(v))) for v in (finer_mesh(mesh).s, s, profile))
     k = at(few(SAMPLER, octave, stiffness).k)
-    made = Table(*of_mesh.spread.shape, k, at(of_mesh.spread), own, fine, *map(at, points))
+    made = Table(*of_mesh.spread.shape, k, at(_blocks(of_mesh.spread)), own, fine, *map(at, points))
     return Made((made, arrays))
